@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Executor: parallel_for over an index range, on oneTBB, on plain threads, or in the calling thread.
+
+#include <cstddef>
+#include <functional>
+#include <memory>
+#include <string_view>
+
+namespace saccade {
+
+/// Runs loops. Passed into every function that can use several threads; cheap to copy. Thread-safe.
+/// Work must not depend on which thread or in which order an index runs: then results are the same for every count.
+class Executor {
+ public:
+  enum class Backend { sequential, tbb, std_thread };
+
+  /// Runs everything in the calling thread.
+  Executor();
+
+  /// threads ≥ 1, or 0 for all cores. One thread is sequential. The back end is oneTBB, except in builds for
+  /// ThreadSanitizer (SACCADE_EXECUTOR_STD_THREAD), which does not understand Debian's oneTBB.
+  [[nodiscard]] static Executor with_threads(std::size_t threads);
+  [[nodiscard]] static Executor with_threads(std::size_t threads, Backend backend);
+
+  [[nodiscard]] std::size_t threads() const;
+  [[nodiscard]] Backend backend() const;
+  [[nodiscard]] std::string_view backend_name() const;
+
+  /// Calls body(begin, end) on disjoint sub-ranges that cover [0, count), each at most `grain` long and starting at a
+  /// multiple of it, so chunk boundaries do not depend on the thread count. The first exception thrown is rethrown.
+  void parallel_for(std::size_t count, std::size_t grain,
+                    const std::function<void(std::size_t begin, std::size_t end)>& body) const;
+
+ private:
+  struct Impl;
+  explicit Executor(std::shared_ptr<const Impl> impl);
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Sphere, Box, Cylinder, and Region: any of them.
+
+#include <Eigen/Core>
+#include <variant>
+
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+/// Ball in the world frame. Contains p iff ‖c − p‖ < r, strictly (thesis eq. 2.6).
+struct Sphere {
+  Eigen::Vector3d center{Eigen::Vector3d::Zero()};
+  double radius_m{0.0};
+};
+
+/// Axis-aligned box in the world frame. Contains p iff min ≤ p < max in every coordinate.
+struct Box {
+  Eigen::Vector3d min{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d max{Eigen::Vector3d::Zero()};
+};
+
+/// Solid cylinder around the segment base → top. Contains p iff p lies strictly within the radius of the axis and its
+/// foot on the axis lies on [base, top).
+struct Cylinder {
+  Eigen::Vector3d base{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d top{Eigen::Vector3d::Zero()};
+  double radius_m{0.0};
+};
+
+using Region = std::variant<Sphere, Box, Cylinder>;
+
+[[nodiscard]] bool contains(const Sphere& sphere, const Eigen::Vector3d& p);
+[[nodiscard]] bool contains(const Box& box, const Eigen::Vector3d& p);
+[[nodiscard]] bool contains(const Cylinder& cylinder, const Eigen::Vector3d& p);
+[[nodiscard]] bool contains(const Region& region, const Eigen::Vector3d& p);
+
+/// Smallest axis-aligned box around the region.
+[[nodiscard]] Box bounds(const Region& region);
+
+/// invalid_argument when a number is not finite or a size is zero or negative.
+[[nodiscard]] Status validate(const Region& region);
+
+}  // namespace saccade

@@ -1,0 +1,234 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Mask512, Voxel, BrickRef (the four kinds of brick), Sector and SectorRef: the map's storage, shared copy-on-write.
+
+#include <array>
+#include <atomic>
+#include <bit>
+#include <cstdint>
+#include <memory>
+#include <utility>
+
+#include "saccade/map/voxel_index.hpp"
+#include "saccade/sensor/image.hpp"
+
+namespace saccade {
+
+/// One bit per voxel of a brick, or per brick of a sector; bit child_index(i). Word z holds slice z.
+struct Mask512 {
+  std::array<std::uint64_t, 8> words{};
+
+  [[nodiscard]] static constexpr Mask512 all_set() {
+    Mask512 m;
+    m.words.fill(~std::uint64_t{0});
+    return m;
+  }
+  [[nodiscard]] constexpr bool test(int i) const { return (words[static_cast<std::size_t>(i >> 6)] >> (i & 63)) & 1U; }
+  constexpr void set(int i) { words[static_cast<std::size_t>(i >> 6)] |= std::uint64_t{1} << (i & 63); }
+  constexpr void reset(int i) { words[static_cast<std::size_t>(i >> 6)] &= ~(std::uint64_t{1} << (i & 63)); }
+  constexpr void assign(int i, bool value) { value ? set(i) : reset(i); }
+  [[nodiscard]] constexpr bool any() const {
+    std::uint64_t bits{0};
+    for (const std::uint64_t word : words) bits |= word;
+    return bits != 0;
+  }
+  [[nodiscard]] constexpr bool none() const { return !any(); }
+  [[nodiscard]] constexpr bool all() const {
+    std::uint64_t bits{~std::uint64_t{0}};
+    for (const std::uint64_t word : words) bits &= word;
+    return bits == ~std::uint64_t{0};
+  }
+  [[nodiscard]] constexpr int count() const {
+    int n{0};
+    for (const std::uint64_t word : words) n += std::popcount(word);
+    return n;
+  }
+  [[nodiscard]] constexpr Mask512 operator~() const {
+    Mask512 m;
+    for (std::size_t i = 0; i < 8; ++i) m.words[i] = ~words[i];
+    return m;
+  }
+  [[nodiscard]] constexpr Mask512 operator|(const Mask512& o) const {
+    Mask512 m;
+    for (std::size_t i = 0; i < 8; ++i) m.words[i] = words[i] | o.words[i];
+    return m;
+  }
+  [[nodiscard]] constexpr Mask512 operator&(const Mask512& o) const {
+    Mask512 m;
+    for (std::size_t i = 0; i < 8; ++i) m.words[i] = words[i] & o.words[i];
+    return m;
+  }
+  [[nodiscard]] constexpr bool operator==(const Mask512&) const = default;
+};
+
+/// TSDF value of 1 in a voxel's fixed-point representation.
+constexpr std::int16_t kTsdfOne{32767};
+
+/// What a voxel stores: v in units of 1/32767 and the number of observations. w = 0 implies v = 0.
+struct Voxel {
+  std::int16_t v{0};
+  std::uint16_t w{0};
+  [[nodiscard]] constexpr bool operator==(const Voxel&) const = default;
+};
+
+/// Thesis eq. 2.11.
+enum class VoxelState : std::uint8_t { unknown, empty, occupied };
+
+[[nodiscard]] constexpr VoxelState state_of(const Voxel& voxel) {
+  if (voxel.w == 0) return VoxelState::unknown;
+  return voxel.v <= 0 ? VoxelState::occupied : VoxelState::empty;
+}
+
+enum class BrickKind : std::uint8_t {
+  unknown,        ///< no voxel was ever observed; takes no memory
+  constant_free,  ///< every voxel has v = 1 and the same weight; takes no memory beyond its sector
+  free,           ///< every voxel is unknown or has v = 1; 3-bit weights in bit planes
+  dense,          ///< v and w of every voxel, perhaps colours
+};
+
+/// Every voxel unknown, or v = 1 with a weight ≤ 7. The weight's bits lie in three planes, so that counting an
+/// observation of many voxels is a few word operations.
+struct FreeBrick {
+  std::array<Mask512, 3> weight_bits{};
+
+  [[nodiscard]] Mask512 known() const { return weight_bits[0] | weight_bits[1] | weight_bits[2]; }
+  [[nodiscard]] std::uint16_t weight(int i) const {
+    return static_cast<std::uint16_t>((weight_bits[0].test(i) ? 1 : 0) | (weight_bits[1].test(i) ? 2 : 0) |
+                                      (weight_bits[2].test(i) ? 4 : 0));
+  }
+  void set_weight(int i, std::uint16_t w) {
+    for (std::size_t bit = 0; bit < 3; ++bit) weight_bits[bit].assign(i, ((w >> bit) & 1U) != 0);
+  }
+  /// w ← min(w + 1, limit) for the voxels in `seen`; limit in [1, 7].
+  void observe(const Mask512& seen, std::uint16_t limit);
+  [[nodiscard]] static FreeBrick constant(std::uint16_t w);
+  [[nodiscard]] bool operator==(const FreeBrick&) const = default;
+};
+
+using BrickColors = std::array<Rgb8, kBrickVoxels>;
+
+/// v and w of every voxel, the two masks of eq. 2.11, and colours where any were fused.
+struct DenseBrick {
+  std::array<std::int16_t, kBrickVoxels> v{};
+  std::array<std::uint16_t, kBrickVoxels> w{};
+  Mask512 occupied;                     ///< w > 0 and v ≤ 0
+  Mask512 unknown{Mask512::all_set()};  ///< w = 0
+  std::unique_ptr<BrickColors> colors;
+
+  DenseBrick() = default;
+  DenseBrick(const DenseBrick& other);
+  DenseBrick& operator=(const DenseBrick&) = delete;
+  [[nodiscard]] bool operator==(const DenseBrick& other) const;
+  /// Recomputes both masks from v and w.
+  void update_masks();
+};
+
+/// Shared, copy-on-write handle of one brick, 8 bytes: unknown and constant-free bricks are tagged values, the others
+/// point to a reference-counted block. Copies share; the non-const accessors give an unshared brick to write.
+/// Distinct handles may be used from different threads.
+class BrickRef {
+ public:
+  BrickRef() = default;  ///< unknown
+  [[nodiscard]] static BrickRef constant_free(std::uint16_t w);
+  [[nodiscard]] static BrickRef make(const FreeBrick& brick);
+  [[nodiscard]] static BrickRef make_dense();  ///< all voxels unknown, to be filled
+  BrickRef(const BrickRef& other) noexcept;
+  BrickRef(BrickRef&& other) noexcept : bits_{std::exchange(other.bits_, 0)} {}
+  BrickRef& operator=(BrickRef other) noexcept {
+    std::swap(bits_, other.bits_);
+    return *this;
+  }
+  ~BrickRef();
+
+  [[nodiscard]] BrickKind kind() const;
+  [[nodiscard]] bool is_unknown() const { return bits_ == 0; }
+  /// Only for constant_free.
+  [[nodiscard]] std::uint16_t constant_weight() const { return static_cast<std::uint16_t>(bits_); }
+  /// nullptr unless of that kind.
+  [[nodiscard]] const FreeBrick* free() const;
+  [[nodiscard]] const DenseBrick* dense() const;
+  /// For writing: unshares first. Only for that kind.
+  [[nodiscard]] FreeBrick& writable_free();
+  [[nodiscard]] DenseBrick& writable_dense();
+
+  [[nodiscard]] Voxel voxel(int i) const;
+  [[nodiscard]] Mask512 unknown_mask() const;
+  [[nodiscard]] Mask512 occupied_mask() const;
+  /// Word z of unknown_mask() | occupied_mask(): where rays of view evaluation stop.
+  [[nodiscard]] std::uint64_t nonempty_word(int z) const;
+
+  /// Turns free → constant-free or unknown, and dense → free or less, where the content allows: every content has one
+  /// representation. Colours of a brick without a surface are dropped.
+  void canonicalize(std::uint16_t free_weight_limit);
+  /// The dense form of this brick, sharing nothing; *this becomes it.
+  DenseBrick& densify();
+  /// The free form of an unknown or constant-free brick; *this becomes it.
+  FreeBrick& expand_to_free();
+
+  /// Bytes on the heap, and whether both handles hold equal content.
+  [[nodiscard]] std::size_t heap_bytes() const;
+  [[nodiscard]] bool operator==(const BrickRef& other) const;
+
+ private:
+  struct Block;
+  struct FreeBlock;
+  struct DenseBlock;
+  static constexpr std::uintptr_t kMaxTag{7};
+  explicit BrickRef(Block* block);
+  [[nodiscard]] bool is_block() const { return bits_ > kMaxTag; }
+  [[nodiscard]] Block* block() const;
+  void release() noexcept;
+  std::uintptr_t bits_{0};
+};
+
+/// 8³ bricks and, per brick, the summaries that let rays and fusion pass over it.
+struct Sector {
+  std::array<BrickRef, kSectorBricks> bricks;
+  Mask512 has_unknown{Mask512::all_set()};  ///< the brick contains an unknown voxel
+  Mask512 has_occupied;                     ///< the brick contains an occupied voxel
+  Mask512 saturated;  ///< constant free at the weight limit: another observation of free space changes nothing
+
+  /// Brings the summaries of brick i up to date after it was written.
+  void update_summary(int i, std::uint16_t free_weight_limit);
+  [[nodiscard]] bool all_unknown() const;
+};
+
+/// Shared, copy-on-write handle of a sector; like BrickRef, but never null after make().
+class SectorRef {
+ public:
+  SectorRef() = default;
+  [[nodiscard]] static SectorRef make() { return SectorRef{new Block}; }
+  SectorRef(const SectorRef& other) noexcept : block_{other.block_} {
+    if (block_ != nullptr) block_->references.fetch_add(1, std::memory_order_relaxed);
+  }
+  SectorRef(SectorRef&& other) noexcept : block_{std::exchange(other.block_, nullptr)} {}
+  SectorRef& operator=(SectorRef other) noexcept {
+    std::swap(block_, other.block_);
+    return *this;
+  }
+  ~SectorRef() {
+    if (block_ != nullptr && block_->references.fetch_sub(1, std::memory_order_acq_rel) == 1) delete block_;
+  }
+
+  [[nodiscard]] explicit operator bool() const { return block_ != nullptr; }
+  [[nodiscard]] const Sector& operator*() const { return block_->sector; }
+  [[nodiscard]] const Sector* get() const { return block_ != nullptr ? &block_->sector : nullptr; }
+  /// For writing: unshares first. The acquire pairs with a reader's last decrement, so that what it read happened
+  /// before what we write.
+  [[nodiscard]] Sector& writable() {
+    if (block_->references.load(std::memory_order_acquire) != 1) *this = SectorRef{new Block{block_->sector}};
+    return block_->sector;
+  }
+
+ private:
+  struct Block {
+    Block() = default;
+    explicit Block(const Sector& s) : sector{s} {}
+    std::atomic<std::uint32_t> references{1};
+    Sector sector;
+  };
+  explicit SectorRef(Block* block) : block_{block} {}
+  Block* block_{nullptr};
+};
+
+}  // namespace saccade

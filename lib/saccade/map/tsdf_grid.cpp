@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/map/tsdf_grid.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saccade {
+
+Status TsdfConfig::validate() const {
+  const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "map configuration"}; };
+  if (!(voxel_size_m >= 1e-4 && voxel_size_m <= 1.0)) return fail("the voxel size must be within 0.0001 and 1 m");
+  if (!(truncation_vox >= 1.0 && truncation_vox <= 64.0)) return fail("the truncation must be within 1 and 64 voxels");
+  if (max_weight < 1 || max_weight > 500) return fail("the maximum weight must be within 1 and 500");
+  if (free_weight < 1 || free_weight > 7) return fail("the free-space weight must be within 1 and 7");
+  if (free_weight > max_weight) return fail("the free-space weight must not exceed the maximum weight");
+  if (workspace) {
+    if (const Status valid = saccade::validate(Region{*workspace}); !valid) return fail("the workspace box is empty");
+    const double largest = std::max(workspace->min.cwiseAbs().maxCoeff(), workspace->max.cwiseAbs().maxCoeff());
+    if (largest > 1000.0) return fail("the workspace must lie within 1000 m of the origin");
+  }
+  return {};
+}
+
+IndexBox voxels_with_center_in(const Box& box, double voxel_size_m) {
+  // The centre test itself decides at the borders, so that this agrees with contains(Box, voxel_center) to the bit.
+  const auto first_at_or_above = [&](double bound) {
+    auto i = static_cast<std::int32_t>(std::floor(bound / voxel_size_m - 0.5)) - 1;
+    while ((i + 0.5) * voxel_size_m < bound) ++i;
+    return i;
+  };
+  return {{first_at_or_above(box.min.x()), first_at_or_above(box.min.y()), first_at_or_above(box.min.z())},
+          {first_at_or_above(box.max.x()), first_at_or_above(box.max.y()), first_at_or_above(box.max.z())}};
+}
+
+const Sector* TsdfGrid::find(const Index3& sector) const {
+  const auto it = sectors_.find(sector);
+  return it == sectors_.end() ? nullptr : it->second.get();
+}
+
+Sector& TsdfGrid::writable(const Index3& sector) {
+  SectorRef& slot = sectors_[sector];
+  if (!slot) slot = SectorRef::make();
+  return slot.writable();
+}
+
+Sector& TsdfGrid::writable_existing(const Index3& sector) {
+  const auto it = sectors_.find(sector);
+  SACCADE_EXPECTS(it != sectors_.end());
+  return it->second.writable();
+}
+
+Voxel TsdfGrid::voxel(const Index3& voxel) const {
+  const Index3 brick = parent(voxel);
+  const Sector* sector = find(parent(brick));
+  if (sector == nullptr) return {};
+  return sector->bricks[static_cast<std::size_t>(child_index(brick))].voxel(child_index(voxel));
+}
+
+std::optional<Rgb8> TsdfGrid::color(const Index3& voxel) const {
+  const Index3 brick = parent(voxel);
+  const Sector* sector = find(parent(brick));
+  if (sector == nullptr) return std::nullopt;
+  const DenseBrick* dense = sector->bricks[static_cast<std::size_t>(child_index(brick))].dense();
+  if (dense == nullptr || dense->colors == nullptr) return std::nullopt;
+  return (*dense->colors)[static_cast<std::size_t>(child_index(voxel))];
+}
+
+std::vector<Index3> TsdfGrid::sorted_sectors() const {
+  std::vector<Index3> keys;
+  keys.reserve(sectors_.size());
+  for (const auto& entry : sectors_) keys.push_back(entry.first);
+  std::sort(keys.begin(), keys.end(), zyx_less);
+  return keys;
+}
+
+IndexBox TsdfGrid::sector_bounds() const {
+  if (sectors_.empty()) return {};
+  constexpr std::int32_t kMax{std::numeric_limits<std::int32_t>::max()};
+  IndexBox box{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
+  for (const auto& entry : sectors_) {
+    const Index3& k = entry.first;
+    box.lo = {std::min(box.lo.x, k.x), std::min(box.lo.y, k.y), std::min(box.lo.z, k.z)};
+    box.hi = {std::max(box.hi.x, k.x + 1), std::max(box.hi.y, k.y + 1), std::max(box.hi.z, k.z + 1)};
+  }
+  return box;
+}
+
+TsdfGrid::Usage TsdfGrid::usage() const {
+  Usage usage;
+  usage.sectors = sectors_.size();
+  for (const auto& entry : sectors_) {
+    usage.bytes += sizeof(Sector) + sizeof(entry) + 2 * sizeof(void*);
+    for (const BrickRef& brick : (*entry.second).bricks) {
+      switch (brick.kind()) {
+        case BrickKind::unknown: break;
+        case BrickKind::constant_free: ++usage.constant_free_bricks; break;
+        case BrickKind::free: ++usage.free_bricks; break;
+        case BrickKind::dense: ++usage.dense_bricks; break;
+      }
+      usage.bytes += brick.heap_bytes();
+    }
+  }
+  return usage;
+}
+
+bool TsdfGrid::operator==(const TsdfGrid& other) const {
+  if (sectors_.size() != other.sectors_.size()) return false;
+  for (const auto& entry : sectors_) {
+    const Sector* theirs = other.find(entry.first);
+    if (theirs == nullptr) return false;
+    if (theirs != entry.second.get() && theirs->bricks != (*entry.second).bricks) return false;
+  }
+  return true;
+}
+
+SectorTable::SectorTable(const TsdfGrid& grid, const IndexBox& box) {
+  const IndexBox all = grid.sector_bounds();
+  box_ = {{std::max(box.lo.x, all.lo.x), std::max(box.lo.y, all.lo.y), std::max(box.lo.z, all.lo.z)},
+          {std::min(box.hi.x, all.hi.x), std::min(box.hi.y, all.hi.y), std::min(box.hi.z, all.hi.z)}};
+  if (box_.empty()) {
+    box_ = {};
+    return;
+  }
+  constexpr double kLargestTable{1 << 22};
+  const double volume = (static_cast<double>(box_.hi.x) - box_.lo.x) * (static_cast<double>(box_.hi.y) - box_.lo.y) *
+                        (static_cast<double>(box_.hi.z) - box_.lo.z);
+  if (volume > kLargestTable) {
+    sparse_grid_ = &grid;
+    return;
+  }
+  size_x_ = static_cast<std::size_t>(box_.hi.x - box_.lo.x);
+  size_y_ = static_cast<std::size_t>(box_.hi.y - box_.lo.y);
+  const auto size_z = static_cast<std::size_t>(box_.hi.z - box_.lo.z);
+  sectors_.reserve(size_x_ * size_y_ * size_z);
+  for (std::int32_t z = box_.lo.z; z < box_.hi.z; ++z) {
+    for (std::int32_t y = box_.lo.y; y < box_.hi.y; ++y) {
+      for (std::int32_t x = box_.lo.x; x < box_.hi.x; ++x) sectors_.push_back(grid.find({x, y, z}));
+    }
+  }
+}
+
+}  // namespace saccade

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// TsdfMap: the map that one thread fuses into; TsdfSnapshot: the same content for readers, taken in microseconds.
+
+#include <mutex>
+#include <optional>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/pose.hpp"
+#include "saccade/map/tsdf_grid.hpp"
+#include "saccade/sensor/image.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade {
+
+/// What one depth image changed.
+struct FusionStats {
+  std::size_t bricks_updated{0};   ///< bricks whose voxels were gone through one by one
+  std::size_t bricks_free{0};      ///< bricks found wholly in front of the surface
+  std::size_t bricks_saturated{0}; ///< of those, bricks that needed no work at all
+  std::size_t valid_pixels{0};
+  double ms{0.0};
+};
+
+/// An immutable view of a map; copying and destroying are cheap, and it stays as it is while the map goes on.
+struct TsdfSnapshot {
+  TsdfConfig config;
+  TsdfGrid grid;
+};
+
+/// Truncated signed distance map that never confuses unknown with empty. Thesis §2.2.1, §2.2.2, §2.3.1.
+/// One writer at a time (integrate, forget, free, replace); snapshot() may be called from any thread meanwhile.
+class TsdfMap {
+ public:
+  /// invalid_argument when the configuration is.
+  [[nodiscard]] static Result<TsdfMap> create(const TsdfConfig& config);
+  /// Continues from a snapshot (for example a loaded map).
+  explicit TsdfMap(TsdfSnapshot content);
+  TsdfMap(TsdfMap&& other) noexcept;
+  TsdfMap& operator=(TsdfMap&& other) noexcept;
+
+  [[nodiscard]] const TsdfConfig& config() const { return content_.config; }
+  /// The writer's own view, without a copy. Not for other threads.
+  [[nodiscard]] const TsdfSnapshot& content() const { return content_; }
+
+  /// Fuses one depth image.  Thesis §2.2.1, eq. (2.1)–(2.3), distances along the ray; design §3.
+  /// @param depth          H×W, metres along camera +z; 0 or NaN: no return; d < 0: seen free up to |d|.
+  ///                       Returns outside the camera's range limits count as none.
+  /// @param T_world_camera camera → world, rigid.
+  /// @param color          optional, same size; averaged within the truncation band.
+  /// @return what changed; size_mismatch if depth or colour and camera disagree, invalid_argument for a bad camera or
+  ///         pose. The map is untouched on error.
+  /// O(bricks in the frustum up to the measured surface). The thread count never changes a bit of the result.
+  [[nodiscard]] Result<FusionStats> integrate(const PinholeCamera& camera, const DepthImage& depth,
+                                              const Pose& T_world_camera, const Executor& executor,
+                                              const ColorImage* color = nullptr);
+
+  /// Sets every voxel whose centre lies in the region back to unknown (eq. 2.6, ForgetAround of Algorithm 1).
+  [[nodiscard]] Status forget(const Region& region);
+  /// Sets every voxel whose centre lies in the region empty: v = 1, w = W_th.
+  [[nodiscard]] Status free(const Region& region);
+
+  /// O(sectors), microseconds; waits at most for the frame being fused.
+  [[nodiscard]] TsdfSnapshot snapshot() const;
+
+ private:
+  explicit TsdfMap(const TsdfConfig& config);
+  mutable std::mutex mutex_;
+  TsdfSnapshot content_;
+};
+
+}  // namespace saccade

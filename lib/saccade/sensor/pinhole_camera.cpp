@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/sensor/pinhole_camera.hpp"
+
+#include <cmath>
+#include <string>
+
+namespace saccade {
+
+Status PinholeCamera::validate() const {
+  const auto fail = [](std::string what) { return Error{Errc::invalid_argument, std::move(what), "camera"}; };
+  constexpr int kMaxSize{1 << 14};
+  if (width <= 0 || height <= 0 || width > kMaxSize || height > kMaxSize) {
+    return fail("image size must be within 1 and " + std::to_string(kMaxSize) + ", not " + std::to_string(width) + "x" +
+                std::to_string(height));
+  }
+  if (!std::isfinite(fx) || !std::isfinite(fy) || fx <= 0.0 || fy <= 0.0) return fail("focal lengths must be positive");
+  if (!std::isfinite(cx) || !std::isfinite(cy)) return fail("the principal point must be finite");
+  if (!(min_range_m >= 0.0) || !(max_range_m > min_range_m) || !std::isfinite(max_range_m)) {
+    return fail("ranges must satisfy 0 <= min < max");
+  }
+  return {};
+}
+
+const std::vector<CameraPreset>& camera_presets() {
+  static const std::vector<CameraPreset> presets{
+      {"kinect-v1", {640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 6.0}},
+      {"kinect-v2", {512, 424, 365.5, 365.5, 255.5, 211.5, 0.5, 4.5}},
+      {"xtion", {640, 480, 570.3, 570.3, 319.5, 239.5, 0.8, 3.5}},
+      {"realsense", {640, 480, 615.0, 615.0, 319.5, 239.5, 0.2, 4.0}},
+  };
+  return presets;
+}
+
+Result<PinholeCamera> camera_preset(std::string_view name) {
+  std::string known;
+  for (const CameraPreset& preset : camera_presets()) {
+    if (preset.name == name) return preset.camera;
+    known += (known.empty() ? "" : ", ") + std::string{preset.name};
+  }
+  return Error{Errc::not_found, "no camera preset '" + std::string{name} + "'; known: " + known, {}};
+}
+
+PinholeCamera widened_vertically(const PinholeCamera& camera, double tilt_rad) {
+  SACCADE_EXPECTS(tilt_rad >= 0.0);
+  // Half fields of view above and below the optical axis, each enlarged by the tilt.
+  const double up_rad = std::atan((camera.cy + 0.5) / camera.fy) + tilt_rad;
+  const double down_rad = std::atan((camera.height - 0.5 - camera.cy) / camera.fy) + tilt_rad;
+  constexpr double kHalfPi{1.5707963267948966};
+  SACCADE_EXPECTS(up_rad < kHalfPi && down_rad < kHalfPi);
+  const int added_above = static_cast<int>(std::lround(camera.fy * std::tan(up_rad) - (camera.cy + 0.5)));
+  const int added_below =
+      static_cast<int>(std::lround(camera.fy * std::tan(down_rad) - (camera.height - 0.5 - camera.cy)));
+  PinholeCamera wide{camera};
+  wide.height += added_above + added_below;
+  wide.cy += added_above;
+  return wide;
+}
+
+}  // namespace saccade
