@@ -1,5 +1,6 @@
 # SPDX-License-Identifier: Apache-2.0
-# saccade_room(NAME SOURCES … HEADERS … ROOMS … PUBLIC … PRIVATE …): one folder of lib/saccade = one library target.
+# saccade_room(NAME …): one folder of lib/saccade = one library target saccade::NAME = one component of the package.
+# saccade_require_rooms(WHO ROOMS…): stops the configuration, naming what is missing, when WHO cannot do without ROOMS.
 
 # Flags of all of Saccade's own code: bit-equal results need FMA contraction off.
 add_library(saccade_flags INTERFACE)
@@ -16,8 +17,38 @@ if(SACCADE_SANITIZE)
   endif()
 endif()
 
+# saccade_room(NAME SOURCES file… [ROOMS room…] [PACKAGES "name arguments of find_package"…]
+#              [PUBLIC target…] [PRIVATE target…])
+# ROOMS are the rooms that this one includes; the layer test holds them to the order of the layers. PACKAGES are what the
+# targets in PUBLIC and PRIVATE come from; the installed package looks for the same ones, for this component only.
+# A room whose packages or rooms are not there is left out of the build, with a line that says why.
 function(saccade_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;PACKAGES;PUBLIC;PRIVATE" ${ARGN})
+  if(ROOM_UNPARSED_ARGUMENTS)
+    message(FATAL_ERROR "saccade_room(${name}): unknown arguments ${ROOM_UNPARSED_ARGUMENTS}")
+  endif()
+  set(missing "")
+  foreach(room IN LISTS ROOM_ROOMS)
+    if(NOT TARGET saccade::${room})
+      list(APPEND missing "room ${room}")
+    endif()
+  endforeach()
+  set(CMAKE_FIND_PACKAGE_TARGETS_GLOBAL ON)
+  foreach(package IN LISTS ROOM_PACKAGES)
+    separate_arguments(arguments UNIX_COMMAND "${package}")
+    list(POP_FRONT arguments package_name)
+    find_package(${package_name} ${arguments} QUIET)
+    if(NOT ${package_name}_FOUND)
+      list(APPEND missing "${package}")
+    endif()
+  endforeach()
+  if(missing)
+    list(JOIN missing ", " missing)
+    message(STATUS "Saccade: room ${name} is left out, for lack of: ${missing}")
+    set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_LACKS "${missing}")
+    return()
+  endif()
+
   set(target saccade_${name})
   add_library(${target} STATIC ${ROOM_SOURCES})
   add_library(saccade::${name} ALIAS ${target})
@@ -25,8 +56,28 @@ function(saccade_room name)
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/lib> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
-  list(TRANSFORM ROOM_ROOMS PREPEND saccade::)
-  target_link_libraries(${target} PUBLIC ${ROOM_ROOMS} ${ROOM_PUBLIC}
+  list(TRANSFORM ROOM_ROOMS PREPEND saccade:: OUTPUT_VARIABLE room_targets)
+  target_link_libraries(${target} PUBLIC ${room_targets} ${ROOM_PUBLIC}
                         PRIVATE $<BUILD_INTERFACE:saccade_flags> ${ROOM_PRIVATE})
   set_property(GLOBAL APPEND PROPERTY SACCADE_ROOMS ${name})
+  set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_ROOMS "${ROOM_ROOMS}")
+  set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_PACKAGES "${ROOM_PACKAGES}")
+  if(SACCADE_INSTALL)
+    install(TARGETS ${target} EXPORT saccade_${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(EXPORT saccade_${name} NAMESPACE saccade:: FILE saccade-${name}-targets.cmake
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/saccade)
+    install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade/${name}
+            FILES_MATCHING PATTERN "*.hpp")
+  endif()
+endfunction()
+
+function(saccade_require_rooms who)
+  foreach(room IN LISTS ARGN)
+    if(NOT TARGET saccade::${room})
+      get_property(lacks GLOBAL PROPERTY SACCADE_ROOM_${room}_LACKS)
+      message(FATAL_ERROR "${who} needs the room ${room}, which lacks: ${lacks}. "
+                          "Install the packages named in packages.txt (scripts/install_packages.sh program), "
+                          "or configure with -DSACCADE_BUILD_APPS=OFF -DSACCADE_BUILD_TESTS=OFF.")
+    endif()
+  endforeach()
 endfunction()
