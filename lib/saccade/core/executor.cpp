@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/core/executor.hpp"
 
+#include <oneapi/tbb/global_control.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -18,6 +19,8 @@ namespace saccade {
 struct Executor::Impl {
   Backend backend{Backend::sequential};
   std::size_t threads{1};
+  // Lets an arena have more threads than cores; without it oneTBB ignores the wish and prints a warning.
+  std::unique_ptr<oneapi::tbb::global_control> allowance;
   mutable std::unique_ptr<oneapi::tbb::task_arena> arena;  // thread-safe by itself
 };
 
@@ -71,7 +74,12 @@ Executor Executor::with_threads(std::size_t threads, Backend backend) {
   auto impl = std::make_shared<Impl>();
   impl->backend = backend;
   impl->threads = threads;
-  if (backend == Backend::tbb) impl->arena = std::make_unique<oneapi::tbb::task_arena>(static_cast<int>(threads));
+  if (backend == Backend::tbb) {
+    constexpr std::size_t kAllowedThreads{256};
+    impl->allowance = std::make_unique<oneapi::tbb::global_control>(
+        oneapi::tbb::global_control::max_allowed_parallelism, std::max(threads, kAllowedThreads));
+    impl->arena = std::make_unique<oneapi::tbb::task_arena>(static_cast<int>(threads));
+  }
   return Executor{std::move(impl)};
 }
 

@@ -12,9 +12,9 @@ namespace saccade {
 
 /// Depth and normals of the mapped surface.
 struct SurfaceView {
-  DepthImage depth;                 ///< metres along camera +z; 0: no surface met within the camera's range
-  Image<Eigen::Vector3f> normals;   ///< camera frame, unit length, towards free space; zero where depth is 0
-  ColorImage colors;                ///< black where there is none; empty unless asked for
+  DepthImage depth;                ///< metres along camera +z; 0: no surface met within the camera's range
+  Image<Eigen::Vector3f> normals;  ///< camera frame, unit length, towards free space; zero where depth is 0
+  ColorImage colors;               ///< black where there is none; empty unless asked for
 };
 
 struct RaycastConfig {

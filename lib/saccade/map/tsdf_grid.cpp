@@ -63,7 +63,8 @@ std::optional<Rgb8> TsdfGrid::color(const Index3& voxel) const {
   if (sector == nullptr) return std::nullopt;
   const DenseBrick* dense = sector->bricks[static_cast<std::size_t>(child_index(brick))].dense();
   if (dense == nullptr || dense->colors == nullptr) return std::nullopt;
-  return (*dense->colors)[static_cast<std::size_t>(child_index(voxel))];
+  const Rgb8 color = (*dense->colors)[static_cast<std::size_t>(child_index(voxel))];
+  return color == Rgb8{} ? std::nullopt : std::optional{color};
 }
 
 std::vector<Index3> TsdfGrid::sorted_sectors() const {

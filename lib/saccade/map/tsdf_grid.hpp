@@ -14,11 +14,11 @@ namespace saccade {
 
 struct TsdfConfig {
   double voxel_size_m{0.0058};
-  double truncation_vox{4.0};      ///< M_v of eq. 2.2 in voxels
-  std::uint16_t max_weight{128};   ///< M_w of eq. 2.3; at most 500, so that averaging is exact in float
-  std::uint16_t free_weight{5};    ///< W_th: where v = 1 the weight saturates here; 1 … 7
-  bool color{true};                ///< fuse colours where frames have them
-  std::optional<Box> workspace;    ///< bounds what is unknown: voxels outside are transparent to view rays
+  double truncation_vox{4.0};     ///< M_v of eq. 2.2 in voxels
+  std::uint16_t max_weight{128};  ///< M_w of eq. 2.3; at most 500, so that averaging is exact in float
+  std::uint16_t free_weight{5};   ///< W_th: where v = 1 the weight saturates here; 1 … 7
+  bool color{true};               ///< fuse colours where frames have them
+  std::optional<Box> workspace;   ///< bounds what is unknown: voxels outside are transparent to view rays
 
   [[nodiscard]] double truncation_m() const { return truncation_vox * voxel_size_m; }
   [[nodiscard]] Status validate() const;

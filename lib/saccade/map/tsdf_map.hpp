@@ -15,9 +15,9 @@ namespace saccade {
 
 /// What one depth image changed.
 struct FusionStats {
-  std::size_t bricks_updated{0};   ///< bricks whose voxels were gone through one by one
-  std::size_t bricks_free{0};      ///< bricks found wholly in front of the surface
-  std::size_t bricks_saturated{0}; ///< of those, bricks that needed no work at all
+  std::size_t bricks_updated{0};    ///< bricks whose voxels were gone through one by one
+  std::size_t bricks_free{0};       ///< bricks found wholly in front of the surface
+  std::size_t bricks_saturated{0};  ///< of those, bricks that needed no work at all
   std::size_t valid_pixels{0};
   double ms{0.0};
 };
@@ -27,6 +27,9 @@ struct TsdfSnapshot {
   TsdfConfig config;
   TsdfGrid grid;
 };
+
+/// Voxels of the brick from voxel `lo` whose centre lies in the region.
+[[nodiscard]] Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_m);
 
 /// Truncated signed distance map that never confuses unknown with empty. Thesis §2.2.1, §2.2.2, §2.3.1.
 /// One writer at a time (integrate, forget, free, replace); snapshot() may be called from any thread meanwhile.
@@ -65,6 +68,7 @@ class TsdfMap {
 
  private:
   explicit TsdfMap(const TsdfConfig& config);
+  [[nodiscard]] Status check_region(const Region& region) const;
   mutable std::mutex mutex_;
   TsdfSnapshot content_;
 };

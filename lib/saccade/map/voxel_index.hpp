@@ -12,11 +12,11 @@
 
 namespace saccade {
 
-constexpr int kBrickEdge{8};                                          ///< voxels along a brick
-constexpr int kBrickVoxels{kBrickEdge * kBrickEdge * kBrickEdge};     ///< 512
-constexpr int kSectorEdge{8};                                         ///< bricks along a sector
-constexpr int kSectorBricks{kSectorEdge * kSectorEdge * kSectorEdge}; ///< 512
-constexpr int kSectorVoxelEdge{kBrickEdge * kSectorEdge};             ///< 64 voxels along a sector
+constexpr int kBrickEdge{8};                                           ///< voxels along a brick
+constexpr int kBrickVoxels{kBrickEdge * kBrickEdge * kBrickEdge};      ///< 512
+constexpr int kSectorEdge{8};                                          ///< bricks along a sector
+constexpr int kSectorBricks{kSectorEdge * kSectorEdge * kSectorEdge};  ///< 512
+constexpr int kSectorVoxelEdge{kBrickEdge * kSectorEdge};              ///< 64 voxels along a sector
 
 /// Integer lattice coordinates. Voxel (x, y, z) covers [x, x+1)·e × … with e the voxel size; its centre is at +0.5.
 /// The same type counts voxels, bricks and sectors; names say which.

@@ -1,0 +1,249 @@
+// SPDX-License-Identifier: Apache-2.0
+// Bricks, masks and summaries against the dense reference, over random frames, poses, voxel sizes, forgets and threads.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <limits>
+#include <random>
+
+#include "saccade/map/tsdf_map.hpp"
+#include "support/dense_reference.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr int kHalfEdge{40};  // 80³ voxels across several sectors, the origin inside
+constexpr int kRuns{40};
+constexpr int kStepsPerRun{6};
+
+class RandomRun {
+ public:
+  explicit RandomRun(std::uint32_t seed) : rng_{seed} {
+    config_.voxel_size_m = uniform(0.004, 0.03);
+    config_.truncation_vox = uniform(1.5, 5.0);
+    config_.max_weight = static_cast<std::uint16_t>(integer(5, 60));
+    config_.free_weight = static_cast<std::uint16_t>(integer(1, 5));
+    camera_.width = integer(8, 90);
+    camera_.height = integer(8, 70);
+    camera_.fx = uniform(20.0, 90.0);
+    camera_.fy = uniform(20.0, 90.0);
+    camera_.cx = uniform(0.3, 0.7) * camera_.width;
+    camera_.cy = uniform(0.3, 0.7) * camera_.height;
+    camera_.min_range_m = 0.05;
+    camera_.max_range_m = uniform(1.0, 4.0) * extent();
+  }
+
+  [[nodiscard]] const TsdfConfig& config() const { return config_; }
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+  double uniform(double lo, double hi) { return std::uniform_real_distribution<double>{lo, hi}(rng_); }
+  int integer(int lo, int hi) { return std::uniform_int_distribution<int>{lo, hi}(rng_); }
+  [[nodiscard]] double extent() const { return kHalfEdge * config_.voxel_size_m; }
+
+  Pose pose() {
+    const double distance = uniform(0.0, 2.5) * extent();
+    const Eigen::Vector3d direction = Eigen::Vector3d::NullaryExpr([&] { return uniform(-1.0, 1.0); }).normalized();
+    const Eigen::Vector3d target = Eigen::Vector3d::NullaryExpr([&] { return uniform(-0.5, 0.5) * extent(); });
+    const Eigen::Vector3d position = target + direction * std::max(distance, 0.01);
+    if (integer(0, 4) == 0) {  // on the lattice, axis-parallel: every tie there is
+      Pose T{Pose::Identity()};
+      T.translation() = Eigen::Vector3d{0.0, 0.0, -std::floor(distance / config_.voxel_size_m) * config_.voxel_size_m};
+      return T;
+    }
+    return look_at(position, target, Eigen::Vector3d::UnitZ(), uniform(-3.0, 3.0));
+  }
+
+  /// Patches of smooth depth, steps, holes, "free up to" pixels, NaN, infinity and returns out of range.
+  DepthImage depth() {
+    DepthImage image{camera_.width, camera_.height};
+    const double base = uniform(0.3, 3.0) * extent();
+    const double slope_u = uniform(-0.5, 0.5) * base / camera_.width;
+    const double slope_v = uniform(-0.5, 0.5) * base / camera_.height;
+    const int style = integer(0, 3);
+    for (int v = 0; v < camera_.height; ++v) {
+      for (int u = 0; u < camera_.width; ++u) {
+        double d = base + slope_u * u + slope_v * v;
+        if (style == 1 && (u / 7 + v / 5) % 2 == 0) d *= 0.7;
+        if (style == 2) d += uniform(-0.1, 0.1) * base;
+        if (style == 3 && integer(0, 9) == 0) d = -d;
+        switch (integer(0, 60)) {
+          case 0: d = 0.0; break;
+          case 1: d = std::numeric_limits<double>::quiet_NaN(); break;
+          case 2: d = std::numeric_limits<double>::infinity(); break;
+          case 3: d = -std::numeric_limits<double>::infinity(); break;
+          case 4: d = 0.01; break;
+          default: break;
+        }
+        image(u, v) = static_cast<float>(d);
+      }
+    }
+    return image;
+  }
+
+  ColorImage color() {
+    ColorImage image{camera_.width, camera_.height};
+    for (int v = 0; v < camera_.height; ++v) {
+      for (int u = 0; u < camera_.width; ++u) {
+        for (std::uint8_t& c : image(u, v)) c = static_cast<std::uint8_t>(integer(0, 255));
+      }
+    }
+    return image;
+  }
+
+  Region region() {
+    const Eigen::Vector3d c = Eigen::Vector3d::NullaryExpr([&] { return uniform(-0.8, 0.8) * extent(); });
+    const Eigen::Vector3d size = Eigen::Vector3d::NullaryExpr([&] { return uniform(0.05, 0.7) * extent(); });
+    switch (integer(0, 2)) {
+      case 0: return Sphere{c, size.x()};
+      case 1: return Box{c - size, c + size};
+      default: return Cylinder{c, c + size, size.y()};
+    }
+  }
+
+ private:
+  std::mt19937 rng_;
+  TsdfConfig config_;
+  PinholeCamera camera_;
+};
+
+/// Every voxel of the reference, and the masks and summaries above it. Counts what was compared.
+struct Comparison {
+  std::size_t voxels{0};
+  std::size_t known{0};
+  std::size_t occupied{0};
+};
+
+void compare(test::DenseReference& reference, const TsdfGrid& grid, Comparison& total) {
+  std::size_t differing{0};
+  reference.for_each([&](const Index3& index, const Voxel& expected, const Rgb8& color) {
+    const Voxel actual = grid.voxel(index);
+    const Index3 brick = parent(index);
+    const Sector* sector = grid.find(parent(brick));
+    const int b = child_index(brick);
+    const BrickRef ref = sector != nullptr ? sector->bricks[static_cast<std::size_t>(b)] : BrickRef{};
+    const int i = child_index(index);
+    const VoxelState state = state_of(expected);
+    const bool unknown = state == VoxelState::unknown;
+    const bool occupied = state == VoxelState::occupied;
+    bool same = actual == expected && ref.unknown_mask().test(i) == unknown && ref.occupied_mask().test(i) == occupied;
+    same = same && (((ref.nonempty_word(i >> 6) >> (i & 63)) & 1U) != 0) == (unknown || occupied);
+    if (sector != nullptr) {
+      same = same && (!unknown || sector->has_unknown.test(b)) && (!occupied || sector->has_occupied.test(b));
+    } else {
+      same = same && unknown;
+    }
+    // Colours live with surfaces; a brick without one has dropped them.
+    if (ref.kind() == BrickKind::dense) same = same && grid.color(index).value_or(Rgb8{}) == color;
+    differing += same ? 0 : 1;
+    ++total.voxels;
+    total.known += unknown ? 0 : 1;
+    total.occupied += occupied ? 1 : 0;
+  });
+  ASSERT_EQ(differing, 0U);
+}
+
+void expect_canonical(const TsdfGrid& grid, const TsdfConfig& config) {
+  for (const Index3& key : grid.sorted_sectors()) {
+    const Sector& sector = *grid.find(key);
+    EXPECT_FALSE(sector.all_unknown());
+    for (int i = 0; i < kSectorBricks; ++i) {
+      const BrickRef& ref = sector.bricks[static_cast<std::size_t>(i)];
+      BrickRef canonical = ref;
+      canonical.canonicalize(config.free_weight);
+      EXPECT_EQ(canonical.kind(), ref.kind());
+      EXPECT_EQ(sector.has_unknown.test(i), ref.unknown_mask().any());
+      EXPECT_EQ(sector.has_occupied.test(i), ref.occupied_mask().any());
+    }
+  }
+}
+
+TEST(FusionProperty, BricksEqualTheDenseReferenceToTheBit) {
+  Comparison total;
+  for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
+    SCOPED_TRACE("seed " + std::to_string(seed));
+    RandomRun run{seed};
+    auto map = TsdfMap::create(run.config());
+    ASSERT_TRUE(map.ok()) << map.error().to_string();
+    test::DenseReference reference{run.config(), kHalfEdge};
+    const Executor executor = Executor::with_threads(1 + seed % 3);
+    for (int step = 0; step < kStepsPerRun; ++step) {
+      const int action = run.integer(0, 9);
+      if (action == 0) {
+        const Region region = run.region();
+        ASSERT_TRUE(map->free(region).ok());
+        reference.free(region);
+      } else if (action <= 2) {
+        const Region region = run.region();
+        ASSERT_TRUE(map->forget(region).ok());
+        reference.forget(region);
+      } else {
+        const DepthImage depth = run.depth();
+        const ColorImage color = run.color();
+        const Pose T_world_camera = run.pose();
+        const int repeats = run.integer(1, 7);  // weights must reach their limits too
+        for (int i = 0; i < repeats; ++i) {
+          const auto stats = map->integrate(run.camera(), depth, T_world_camera, executor, &color);
+          ASSERT_TRUE(stats.ok()) << stats.error().to_string();
+          reference.integrate(run.camera(), depth, T_world_camera, &color);
+        }
+      }
+    }
+    ASSERT_NO_FATAL_FAILURE(compare(reference, map->content().grid, total));
+    expect_canonical(map->content().grid, run.config());
+  }
+  EXPECT_EQ(total.voxels, static_cast<std::size_t>(kRuns) * 8 * kHalfEdge * kHalfEdge * kHalfEdge);
+  EXPECT_GT(total.known, total.voxels / 20);
+  EXPECT_GT(total.occupied, total.voxels / 2000);
+  std::printf("compared %zu voxels over %d seeds: %zu known, %zu occupied\n", total.voxels, kRuns, total.known,
+              total.occupied);
+}
+
+TEST(FusionProperty, ThreadsAndBackendsNeverChangeABit) {
+  std::size_t compared{0};
+  for (std::uint32_t seed = 100; seed < 106; ++seed) {
+    RandomRun run{seed};
+    std::vector<std::pair<Pose, DepthImage>> frames;
+    for (int i = 0; i < 4; ++i) frames.emplace_back(run.pose(), run.depth());
+    std::optional<TsdfGrid> first;
+    for (const Executor& executor : {Executor{}, Executor::with_threads(2, Executor::Backend::tbb),
+                                     Executor::with_threads(7, Executor::Backend::tbb),
+                                     Executor::with_threads(3, Executor::Backend::std_thread)}) {
+      auto map = TsdfMap::create(run.config());
+      ASSERT_TRUE(map.ok());
+      for (const auto& [T_world_camera, depth] : frames) {
+        ASSERT_TRUE(map->integrate(run.camera(), depth, T_world_camera, executor).ok());
+      }
+      if (!first) {
+        first = map->content().grid;
+        continue;
+      }
+      EXPECT_TRUE(*first == map->content().grid) << "seed " << seed << ", " << executor.backend_name();
+      ++compared;
+    }
+    EXPECT_GT(first->usage().bricks(), 0U);
+  }
+  EXPECT_EQ(compared, 18U);
+}
+
+TEST(FusionProperty, SnapshotsStayAsTheyWere) {
+  for (std::uint32_t seed = 200; seed < 210; ++seed) {
+    RandomRun run{seed};
+    auto map = TsdfMap::create(run.config());
+    auto untouched = TsdfMap::create(run.config());
+    ASSERT_TRUE(map.ok() && untouched.ok());
+    const Executor executor = Executor::with_threads(2);
+    const DepthImage depth = run.depth();
+    const Pose T_world_camera = run.pose();
+    ASSERT_TRUE(map->integrate(run.camera(), depth, T_world_camera, executor).ok());
+    ASSERT_TRUE(untouched->integrate(run.camera(), depth, T_world_camera, executor).ok());
+    const TsdfSnapshot snapshot = map->snapshot();
+    ASSERT_TRUE(map->integrate(run.camera(), run.depth(), run.pose(), executor).ok());
+    ASSERT_TRUE(map->forget(run.region()).ok());
+    ASSERT_TRUE(map->free(run.region()).ok());
+    EXPECT_TRUE(snapshot.grid == untouched->content().grid) << "seed " << seed;
+    EXPECT_FALSE(snapshot.grid == map->content().grid) << "seed " << seed;
+  }
+}
+
+}  // namespace
+}  // namespace saccade
