@@ -16,8 +16,9 @@ configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/saccadeConfig.cmake.in
   ${PROJECT_BINARY_DIR}/package/saccadeConfig.cmake INSTALL_DESTINATION ${destination})
 write_basic_package_version_file(${PROJECT_BINARY_DIR}/package/saccadeConfigVersion.cmake
   VERSION ${PROJECT_VERSION} COMPATIBILITY SameMinorVersion)
+file(GLOB find_modules ${CMAKE_CURRENT_LIST_DIR}/Find*.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/package/saccadeConfig.cmake
               ${PROJECT_BINARY_DIR}/package/saccadeConfigVersion.cmake
-              ${CMAKE_CURRENT_LIST_DIR}/FindOpenCVImages.cmake
+              ${find_modules}
         DESTINATION ${destination})
 install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})

@@ -9,12 +9,13 @@
 
 #include "saccade/map/tsdf_map.hpp"
 #include "support/dense_reference.hpp"
+#include "support/effort.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr int kHalfEdge{40};  // 80³ voxels across several sectors, the origin inside
-constexpr int kRuns{40};
+constexpr int kRuns{test::scaled_cases(40)};
 constexpr int kStepsPerRun{6};
 
 class RandomRun {

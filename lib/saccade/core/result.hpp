@@ -109,9 +109,9 @@ class [[nodiscard]] Status {
 #define SACCADE_CONCAT_IMPL(a, b) a##b
 #define SACCADE_CONCAT(a, b) SACCADE_CONCAT_IMPL(a, b)
 /// `SACCADE_TRY(auto x, f());` binds the value, or passes the error on.
-#define SACCADE_TRY(declaration, expression)                                                    \
-  auto SACCADE_CONCAT(saccade_result_, __LINE__) = (expression);                                \
-  if (!SACCADE_CONCAT(saccade_result_, __LINE__)) {                                             \
-    return SACCADE_CONCAT(saccade_result_, __LINE__).error();                                   \
-  }                                                                                             \
+#define SACCADE_TRY(declaration, expression)                     \
+  auto SACCADE_CONCAT(saccade_result_, __LINE__) = (expression); \
+  if (!SACCADE_CONCAT(saccade_result_, __LINE__)) {              \
+    return SACCADE_CONCAT(saccade_result_, __LINE__).error();    \
+  }                                                              \
   declaration = std::move(SACCADE_CONCAT(saccade_result_, __LINE__)).value()

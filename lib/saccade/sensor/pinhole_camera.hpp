@@ -15,10 +15,10 @@ namespace saccade {
 struct PinholeCamera {
   int width{640};
   int height{480};
-  double fx{525.0};  ///< pixels
-  double fy{525.0};  ///< pixels
-  double cx{319.5};  ///< pixels
-  double cy{239.5};  ///< pixels
+  double fx{525.0};         ///< pixels
+  double fy{525.0};         ///< pixels
+  double cx{319.5};         ///< pixels
+  double cy{239.5};         ///< pixels
   double min_range_m{0.4};  ///< along z; nearer returns are not trusted
   double max_range_m{6.0};  ///< along z; farther returns are not trusted
 

@@ -1,0 +1,29 @@
+# SPDX-License-Identifier: Apache-2.0
+# Front door: make demo, make test. What is built where is CMake's business (CMakePresets.json).
+SHELL := /bin/bash
+.DEFAULT_GOAL := help
+.PHONY: help build demo test evidence format tidy clean
+
+help:  ## this list
+	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' Makefile
+
+build:  ## installs what is missing and builds the program, build/release/saccade
+	@scripts/build.sh
+
+demo: build  ## makes a small depth sequence, fuses it, ranks the next views; results in out/demo
+	@scripts/demo.sh
+
+test:  ## installs what is missing, builds and runs every test, sanitizers, fuzzing, lint
+	@scripts/test.sh
+
+evidence: build  ## long acceptance runs, resumable; figures go to docs/evidence.md
+	@scripts/evidence.sh
+
+format:  ## lays out the code with clang-format
+	@scripts/format.sh --fix
+
+tidy:  ## runs clang-tidy over the library and the apps
+	@scripts/tidy.sh
+
+clean:  ## removes build/ and out/
+	rm -rf build out

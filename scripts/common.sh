@@ -1,0 +1,34 @@
+# SPDX-License-Identifier: Apache-2.0
+# Sourced by the other scripts, in the root of the repository.
+
+if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
+  export CMAKE_CXX_COMPILER_LAUNCHER=ccache
+fi
+
+# One compiler needs up to about 1.5 GB: use every core that has as much memory.
+jobs_here() {
+  local cores memory_gb
+  cores="$(nproc)"
+  memory_gb="$(awk '/MemAvailable/ { print int($2 / 1500000) }' /proc/meminfo)"
+  echo $((memory_gb < 1 ? 1 : memory_gb < cores ? memory_gb : cores))
+}
+
+# configure PRESET OPTIONS…: quiet unless it fails.
+configure() {
+  local preset="$1" log
+  shift
+  mkdir -p build
+  log="build/configure-$preset.log"
+  cmake --preset "$preset" "$@" >"$log" 2>&1 || {
+    tail -n 25 "$log" >&2
+    echo "configuring the preset $preset failed; the whole output is in $log" >&2
+    return 1
+  }
+}
+
+# compile PRESET TARGETS…
+compile() {
+  local preset="$1"
+  shift
+  cmake --build "build/$preset" -j "$(jobs_here)" --target "${@:-all}"
+}

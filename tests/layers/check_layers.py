@@ -1,0 +1,162 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Holds the tree to its own rules: which room may include which, what core rooms may link, SPDX lines, length of files.
+
+Usage: check_layers.py ROOT. Prints one line per violation, then what was checked; exit status 1 on any violation and when
+there was next to nothing to check."""
+import pathlib
+import re
+import sys
+
+# What a room may include besides itself, lowest first (docs/architecture.md).
+CHAIN = ["core", "sensor", "map", "segment", "attention", "view", "robot", "explore"]
+ALLOWED = {room: set(CHAIN[:position]) for position, room in enumerate(CHAIN)}
+ALLOWED["surfel"] = {"core", "sensor"}
+for above_surfel in ["segment", "attention", "view", "robot", "explore"]:
+    ALLOWED[above_surfel].add("surfel")
+ALLOWED["annotate"] = {"core", "segment"}
+ALLOWED["cuda"] = {"core", "sensor", "map", "surfel", "view"}
+KNOWS_ALL = set(ALLOWED) - {"cuda"}
+ALLOWED["io"] = set(KNOWS_ALL)
+ALLOWED["report"] = KNOWS_ALL | {"io"}
+
+CORE_ROOMS = {"core", "sensor", "map", "surfel", "segment", "attention", "view", "annotate"}
+CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "nanoflann.hpp", "zstd.h"}  # first part of the path in <…>
+CORE_PACKAGES = {"Eigen3", "TBB", "HWY", "hwy", "nanoflann", "zstd"}
+
+MAX_LINES = 400
+SOURCES = {".hpp", ".cpp", ".cu", ".cuh"}
+NEED_SPDX = SOURCES | {".cmake", ".in", ".sh", ".py", ".yaml"}
+INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
+PRINTS = re.compile(r"\bstd::(?:cout|cerr|clog)\b|\b(?:std::)?(?:f?printf|puts|exit|abort|_Exit|quick_exit)\s*\(")
+COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
+
+
+def code_only(text):
+    """Comments and string literals blanked, so that prose about printf is no violation; includes are read before."""
+    return COMMENT.sub(" ", text)
+
+
+def check_library_source(name, room, text):
+    for mark, path in INCLUDE.findall(text):
+        first, *rest = path.split("/")
+        if first == "saccade" and rest:
+            other = rest[0]
+            if other != room and other not in ALLOWED[room]:
+                yield f"{name}: room {room} includes {path}; it may include {sorted(ALLOWED[room]) or 'no other room'}"
+        elif path.startswith("apps/") or ".." in path.split("/"):
+            yield f"{name}: includes {path}; the library knows no app, and paths start at lib/"
+        elif mark == '"':
+            yield f'{name}: includes "{path}"; own headers are named from lib/: "saccade/…"'
+        elif room in CORE_ROOMS and (len(rest) > 0 or path.endswith((".h", ".hpp"))):
+            if first not in CORE_LIBRARIES:
+                yield f"{name}: core room {room} includes <{path}>; core rooms use only {sorted(CORE_LIBRARIES)}"
+        if path == "iostream":
+            yield f"{name}: includes <iostream>; the library never prints"
+    found = PRINTS.search(code_only(text))
+    if found:
+        yield f"{name}: {found.group().strip()} in the library; it never prints and never exits"
+
+
+def check_room_cmake(name, room, text):
+    text = re.sub(r"#[^\n]*", "", text)
+    call = re.search(r"saccade_room\((.*?)\)", text, re.DOTALL)
+    if not call:
+        yield f"{name}: no saccade_room(…)"
+        return
+    words = re.findall(r'"[^"]*"|\S+', call.group(1))
+    if words[0] != room:
+        yield f"{name}: saccade_room({words[0]}) in the folder {room}"
+    keywords = {"SOURCES", "ROOMS", "PACKAGES", "PUBLIC", "PRIVATE"}
+    current = None
+    for word in words[1:]:
+        if word in keywords:
+            current = word
+        elif current == "ROOMS" and word not in ALLOWED[room]:
+            yield f"{name}: room {room} links {word}; it may link {sorted(ALLOWED[room]) or 'no other room'}"
+        elif current == "PACKAGES" and room in CORE_ROOMS and word.strip('"').split()[0] not in CORE_PACKAGES:
+            yield f"{name}: core room {room} needs {word}; core rooms need only {sorted(CORE_PACKAGES)}"
+        elif current in ("PUBLIC", "PRIVATE") and word.startswith("saccade"):
+            yield f"{name}: room {room} links {word} outside ROOMS"
+
+
+def links_of(text):
+    call = re.search(r"saccade_room\((.*?)\)", re.sub(r"#[^\n]*", "", text), re.DOTALL)
+    words = re.findall(r'"[^"]*"|\S+', call.group(1)) if call else []
+    rooms = []
+    if "ROOMS" in words:
+        for word in words[words.index("ROOMS") + 1:]:
+            if word in ("SOURCES", "PACKAGES", "PUBLIC", "PRIVATE"):
+                break
+            rooms.append(word)
+    return set(rooms)
+
+
+def check_links_match(root, room, texts):
+    """Every room that is included is linked too, itself or through a room below."""
+    library = root / "lib" / "saccade"
+    reachable, queue = set(), [room]
+    while queue:
+        cmake = library / queue.pop() / "CMakeLists.txt"
+        for other in links_of(cmake.read_text()) if cmake.exists() else set():
+            if other not in reachable:
+                reachable.add(other)
+                queue.append(other)
+    included = {path.split("/")[1] for text in texts for _, path in INCLUDE.findall(text) if path.startswith("saccade/")}
+    for other in sorted(included - reachable - {room}):
+        yield f"lib/saccade/{room}/CMakeLists.txt: {other} is included but not linked (ROOMS)"
+
+
+def files_below(root, folders):
+    for folder in folders:
+        for path in sorted((root / folder).rglob("*")):
+            if path.is_file() and "__pycache__" not in path.parts and "corpus" not in path.parts:
+                yield path
+
+
+def check_text(name, path, text):
+    lines = text.splitlines()
+    if path.suffix in NEED_SPDX or path.name in ("CMakeLists.txt", "Makefile"):
+        if not any("SPDX-License-Identifier: Apache-2.0" in line for line in lines[:2]):
+            yield f"{name}: no SPDX line at the top"
+    if path.suffix in SOURCES | {".py", ".sh", ".cmake"} and len(lines) >= MAX_LINES:
+        yield f"{name}: {len(lines)} lines; files stay under {MAX_LINES}"
+    if path.suffix in (".hpp", ".cuh") and not re.search(r"^#pragma once$", text, re.MULTILINE):
+        yield f"{name}: no #pragma once"
+
+
+def check(root):
+    violations, checked = [], 0
+    library = root / "lib" / "saccade"
+    for room_folder in sorted(path for path in library.iterdir() if path.is_dir()):
+        room = room_folder.name
+        if room not in ALLOWED:
+            violations.append(f"lib/saccade/{room}: no such room in the order of the layers")
+            continue
+        texts = []
+        for path in files_below(root, [room_folder.relative_to(root)]):
+            name, text = str(path.relative_to(root)), path.read_text()
+            if path.suffix in SOURCES:
+                texts.append(text)
+                violations += check_library_source(name, room, text)
+            elif path.name == "CMakeLists.txt":
+                violations += check_room_cmake(name, room, text)
+        violations += check_links_match(root, room, texts)
+    for path in files_below(root, ["lib", "apps", "tests", "examples", "bench", "scripts", "cmake"]):
+        if path.suffix in NEED_SPDX or path.name == "CMakeLists.txt":
+            checked += 1
+            violations += check_text(str(path.relative_to(root)), path, path.read_text())
+    return violations, checked
+
+
+def main():
+    root = pathlib.Path(sys.argv[1])
+    violations, checked = check(root)
+    for violation in violations:
+        print(violation)
+    print(f"{checked} files checked, {len(violations)} violations")
+    sys.exit(1 if violations or checked < 5 else 0)
+
+
+if __name__ == "__main__":
+    main()

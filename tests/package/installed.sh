@@ -1,0 +1,35 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs the build into an empty prefix; a consumer finds the components it wants there, without what it did not ask for.
+# Usage: installed.sh SOURCE BUILD WORK
+set -euo pipefail
+source_dir="$1" build="$2" work="$3"
+rm -rf "$work"
+mkdir -p "$work"
+cmake --install "$build" --prefix "$work/prefix" >"$work/install.log"
+
+consume() {  # NAME COMPONENTS…
+  local name="$1"
+  shift
+  cmake -S "$source_dir/tests/package/consumer" -B "$work/$name" -G Ninja -DCMAKE_PREFIX_PATH="$work/prefix" \
+    -DCONSUMER_SOURCE="$source_dir/examples/embedding.cpp" "$@"
+}
+hide=(-DCMAKE_DISABLE_FIND_PACKAGE_ImageCodecs=ON -DCMAKE_DISABLE_FIND_PACKAGE_zstd=ON
+      -DCMAKE_DISABLE_FIND_PACKAGE_nlohmann_json=ON -DCMAKE_DISABLE_FIND_PACKAGE_CLI11=ON)
+consume map "-DCONSUMER_COMPONENTS=core;map" "${hide[@]}"
+cmake --build "$work/map"
+"$work/map/consumer" | tee "$work/output.txt"
+grep -qx '1.005 m: occupied' "$work/output.txt"
+
+if consume nowhere "-DCONSUMER_COMPONENTS=core;nowhere" >"$work/nowhere.log" 2>&1; then
+  echo "an unknown component was found" >&2
+  exit 1
+fi
+grep -q nowhere "$work/nowhere.log"
+
+if [[ -d $work/prefix/include/saccade/io ]]; then
+  consume all "-DCONSUMER_COMPONENTS=map;io"
+  cmake --build "$work/all"
+  "$work/all/consumer"
+fi
+if [[ -x $build/saccade ]]; then "$work/prefix/bin/saccade" info; fi

@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// scaled_cases: how many random cases a property test runs; fewer under sanitizers, which cost a factor of 3 to 15.
+
+namespace saccade::test {
+
+#if defined(__SANITIZE_THREAD__)
+constexpr int kEffortDivisor{12};
+#elif defined(__SANITIZE_ADDRESS__)
+constexpr int kEffortDivisor{4};
+#else
+constexpr int kEffortDivisor{1};
+#endif
+
+/// At least one case; the tests assert that this many ran.
+[[nodiscard]] constexpr int scaled_cases(int cases) { return cases / kEffortDivisor > 0 ? cases / kEffortDivisor : 1; }
+
+}  // namespace saccade::test
