@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Trajectories and pose lists: TUM lines, 4×4 matrices, Open3D logs, JSON; reading and writing.
+
+#include <cstddef>
+#include <filesystem>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saccade/core/pose.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+/// One pose of a list. A value that is no pose (NaN, no rotation) is kept as an error, so that a reader of frames can
+/// skip that frame alone.
+struct PoseEntry {
+  Result<Pose> T_world_camera;
+  std::optional<double> time_s;
+  std::size_t line{0};  ///< where it starts, from 1; 0 for JSON
+};
+
+struct StampedPose {
+  double time_s{0.0};
+  Pose T_world_camera{Pose::Identity()};
+};
+
+/// Recognises, by the first line that is no comment ('#'):
+///   8 numbers  TUM: time tx ty tz qx qy qz qw, the quaternion of length 1 within 1e-3;
+///   3 numbers  Open3D log: three integers, then a 4×4 matrix on four lines;
+///   4 or 16    4×4 matrices row by row, one or many;
+///   '[' or '{' JSON: one 4×4 nested array, an array of them, an array of {"T_world_camera": ...}, or an object with
+///              such an array under "poses", "views" or "result.views" (what `nbv --json` writes).
+/// corrupt_data with the line for a wrong number of values or a word that is no number. An empty text has no poses.
+[[nodiscard]] Result<std::vector<PoseEntry>> parse_pose_list(std::string_view text);
+[[nodiscard]] Result<std::vector<PoseEntry>> read_pose_list(const std::filesystem::path& path);
+
+/// The same where every pose must be good; the error names the first bad one. not_found when there is none.
+[[nodiscard]] Result<std::vector<Pose>> read_poses(const std::filesystem::path& path);
+/// TUM lines only.
+[[nodiscard]] Result<std::vector<StampedPose>> read_tum_trajectory(const std::filesystem::path& path);
+
+/// Written atomically with 17 digits, so that reading gives the same poses to 1e-15.
+[[nodiscard]] Status write_tum_trajectory(const std::filesystem::path& path, std::span<const StampedPose> poses);
+/// Four lines a pose.
+[[nodiscard]] Status write_matrices(const std::filesystem::path& path, std::span<const Pose> poses);
+/// Open3D log: "i i i+1" before each matrix.
+[[nodiscard]] Status write_open3d_log(const std::filesystem::path& path, std::span<const Pose> poses);
+
+}  // namespace saccade
