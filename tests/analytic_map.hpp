@@ -37,7 +37,9 @@ TsdfSnapshot map_of(const TsdfConfig& config, const IndexBox& box, const Sdf& sd
         }
         if (colored) {
           dense.colors = std::make_unique<BrickColors>();
-          dense.colors->fill({200, 100, 50});
+          for (std::size_t i = 0; i < kBrickVoxels; ++i) {
+            if (dense.w[i] > 0) (*dense.colors)[i] = {200, 100, 50};
+          }
         }
         dense.update_masks();
         ref.canonicalize(config.free_weight);

@@ -183,7 +183,9 @@ class Extraction {
     const BrickRef* brick = find(parent(voxel));
     const DenseBrick* dense = brick == nullptr ? nullptr : brick->dense();
     if (dense == nullptr || dense->colors == nullptr) return std::nullopt;
-    return (*dense->colors)[static_cast<std::size_t>(child_index(voxel))];
+    const Rgb8& color = (*dense->colors)[static_cast<std::size_t>(child_index(voxel))];
+    if (color == Rgb8{}) return std::nullopt;  // black: none was fused
+    return color;
   }
 
   static Rgb8 blend(const Rgb8& a, const Rgb8& b, double t) {

@@ -187,7 +187,7 @@ TEST(Mesh, HasColorsOnlyWhereTheMapHas) {
   // Colours gone from one octant: its vertices are grey, the others keep theirs.
   Sector& octant = map.grid.writable({0, 0, 0});
   for (BrickRef& brick : octant.bricks) {
-    if (brick.dense() != nullptr) brick.writable_dense().colors.reset();
+    if (brick.dense() != nullptr) brick.writable_dense().colors->fill({});
   }
   mesh = extract_mesh(map, Executor{});
   std::size_t grey{0};
