@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// write_ternary_points: occupied and frontier voxels as a PLY cloud; write_ternary_volume: a dense NPY volume.
+
+#include <cstddef>
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+
+#include "saccade/core/region.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/map/tsdf_map.hpp"
+
+namespace saccade {
+
+/// Values of the states in exported files (eq. 2.11): 0 unknown, 1 empty, 2 occupied, as VoxelState.
+struct TernaryPointsConfig {
+  std::optional<Box> box;  ///< voxels with their centre in it; without one, all of the map
+  bool occupied{true};
+  bool frontier{true};  ///< unknown voxels with an empty voxel at one of their six faces, inside the workspace
+};
+
+struct TernaryPoints {
+  std::size_t occupied{0};
+  std::size_t frontier{0};
+};
+
+/// Binary PLY with one vertex per voxel: x y z (its centre, world, metres), red green blue (the fused colour, grey
+/// where there is none, black for unknown), state. Order by sector, brick, voxel. Written atomically.
+/// @return invalid_argument for an empty box, io_failure. O(bricks), two passes; memory does not grow with the map.
+[[nodiscard]] Result<TernaryPoints> write_ternary_points(const TsdfSnapshot& map, const std::filesystem::path& path,
+                                                         const TernaryPointsConfig& config = {});
+
+struct TernaryVolumeConfig {
+  std::optional<Box> box;  ///< voxels with their centre in it; without one, the smallest box around all known bricks
+  std::uint64_t max_bytes{std::uint64_t{4} << 30U};
+};
+
+/// One byte per voxel (z, y, x) as a NumPy file, and beside it `path` with .json in place of its extension: shape,
+/// origin_m (centre of the first voxel), voxel_size_m, the meaning of the values. Both written atomically.
+/// @return the voxels written; invalid_argument for an empty box or map, and for a box of more than max_bytes, saying
+///         its size; io_failure. O(voxels); one slice of it is held in memory.
+[[nodiscard]] Result<IndexBox> write_ternary_volume(const TsdfSnapshot& map, const std::filesystem::path& path,
+                                                    const TernaryVolumeConfig& config = {});
+
+}  // namespace saccade
