@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SensorRays: the rays of a virtual sensor at a pose, in one canonical basis per camera centre and roll; PixelAxes.
+
+#include <vector>
+
+#include "saccade/core/pose.hpp"
+#include "saccade/map/ray_math.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade {
+
+/// The camera's centre and axes as every implementation of view evaluation uses them, so that all trace the same rays
+/// to the bit. The centre is snapped to 2⁻¹⁶ voxel, each component of the axes to 2⁻²⁴. Of the four quarter turns of
+/// (x, y) about the optical axis, the one whose x axis is lexicographically largest in the world is the canonical one,
+/// so poses that differ by quarter turns of roll share their axes.
+struct SensorRays {
+  LatticePoint origin;
+  float x[3];  ///< canonical axes in the world, voxels per metre
+  float y[3];
+  float z[3];
+  int quarter_turns{0};  ///< canonical = camera turned this many times by 90° from x towards y
+
+  /// The same centre and the same canonical axes.
+  [[nodiscard]] bool same_lattice(const SensorRays& other) const;
+  /// The ray through canonical image coordinates (a, b) at depth 1: d = x·a + (y·b + z), in float32, in this order.
+  [[nodiscard]] LatticeRay ray(float a, float b) const {
+    return make_lattice_ray(origin, x[0] * a + (y[0] * b + z[0]), x[1] * a + (y[1] * b + z[1]),
+                            x[2] * a + (y[2] * b + z[2]));
+  }
+};
+[[nodiscard]] SensorRays sensor_rays(const Pose& T_world_camera, double voxel_size_m);
+
+/// Canonical image coordinates of the pixels, ascending: column i of the canonical image lies at a[i], row j at b[j].
+/// The values are float((u − cx) / fx) and float((v − cy) / fy), exchanged and negated as the quarter turns say.
+struct PixelAxes {
+  std::vector<float> a;
+  std::vector<float> b;
+  double pixels_per_a{0.0};  ///< focal length along a
+  double pixels_per_b{0.0};
+};
+[[nodiscard]] PixelAxes pixel_axes(const PinholeCamera& camera, int quarter_turns);
+
+/// The ray of pixel (u, v): what evaluate_views traces for it.
+[[nodiscard]] LatticeRay pixel_ray(const SensorRays& rays, const PinholeCamera& camera, int u, int v);
+
+}  // namespace saccade

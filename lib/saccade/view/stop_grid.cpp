@@ -1,0 +1,209 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/view/stop_grid.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <limits>
+
+namespace saccade {
+namespace {
+
+constexpr double kMostSectors{1 << 23};
+
+IndexBox intersection(const IndexBox& a, const IndexBox& b) {
+  return {{std::max(a.lo.x, b.lo.x), std::max(a.lo.y, b.lo.y), std::max(a.lo.z, b.lo.z)},
+          {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
+}
+bool overlap(const IndexBox& a, const IndexBox& b) { return !intersection(a, b).empty(); }
+bool inside(const IndexBox& a, const IndexBox& b) { return intersection(a, b) == a; }
+
+/// Smallest box around both; an empty box adds nothing.
+IndexBox hull(const IndexBox& a, const IndexBox& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {{std::min(a.lo.x, b.lo.x), std::min(a.lo.y, b.lo.y), std::min(a.lo.z, b.lo.z)},
+          {std::max(a.hi.x, b.hi.x), std::max(a.hi.y, b.hi.y), std::max(a.hi.z, b.hi.z)}};
+}
+
+IndexBox voxels_of_brick(const Index3& brick) {
+  return {brick * kBrickEdge, brick * kBrickEdge + Index3{kBrickEdge, kBrickEdge, kBrickEdge}};
+}
+
+template <class Inside>
+Mask512 mask_where(const Index3& brick, Inside&& inside_of) {
+  Mask512 mask;
+  for (int i = 0; i < kBrickVoxels; ++i) {
+    if (inside_of(brick * kBrickEdge + child_offset(i))) mask.set(i);
+  }
+  return mask;
+}
+
+/// Voxels of the brick whose centre lies in the region. Where the brick is clearly in or out of a sphere, no centre
+/// needs to be looked at; the slack is far above rounding and far below a voxel.
+Mask512 region_mask(const Region& region, const Index3& brick, double voxel_size_m) {
+  if (const auto* sphere = std::get_if<Sphere>(&region)) {
+    const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * kBrickEdge * voxel_size_m);
+    const Eigen::Vector3d center = Eigen::Vector3d{brick.x + 0.5, brick.y + 0.5, brick.z + 0.5} * (2.0 * half.x());
+    const Eigen::Vector3d offset = (sphere->center - center).cwiseAbs();
+    const double slack = 0.01 * voxel_size_m;
+    if ((offset + half).norm() < sphere->radius_m - slack) return Mask512::all_set();
+    if ((offset - half).cwiseMax(0.0).norm() > sphere->radius_m + slack) return {};
+  }
+  return mask_where(brick, [&](const Index3& voxel) { return contains(region, voxel_center(voxel, voxel_size_m)); });
+}
+
+IndexBox bounds_of_mask(const Mask512& mask, const Index3& brick) {
+  if (mask.none()) return {};
+  std::uint64_t plane{0};
+  int z0{kBrickEdge};
+  int z1{0};
+  for (int z = 0; z < kBrickEdge; ++z) {
+    const std::uint64_t word = mask.words[static_cast<std::size_t>(z)];
+    plane |= word;
+    if (word != 0) {
+      z0 = std::min(z0, z);
+      z1 = z + 1;
+    }
+  }
+  std::uint64_t row{0};
+  for (int y = 0; y < kBrickEdge; ++y) row |= (plane >> (y * 8)) & 0xFFU;
+  const int y0 = std::countr_zero(plane) / 8;
+  const int y1 = 8 - std::countl_zero(plane) / 8;
+  const int x0 = std::countr_zero(row);
+  const int x1 = 64 - std::countl_zero(row);
+  const Index3 corner = brick * kBrickEdge;
+  return {corner + Index3{x0, y0, z0}, corner + Index3{x1, y1, z1}};
+}
+
+}  // namespace
+
+IndexBox voxels_around(const Region& region, double voxel_size_m) {
+  const IndexBox box = voxels_with_center_in(bounds(region), voxel_size_m);
+  return {box.lo - Index3{1, 1, 1}, box.hi + Index3{1, 1, 1}};
+}
+
+/// Turns the sectors of the map into sectors of the stop grid, one at a time.
+class StopGrid::Builder {
+ public:
+  Builder(const TsdfSnapshot& map, const Region& region, UnknownOutside outside)
+      : map_{map},
+        region_{region},
+        unknown_blocks_{outside == UnknownOutside::blocks},
+        region_voxels_{voxels_around(region, map.config.voxel_size_m)} {
+    if (map.config.workspace) workspace_ = voxels_with_center_in(*map.config.workspace, map.config.voxel_size_m);
+  }
+
+  enum class Kind { clear, blocked, detailed };
+  [[nodiscard]] Kind kind(const Index3& sector) const {
+    const IndexBox voxels{sector * kSectorVoxelEdge, (sector + Index3{1, 1, 1}) * kSectorVoxelEdge};
+    if (workspace_ && !overlap(voxels, *workspace_)) return Kind::clear;
+    if (map_.grid.find(sector) != nullptr || overlap(voxels, region_voxels_)) return Kind::detailed;
+    if (!unknown_blocks_) return Kind::clear;
+    return !workspace_ || inside(voxels, *workspace_) ? Kind::blocked : Kind::detailed;
+  }
+
+  [[nodiscard]] std::unique_ptr<const SectorView> detailed(const Index3& index) const {
+    auto view = std::make_unique<SectorView>();
+    const Sector* sector = map_.grid.find(index);
+    for (int i = 0; i < kSectorBricks; ++i) add_brick(*view, index * kSectorEdge + child_offset(i), sector, i);
+    return view;
+  }
+
+ private:
+  void add_brick(SectorView& view, const Index3& brick, const Sector* sector, int i) const {
+    const bool has_unknown = sector == nullptr || sector->has_unknown.test(i);
+    const bool has_occupied = sector != nullptr && sector->has_occupied.test(i);
+    if (!has_unknown && !has_occupied) return;
+    const StopMasks masks =
+        stop_masks(brick, sector == nullptr ? nullptr : &sector->bricks[static_cast<std::size_t>(i)]);
+    const bool blocks = (masks.stop & ~masks.score).any();
+    const bool scores = masks.score.any();
+    std::uint16_t& code = view.codes[static_cast<std::size_t>(i)];
+    if (scores) view.scoring = hull(view.scoring, bounds_of_mask(masks.score, brick));
+    if (masks.stop.none()) return;
+    if (masks.stop.all() && !(blocks && scores)) {
+      code = blocks ? stop_flags::kBlocked : stop_flags::kScores;
+      return;
+    }
+    code = static_cast<std::uint16_t>(stop_flags::kStops | (blocks ? stop_flags::kBlocks : 0) |
+                                      (view.masks.size() << stop_flags::kShift));
+    view.masks.push_back(masks);
+  }
+
+  [[nodiscard]] StopMasks stop_masks(const Index3& brick, const BrickRef* ref) const {
+    Mask512 unknown = ref == nullptr ? Mask512::all_set() : ref->unknown_mask();
+    Mask512 occupied = ref == nullptr ? Mask512{} : ref->occupied_mask();
+    const IndexBox voxels = voxels_of_brick(brick);
+    if (workspace_ && !inside(voxels, *workspace_)) {
+      const Mask512 within = mask_where(brick, [&](const Index3& voxel) { return workspace_->contains(voxel); });
+      unknown = unknown & within;
+      occupied = occupied & within;
+    }
+    Mask512 score;
+    if (unknown.any() && overlap(voxels, region_voxels_)) {
+      score = unknown & region_mask(region_, brick, map_.config.voxel_size_m);
+    }
+    return {occupied | (unknown_blocks_ ? unknown : score), score};
+  }
+
+  const TsdfSnapshot& map_;
+  const Region& region_;
+  bool unknown_blocks_;
+  IndexBox region_voxels_;
+  std::optional<IndexBox> workspace_;
+};
+
+Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, UnknownOutside outside,
+                                 const IndexBox& domain, const Executor& executor) {
+  StopGrid grid;
+  grid.sectors_ = {parent(parent(domain.lo)), parent(parent(domain.hi - Index3{1, 1, 1})) + Index3{1, 1, 1}};
+  const Index3 size = grid.sectors_.hi - grid.sectors_.lo;
+  if (static_cast<double>(size.x) * size.y * size.z > kMostSectors) {
+    return Error{Errc::invalid_argument,
+                 "the space between the view poses and the region holds too many voxels; use a shorter range or larger "
+                 "voxels",
+                 "view evaluation"};
+  }
+  grid.size_x_ = static_cast<std::uint32_t>(size.x);
+  grid.size_y_ = static_cast<std::uint32_t>(size.y);
+  grid.size_z_ = static_cast<std::uint32_t>(size.z);
+  const std::size_t count = std::size_t{grid.size_x_} * grid.size_y_ * grid.size_z_;
+
+  grid.clear_ = std::make_unique<const SectorView>();
+  auto blocked = std::make_unique<SectorView>();
+  blocked->codes.fill(stop_flags::kBlocked);
+  grid.blocked_ = std::move(blocked);
+
+  const Builder builder{map, region, outside};
+  grid.table_.assign(count, grid.clear_.get());
+  std::vector<std::pair<std::size_t, Index3>> detailed;
+  for (std::size_t i = 0; i < count; ++i) {
+    const Index3 offset{static_cast<std::int32_t>(i % grid.size_x_),
+                        static_cast<std::int32_t>(i / grid.size_x_ % grid.size_y_),
+                        static_cast<std::int32_t>(i / grid.size_x_ / grid.size_y_)};
+    const Index3 sector = grid.sectors_.lo + offset;
+    switch (builder.kind(sector)) {
+      case Builder::Kind::clear: break;
+      case Builder::Kind::blocked: grid.table_[i] = grid.blocked_.get(); break;
+      case Builder::Kind::detailed: detailed.emplace_back(i, sector); break;
+    }
+  }
+  grid.views_.resize(detailed.size());
+  executor.parallel_for(detailed.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) grid.views_[k] = builder.detailed(detailed[k].second);
+  });
+  for (std::size_t k = 0; k < detailed.size(); ++k) {
+    grid.table_[detailed[k].first] = grid.views_[k].get();
+    grid.scoring_voxels_ = hull(grid.scoring_voxels_, grid.views_[k]->scoring);
+  }
+  return grid;
+}
+
+bool StopGrid::stops(const Index3& voxel) const {
+  const Brick found = brick(parent(voxel));
+  if (found.flags == stop_flags::kClear) return false;
+  if ((found.flags & stop_flags::kSolid) != 0) return true;
+  return found.masks->stop.test(child_index(voxel));
+}
+
+}  // namespace saccade

@@ -1,0 +1,202 @@
+// SPDX-License-Identifier: Apache-2.0
+// evaluate_views equals brute force to the ray: random maps, regions, poses, counts, treatments of unknown, ranges,
+// tilt and workspaces; every saving alone, none and all; every thread count.
+#include <gtest/gtest.h>
+
+#include <iostream>
+#include <random>
+
+#include "saccade/view/view_gain.hpp"
+#include "saccade/view/view_sphere.hpp"
+#include "support/brute_force_gain.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr std::uint32_t kSeed{977};
+
+class RandomCase {
+ public:
+  explicit RandomCase(std::uint32_t seed) : random_{seed} {
+    map.config.voxel_size_m = real(0.02, 0.05);
+    if (chance(2)) {
+      const Eigen::Vector3d corner{real(-1.5, -0.2), real(-1.5, -0.2), real(-1.5, -0.2)};
+      map.config.workspace = Box{corner, corner + Eigen::Vector3d{real(0.6, 3.0), real(0.6, 3.0), real(0.6, 3.0)}};
+    }
+    fill_map();
+    region = random_region();
+    if (!chance(4)) forget_region();
+    config.sensor = {20 + whole(60),
+                     15 + whole(60),
+                     real(40.0, 150.0),
+                     real(40.0, 150.0),
+                     0.0,
+                     0.0,
+                     chance(3) ? 0.0 : real(0.0, 0.8),
+                     real(1.0, 4.0)};
+    config.sensor.fy = chance(2) ? config.sensor.fx : config.sensor.fy;
+    config.sensor.cx = 0.5 * (config.sensor.width - 1) + (chance(3) ? real(-5.0, 5.0) : 0.0);
+    config.sensor.cy = 0.5 * (config.sensor.height - 1);
+    config.tilt_rad = chance(4) ? 0.0873 : 0.0;
+    config.count = chance(2) ? GainCount::rays : GainCount::distinct_voxels;
+    config.unknown_outside = chance(2) ? UnknownOutside::blocks : UnknownOutside::transparent;
+    make_poses();
+  }
+
+  TsdfSnapshot map;
+  Region region;
+  GainConfig config;
+  std::vector<Pose> poses;
+
+ private:
+  double real(double lo, double hi) { return std::uniform_real_distribution<double>{lo, hi}(random_); }
+  int whole(int below) { return static_cast<int>(random_() % static_cast<unsigned>(below)); }
+  bool chance(int one_in) { return whole(one_in) == 0; }
+  Eigen::Vector3d point(double reach) { return {real(-reach, reach), real(-reach, reach), real(-reach, reach)}; }
+
+  void fill_map() {
+    const int clutter = chance(3) ? 40 : 400;  // one in so many bricks is not plainly free
+    for (int s = 0; s < 64; ++s) {
+      if (chance(40)) continue;
+      Sector& sector = map.grid.writable({s % 4 - 2, s / 4 % 4 - 2, s / 16 - 2});
+      for (int i = 0; i < kSectorBricks; ++i) {
+        BrickRef& brick = sector.bricks[static_cast<std::size_t>(i)];
+        if (chance(clutter)) {
+          fill_brick(brick);
+        } else {
+          brick = BrickRef::constant_free(static_cast<std::uint16_t>(1 + whole(5)));
+        }
+        sector.update_summary(i, map.config.free_weight);
+      }
+    }
+  }
+
+  void fill_brick(BrickRef& brick) {
+    if (chance(6)) return;  // unknown
+    if (chance(3)) {
+      FreeBrick& free = brick.expand_to_free();
+      for (int i = 0; i < kBrickVoxels; ++i)
+        free.set_weight(i, static_cast<std::uint16_t>(chance(3) ? 0 : 1 + whole(5)));
+      return;
+    }
+    DenseBrick& dense = brick.densify();
+    const int occupied = 2 + whole(20);
+    for (std::size_t i = 0; i < kBrickVoxels; ++i) {
+      dense.w[i] = chance(20) ? std::uint16_t{0} : std::uint16_t{3};
+      dense.v[i] = static_cast<std::int16_t>(dense.w[i] == 0 ? 0 : chance(occupied) ? -5 : 9000);
+    }
+    dense.update_masks();
+  }
+
+  Region random_region() {
+    const Eigen::Vector3d center = point(0.4);
+    switch (whole(5)) {
+      case 0:
+        return Box{center - Eigen::Vector3d::Constant(real(0.1, 0.4)),
+                   center + point(0.05).cwiseAbs() * 6.0 + Eigen::Vector3d::Constant(0.03)};
+      case 1: return Cylinder{center, center + Eigen::Vector3d{0.1, 0.1, 0.3}, real(0.1, 0.3)};
+      default: return Sphere{center, real(0.1, 0.5)};
+    }
+  }
+
+  void forget_region() {
+    const IndexBox box = voxels_with_center_in(bounds(region), map.config.voxel_size_m);
+    for (int z = box.lo.z - 1; z <= box.hi.z; ++z) {
+      for (int y = box.lo.y - 1; y <= box.hi.y; ++y) {
+        for (int x = box.lo.x - 1; x <= box.hi.x; ++x) forget({x, y, z});
+      }
+    }
+  }
+  void forget(const Index3& voxel) {
+    if (!contains(region, voxel_center(voxel, map.config.voxel_size_m))) return;
+    const Index3 brick = parent(voxel);
+    if (map.grid.find(parent(brick)) == nullptr) return;
+    Sector& sector = map.grid.writable(parent(brick));
+    const int child = child_index(brick);
+    BrickRef& ref = sector.bricks[static_cast<std::size_t>(child)];
+    if (DenseBrick* const dense = ref.dense() != nullptr ? &ref.writable_dense() : nullptr) {
+      dense->v[static_cast<std::size_t>(child_index(voxel))] = 0;
+      dense->w[static_cast<std::size_t>(child_index(voxel))] = 0;
+      dense->update_masks();
+    } else {
+      ref.expand_to_free().set_weight(child_index(voxel), 0);
+      ref.canonicalize(map.config.free_weight);
+    }
+    sector.update_summary(child, map.config.free_weight);
+  }
+
+  void make_poses() {
+    const Box box = bounds(region);
+    const Eigen::Vector3d center = 0.5 * (box.min + box.max);
+    for (int i = 0; i < 4; ++i) {
+      Eigen::Vector3d from = center + point(1.0).normalized() * real(0.05, 1.6);
+      if (chance(3)) from = (from / map.config.voxel_size_m).array().round() * map.config.voxel_size_m;
+      const Eigen::Vector3d target = center + (chance(2) ? point(0.3) : Eigen::Vector3d::Zero());
+      for (int roll = 0; roll < 3; ++roll) {
+        poses.push_back(look_at(from, target, Eigen::Vector3d::UnitZ(), roll * 1.5707963267948966));
+      }
+    }
+    Pose axis_parallel{Pose::Identity()};
+    axis_parallel.translation() = center - Eigen::Vector3d{0.0, 0.0, 1.0};
+    poses.push_back(axis_parallel);
+  }
+
+  std::mt19937 random_;
+};
+
+std::vector<GainSavings> all_savings() {
+  std::vector<GainSavings> list{GainSavings{}, GainSavings::none()};
+  for (bool GainSavings::*const one :
+       {&GainSavings::region_rays, &GainSavings::region_exit, &GainSavings::empty_bricks, &GainSavings::blocked_camera,
+        &GainSavings::shared_lattice, &GainSavings::tiles}) {
+    GainSavings without;
+    without.*one = false;
+    list.push_back(without);
+    GainSavings only = GainSavings::none();
+    only.*one = true;
+    list.push_back(only);
+  }
+  return list;
+}
+
+TEST(ViewGainParity, EqualsBruteForceToTheRay) {
+  std::cout << "seed " << kSeed << '\n';
+  constexpr int kMaps{40};
+  const std::vector<GainSavings> savings = all_savings();
+  const Executor executors[]{Executor::with_threads(1), Executor::with_threads(2), Executor::with_threads(7)};
+  std::size_t compared{0};
+  std::uint64_t total_gain{0};
+  std::uint64_t cast_with_tiles{0};
+  std::uint64_t cast_without{0};
+  int nonzero{0};
+  for (int i = 0; i < kMaps; ++i) {
+    RandomCase test{kSeed + static_cast<std::uint32_t>(i)};
+    const test::BruteForceGain brute_force{test.map, test.region, test.config};
+    std::vector<std::uint64_t> expected;
+    for (const Pose& pose : test.poses) expected.push_back(brute_force(pose));
+    for (std::size_t s = 0; s < savings.size(); ++s) {
+      test.config.savings = savings[s];
+      const Executor& executor = executors[(static_cast<std::size_t>(i) + s) % std::size(executors)];
+      const auto result = evaluate_views(test.map, test.region, test.poses, test.config, executor);
+      ASSERT_TRUE(result.ok()) << result.error().to_string();
+      EXPECT_EQ(result->backend, executor.backend_name());
+      ASSERT_EQ(result->gains, expected) << "map " << i << ", savings " << s;
+      compared += expected.size();
+      if (s == 0) cast_with_tiles += result->rays_cast;
+      if (s == 1) cast_without += result->rays_cast;
+    }
+    for (const std::uint64_t gain : expected) {
+      total_gain += gain;
+      nonzero += gain > 0 ? 1 : 0;
+    }
+  }
+  EXPECT_EQ(compared, std::size_t{kMaps} * savings.size() * 13);
+  EXPECT_GT(nonzero, kMaps * 13 / 4);
+  EXPECT_GT(total_gain, 30000U);
+  EXPECT_LT(cast_with_tiles * 2, cast_without) << "the savings save nothing";
+  std::cout << compared << " gains compared, " << nonzero << " of " << kMaps * 13 << " not zero, rays cast "
+            << cast_with_tiles << " of " << cast_without << '\n';
+}
+
+}  // namespace
+}  // namespace saccade
