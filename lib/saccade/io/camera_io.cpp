@@ -112,7 +112,7 @@ Result<std::vector<double>> all_numbers(std::string_view text) {
       if (token->front() == '#') break;
       const auto value = parse_number(*token);
       if (!value) {
-        return Error{Errc::corrupt_data, quoted(*token) + " is not a number",
+        return Error{Errc::corrupt_data, in_quotes(*token) + " is not a number",
                      "camera intrinsics, line " + std::to_string(lines.line())};
       }
       values.push_back(*value);

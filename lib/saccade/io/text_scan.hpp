@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// LineScanner and TokenScanner walk borrowed text; parse_number and parse_integer read one token; quoted shows it.
+// LineScanner and TokenScanner walk borrowed text; parse_number and parse_integer read one token; in_quotes shows it.
 
 #include <algorithm>
 #include <charconv>
+#include <concepts>
 #include <cstddef>
 #include <cstdlib>
 #include <optional>
@@ -57,12 +58,17 @@ class TokenScanner {
 };
 
 /// The whole token as a number ("nan" and "inf" included), or nullopt.
-[[nodiscard]] inline std::optional<double> parse_number(std::string_view token) {
+template <std::floating_point T = double>
+[[nodiscard]] std::optional<T> parse_number(std::string_view token) {
   if (!token.empty() && token.front() == '+') token.remove_prefix(1);
-  double value = 0.0;
+  T value{};
   const auto [end, status] = std::from_chars(token.data(), token.data() + token.size(), value);
   if (end != token.data() + token.size()) return std::nullopt;
-  if (status == std::errc::result_out_of_range) return std::strtod(std::string{token}.c_str(), nullptr);
+  if (status == std::errc::result_out_of_range) {  // too small is 0, too large is infinity
+    const std::string copy{token};
+    return sizeof(T) == sizeof(float) ? static_cast<T>(std::strtof(copy.c_str(), nullptr))
+                                      : static_cast<T>(std::strtod(copy.c_str(), nullptr));
+  }
   if (status != std::errc{}) return std::nullopt;
   return value;
 }
@@ -78,7 +84,7 @@ template <class T>
 }
 
 /// The token in quotes for a message, cut to 40 characters.
-[[nodiscard]] inline std::string quoted(std::string_view token) {
+[[nodiscard]] inline std::string in_quotes(std::string_view token) {
   constexpr std::size_t kShown{40};
   std::string text{'\''};
   text.append(token.substr(0, kShown)).push_back('\'');

@@ -43,7 +43,7 @@ Result<std::vector<NumberLine>> number_lines(std::string_view text) {
     while (const auto token = tokens.next()) {
       if (token->front() == '#') break;
       const auto value = parse_number(*token);
-      if (!value) return bad_line(scanner.line(), quoted(*token) + " is not a number");
+      if (!value) return bad_line(scanner.line(), in_quotes(*token) + " is not a number");
       numbers.values.push_back(*value);
     }
     if (!numbers.values.empty()) lines.push_back(std::move(numbers));
