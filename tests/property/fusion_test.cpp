@@ -10,6 +10,7 @@
 #include "saccade/map/tsdf_map.hpp"
 #include "support/dense_reference.hpp"
 #include "support/effort.hpp"
+#include "support/parallel_backend.hpp"
 
 namespace saccade {
 namespace {
@@ -206,8 +207,8 @@ TEST(FusionProperty, ThreadsAndBackendsNeverChangeABit) {
     std::vector<std::pair<Pose, DepthImage>> frames;
     for (int i = 0; i < 4; ++i) frames.emplace_back(run.pose(), run.depth());
     std::optional<TsdfGrid> first;
-    for (const Executor& executor : {Executor{}, Executor::with_threads(2, Executor::Backend::tbb),
-                                     Executor::with_threads(7, Executor::Backend::tbb),
+    for (const Executor& executor : {Executor{}, Executor::with_threads(2, test::kParallelBackend),
+                                     Executor::with_threads(7, test::kParallelBackend),
                                      Executor::with_threads(3, Executor::Backend::std_thread)}) {
       auto map = TsdfMap::create(run.config());
       ASSERT_TRUE(map.ok());

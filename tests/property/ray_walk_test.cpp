@@ -11,6 +11,8 @@
 #include <random>
 #include <vector>
 
+#include "support/effort.hpp"
+
 namespace saccade {
 namespace {
 
@@ -108,7 +110,7 @@ void collect(const LatticeRay& ray, const RaySpan& span, std::vector<Visit>& vis
 
 TEST(RayWalk, HierarchyVisitsTheVoxelsOfThePlainWalk) {
   std::cout << "seed " << kSeed << '\n';
-  constexpr int kRays{20000};
+  constexpr int kRays{test::scaled_cases(20000)};
   RandomRays rays{kSeed};
   std::size_t compared{0};
   int ties{0};
@@ -133,7 +135,7 @@ TEST(RayWalk, HierarchyVisitsTheVoxelsOfThePlainWalk) {
 
 TEST(RayWalk, ClipCutsThePlainWalk) {
   std::cout << "seed " << kSeed + 1 << '\n';
-  constexpr int kRays{20000};
+  constexpr int kRays{test::scaled_cases(20000)};
   RandomRays rays{kSeed + 1};
   int met{0};
   for (int i = 0; i < kRays; ++i) {

@@ -10,6 +10,7 @@
 
 #include "analytic_map.hpp"
 #include "saccade/map/marching_cubes.hpp"
+#include "support/parallel_backend.hpp"
 
 namespace saccade {
 namespace {
@@ -241,7 +242,7 @@ TEST(Mesh, SameForEveryThreadCount) {
   const TsdfSnapshot map = sphere_map(true);
   const TriangleMesh reference = extract_mesh(map, Executor{});
   for (const std::size_t threads : {2U, 3U, 8U}) {
-    for (const auto backend : {Executor::Backend::tbb, Executor::Backend::std_thread}) {
+    for (const auto backend : {test::kParallelBackend, Executor::Backend::std_thread}) {
       const TriangleMesh mesh = extract_mesh(map, Executor::with_threads(threads, backend));
       EXPECT_EQ(mesh.vertices, reference.vertices);
       EXPECT_EQ(mesh.normals, reference.normals);
