@@ -7,10 +7,10 @@ fi
 
 # One compiler needs up to about 1.5 GB: use every core that has as much memory.
 jobs_here() {
-  local cores memory_gb
+  local cores compilers
   cores="$(nproc)"
-  memory_gb="$(awk '/MemAvailable/ { print int($2 / 1500000) }' /proc/meminfo)"
-  echo $((memory_gb < 1 ? 1 : memory_gb < cores ? memory_gb : cores))
+  compilers="$(awk '/MemAvailable/ { print int($2 / 1500000) }' /proc/meminfo 2>/dev/null || echo 2)"
+  echo $((compilers < 1 ? 1 : compilers < cores ? compilers : cores))
 }
 
 # configure PRESET OPTIONS…: quiet unless it fails.

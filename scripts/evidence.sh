@@ -1,0 +1,71 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Long acceptance runs. Every step leaves its result in out/evidence, so an interrupted run continues where it stopped;
+# rm -r out/evidence starts afresh. The figures, with their commands, go to docs/evidence.md.
+# SACCADE_DATA: recorded sequences (../shared/data). SACCADE_FUZZ_MINUTES: per fuzz target (10).
+set -uo pipefail
+cd "$(dirname "${BASH_SOURCE[0]}")/.."
+source scripts/common.sh
+data="${SACCADE_DATA:-../shared/data}"
+out=out/evidence
+mkdir -p "$out"
+failed=0
+
+# step NAME COMMAND…: runs unless out/evidence/NAME.done is there; the command line and its outcome are kept beside it.
+step() {
+  local name="$1"
+  shift
+  if [[ -f $out/$name.done ]]; then
+    echo "  $name: done before"
+    return 0
+  fi
+  echo "  $name: $*"
+  printf '%s\n' "$*" >"$out/$name.command"
+  if "$@" >"$out/$name.log" 2>&1; then
+    touch "$out/$name.done"
+  else
+    echo "  $name FAILED, see $out/$name.log"
+    failed=1
+    return 1
+  fi
+}
+
+fuse() {  # SEQUENCE TRACKING
+  local sequence="$1" tracking="$2" name="fuse_$1_$2"
+  if [[ ! -d $data/$sequence ]]; then
+    echo "  $name: skipped, $data/$sequence is not there"
+    return
+  fi
+  step "$name" build/release/saccade fuse "$data/$sequence" --tracking "$tracking" --out "$out/$name" --json "$out/$name.json"
+}
+
+echo "Recorded sequences"
+fuse rgbd_redkitchen forced
+fuse rgbd_redkitchen icp
+fuse rgbd_redkitchen hint
+fuse rgbd_realsense_box icp
+fuse rgbd_eyeinhand_shelfA forced
+fuse rgbd_eyeinhand_shelfA icp
+
+echo "View evaluation: 960 poses, 640×480, a forgotten sphere of 0.2 m on a table"
+map="$out/fuse_rgbd_redkitchen_forced/map.sacmap"
+if [[ -f $map ]]; then
+  for run in 1 2 3; do
+    step "nbv_redkitchen_$run" build/release/saccade nbv "$map" --poi "${SACCADE_NBV_POI:-0.0,0.0,1.5}" --radius 0.2 --forget \
+      --json "$out/nbv_redkitchen_$run.json"
+  done
+else
+  echo "  skipped, $map is not there"
+fi
+
+echo "Fuzzing"
+scripts/install_packages.sh program tests && scripts/build_fuzzers.sh >"$out/build_fuzzers.log" || failed=1
+for source in tests/fuzz/fuzz_*.cpp; do
+  [[ -f $source ]] || continue
+  target="$(basename "$source" .cpp)"
+  step "$target" scripts/fuzz.sh "$((60 * ${SACCADE_FUZZ_MINUTES:-10}))" "$target"
+done
+
+/usr/bin/python3 scripts/evidence_table.py "$out" docs/evidence.md || failed=1
+echo "The figures are in docs/evidence.md"
+exit "$failed"

@@ -1,0 +1,111 @@
+#!/usr/bin/python3
+# SPDX-License-Identifier: Apache-2.0
+"""Writes docs/evidence.md from what scripts/evidence.sh left: evidence_table.py RESULTS DOCUMENT."""
+import json
+import pathlib
+import platform
+import re
+import statistics
+import sys
+
+# What the figures are held to, per step: (name in the JSON result, limit, "at most" or "at least", unit, factor).
+LIMITS = {
+    "fuse_rgbd_redkitchen_forced": [("depth_residual_m.median", 0.008, "at most"),
+                                    ("depth_residual_m.share", 0.9, "at least")],
+    "fuse_rgbd_redkitchen_icp": [("trajectory_error_m.aligned_rmse", 0.012, "at most"),
+                                 ("trajectory_error_m.first_pose_rmse", 0.030, "at most"), ("lost", 0, "at most")],
+}
+SHOWN = ["frames", "lost", "depth_residual_m.median", "depth_residual_m.share", "trajectory_error_m.aligned_rmse",
+         "trajectory_error_m.first_pose_rmse", "ms_per_frame.track.median", "ms_per_frame.integrate.median",
+         "ms_per_frame.raycast.median", "map.bricks", "map.bytes", "peak_rss_bytes"]
+
+
+def look_up(result, path):
+    for key in path.split("."):
+        if not isinstance(result, dict) or key not in result:
+            return None
+        result = result[key]
+    return result
+
+
+def shown(path, value):
+    if value is None:
+        return "–"
+    if path.endswith("bytes"):
+        return f"{value / 2**20:.0f} MiB"
+    if "_m." in path and not path.endswith("share"):
+        return f"{1000 * value:.1f} mm"
+    return f"{value:.3g}" if isinstance(value, float) else str(value)
+
+
+def processor():
+    match = re.search(r"model name\s*:\s*(.*)", pathlib.Path("/proc/cpuinfo").read_text())
+    return match.group(1) if match else platform.machine()
+
+
+def command_of(folder, name):
+    path = folder / f"{name}.command"
+    return path.read_text().strip() if path.exists() else ""
+
+
+def fuse_section(folder, lines):
+    results = {path.stem: json.loads(path.read_text()) for path in sorted(folder.glob("fuse_*.json"))}
+    held = True
+    lines += ["## Recorded sequences", ""]
+    for name, document in results.items():
+        lines += [f"`{command_of(folder, name)}` ({document.get('threads')} threads)", "", "| figure | value | held to |",
+                  "|---|---|---|"]
+        limits = {path: (limit, sense) for path, limit, sense in LIMITS.get(name, [])}
+        for path in SHOWN:
+            value = look_up(document["result"], path)
+            verdict = ""
+            if path in limits:
+                limit, sense = limits[path]
+                good = value is not None and (value <= limit if sense == "at most" else value >= limit)
+                held = held and good
+                verdict = f"{sense} {shown(path, limit)}: {'yes' if good else 'NO'}"
+            lines.append(f"| `{path}` | {shown(path, value)} | {verdict} |")
+        lines.append("")
+    return held
+
+
+def nbv_section(folder, lines):
+    documents = [json.loads(path.read_text()) for path in sorted(folder.glob("nbv_*.json"))]
+    if not documents:
+        return True
+    totals = [sum(d["result"]["ms"].values()) for d in documents]
+    result = documents[0]["result"]
+    good = statistics.median(totals) <= 2000
+    lines += ["## View evaluation", "", f"`{command_of(folder, 'nbv_redkitchen_1')}`", "",
+              f"{result['evaluated']} of {result['candidates']} poses evaluated, {result['rays_cast']} rays cast; prepare "
+              f"and evaluate together, median of {len(totals)} runs: {statistics.median(totals):.0f} ms "
+              f"(held to at most 2000 ms: {'yes' if good else 'NO'}); best gain {result['views'][0]['gain']}.", ""]
+    return good
+
+
+def fuzz_section(folder, lines):
+    logs = sorted(folder.glob("fuzz_*.log"))
+    if not logs:
+        return
+    lines += ["## Fuzzing", "", "| target | outcome |", "|---|---|"]
+    for path in logs:
+        match = re.search(rf"^  {path.stem}: (.*)$", path.read_text(), re.MULTILINE)
+        lines.append(f"| `{path.stem}` | {match.group(1) if match else 'failed'} |")
+    lines.append("")
+
+
+def main():
+    folder, document = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
+    lines = ["# Evidence", "", "Written by `make evidence`; what the figures mean is in [metrics](metrics.md). "
+             f"Machine: {processor()}.", ""]
+    held = fuse_section(folder, lines)
+    held = nbv_section(folder, lines) and held
+    fuzz_section(folder, lines)
+    document.write_text("\n".join(lines))
+    if not held:
+        print("some figures are not held, see docs/evidence.md", file=sys.stderr)
+    sys.exit(0 if held else 1)
+
+
+if __name__ == "__main__":
+    main()
