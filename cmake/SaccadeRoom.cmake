@@ -2,11 +2,13 @@
 # saccade_room(NAME …): one folder of lib/saccade = one library target saccade::NAME = one component of the package.
 # saccade_require_rooms(WHO ROOMS…): stops the configuration, naming what is missing, when WHO cannot do without ROOMS.
 
-# Flags of all of Saccade's own code: bit-equal results need FMA contraction off.
+# Flags of all of Saccade's own code: bit-equal results need FMA contraction off. Nobody reads errno or floating-point
+# traps here; without them loops with square roots and selections become vector code, and every value stays the same.
 add_library(saccade_flags INTERFACE)
 target_compile_features(saccade_flags INTERFACE cxx_std_20)
 target_compile_options(saccade_flags INTERFACE
   $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -ffp-contract=off
+  -fno-math-errno -fno-trapping-math
   $<$<BOOL:${SACCADE_WARNINGS_AS_ERRORS}>:-Werror>>)
 if(SACCADE_SANITIZE)
   target_compile_options(saccade_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${SACCADE_SANITIZE}

@@ -40,10 +40,10 @@ class DenseReference {
       if (current_brick != brick) brick_frame = frame(T_camera_world, brick);
       current_brick = brick;
       const tsdf::Float3 p = tsdf::voxel_in_camera(brick_frame, offset.x, offset.y, offset.z);
-      const int pixel = tsdf::pixel_of(fusion_camera, p);
-      if (pixel < 0) return;
-      const int u = pixel % camera.width;
-      const int v = pixel / camera.width;
+      const tsdf::Pixel pixel = tsdf::pixel_of(fusion_camera, p);
+      if (!pixel.inside) return;
+      const int u = pixel.u;
+      const int v = pixel.v;
       const int sample = tsdf::sample_voxel(fusion_camera, p, range(camera, fusion_camera, u, v, depth(u, v)));
       if (sample == tsdf::kNotSeen) return;
       const Voxel before = voxel;

@@ -80,10 +80,15 @@ class SectorTable {
   /// nullptr: unknown, or outside the table.
   [[nodiscard]] const Sector* find(const Index3& sector) const {
     if (!box_.contains(sector)) return nullptr;
-    if (sparse_grid_ != nullptr) return sparse_grid_->find(sector);
+    return sparse_grid_ != nullptr ? sparse_grid_->find(sector) : sectors_[flat_index(sector)];
+  }
+  /// Whether look-ups are array accesses.
+  [[nodiscard]] bool is_flat() const { return sparse_grid_ == nullptr; }
+  /// Position of a sector of the box in z-y-x order; only when is_flat().
+  [[nodiscard]] std::size_t flat_index(const Index3& sector) const {
     const Index3 i = sector - box_.lo;
-    return sectors_[(static_cast<std::size_t>(i.z) * size_y_ + static_cast<std::size_t>(i.y)) * size_x_ +
-                    static_cast<std::size_t>(i.x)];
+    return (static_cast<std::size_t>(i.z) * size_y_ + static_cast<std::size_t>(i.y)) * size_x_ +
+           static_cast<std::size_t>(i.x);
   }
 
  private:

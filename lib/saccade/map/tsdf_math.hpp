@@ -68,29 +68,34 @@ SACCADE_HD inline Float3 voxel_in_camera(const BrickFrame& frame, int x, int y, 
           ((frame.origin.z + frame.step_z.z * fz) + frame.step_y.z * fy) + frame.step_x.z * fx};
 }
 
-/// Index of the pixel whose beam holds p, or −1 outside the image.
-SACCADE_HD inline int pixel_of(const FusionCamera& camera, const Float3& p) {
-  if (!(p.z > kNearestZ)) return -1;
+/// The pixel whose beam holds p; outside the image `inside` is false and the pixel (0, 0). Without branches, so that
+/// loops over it become vector code.
+struct Pixel {
+  int u;
+  int v;
+  bool inside;
+};
+SACCADE_HD inline Pixel pixel_of(const FusionCamera& camera, const Float3& p) {
   const float inv_z = 1.0F / p.z;
   const float u = (camera.fx * (p.x * inv_z) + camera.cx) + 0.5F;
   const float v = (camera.fy * (p.y * inv_z) + camera.cy) + 0.5F;
-  const bool inside =
-      u >= 0.0F && v >= 0.0F && u < static_cast<float>(camera.width) && v < static_cast<float>(camera.height);
-  return inside ? static_cast<int>(v) * camera.width + static_cast<int>(u) : -1;
+  const bool inside = (p.z > kNearestZ) & (u >= 0.0F) & (v >= 0.0F) & (u < static_cast<float>(camera.width)) &
+                      (v < static_cast<float>(camera.height));
+  return {static_cast<int>(inside ? u : 0.0F), static_cast<int>(inside ? v : 0.0F), inside};
 }
 
 /// The new observation of a voxel at p, given the range seen in its beam (0: none): clamp(v_SDF / M_v) of eq. 2.2 in
 /// units of 1/32767, or kNotSeen behind the truncation.
 SACCADE_HD inline int sample_voxel(const FusionCamera& camera, const Float3& p, float range_m) {
   const float distance = std::sqrt((p.x * p.x + p.y * p.y) + p.z * p.z);
-  if (range_m > 0.0F) {
-    const float sdf = range_m - distance;  // eq. 2.1
-    if (sdf < -camera.truncation_m) return kNotSeen;
-    const float scaled = sdf * camera.inv_truncation;
-    const float clamped = scaled > 1.0F ? 1.0F : (scaled < -1.0F ? -1.0F : scaled);
-    return static_cast<int>(round_to_even(clamped * 32767.0F));
-  }
-  return range_m < 0.0F && distance <= -range_m ? kSampleOne : kNotSeen;
+  const float sdf = range_m - distance;  // eq. 2.1
+  const float scaled = sdf * camera.inv_truncation;
+  const float below_one = scaled > 1.0F ? 1.0F : scaled;
+  const float clamped = below_one < -1.0F ? -1.0F : below_one;
+  const int sample = static_cast<int>(round_to_even(clamped * 32767.0F));
+  const bool hit = (range_m > 0.0F) & (sdf >= -camera.truncation_m);
+  const bool seen_free = (range_m < 0.0F) & (distance <= -range_m);
+  return hit ? sample : (seen_free ? kSampleOne : kNotSeen);
 }
 
 /// Eq. 2.2 in fixed point. The numerator is exact in float for w ≤ 500.

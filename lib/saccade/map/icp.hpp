@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Projective point-to-plane ICP of a depth image against the map's ray cast.
+
+#include <array>
+#include <optional>
+#include <string>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/pose.hpp"
+#include "saccade/map/raycast.hpp"
+
+namespace saccade {
+
+struct IcpConfig {
+  std::array<int, 3> strides{4, 2, 1};      ///< levels, coarse to fine: every n-th pixel of every n-th row
+  std::array<int, 3> iterations{10, 6, 4};  ///< at most, per level
+  double max_distance_m{0.10};              ///< farther pairs are no pairs
+  double max_normal_angle_rad{0.6};         ///< pairs whose normals differ more are no pairs
+  double converged_m{2e-5};                 ///< a level ends when a step moves and turns (in rad) less than this
+  double min_inlier_share{0.25};            ///< lost: fewer of the measured pixels found a partner
+  double max_rmse_m{0.03};                  ///< lost: the weighted residual stays above
+  double max_translation_m{0.20};           ///< lost: farther from the start than a camera moves between frames
+  double max_rotation_rad{0.35};            ///< lost: turned farther than that
+  double min_constraint{1e-5};              ///< lost: smallest to largest eigenvalue of the normal equations
+
+  [[nodiscard]] Status validate() const;
+};
+
+struct IcpResult {
+  Pose T_model_camera{Pose::Identity()};  ///< where the depth image was taken, seen from the model's camera
+  bool converged{false};                  ///< false: lost; `why` says how
+  std::string why;
+  int iterations{0};
+  double inlier_share{0.0};  ///< pairs / measured pixels, at the finest level
+  double rmse_m{0.0};        ///< of the point-to-plane distances
+};
+
+/// A depth image as points with normals, camera frame.
+struct PointImage {
+  Image<Eigen::Vector3f> points;   ///< zero where there is no return
+  Image<Eigen::Vector3f> normals;  ///< unit, towards the camera; zero where unknown
+};
+
+/// Points and normals (from differences across a few pixels, none across depth steps) of a depth image. Returns
+/// outside the camera's range are dropped. O(pixels).
+[[nodiscard]] PointImage to_points(const DepthImage& depth, const PinholeCamera& camera, const Executor& executor);
+
+/// Aligns measured points to a surface seen by the same camera from a known pose. Thesis §2.2.1 "Camera tracking".
+/// Pairs by projection into the model; minimises point-to-plane distances, weighted by the depth noise (growing with
+/// z²) and a Huber loss, with Gauss–Newton steps on SE(3).
+/// @param T_model_camera_start first guess.
+/// A failed alignment is a result (converged = false), not an error.
+/// O(pixels · iterations). Sums run in fixed chunks: the thread count never changes a bit of the result.
+[[nodiscard]] IcpResult align(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,
+                              const Pose& T_model_camera_start, const Executor& executor, const IcpConfig& config = {});
+
+}  // namespace saccade
