@@ -216,21 +216,26 @@ void FrameFuser::sample_brick(const Index3& brick, BrickSamples& out) const {
   const float* ranges = ranges_.ranges();
   bool surface{false};
   for (int row = 0; row < kBrickVoxels / kRow; ++row) {
-    std::array<tsdf::Float3, kRow> p;
+    std::array<float, kRow> px;
+    std::array<float, kRow> py;
+    std::array<float, kRow> pz;
     std::array<std::int32_t, kRow> pixel;
     std::array<std::int32_t, kRow> inside;
     std::array<float, kRow> range;
     for (int x = 0; x < kRow; ++x) {
       const auto i = static_cast<std::size_t>(x);
-      p[i] = tsdf::voxel_in_camera(frame, x, row & 7, row >> 3);
-      const tsdf::Pixel at = tsdf::pixel_of(camera, p[i]);
+      const tsdf::Float3 p = tsdf::voxel_in_camera(frame, x, row & 7, row >> 3);
+      px[i] = p.x;
+      py[i] = p.y;
+      pz[i] = p.z;
+      const tsdf::Pixel at = tsdf::pixel_of(camera, p);
       pixel[i] = at.v * camera.width + at.u;
       inside[i] = at.inside ? 1 : 0;
     }
     for (std::size_t i = 0; i < kRow; ++i) range[i] = ranges[pixel[i]];
     const std::size_t first = static_cast<std::size_t>(row) * kRow;
     for (std::size_t i = 0; i < kRow; ++i) {
-      const int sample = tsdf::sample_voxel(camera, p[i], range[i]);
+      const int sample = tsdf::sample_voxel(camera, {px[i], py[i], pz[i]}, range[i]);
       out.samples[first + i] = inside[i] != 0 ? sample : tsdf::kNotSeen;
       out.pixels[first + i] = pixel[i];
     }
