@@ -11,13 +11,6 @@
 namespace saccade {
 namespace {
 
-/// Where a ray meets the surface: depth, and the position in cell coordinates (cell index + fraction).
-struct SurfaceHit {
-  float t;
-  Index3 cell;
-  float fraction[3];
-};
-
 /// Casts rays against the cells of one map. One per thread.
 class SurfaceCaster {
  public:
@@ -28,11 +21,11 @@ class SurfaceCaster {
   }
 
   /// First crossing between the depths t_min and t_max.
-  [[nodiscard]] std::optional<SurfaceHit> cast(const Eigen::Vector3f& direction, float t_min, float t_max) {
+  [[nodiscard]] std::optional<CellHit> cast(const Eigen::Vector3f& direction, float t_min, float t_max) {
     const LatticeRay ray = make_lattice_ray(origin_, direction.x(), direction.y(), direction.z());
     RaySpan span = clip(ray, voxels_).until(after_depth(t_max));
     if (before(span.enter, {t_min, kBeforeCrossings})) span.enter = {t_min, kBeforeCrossings};
-    std::optional<SurfaceHit> hit;
+    std::optional<CellHit> hit;
     Index3 sector{};
     const SurfaceTable::SectorSurface* surface{nullptr};
     bool known_sector{false};
@@ -49,7 +42,7 @@ class SurfaceCaster {
   }
 
   /// ∇v at a hit, from the differences over two voxels; the cell's own gradient where a neighbour is unknown.
-  [[nodiscard]] Eigen::Vector3f gradient(const SurfaceHit& hit, const Cell& cell) {
+  [[nodiscard]] Eigen::Vector3f gradient(const CellHit& hit, const Cell& cell) {
     Eigen::Vector3f result;
     const auto value_at = [&](const Index3& base) -> std::optional<float> {
       const std::optional<Cell> neighbour = reader_.cell(base);
@@ -63,10 +56,10 @@ class SurfaceCaster {
       if (ahead && behind) {
         result[axis] = 0.5F * (*ahead - *behind);
       } else {
-        float low[3]{hit.fraction[0], hit.fraction[1], hit.fraction[2]};
-        float high[3]{hit.fraction[0], hit.fraction[1], hit.fraction[2]};
-        low[axis] = 0.0F;
-        high[axis] = 1.0F;
+        std::array<float, 3> low = hit.fraction;
+        std::array<float, 3> high = hit.fraction;
+        low[static_cast<std::size_t>(axis)] = 0.0F;
+        high[static_cast<std::size_t>(axis)] = 1.0F;
         result[axis] = cell.at(high[0], high[1], high[2]) - cell.at(low[0], low[1], low[2]);
       }
     }
@@ -76,47 +69,19 @@ class SurfaceCaster {
   [[nodiscard]] VoxelReader& reader() { return reader_; }
 
  private:
-  /// Stops at the first crossing; from inside to outside means that the surface is seen from behind: stops without a
-  /// hit.
-  bool cast_in_brick(const LatticeRay& ray, const RaySpan& span, const Mask512& cells, std::optional<SurfaceHit>& hit) {
-    return walk_cells<kVoxelLevel>(ray, span, [&](const Index3& base, const RaySpan& in_cell) {
-      if (!cells.test(child_index(base))) return false;
-      const std::optional<Cell> cell = reader_.cell(base);
+  /// Stops at the first crossing; a surface seen from behind stops the ray without a hit.
+  bool cast_in_brick(const LatticeRay& ray, const RaySpan& span, const Mask512& cells, std::optional<CellHit>& hit) {
+    return walk_cells<kVoxelLevel>(ray, span, [&](const Index3& index, const RaySpan& in_cell) {
+      if (!cells.test(child_index(index))) return false;
+      const std::optional<Cell> cell = reader_.cell(index);
       if (!cell) return false;
-      const auto value_at = [&](float t) {
-        float f[3];
-        fraction_at(ray, base, t, f);
-        return cell->at(f[0], f[1], f[2]);
-      };
-      float t0 = in_cell.enter.t;
-      float t1 = in_cell.exit.t;
-      float v0 = value_at(t0);
-      float v1 = value_at(t1);
-      if ((v0 > 0.0F) == (v1 > 0.0F)) return false;
-      if (v0 <= 0.0F) return true;
-      float t = t0;
-      for (int i = 0; i < kRootSteps; ++i) {  // regula falsi on v0 > 0 ≥ v1
-        t = t0 + (t1 - t0) * (v0 / (v0 - v1));
-        const float v = value_at(t);
-        (v > 0.0F ? t0 : t1) = t;
-        (v > 0.0F ? v0 : v1) = v;
-      }
-      hit = SurfaceHit{t, base, {}};
-      fraction_at(ray, base, t, hit->fraction);
-      return true;
+      CellHit found;
+      const CellCrossing crossing = cross_cell(ray, index, *cell, in_cell, found);
+      if (crossing == CellCrossing::front) hit = found;
+      return crossing != CellCrossing::none;
     });
   }
 
-  static void fraction_at(const LatticeRay& ray, const Index3& base, float t, float* fraction) {
-    const Index3 relative = base - ray.origin;
-    const float lo[3]{static_cast<float>(relative.x), static_cast<float>(relative.y), static_cast<float>(relative.z)};
-    for (int axis = 0; axis < 3; ++axis) {
-      const float f = (ray.o[axis] - lo[axis]) + t * ray.d[axis];
-      fraction[axis] = std::fmin(std::fmax(f, 0.0F), 1.0F);
-    }
-  }
-
-  static constexpr int kRootSteps{3};
   static constexpr int kBeforeCrossings{-1};
   const SurfaceTable* surface_;
   VoxelReader reader_;
@@ -124,7 +89,7 @@ class SurfaceCaster {
   IndexBox voxels_;
 };
 
-Rgb8 color_at(VoxelReader& reader, const SurfaceHit& hit) {
+Rgb8 color_at(VoxelReader& reader, const CellHit& hit) {
   const Index3 nearest{hit.cell.x + (hit.fraction[0] > 0.5F ? 1 : 0), hit.cell.y + (hit.fraction[1] > 0.5F ? 1 : 0),
                        hit.cell.z + (hit.fraction[2] > 0.5F ? 1 : 0)};
   if (const auto color = reader.color(nearest)) return *color;
@@ -162,7 +127,7 @@ Result<SurfaceView> raycast(const TsdfSnapshot& map, const PinholeCamera& camera
         const TileDepths::Interval& depths = tiles.at_pixel(u, v);
         if (depths.farthest_m < depths.nearest_m) continue;
         const Eigen::Vector3f direction = (R_world_camera * camera.ray(u, v) / e).cast<float>();
-        const std::optional<SurfaceHit> hit =
+        const std::optional<CellHit> hit =
             caster.cast(direction, depths.nearest_m, std::min(depths.farthest_m, max_range_m));
         if (!hit || hit->t < static_cast<float>(camera.min_range_m)) continue;
         const std::optional<Cell> cell = caster.reader().cell(hit->cell);

@@ -1,29 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// VoxelReader: fast reads of neighbouring voxels; Cell: the eight values around a point and their interpolation.
+// VoxelReader: fast reads of neighbouring voxels and of whole cells.
 
 #include <array>
 #include <optional>
 
+#include "saccade/map/cell.hpp"
 #include "saccade/map/tsdf_grid.hpp"
 
 namespace saccade {
-
-/// v at the corners of the cell between eight voxel centres, in units of 1/32767; corner i lies at
-/// (i & 1, i >> 1 & 1, i >> 2 & 1). `at` takes the position within the cell, each coordinate in [0, 1].
-struct Cell {
-  std::array<float, 8> v{};
-
-  [[nodiscard]] float at(float x, float y, float z) const {
-    const float v00 = v[0] + (v[1] - v[0]) * x;
-    const float v10 = v[2] + (v[3] - v[2]) * x;
-    const float v01 = v[4] + (v[5] - v[4]) * x;
-    const float v11 = v[6] + (v[7] - v[6]) * x;
-    const float v0 = v00 + (v10 - v00) * y;
-    const float v1 = v01 + (v11 - v01) * y;
-    return v0 + (v1 - v0) * z;
-  }
-};
 
 /// Reads voxels through a small cache of bricks, so that neighbouring reads cost an array access. One per thread; the
 /// table and its grid must outlive it and stay unchanged.
