@@ -2,7 +2,7 @@
 # Front door: make demo, make test. What is built where is CMake's business (CMakePresets.json).
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build demo test evidence format tidy clean
+.PHONY: help build demo test bench evidence format tidy clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' Makefile
@@ -15,6 +15,9 @@ demo: build  ## makes a small depth sequence, fuses it, ranks the next views; re
 
 test:  ## installs what is missing, builds and runs every test, sanitizers, fuzzing, lint
 	@scripts/test.sh
+
+bench:  ## builds and runs the benchmarks
+	@scripts/bench.sh
 
 evidence: build  ## long acceptance runs, resumable; figures go to docs/evidence.md
 	@scripts/evidence.sh

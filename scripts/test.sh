@@ -28,7 +28,7 @@ without_randomisation() {
 phase_format() { scripts/format.sh; }
 
 phase_release() {
-  configure release -DSACCADE_BUILD_TESTS=ON -DSACCADE_WARNINGS_AS_ERRORS=ON && compile release && run_ctest release
+  configure release -DSACCADE_BUILD_TESTS=ON -DSACCADE_BUILD_BENCH=ON -DSACCADE_WARNINGS_AS_ERRORS=ON && compile release && run_ctest release
 }
 
 phase_asan() {
