@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+// docs/defaults.md says what the code does: each row named here is looked up in the table and compared.
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+#include <fstream>
+#include <numbers>
+#include <sstream>
+#include <string>
+#include <vector>
+
+#include "saccade/core/pose.hpp"
+#include "saccade/map/icp.hpp"
+#include "saccade/map/tsdf_grid.hpp"
+#include "saccade/view/view_gain.hpp"
+#include "saccade/view/view_sphere.hpp"
+
+namespace saccade {
+namespace {
+
+/// The cell "default" of the row whose cell "in the code" is `name`; empty without such a row.
+std::string documented(const std::string& name) {
+  std::ifstream file{SACCADE_SOURCE_DIR "/docs/defaults.md"};
+  for (std::string line; std::getline(file, line);) {
+    std::vector<std::string> cells;
+    std::istringstream row{line};
+    for (std::string cell; std::getline(row, cell, '|');) cells.push_back(cell);
+    if (cells.size() > 4 && cells[4] == " `" + name + "` ") return cells[2];
+  }
+  return {};
+}
+
+void expect_documented(const std::string& name, const std::vector<double>& values) {
+  std::istringstream cell{documented(name)};
+  for (const double value : values) {
+    double shown = 0.0;
+    cell >> shown;
+    EXPECT_TRUE(cell) << name << " has too few values in docs/defaults.md";
+    EXPECT_NEAR(shown, value, 1e-9) << name;
+    cell.ignore(1, ',');
+  }
+}
+
+double degrees(double rad) { return rad * 180.0 / std::numbers::pi; }
+
+TEST(Defaults, OfTheMapAreDocumented) {
+  const TsdfConfig map;
+  expect_documented("TsdfConfig::voxel_size_m", {map.voxel_size_m});
+  expect_documented("TsdfConfig::truncation_vox", {map.truncation_vox});
+  expect_documented("TsdfConfig::max_weight", {static_cast<double>(map.max_weight)});
+  expect_documented("TsdfConfig::free_weight", {static_cast<double>(map.free_weight)});
+}
+
+TEST(Defaults, OfViewsAreDocumented) {
+  const ViewSphereConfig sphere;
+  expect_documented("ViewSphereConfig::radii_m", sphere.radii_m);
+  expect_documented("ViewSphereConfig::longitude_step_rad", {degrees(sphere.longitude_step_rad)});
+  expect_documented("ViewSphereConfig::latitude_step_rad", {degrees(sphere.latitude_step_rad)});
+  expect_documented("ViewSphereConfig::roll_step_rad", {degrees(sphere.roll_step_rad)});
+  expect_documented("GainConfig::tilt_rad", {degrees(GainConfig{}.tilt_rad)});
+}
+
+TEST(Defaults, OfTrackingAreDocumented) {
+  const IcpConfig icp;
+  expect_documented("IcpConfig::strides", {icp.strides.begin(), icp.strides.end()});
+  expect_documented("IcpConfig::iterations", {icp.iterations.begin(), icp.iterations.end()});
+  expect_documented("IcpConfig::max_distance_m", {icp.max_distance_m});
+  expect_documented("IcpConfig::max_normal_angle_rad", {icp.max_normal_angle_rad});
+  expect_documented("IcpConfig::min_inlier_share", {icp.min_inlier_share});
+  expect_documented("IcpConfig::max_rmse_m", {icp.max_rmse_m});
+  expect_documented("IcpConfig::max_translation_m", {icp.max_translation_m});
+  expect_documented("IcpConfig::max_rotation_rad", {icp.max_rotation_rad});
+  expect_documented("kRotationTolerance", {kRotationTolerance});
+}
+
+TEST(Defaults, ARowThatIsNotThereFails) { EXPECT_TRUE(documented("TsdfConfig::nothing").empty()); }
+
+}  // namespace
+}  // namespace saccade
