@@ -2,28 +2,22 @@
 #include "saccade/view/gain_caster.hpp"
 
 #include <algorithm>
-#include <cmath>
+#include <utility>
 
 #include "saccade/map/ray_walk.hpp"
 
 namespace saccade {
 namespace {
 
-constexpr int kRootTile{32};  // pixels
-constexpr int kLeafTile{4};
+constexpr int kRootTile{32};  // pixels; tiles start at this size,
+constexpr int kFineTile{8};   // from this size on they go by voxels,
+constexpr int kRayTile{2};    // and at this size the rays go by themselves
 
-std::int32_t at(const Index3& i, int axis) { return axis == 0 ? i.x : axis == 1 ? i.y : i.z; }
-Index3 from_axes(const std::int32_t (&i)[3]) { return {i[0], i[1], i[2]}; }
-
-std::int32_t floor_to_int(float x) {
-  const auto truncated = static_cast<std::int32_t>(x);
-  return static_cast<float>(truncated) > x ? truncated - 1 : truncated;
+/// The event by which a ray enters slab n of voxels along an axis.
+RayEvent slab_entry(const LatticeRay& ray, int major, int n) {
+  if (n == 0) return kRayStart;
+  return {ray.crossing(major, ray.positive(major) ? n : 1 - n), major};
 }
-
-struct Interval {
-  float lo;
-  float hi;
-};
 
 }  // namespace
 
@@ -35,10 +29,10 @@ VoxelSet::VoxelSet(const IndexBox& voxels)
 
 void VoxelSet::insert(const Index3& voxel) {
   const Index3 i = parent(voxel) - bricks_.lo;
-  const Index3 size = bricks_.hi - bricks_.lo;
-  const std::size_t slice =
-      static_cast<std::size_t>(i.z) * static_cast<std::size_t>(size.y) + static_cast<std::size_t>(i.y);
-  masks_[slice * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(i.x)].set(child_index(voxel));
+  const auto size_x = static_cast<std::size_t>(bricks_.hi.x - bricks_.lo.x);
+  const auto size_y = static_cast<std::size_t>(bricks_.hi.y - bricks_.lo.y);
+  const std::size_t slice = static_cast<std::size_t>(i.z) * size_y + static_cast<std::size_t>(i.y);
+  masks_[slice * size_x + static_cast<std::size_t>(i.x)].set(child_index(voxel));
 }
 
 std::uint64_t VoxelSet::count() const {
@@ -47,58 +41,52 @@ std::uint64_t VoxelSet::count() const {
   return n;
 }
 
-/// Where the rays of a tile run: slabs of bricks along the major axis, and the range of slopes along the other two.
-/// Every ray of the tile lies within these bounds, the rounding of the exact walk included.
-struct GainCaster::Beam {
-  int major;
-  bool positive;
-  Interval speed;  // |d| along the major axis
-  int minor[2];
-  Interval slope[2];      // of the minor axes, per unit of distance along the major one
-  float start[3];         // position of the camera in its brick
-  std::int32_t brick[3];  // the camera's brick
+/// What the rays of a tile have met so far, slab by slab, until it is the same for all of them or differs.
+class GainCaster::Sight {
+ public:
+  enum class Verdict { open, none_scores, all_score, differs };
 
-  /// Distance along the major axis at which slab n begins; slab 0 holds the camera.
-  [[nodiscard]] float near(int n) const { return n == 0 ? 0.0F : far(n - 1); }
-  [[nodiscard]] float far(int n) const {
-    const float in_first = positive ? static_cast<float>(kBrickEdge) - start[major] : start[major];
-    return in_first + static_cast<float>(kBrickEdge * n);
-  }
-  /// Last slab that holds bricks of the box [lo, hi); negative when they all lie behind.
-  [[nodiscard]] int last_slab(const Index3& lo, const Index3& hi) const {
-    return positive ? at(hi, major) - 1 - brick[major] : brick[major] - at(lo, major);
-  }
-  /// Flags of all bricks that rays of the beam may touch within slab n: their union and their intersection.
-  struct Flags {
-    unsigned any{0};
-    unsigned all{stop_flags::kMask};
-  };
-  [[nodiscard]] Flags flags(const StopGrid& grid, int n) const {
-    std::int32_t lo[3];
-    std::int32_t hi[3];
-    lo[major] = hi[major] = brick[major] + (positive ? n : -n);
-    for (int k = 0; k < 2; ++k) {
-      const float from = near(n);
-      const float to = far(n);
-      const float slack = 0.02F + 4e-6F * to * (1.0F + std::max(std::abs(slope[k].lo), std::abs(slope[k].hi)));
-      const float least = std::min(from * slope[k].lo, to * slope[k].lo) - slack;
-      const float most = std::max(from * slope[k].hi, to * slope[k].hi) + slack;
-      const int axis = minor[k];
-      lo[axis] = brick[axis] + floor_to_int((start[axis] + least) * (1.0F / kBrickEdge));
-      hi[axis] = brick[axis] + floor_to_int((start[axis] + most) * (1.0F / kBrickEdge));
+  /// Rays may be decided together only where their hits' depths certainly lie within the limits.
+  Sight(const RayBeam& beam, const CastLimits& limits, bool may_score, int start)
+      : nearest_{limits.min_t * beam.fastest() * (1.0F + kSlack)},
+        farthest_{limits.max_t * beam.slowest() * (1.0F - kSlack)},
+        may_score_{may_score},
+        clear_until_{start} {}
+
+  /// The slab of voxels up to which no ray met anything.
+  [[nodiscard]] int clear_until() const { return clear_until_; }
+  [[nodiscard]] Verdict verdict() const { return verdict_; }
+
+  /// Adds the slabs of voxels [n, end), through which the rays run between two distances. Returns whether to go on.
+  bool add(unsigned flags, int n, int end, float near, float far) {
+    if (met_ == 0 && flags == stop_flags::kClear) {
+      clear_until_ = end;
+      return true;
     }
-    Flags result;
-    std::int32_t i[3];
-    i[major] = lo[major];
-    for (i[minor[1]] = lo[minor[1]]; i[minor[1]] <= hi[minor[1]]; ++i[minor[1]]) {
-      for (i[minor[0]] = lo[minor[0]]; i[minor[0]] <= hi[minor[0]]; ++i[minor[0]]) {
-        const unsigned flags_i = grid.flags(from_axes(i));
-        result.any |= flags_i;
-        result.all &= flags_i;
-      }
+    met_ |= flags & (stop_flags::kScores | stop_flags::kBlocks);
+    const bool too_near = (met_ & stop_flags::kScores) != 0 && (n == 0 || near < nearest_ || !may_score_);
+    if (met_ == (stop_flags::kScores | stop_flags::kBlocks) || too_near) {
+      verdict_ = Verdict::differs;
+    } else if ((flags & stop_flags::kSolid) != 0) {
+      const bool scores = met_ == stop_flags::kScores;
+      verdict_ = !scores ? Verdict::none_scores : far <= farthest_ ? Verdict::all_score : Verdict::differs;
     }
-    return result;
+    return verdict_ == Verdict::open;
   }
+  /// No slab is left.
+  void finish() {
+    if (verdict_ != Verdict::open) return;
+    verdict_ = (met_ & stop_flags::kScores) != 0 ? Verdict::differs : Verdict::none_scores;
+  }
+
+ private:
+  static constexpr float kSlack{1e-4F};
+  float nearest_;
+  float farthest_;
+  bool may_score_;
+  int clear_until_;
+  unsigned met_{0};
+  Verdict verdict_{Verdict::open};
 };
 
 GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const CastLimits& limits, VoxelSet* seen)
@@ -113,12 +101,7 @@ void GainCaster::cast_rows(int begin, int end) {
   for (int j = begin; j < end; j += kRootTile) {
     for (int i = 0; i < width; i += kRootTile) {
       Tile tile{i, std::min(i + kRootTile, width), j, std::min(j + kRootTile, end), 0, 0};
-      const float a = window_.a[static_cast<std::size_t>((tile.column_begin + tile.column_end) / 2)];
-      const float b = window_.b[static_cast<std::size_t>((tile.row_begin + tile.row_end) / 2)];
-      const LatticeRay middle = window_.rays.ray(a, b);
-      for (int axis = 1; axis < 3; ++axis) {
-        if (std::abs(middle.d[axis]) > std::abs(middle.d[tile.major])) tile.major = axis;
-      }
+      tile.major = major_axis(window_, tile);
       cast_tile(tile);
     }
   }
@@ -132,75 +115,61 @@ bool GainCaster::to_be_cast(const Tile& tile) const {
   return false;
 }
 
-GainCaster::Beam GainCaster::beam(const Tile& tile) const {
-  Beam beam{};
-  beam.major = tile.major;
-  beam.minor[0] = tile.major == 0 ? 1 : 0;
-  beam.minor[1] = tile.major == 2 ? 1 : 2;
-  for (int axis = 0; axis < 3; ++axis) {
-    const std::int32_t origin = at(window_.rays.origin.voxel, axis);
-    beam.brick[axis] = origin >> 3;
-    beam.start[axis] = static_cast<float>(origin & 7) + window_.rays.origin.fraction[axis];
-  }
-  // Directions are affine in (a, b), so their ratios have their extremes at the corners of the tile.
-  bool first{true};
-  for (const int i : {tile.column_begin, tile.column_end - 1}) {
-    for (const int j : {tile.row_begin, tile.row_end - 1}) {
-      const LatticeRay ray =
-          window_.rays.ray(window_.a[static_cast<std::size_t>(i)], window_.b[static_cast<std::size_t>(j)]);
-      const float speed = std::abs(ray.d[beam.major]);
-      const float inv = 1.0F / speed;
-      if (first) beam.positive = ray.positive(beam.major);
-      if (first || speed < beam.speed.lo) beam.speed.lo = speed;
-      if (first || speed > beam.speed.hi) beam.speed.hi = speed;
-      for (int k = 0; k < 2; ++k) {
-        const float slope = ray.d[beam.minor[k]] * inv;
-        if (first || slope < beam.slope[k].lo) beam.slope[k].lo = slope;
-        if (first || slope > beam.slope[k].hi) beam.slope[k].hi = slope;
-      }
-      first = false;
-    }
-  }
-  return beam;
+int GainCaster::last_slab(const RayBeam& beam) const {
+  const int in_range = static_cast<int>(limits_.max_t * beam.fastest()) + 2;
+  return limits_.savings.region_exit ? std::min(in_range, beam.last_slab(grid_.scoring_voxels())) : in_range;
 }
 
 void GainCaster::cast_tile(const Tile& tile) {
   if (!to_be_cast(tile)) return;
-  constexpr float kSlack{1e-4F};
-  const Beam rays = beam(tile);
-  int last = static_cast<int>(limits_.max_t * rays.speed.hi / kBrickEdge) + 2;
-  if (limits_.savings.region_exit) {
-    const IndexBox& scoring = grid_.scoring_voxels();
-    last = std::min(last, rays.last_slab(parent(scoring.lo), parent(scoring.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}));
+  const RayBeam beam{window_, tile};
+  Sight sight{beam, limits_, seen_ == nullptr, tile.slab};
+  if (std::max(tile.columns(), tile.rows()) > kFineTile) {
+    look_by_bricks(beam, last_slab(beam), sight);
+  } else {
+    look_by_voxels(beam, last_slab(beam), sight);
   }
-  Tile rest{tile};
-  while (rest.slab <= last) {
-    const Beam::Flags met = rays.flags(grid_, rest.slab);
-    if (met.any == stop_flags::kClear) {
-      ++rest.slab;
-      continue;
-    }
-    if (met.all == stop_flags::kBlocked) return;
-    if (seen_ != nullptr) break;
-    // Up to a slab that scores everywhere, rays may only meet what scores, at depths within the limits.
-    if (rest.slab == 0 || rays.near(rest.slab) < limits_.min_t * rays.speed.hi * (1.0F + kSlack)) break;
-    Beam::Flags ahead = met;
-    int slab = rest.slab;
-    while ((ahead.any & stop_flags::kBlocks) == 0 && ahead.all != stop_flags::kScores && slab < last) {
-      ahead = rays.flags(grid_, ++slab);
-    }
-    if (ahead.all != stop_flags::kScores || (ahead.any & stop_flags::kBlocks) != 0) break;
-    if (rays.far(slab) * (1.0F + kSlack) > limits_.max_t * rays.speed.lo) break;
-    scored_ += static_cast<std::uint64_t>(tile.column_end - tile.column_begin) *
-               static_cast<std::uint64_t>(tile.row_end - tile.row_begin);
+  if (sight.verdict() == Sight::Verdict::none_scores) return;
+  if (sight.verdict() == Sight::Verdict::all_score) {
+    scored_ += static_cast<std::uint64_t>(tile.columns()) * static_cast<std::uint64_t>(tile.rows());
     return;
   }
-  if (rest.slab > last) return;
-  if (tile.column_end - tile.column_begin <= kLeafTile && tile.row_end - tile.row_begin <= kLeafTile) {
-    cast_rays(rest);
-  } else {
+  Tile rest{tile};
+  rest.slab = sight.clear_until();
+  if (std::max(tile.columns(), tile.rows()) > kRayTile) {
     split(rest);
+  } else {
+    cast_rays(rest);
   }
+}
+
+void GainCaster::look_by_bricks(const RayBeam& beam, int last, Sight& sight) const {
+  for (int n = sight.clear_until(); n <= last;) {
+    const int end = beam.first_voxel_slab(beam.brick_slab(n) + 1);
+    const RayBeam::Voxels voxels = beam.voxels(n, end);
+    const unsigned flags = grid_.flags_of_bricks(parent(voxels.lo), parent(voxels.hi));
+    if (!sight.add(flags, n, end, beam.near(n), beam.far(end - 1))) return;
+    n = end;
+  }
+  sight.finish();
+}
+
+void GainCaster::look_by_voxels(const RayBeam& beam, int last, Sight& sight) const {
+  for (int n = sight.clear_until(); n <= last;) {
+    const int end = beam.first_voxel_slab(beam.brick_slab(n) + 1);
+    const RayBeam::Voxels voxels = beam.voxels(n, end);
+    const unsigned flags = grid_.flags_of_bricks(parent(voxels.lo), parent(voxels.hi));
+    if (flags == stop_flags::kClear || flags == stop_flags::kAllBlock) {
+      if (!sight.add(flags, n, end, beam.near(n), beam.far(end - 1))) return;
+    } else {
+      for (int m = n; m < end; ++m) {
+        const RayBeam::Voxels slice = beam.voxels(m, m + 1);
+        if (!sight.add(grid_.flags_of_voxels(slice.lo, slice.hi), m, m + 1, beam.near(m), beam.far(m))) return;
+      }
+    }
+    n = end;
+  }
+  sight.finish();
 }
 
 void GainCaster::split(const Tile& tile) {
@@ -224,19 +193,6 @@ void GainCaster::cast_rays(const Tile& tile) {
   }
 }
 
-RayEvent GainCaster::slab_entry(const LatticeRay& ray, int major, int slab) const {
-  if (slab == 0) return kRayStart;
-  const std::int32_t origin = at(ray.origin, major);
-  const std::int32_t brick = (origin >> 3) + (ray.positive(major) ? slab : 1 - slab);
-  return {ray.crossing(major, brick * kBrickEdge - origin), major};
-}
-
-void GainCaster::end_of_ray(const Index3& voxel, const RayEvent& entered) {
-  if (entered.axis < 0 || entered.t < limits_.min_t) return;  // the camera's own voxel, or nearer than it can measure
-  ++scored_;
-  if (seen_ != nullptr) seen_->insert(voxel);
-}
-
 void GainCaster::cast_ray(float a, float b, int major, int slab) {
   const LatticeRay ray = window_.rays.ray(a, b);
   RaySpan span{slab_entry(ray, major, slab), after_depth(limits_.max_t)};
@@ -246,33 +202,50 @@ void GainCaster::cast_ray(float a, float b, int major, int slab) {
     if (limits_.savings.region_exit) span = span.until(region.exit);
   }
   ++rays_cast_;
-  const auto visit_voxel = [&](const StopGrid::Brick& brick, const Index3& voxel, const RayEvent& entered) {
-    const int i = child_index(voxel);
-    if (!brick.masks->stop.test(i)) return false;
-    if (brick.masks->score.test(i)) end_of_ray(voxel, entered);
-    return true;
-  };
   if (limits_.savings.empty_bricks) {
-    walk_cells<kBrickLevel>(ray, span, [&](const Index3& index, const RaySpan& in_brick) {
-      const StopGrid::Brick brick = grid_.brick(index);
-      if (brick.flags == stop_flags::kClear) return false;
-      if (brick.flags == stop_flags::kBlocked) return true;
-      if (brick.flags == stop_flags::kScores) {
-        end_of_ray(seen_ == nullptr ? Index3{} : voxel_at_event(ray, in_brick.enter), in_brick.enter);
-        return true;
-      }
-      return walk_cells<kVoxelLevel>(ray, in_brick, [&](const Index3& voxel, const RaySpan& in_voxel) {
-        return visit_voxel(brick, voxel, in_voxel.enter);
-      });
-    });
+    walk_bricks(ray, span);
   } else {
-    walk_cells<kVoxelLevel>(ray, span, [&](const Index3& voxel, const RaySpan& in_voxel) {
-      const StopGrid::Brick brick = grid_.brick(parent(voxel));
-      if (brick.flags == stop_flags::kClear) return false;
-      if (brick.flags == stop_flags::kScores) end_of_ray(voxel, in_voxel.enter);
-      return (brick.flags & stop_flags::kSolid) != 0 || visit_voxel(brick, voxel, in_voxel.enter);
-    });
+    walk_voxels(ray, span);
   }
+}
+
+void GainCaster::walk_bricks(const LatticeRay& ray, const RaySpan& span) {
+  walk_cells<kBrickLevel>(ray, span, [&](const Index3& index, const RaySpan& in_brick) {
+    const StopGrid::Brick brick = grid_.brick(index);
+    if (brick.flags == stop_flags::kClear) return false;
+    if (brick.flags == stop_flags::kAllBlock) return true;
+    if (brick.flags == stop_flags::kAllScore) {
+      score(seen_ == nullptr ? Index3{} : voxel_at_event(ray, in_brick.enter), in_brick.enter);
+      return true;
+    }
+    return walk_cells<kVoxelLevel>(ray, in_brick, [&](const Index3& voxel, const RaySpan& in_voxel) {
+      return ends_in(brick, voxel, in_voxel.enter);
+    });
+  });
+}
+
+void GainCaster::walk_voxels(const LatticeRay& ray, const RaySpan& span) {
+  walk_cells<kVoxelLevel>(ray, span, [&](const Index3& voxel, const RaySpan& in_voxel) {
+    const StopGrid::Brick brick = grid_.brick(parent(voxel));
+    if (brick.flags == stop_flags::kClear) return false;
+    if (brick.flags == stop_flags::kAllBlock) return true;
+    if (brick.flags != stop_flags::kAllScore) return ends_in(brick, voxel, in_voxel.enter);
+    score(voxel, in_voxel.enter);
+    return true;
+  });
+}
+
+bool GainCaster::ends_in(const StopGrid::Brick& brick, const Index3& voxel, const RayEvent& entered) {
+  const int i = child_index(voxel);
+  if (!brick.masks->stop.test(i)) return false;
+  if (brick.masks->score.test(i)) score(voxel, entered);
+  return true;
+}
+
+void GainCaster::score(const Index3& voxel, const RayEvent& entered) {
+  if (entered.axis < 0 || entered.t < limits_.min_t) return;  // the camera's own voxel, or nearer than it measures
+  ++scored_;
+  if (seen_ != nullptr) seen_->insert(voxel);
 }
 
 }  // namespace saccade

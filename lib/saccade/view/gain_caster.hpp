@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "saccade/view/cast_window.hpp"
+#include "saccade/view/ray_beam.hpp"
 #include "saccade/view/stop_grid.hpp"
 #include "saccade/view/view_gain.hpp"
 
@@ -30,7 +30,8 @@ struct CastLimits {
   GainSavings savings;
 };
 
-/// Casts the rays of a window through a stop grid. One thread each.
+/// Casts the rays of a window through a stop grid. Tiles of rays go through what is the same for all of them, by slabs
+/// of bricks, then of voxels; what remains undecided is split, and in the end walked ray by ray. One thread each.
 class GainCaster {
  public:
   /// `seen` takes the voxels in which rays end; nullptr: only rays are counted. All arguments outlive the caster.
@@ -43,22 +44,20 @@ class GainCaster {
   [[nodiscard]] std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
-  /// A rectangle of rays that is still empty up to slab `slab` of bricks along the axis `major`.
-  struct Tile {
-    int column_begin, column_end, row_begin, row_end;
-    int major;
-    int slab;
-  };
-  struct Beam;
+  class Sight;
 
   void cast_tile(const Tile& tile);
+  void look_by_bricks(const RayBeam& beam, int last, Sight& sight) const;
+  void look_by_voxels(const RayBeam& beam, int last, Sight& sight) const;
+  void split(const Tile& tile);
   void cast_rays(const Tile& tile);
   void cast_ray(float a, float b, int major, int slab);
-  void split(const Tile& tile);
+  void walk_bricks(const LatticeRay& ray, const RaySpan& span);
+  void walk_voxels(const LatticeRay& ray, const RaySpan& span);
+  [[nodiscard]] bool ends_in(const StopGrid::Brick& brick, const Index3& voxel, const RayEvent& entered);
   [[nodiscard]] bool to_be_cast(const Tile& tile) const;
-  [[nodiscard]] Beam beam(const Tile& tile) const;
-  [[nodiscard]] RayEvent slab_entry(const LatticeRay& ray, int major, int slab) const;
-  void end_of_ray(const Index3& voxel, const RayEvent& entered);
+  [[nodiscard]] int last_slab(const RayBeam& beam) const;
+  void score(const Index3& voxel, const RayEvent& entered);
 
   const StopGrid& grid_;
   const CastWindow& window_;

@@ -121,12 +121,11 @@ class StopGrid::Builder {
     std::uint16_t& code = view.codes[static_cast<std::size_t>(i)];
     if (scores) view.scoring = hull(view.scoring, bounds_of_mask(masks.score, brick));
     if (masks.stop.none()) return;
-    if (masks.stop.all() && !(blocks && scores)) {
-      code = blocks ? stop_flags::kBlocked : stop_flags::kScores;
-      return;
-    }
-    code = static_cast<std::uint16_t>(stop_flags::kStops | (blocks ? stop_flags::kBlocks : 0) |
-                                      (view.masks.size() << stop_flags::kShift));
+    const unsigned flags = (scores ? stop_flags::kScores : 0U) | (blocks ? stop_flags::kBlocks : 0U) |
+                           (masks.stop.all() ? stop_flags::kSolid : 0U);
+    code = static_cast<std::uint16_t>(flags);
+    if (flags == stop_flags::kAllScore || flags == stop_flags::kAllBlock) return;
+    code = static_cast<std::uint16_t>(flags | (view.masks.size() << stop_flags::kShift));
     view.masks.push_back(masks);
   }
 
@@ -171,7 +170,7 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
 
   grid.clear_ = std::make_unique<const SectorView>();
   auto blocked = std::make_unique<SectorView>();
-  blocked->codes.fill(stop_flags::kBlocked);
+  blocked->codes.fill(static_cast<std::uint16_t>(stop_flags::kAllBlock));
   grid.blocked_ = std::move(blocked);
 
   const Builder builder{map, region, outside};
@@ -199,11 +198,66 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
   return grid;
 }
 
-bool StopGrid::stops(const Index3& voxel) const {
-  const Brick found = brick(parent(voxel));
-  if (found.flags == stop_flags::kClear) return false;
-  if ((found.flags & stop_flags::kSolid) != 0) return true;
-  return found.masks->stop.test(child_index(voxel));
+unsigned StopGrid::flags_of_bricks(const Index3& lo, const Index3& hi) const {
+  unsigned any{0};
+  unsigned all{stop_flags::kSolid};
+  for (std::int32_t z = lo.z; z <= hi.z; ++z) {
+    for (std::int32_t y = lo.y; y <= hi.y; ++y) {
+      for (std::int32_t x = lo.x; x <= hi.x; ++x) {
+        const unsigned flags = brick_flags({x, y, z});
+        any |= flags;
+        all &= flags;
+      }
+    }
+  }
+  return (any & ~stop_flags::kSolid) | all;
 }
+
+unsigned StopGrid::flags_of_voxels(const Index3& lo, const Index3& hi) const {
+  unsigned any{0};
+  unsigned all{stop_flags::kSolid};
+  const Index3 brick_lo = parent(lo);
+  const Index3 brick_hi = parent(hi);
+  for (std::int32_t z = brick_lo.z; z <= brick_hi.z; ++z) {
+    for (std::int32_t y = brick_lo.y; y <= brick_hi.y; ++y) {
+      for (std::int32_t x = brick_lo.x; x <= brick_hi.x; ++x) {
+        const Index3 corner{x * kBrickEdge, y * kBrickEdge, z * kBrickEdge};
+        const unsigned flags = flags_within(brick({x, y, z}), lo - corner, hi - corner);
+        any |= flags;
+        all &= flags;
+      }
+    }
+  }
+  return (any & ~stop_flags::kSolid) | all;
+}
+
+/// Flags of the voxels of one brick from lo to hi, relative to its corner, cut to the brick.
+unsigned StopGrid::flags_within(const Brick& brick, const Index3& lo, const Index3& hi) {
+  if (brick.flags == stop_flags::kClear || brick.flags == stop_flags::kAllScore ||
+      brick.flags == stop_flags::kAllBlock) {
+    return brick.flags;
+  }
+  const int x0 = std::max(lo.x, 0);
+  const int x1 = std::min(hi.x, kBrickEdge - 1);
+  const int y0 = std::max(lo.y, 0);
+  const int y1 = std::min(hi.y, kBrickEdge - 1);
+  const std::uint64_t row = (0xFFU >> (kBrickEdge - 1 - x1)) & (0xFFU << x0) & 0xFFU;
+  const std::uint64_t rows = (~std::uint64_t{0} >> (8 * (kBrickEdge - 1 - y1))) & (~std::uint64_t{0} << (8 * y0));
+  const std::uint64_t rectangle = (row * 0x0101010101010101ULL) & rows;
+  std::uint64_t score{0};
+  std::uint64_t block{0};
+  std::uint64_t missing{0};
+  for (int z = std::max(lo.z, 0); z <= std::min(hi.z, kBrickEdge - 1); ++z) {
+    const std::uint64_t stops = brick.masks->stop.words[static_cast<std::size_t>(z)] & rectangle;
+    const std::uint64_t scores = brick.masks->score.words[static_cast<std::size_t>(z)] & rectangle;
+    score |= scores;
+    block |= stops & ~scores;
+    missing |= rectangle & ~stops;
+  }
+  return (score != 0 ? stop_flags::kScores : 0U) | (block != 0 ? stop_flags::kBlocks : 0U) |
+         (missing == 0 ? stop_flags::kSolid : 0U);
+}
+
+bool StopGrid::stops(const Index3& voxel) const { return (flags_of_voxels(voxel, voxel) & stop_flags::kSolid) != 0; }
 
 }  // namespace saccade

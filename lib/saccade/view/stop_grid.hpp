@@ -19,16 +19,16 @@ struct StopMasks {
   Mask512 score;
 };
 
-/// A brick's code: flags, and above them where its masks are.
+/// What a brick, or a box of bricks or voxels, holds.
 namespace stop_flags {
-constexpr std::uint16_t kStops{1};   ///< some voxel stops a ray
-constexpr std::uint16_t kBlocks{2};  ///< some voxel stops a ray without scoring
-constexpr std::uint16_t kSolid{4};   ///< every voxel stops a ray
-constexpr std::uint16_t kMask{7};
-constexpr int kShift{3};
-constexpr std::uint16_t kClear{0};                            ///< empty
-constexpr std::uint16_t kScores{kStops | kSolid};             ///< every voxel scores; no masks
-constexpr std::uint16_t kBlocked{kStops | kBlocks | kSolid};  ///< every voxel stops, none scores; no masks
+constexpr unsigned kScores{1};  ///< a voxel that stops a ray and scores
+constexpr unsigned kBlocks{2};  ///< a voxel that stops a ray without scoring
+constexpr unsigned kSolid{4};   ///< every voxel stops a ray
+constexpr unsigned kMask{7};
+constexpr int kShift{3};       ///< a brick's code has the place of its masks above the flags
+constexpr unsigned kClear{0};  ///< empty
+constexpr unsigned kAllScore{kScores | kSolid};
+constexpr unsigned kAllBlock{kBlocks | kSolid};
 }  // namespace stop_flags
 
 /// The ternary map (eq. 2.11) as the rays of view evaluation see it: region (eq. 2.6), workspace and the treatment of
@@ -45,17 +45,20 @@ class StopGrid {
   [[nodiscard]] const IndexBox& scoring_voxels() const { return scoring_voxels_; }
 
   struct Brick {
-    std::uint16_t flags{0};
-    const StopMasks* masks{nullptr};  ///< only where flags are neither clear, all scoring nor all blocked
+    unsigned flags{0};
+    const StopMasks* masks{nullptr};  ///< only for flags other than kClear, kAllScore and kAllBlock
   };
-  [[nodiscard]] std::uint16_t flags(const Index3& brick) const {
+  [[nodiscard]] unsigned brick_flags(const Index3& brick) const {
     return sector_of(brick).codes[static_cast<std::size_t>(child_index(brick))] & stop_flags::kMask;
   }
   [[nodiscard]] Brick brick(const Index3& brick) const {
     const SectorView& sector = sector_of(brick);
     const std::uint16_t code = sector.codes[static_cast<std::size_t>(child_index(brick))];
-    return {static_cast<std::uint16_t>(code & stop_flags::kMask), sector.masks.data() + (code >> stop_flags::kShift)};
+    return {code & stop_flags::kMask, sector.masks.data() + (code >> stop_flags::kShift)};
   }
+  /// Flags of all bricks, or all voxels, from lo to hi, both included.
+  [[nodiscard]] unsigned flags_of_bricks(const Index3& lo, const Index3& hi) const;
+  [[nodiscard]] unsigned flags_of_voxels(const Index3& lo, const Index3& hi) const;
   [[nodiscard]] bool stops(const Index3& voxel) const;
 
  private:
@@ -65,6 +68,8 @@ class StopGrid {
     IndexBox scoring;
   };
   class Builder;
+
+  [[nodiscard]] static unsigned flags_within(const Brick& brick, const Index3& lo, const Index3& hi);
 
   [[nodiscard]] const SectorView& sector_of(const Index3& brick) const {
     const Index3 i = parent(brick) - sectors_.lo;
