@@ -159,17 +159,24 @@ void GainCaster::look_by_voxels(const RayBeam& beam, int last, Sight& sight) con
     const int end = beam.first_voxel_slab(beam.brick_slab(n) + 1);
     const RayBeam::Voxels voxels = beam.voxels(n, end);
     const unsigned flags = grid_.flags_of_bricks(parent(voxels.lo), parent(voxels.hi));
-    if (flags == stop_flags::kClear || flags == stop_flags::kAllBlock) {
-      if (!sight.add(flags, n, end, beam.near(n), beam.far(end - 1))) return;
-    } else {
-      for (int m = n; m < end; ++m) {
-        const RayBeam::Voxels slice = beam.voxels(m, m + 1);
-        if (!sight.add(grid_.flags_of_voxels(slice.lo, slice.hi), m, m + 1, beam.near(m), beam.far(m))) return;
-      }
+    const bool decided = flags == stop_flags::kClear || flags == stop_flags::kAllBlock;
+    if (!(decided ? sight.add(flags, n, end, beam.near(n), beam.far(end - 1)) : look_closer(beam, n, end, sight))) {
+      return;
     }
     n = end;
   }
   sight.finish();
+}
+
+/// Halves the slabs until they are the same throughout.
+bool GainCaster::look_closer(const RayBeam& beam, int n, int end, Sight& sight) const {
+  const RayBeam::Voxels voxels = beam.voxels(n, end);
+  const unsigned flags = grid_.flags_of_voxels(voxels.lo, voxels.hi);
+  if (end - n == 1 || flags == stop_flags::kClear || (flags & stop_flags::kSolid) != 0) {
+    return sight.add(flags, n, end, beam.near(n), beam.far(end - 1));
+  }
+  const int middle = (n + end) / 2;
+  return look_closer(beam, n, middle, sight) && look_closer(beam, middle, end, sight);
 }
 
 void GainCaster::split(const Tile& tile) {

@@ -49,6 +49,7 @@ class GainCaster {
   void cast_tile(const Tile& tile);
   void look_by_bricks(const RayBeam& beam, int last, Sight& sight) const;
   void look_by_voxels(const RayBeam& beam, int last, Sight& sight) const;
+  bool look_closer(const RayBeam& beam, int n, int end, Sight& sight) const;
   void split(const Tile& tile);
   void cast_rays(const Tile& tile);
   void cast_ray(float a, float b, int major, int slab);

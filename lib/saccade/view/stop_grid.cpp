@@ -218,6 +218,8 @@ unsigned StopGrid::flags_of_voxels(const Index3& lo, const Index3& hi) const {
   unsigned all{stop_flags::kSolid};
   const Index3 brick_lo = parent(lo);
   const Index3 brick_hi = parent(hi);
+  if (brick_lo == brick_hi)
+    return flags_within(brick(brick_lo), lo - brick_lo * kBrickEdge, hi - brick_lo * kBrickEdge);
   for (std::int32_t z = brick_lo.z; z <= brick_hi.z; ++z) {
     for (std::int32_t y = brick_lo.y; y <= brick_hi.y; ++y) {
       for (std::int32_t x = brick_lo.x; x <= brick_hi.x; ++x) {
