@@ -5,7 +5,6 @@
 #include <array>
 #include <bit>
 #include <cstdio>
-#include <limits>
 #include <nlohmann/json.hpp>
 #include <string>
 #include <vector>
@@ -157,23 +156,6 @@ Rgb8 color_of(const BrickRef& ref, int voxel) {
   return color == Rgb8{} ? kGrey : color;
 }
 
-/// Smallest box of voxels around all bricks that hold a known voxel.
-IndexBox known_bounds(const TsdfGrid& grid) {
-  constexpr std::int32_t kMax{std::numeric_limits<std::int32_t>::max()};
-  IndexBox box{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
-  for (const Index3& key : grid.sorted_sectors()) {
-    const Sector& sector = *grid.find(key);
-    for (int child = 0; child < kSectorBricks; ++child) {
-      if (sector.bricks[static_cast<std::size_t>(child)].is_unknown()) continue;
-      const Index3 lo = (key * kSectorEdge + child_offset(child)) * kBrickEdge;
-      box.lo = {std::min(box.lo.x, lo.x), std::min(box.lo.y, lo.y), std::min(box.lo.z, lo.z)};
-      box.hi = {std::max(box.hi.x, lo.x + kBrickEdge), std::max(box.hi.y, lo.y + kBrickEdge),
-                std::max(box.hi.z, lo.z + kBrickEdge)};
-    }
-  }
-  return box;
-}
-
 std::array<std::uint64_t, 3> shape_of(const IndexBox& box) {
   const auto edge = [](std::int32_t lo, std::int32_t hi) {
     return static_cast<std::uint64_t>(static_cast<std::int64_t>(hi) - lo);
@@ -182,7 +164,7 @@ std::array<std::uint64_t, 3> shape_of(const IndexBox& box) {
 }
 
 Result<IndexBox> volume_box(const TsdfSnapshot& map, const TernaryVolumeConfig& config) {
-  IndexBox box = known_bounds(map.grid);
+  IndexBox box = map.grid.known_bounds();
   if (config.box) {
     SACCADE_TRY(box, voxels_of(*config.box, map.config.voxel_size_m));
   }

@@ -87,6 +87,21 @@ IndexBox TsdfGrid::sector_bounds() const {
   return box;
 }
 
+IndexBox TsdfGrid::known_bounds() const {
+  constexpr std::int32_t kMax{std::numeric_limits<std::int32_t>::max()};
+  IndexBox box{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
+  for (const auto& [key, sector] : sectors_) {
+    for (int child = 0; child < kSectorBricks; ++child) {
+      if ((*sector).bricks[static_cast<std::size_t>(child)].is_unknown()) continue;
+      const Index3 lo = (key * kSectorEdge + child_offset(child)) * kBrickEdge;
+      box.lo = {std::min(box.lo.x, lo.x), std::min(box.lo.y, lo.y), std::min(box.lo.z, lo.z)};
+      box.hi = {std::max(box.hi.x, lo.x + kBrickEdge), std::max(box.hi.y, lo.y + kBrickEdge),
+                std::max(box.hi.z, lo.z + kBrickEdge)};
+    }
+  }
+  return box.empty() ? IndexBox{} : box;
+}
+
 TsdfGrid::Usage TsdfGrid::usage() const {
   Usage usage;
   usage.sectors = sectors_.size();

@@ -50,6 +50,8 @@ class TsdfGrid {
   [[nodiscard]] std::vector<Index3> sorted_sectors() const;
   /// Smallest box of sectors that holds all; empty box when there are none.
   [[nodiscard]] IndexBox sector_bounds() const;
+  /// In voxels: smallest box around all bricks that hold a known voxel; empty box when there are none. O(bricks).
+  [[nodiscard]] IndexBox known_bounds() const;
 
   struct Usage {
     std::size_t sectors{0};

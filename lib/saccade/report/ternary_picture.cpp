@@ -1,0 +1,185 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/report/ternary_picture.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+
+#include "saccade/map/ray_walk.hpp"
+#include "saccade/report/blend.hpp"
+#include "saccade/report/shading.hpp"
+
+namespace saccade {
+namespace {
+
+/// Unknown faces across x, y, z: dark, but not the same, so that shapes can be seen.
+constexpr std::array<Rgb8, 3> kUnknownFaces{{{24, 25, 31}, {14, 14, 18}, {36, 38, 46}}};
+constexpr LineStyle kRegionLine{{214, 92, 22}, 1.6, 0.35};
+constexpr LineStyle kWorkspaceLine{{120, 128, 140}, 1.2, 0.25};
+
+IndexBox intersect(const IndexBox& a, const IndexBox& b) {
+  return {{std::max(a.lo.x, b.lo.x), std::max(a.lo.y, b.lo.y), std::max(a.lo.z, b.lo.z)},
+          {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
+}
+
+IndexBox join(const IndexBox& a, const IndexBox& b) {
+  if (a.empty()) return b;
+  if (b.empty()) return a;
+  return {{std::min(a.lo.x, b.lo.x), std::min(a.lo.y, b.lo.y), std::min(a.lo.z, b.lo.z)},
+          {std::max(a.hi.x, b.hi.x), std::max(a.hi.y, b.hi.y), std::max(a.hi.z, b.hi.z)}};
+}
+
+IndexBox voxels_of(const Index3& cell, int edge) { return {cell * edge, (cell + Index3{1, 1, 1}) * edge}; }
+
+struct Hit {
+  Index3 voxel;
+  bool occupied{false};
+  RayEvent enter{kRayStart};
+};
+
+class TernaryCaster {
+ public:
+  TernaryCaster(const TsdfSnapshot& map, const Viewpoint& view, const TernaryPictureConfig& config)
+      : map_{map}, config_{config}, table_{map.grid}, voxel_size_m_{map.config.voxel_size_m} {
+    IndexBox known = map.grid.known_bounds();
+    if (!known.empty()) known = {known.lo - Index3{1, 1, 1}, known.hi + Index3{1, 1, 1}};  // beyond begins the unknown
+    unknown_ = map.config.workspace ? voxels_with_center_in(*map.config.workspace, voxel_size_m_) : known;
+    if (config.unknown_within) {
+      const IndexBox inside = voxels_with_center_in(bounds(*config.unknown_within), voxel_size_m_);
+      unknown_ = map.config.workspace ? intersect(unknown_, inside) : inside;
+    }
+    domain_ = join(known, unknown_);
+    if (config.crop) domain_ = intersect(domain_, voxels_with_center_in(*config.crop, voxel_size_m_));
+    lamp_ = lamp_of(view);
+    const Eigen::Vector3d center = view.T_world_camera.translation() / voxel_size_m_;
+    origin_ = lattice_point(center.x(), center.y(), center.z());
+  }
+
+  [[nodiscard]] bool empty() const { return domain_.empty(); }
+
+  /// direction: world, z = 1 in the camera.
+  [[nodiscard]] std::optional<Hit> cast(const Eigen::Vector3d& direction) const {
+    const Eigen::Vector3f d = (direction / voxel_size_m_).cast<float>();
+    const LatticeRay ray = make_lattice_ray(origin_, d.x(), d.y(), d.z());
+    std::optional<Hit> hit;
+    const auto enter_sector = [&](const Index3& index, const Sector* sector, const RaySpan&) {
+      return sector != nullptr || !intersect(voxels_of(index, kSectorVoxelEdge), unknown_).empty();
+    };
+    const auto visit_brick = [&](const Index3& brick, const Sector* sector, int child, const RaySpan& span) {
+      return cast_in_brick(ray, brick, sector, child, span, hit);
+    };
+    RaySpan span = clip(ray, domain_);
+    const RayEvent start = after_depth(static_cast<float>(config_.start_m));
+    if (before(span.enter, start)) span.enter = start;
+    walk_map(ray, span, table_, enter_sector, visit_brick);
+    return hit;
+  }
+
+  [[nodiscard]] Rgb8 color(const Hit& hit, const Eigen::Vector3d& direction) const {
+    const int axis = hit.enter.axis;
+    if (!hit.occupied) return axis >= 0 && axis < 3 ? kUnknownFaces[static_cast<std::size_t>(axis)] : kUnknownFaces[1];
+    Eigen::Vector3d normal = gradient(hit.voxel);
+    if (normal.isZero(0.0) && axis >= 0 && axis < 3) normal[axis] = direction[axis] > 0.0 ? -1.0 : 1.0;
+    const std::optional<Rgb8> fused = map_.grid.color(hit.voxel);
+    const bool colored = fused && *fused != Rgb8{};
+    return shaded(colored ? *fused : kClay, normal, direction, lamp_, colored ? kColorLight : kClayLight);
+  }
+
+ private:
+  [[nodiscard]] bool cast_in_brick(const LatticeRay& ray, const Index3& brick, const Sector* sector, int child,
+                                   const RaySpan& span, std::optional<Hit>& hit) const {
+    const bool unknown = (sector == nullptr || sector->has_unknown.test(child)) &&
+                         !intersect(voxels_of(brick, kBrickEdge), unknown_).empty();
+    const bool occupied = sector != nullptr && sector->has_occupied.test(child);
+    if (!unknown && !occupied) return false;
+    const BrickRef* ref = sector == nullptr ? nullptr : &sector->bricks[static_cast<std::size_t>(child)];
+    return walk_cells<kVoxelLevel>(ray, span, [&](const Index3& voxel, const RaySpan& in_voxel) {
+      if (ref != nullptr && ((ref->nonempty_word(voxel.z & 7) >> (child_index(voxel) & 63)) & 1U) == 0) return false;
+      const bool is_occupied = ref != nullptr && ref->voxel(child_index(voxel)).w > 0;
+      if (!is_occupied && !shown(voxel)) return false;
+      hit = Hit{voxel, is_occupied, in_voxel.enter};
+      return true;
+    });
+  }
+
+  /// Whether an unknown voxel is drawn.
+  [[nodiscard]] bool shown(const Index3& voxel) const {
+    return unknown_.contains(voxel) &&
+           (!config_.unknown_within || contains(*config_.unknown_within, voxel_center(voxel, voxel_size_m_)));
+  }
+
+  [[nodiscard]] Voxel voxel(const Index3& index) const {
+    const Index3 brick = parent(index);
+    const Sector* sector = table_.find(parent(brick));
+    return sector == nullptr ? Voxel{}
+                             : sector->bricks[static_cast<std::size_t>(child_index(brick))].voxel(child_index(index));
+  }
+
+  /// Towards outside; differences over the known neighbours, two voxels to either side to smooth. Zero if there is
+  /// none.
+  [[nodiscard]] Eigen::Vector3d gradient(const Index3& at) const {
+    Eigen::Vector3d g = Eigen::Vector3d::Zero();
+    const double here = voxel(at).v;
+    for (int axis = 0; axis < 3; ++axis) {
+      for (int reach = 1; reach <= 2; ++reach) {
+        const Index3 step{axis == 0 ? reach : 0, axis == 1 ? reach : 0, axis == 2 ? reach : 0};
+        const Voxel ahead = voxel(at + step);
+        const Voxel behind = voxel(at - step);
+        g[axis] += ((ahead.w > 0 ? ahead.v : here) - (behind.w > 0 ? behind.v : here)) / reach;
+      }
+    }
+    return g.stableNormalized();
+  }
+
+  const TsdfSnapshot& map_;
+  const TernaryPictureConfig& config_;
+  SectorTable table_;
+  double voxel_size_m_;
+  IndexBox unknown_;  ///< bounds of the unknown voxels that are drawn
+  IndexBox domain_;   ///< where rays go at all
+  LatticePoint origin_;
+  Eigen::Vector3d lamp_;
+};
+
+}  // namespace
+
+Canvas draw_ternary(const TsdfSnapshot& map, const Viewpoint& view, const Executor& executor,
+                    const TernaryPictureConfig& config) {
+  Canvas canvas{view, config.background, config.samples};
+  const TernaryCaster caster{map, view, config};
+  if (!caster.empty()) {
+    const PinholeCamera& camera = canvas.sample_camera();
+    constexpr std::size_t kRows{8};
+    executor.parallel_for(static_cast<std::size_t>(camera.height), kRows, [&](std::size_t begin, std::size_t end) {
+      for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+        for (int u = 0; u < camera.width; ++u) {
+          const Eigen::Vector3d direction = view.T_world_camera.linear() * camera.ray(u, v);
+          if (const auto hit = caster.cast(direction)) canvas.plot(u, v, hit->enter.t, caster.color(*hit, direction));
+        }
+      }
+    });
+  }
+  if (config.outline_workspace && map.config.workspace) canvas.outline(Region{*map.config.workspace}, kWorkspaceLine);
+  if (config.unknown_within) canvas.outline(*config.unknown_within, kRegionLine);
+  return canvas;
+}
+
+ColorImage ternary_picture(const TsdfSnapshot& map, const Viewpoint& view, const Executor& executor,
+                           const TernaryPictureConfig& config) {
+  return draw_ternary(map, view, executor, config).finish();
+}
+
+ColorImage ternary_figure(const TsdfSnapshot& map, const Viewpoint& view, const Executor& executor,
+                          const std::string& title, const TernaryPictureConfig& config) {
+  return compose({title, {{ternary_picture(map, view, executor, config), {}, {}, {}, ternary_legend(config)}}, {}});
+}
+
+std::vector<LegendEntry> ternary_legend(const TernaryPictureConfig& config) {
+  std::vector<LegendEntry> legend{{kClay, "occupied (grey or in colour)"},
+                                  {kUnknownFaces[0], config.unknown_within ? "unknown, in the region" : "unknown"},
+                                  {config.background, "empty"}};
+  if (config.unknown_within) legend.push_back({kRegionLine.color, "region"});
+  return legend;
+}
+
+}  // namespace saccade
