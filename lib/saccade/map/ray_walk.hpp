@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// LatticeWalk and walk_cells (voxels, bricks or sectors along a ray), walk_map (sectors, then bricks), first_voxel.
+// LatticeWalk and walk_cells[_from] (voxels, bricks or sectors along a ray), walk_map (sectors, then bricks),
+// first_voxel.
 
 #include <optional>
 
@@ -67,11 +68,11 @@ class LatticeWalk {
 /// Calls visit(index, RaySpan) for each cell of 2^kLevel voxels that the ray visits within the span, in order, until it
 /// returns true; then returns true. With kVoxelLevel this is the voxel-by-voxel walk that defines what a ray visits;
 /// the coarser levels visit exactly the cells that hold those voxels. The spans handed on join without gaps.
-/// O(cells); no allocation.
+/// `first` is the voxel at span.enter, where it is known already. O(cells); no allocation.
 template <int kLevel, class Visit>
-SACCADE_HD bool walk_cells(const LatticeRay& ray, const RaySpan& span, Visit&& visit) {
+SACCADE_HD bool walk_cells_from(const Index3& first, const LatticeRay& ray, const RaySpan& span, Visit&& visit) {
   if (span.empty()) return false;
-  LatticeWalk<kLevel> walk{ray, voxel_at_event(ray, span.enter)};
+  LatticeWalk<kLevel> walk{ray, first};
   RayEvent enter = span.enter;
   for (;;) {
     const RayEvent leave = walk.next();
@@ -81,6 +82,11 @@ SACCADE_HD bool walk_cells(const LatticeRay& ray, const RaySpan& span, Visit&& v
     walk.step(leave.axis);
     enter = leave;
   }
+}
+template <int kLevel, class Visit>
+SACCADE_HD bool walk_cells(const LatticeRay& ray, const RaySpan& span, Visit&& visit) {
+  if (span.empty()) return false;
+  return walk_cells_from<kLevel>(voxel_at_event(ray, span.enter), ray, span, visit);
 }
 
 /// Walks the map: enter_sector(sector index, const Sector*, RaySpan) says whether to look into a sector (nullptr: all

@@ -208,6 +208,7 @@ void GainCaster::cast_ray(float a, float b, int major, int slab) {
     if (limits_.savings.region_rays && region.empty()) return;
     if (limits_.savings.region_exit) span = span.until(region.exit);
   }
+  if (span.empty()) return;
   ++rays_cast_;
   if (limits_.savings.empty_bricks) {
     walk_bricks(ray, span);
@@ -217,15 +218,19 @@ void GainCaster::cast_ray(float a, float b, int major, int slab) {
 }
 
 void GainCaster::walk_bricks(const LatticeRay& ray, const RaySpan& span) {
-  walk_cells<kBrickLevel>(ray, span, [&](const Index3& index, const RaySpan& in_brick) {
+  const Index3 first = voxel_at_event(ray, span.enter);
+  bool in_first{true};
+  walk_cells_from<kBrickLevel>(first, ray, span, [&](const Index3& index, const RaySpan& in_brick) {
+    const bool starts_here = std::exchange(in_first, false);
     const StopGrid::Brick brick = grid_.brick(index);
     if (brick.flags == stop_flags::kClear) return false;
     if (brick.flags == stop_flags::kAllBlock) return true;
+    const Index3 start = starts_here ? first : voxel_at_event(ray, in_brick.enter);
     if (brick.flags == stop_flags::kAllScore) {
-      score(seen_ == nullptr ? Index3{} : voxel_at_event(ray, in_brick.enter), in_brick.enter);
+      score(start, in_brick.enter);
       return true;
     }
-    return walk_cells<kVoxelLevel>(ray, in_brick, [&](const Index3& voxel, const RaySpan& in_voxel) {
+    return walk_cells_from<kVoxelLevel>(start, ray, in_brick, [&](const Index3& voxel, const RaySpan& in_voxel) {
       return ends_in(brick, voxel, in_voxel.enter);
     });
   });
