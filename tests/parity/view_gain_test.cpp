@@ -199,5 +199,38 @@ TEST(ViewGainParity, EqualsBruteForceToTheRay) {
             << cast_with_tiles << " of " << cast_without << '\n';
 }
 
+/// Free space with one forgotten ball and a wall behind it: here tiles decide nearly all rays.
+TEST(ViewGainParity, TilesDecideMostRaysOfAClearSceneExactly) {
+  TsdfConfig config;
+  config.voxel_size_m = 0.01;
+  auto map = TsdfMap::create(config);
+  ASSERT_TRUE(map.ok());
+  ASSERT_TRUE(map->free(Box{Eigen::Vector3d::Constant(-0.7), Eigen::Vector3d::Constant(0.7)}).ok());
+  const Region region{Sphere{{0.013, 0.004, -0.006}, 0.2}};
+  ASSERT_TRUE(map->forget(region).ok());
+  const TsdfSnapshot snapshot = map->snapshot();
+  ViewSphereConfig sphere;
+  sphere.radii_m = {0.6};
+  sphere.latitude_step_rad = 0.7853981633974483;
+  sphere.longitude_step_rad = 2.0943951023931953;
+  const auto candidates = view_sphere({0.0, 0.0, 0.0}, sphere);
+  ASSERT_TRUE(candidates.ok());
+  const std::vector<Pose> poses = poses_of(*candidates);
+  GainConfig gain;
+  gain.sensor = {160, 120, 131.25, 131.25, 79.5, 59.5, 0.3, 6.0};
+  const auto result = evaluate_views(snapshot, region, poses, gain, Executor::with_threads(2));
+  ASSERT_TRUE(result.ok());
+  std::uint64_t total{0};
+  int compared{0};
+  for (std::size_t i = 0; i < poses.size(); i += 18) {
+    ASSERT_EQ(result->gains[i], test::BruteForceGain(snapshot, region, gain)(poses[i])) << "pose " << i;
+    ++compared;
+  }
+  for (const std::uint64_t n : result->gains) total += n;
+  EXPECT_EQ(compared, 4);
+  EXPECT_GT(total, 72U * 4000U);
+  EXPECT_LT(result->rays_cast * 25, total) << "tiles and shared lattices decide too few rays";
+}
+
 }  // namespace
 }  // namespace saccade
