@@ -32,7 +32,7 @@ class BinaryValues {
     const std::size_t begin = out.size();
     const auto bytes = as_byte_span(body_.substr(at_, count * width));
     out.insert(out.end(), bytes.begin(), bytes.end());
-    if (swapped_) swap_bytes(&out[begin], count * width, width);
+    if (swapped_) swap_bytes(out.data() + begin, count * width, width);
     at_ += count * width;
     return true;
   }

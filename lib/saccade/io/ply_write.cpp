@@ -29,7 +29,7 @@ class RowWriter {
     }
     const std::size_t begin = row_.size();
     row_.append(reinterpret_cast<const char*>(values), count * width);
-    if (swapped_) swap_bytes(reinterpret_cast<std::byte*>(&row_[begin]), count * width, width);
+    if (swapped_) swap_bytes(reinterpret_cast<std::byte*>(row_.data() + begin), count * width, width);
   }
   [[nodiscard]] Status finish(AtomicFile& out) {
     if (ascii_) row_ += '\n';
