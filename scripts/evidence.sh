@@ -51,7 +51,7 @@ echo "View evaluation: 960 poses, 640×480, a forgotten sphere of 0.2 m on a tab
 map="$out/fuse_rgbd_redkitchen_forced/map.sacmap"
 if [[ -f $map ]]; then
   for run in 1 2 3; do
-    step "nbv_redkitchen_$run" build/release/saccade nbv "$map" --poi "${SACCADE_NBV_POI:-0.0,0.0,1.5}" --radius 0.2 --forget \
+    step "nbv_redkitchen_$run" build/release/saccade nbv "$map" --poi="${SACCADE_NBV_POI:--1.13,0.14,2.08}" --radius 0.2 --forget \
       --json "$out/nbv_redkitchen_$run.json"
   done
 else
