@@ -10,7 +10,7 @@ rm -rf "$out"
 mkdir -p "$out"
 
 echo "1. A depth camera goes round the near side of a table."
-"$saccade" sample --noise --out "$out/frames"
+"$saccade" sample --frames 40 --noise --out "$out/frames"
 echo
 echo "2. Its frames are tracked and fused into a map of occupied, empty and unknown."
 "$saccade" fuse "$out/frames" --tracking icp --out "$out/run"
