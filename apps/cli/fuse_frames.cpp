@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "fuse_frames.hpp"
+
+#include "interrupt.hpp"
+
+namespace saccade::cli {
+namespace {
+
+/// Sources name the frame first: "frame NAME, file".
+LeftOutFrame left_out(const Error& error) {
+  constexpr std::string_view kPrefix{"frame "};
+  std::string_view context{error.context};
+  if (!context.starts_with(kPrefix)) return {error.context, error.message};
+  context.remove_prefix(kPrefix.size());
+  const std::size_t comma = context.find(", ");
+  std::string reason = error.message;
+  if (comma != std::string_view::npos) reason = std::string{context.substr(comma + 2)} + ": " + reason;
+  return {std::string{context.substr(0, comma)}, reason};
+}
+
+void record_report(const Frame& frame, const FrameReport& report, FuseRecord& record, ProgressBar& progress) {
+  if (report.status == FrameReport::Status::lost) {
+    progress.note(frame.name + ": lost: " + report.why);
+    record.lost.push_back({frame.name, report.why});
+    return;
+  }
+  record.fused.push_back({frame.index, frame.name, frame.time_s, report.T_world_camera, frame.T_world_camera});
+  record.integrate_ms.push_back(report.integrate_ms);
+  if (report.track_ms > 0.0) {
+    record.raycast_ms.push_back(report.raycast_ms);
+    record.track_ms.push_back(report.track_ms);
+  }
+}
+
+}  // namespace
+
+FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
+                       const Executor& executor, ProgressBar& progress) {
+  FuseRecord record;
+  const auto skip = [&](const Error& error) {
+    record.skipped.push_back(left_out(error));
+    progress.note(record.skipped.back().name + ": skipped: " + record.skipped.back().reason);
+  };
+  bool resumed = reconstruction.map().content().grid.empty();
+  for (std::size_t done = 0; !interrupted(); ++done) {
+    progress.update("fusing", done, source.size().value_or(0));
+    auto next = source.next();
+    if (!next) {
+      skip(next.error());
+      continue;
+    }
+    if (!*next) break;
+    const Frame& frame = **next;
+    if (!resumed && frame.T_world_camera) reconstruction.resume(*frame.T_world_camera);  // a saved map is gone on with
+    resumed = true;
+    const auto report = reconstruction.process(frame, source.camera(), mode, frame.T_world_camera, executor);
+    if (report) {
+      record_report(frame, *report, record, progress);
+    } else {
+      skip(Error{report.error().code, report.error().message, "frame " + frame.name});
+    }
+  }
+  return record;
+}
+
+}  // namespace saccade::cli

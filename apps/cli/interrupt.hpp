@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Ctrl-C and SIGTERM: the first asks the work to stop and keep what it has, the second ends the program at once.
+
+#include "saccade/core/progress.hpp"
+
+namespace saccade::cli {
+
+void install_interrupt_handler();
+
+/// The signal that asked to stop; 0 without one.
+[[nodiscard]] int interrupt_signal();
+[[nodiscard]] inline bool interrupted() { return interrupt_signal() != 0; }
+/// 128 + signal.
+[[nodiscard]] inline int interrupt_status() { return 128 + interrupt_signal(); }
+
+/// While this lives, an interruption cancels the given progress. One at a time.
+class CancelOnInterrupt {
+ public:
+  explicit CancelOnInterrupt(Progress& progress);
+  CancelOnInterrupt(const CancelOnInterrupt&) = delete;
+  CancelOnInterrupt& operator=(const CancelOnInterrupt&) = delete;
+  ~CancelOnInterrupt();
+};
+
+}  // namespace saccade::cli

@@ -1,0 +1,45 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "json_output.hpp"
+
+#include <algorithm>
+#include <iostream>
+
+#include "saccade/io/atomic_file.hpp"
+#include "saccade/io/json_io.hpp"
+
+namespace saccade::cli {
+
+nlohmann::json json_envelope(const std::string& command, const GlobalOptions& global, const Executor& executor,
+                             const TimingsMs& timings_ms, nlohmann::json result) {
+  return {{"schema", kJsonSchema},
+          {"version", SACCADE_VERSION},
+          {"command", command},
+          {"backend", executor.backend_name()},
+          {"threads", executor.threads()},
+          {"seed", global.seed},
+          {"timings_ms", timings_ms},
+          {"result", std::move(result)}};
+}
+
+Status check_json_output(const GlobalOptions& global) {
+  if (global.json.empty() || global.json_to_stdout()) return {};
+  SACCADE_TRY(const AtomicFile probe, AtomicFile::create(global.json));
+  return {};
+}
+
+Status write_json_output(const GlobalOptions& global, const nlohmann::json& document) {
+  if (global.json.empty()) return {};
+  if (!global.json_to_stdout()) return write_json(global.json, document);
+  std::cout << document.dump(2, ' ', false, nlohmann::json::error_handler_t::replace) << '\n' << std::flush;
+  if (!std::cout) return Error{Errc::io_failure, "cannot write the result", "standard output"};
+  return {};
+}
+
+double median_of(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,32 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The machine-readable result: its envelope, and writing it to a file or to standard output.
+
+#include <map>
+#include <nlohmann/json.hpp>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "saccade/core/executor.hpp"
+
+namespace saccade::cli {
+
+constexpr const char* kJsonSchema{"saccade-result/1"};
+
+using TimingsMs = std::map<std::string, double>;
+
+/// {schema, version, command, backend, threads, seed, timings_ms, result}.
+[[nodiscard]] nlohmann::json json_envelope(const std::string& command, const GlobalOptions& global,
+                                           const Executor& executor, const TimingsMs& timings_ms,
+                                           nlohmann::json result);
+
+/// Fails early, before the long work, where --json names a file that cannot be written.
+[[nodiscard]] Status check_json_output(const GlobalOptions& global);
+/// Does what --json asks for; nothing without it.
+[[nodiscard]] Status write_json_output(const GlobalOptions& global, const nlohmann::json& document);
+
+/// Median; the mean of the middle two for an even count; 0 for none.
+[[nodiscard]] double median_of(std::vector<double> values);
+
+}  // namespace saccade::cli

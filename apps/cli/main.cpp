@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade: parses the command line, runs the chosen subcommand, and turns its outcome into an exit status.
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "command.hpp"
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+
+namespace {
+
+using saccade::cli::ExitStatus;
+
+constexpr const char* kFooter{
+    "Exit status: 0 done, 1 a bug, 2 usage, 3 bad input, 4 not available here, 5 finished without any result,\n"
+    "130 or 143 interrupted (Ctrl-C, SIGTERM): what was done is kept. A second Ctrl-C ends at once.\n"
+    "Lengths are in metres; points and poses are in the map's world frame; angles on the command line are in degrees."};
+
+void add_global_options(CLI::App& program, saccade::cli::GlobalOptions& global) {
+  program.add_option("--threads", global.threads, "threads to use; 0: all cores. Results do not depend on it")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{4096}))
+      ->type_name("N");
+  program.add_option("--seed", global.seed, "seed of everything random")->type_name("N")->capture_default_str();
+  program.add_flag("--quiet,-q", global.quiet, "no progress and no notes on standard error");
+  program.add_option("--json", global.json, "write the machine-readable result to a file; -: to standard output")
+      ->type_name("FILE");
+}
+
+int fail(const CLI::App& program, ExitStatus status, const std::string& text) {
+  const auto chosen = program.get_subcommands();
+  saccade::cli::print_error(chosen.empty() ? "" : chosen.front()->get_name(), text);
+  return static_cast<int>(status);
+}
+
+int run(int argc, char** argv, CLI::App& program) {
+  saccade::cli::GlobalOptions global;
+  saccade::cli::Action action;
+  program.set_version_flag("--version", std::string{"saccade "} + SACCADE_VERSION);
+  program.require_subcommand(1);
+  program.fallthrough();
+  program.footer(kFooter);
+  add_global_options(program, global);
+  saccade::cli::add_fuse(program, global, action);
+  saccade::cli::add_nbv(program, global, action);
+  saccade::cli::add_info(program, global, action);
+  saccade::cli::add_sample(program, global, action);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
+    const auto chosen = program.get_subcommands();
+    const std::string help = chosen.empty() ? "saccade --help" : "saccade " + chosen.front()->get_name() + " --help";
+    return fail(program, ExitStatus::usage, std::string{error.what()} + " (see " + help + ")");
+  }
+  const saccade::Result<int> status = action();
+  if (status) return *status;
+  if (status.error().code == saccade::Errc::cancelled && saccade::cli::interrupted()) {
+    fail(program, ExitStatus::done, "interrupted; nothing was written");
+    return saccade::cli::interrupt_status();
+  }
+  return fail(program, saccade::cli::exit_status_of(status.error().code), status.error().to_string());
+}
+
+}  // namespace
+
+int main(int argc, char** argv) {
+  CLI::App program{"Saccade decides where a depth camera should look next, and builds the 3-D map as it goes.",
+                   "saccade"};
+  try {
+    saccade::cli::install_interrupt_handler();
+    return run(argc, argv, program);
+  } catch (const std::bad_alloc&) {
+    return fail(program, ExitStatus::unavailable, "out of memory; use larger voxels or a smaller range");
+  } catch (const std::exception& error) {
+    return fail(program, ExitStatus::bug, std::string{"a bug in saccade, please report it: "} + error.what());
+  }
+}

@@ -1,0 +1,307 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade nbv: ranks view poses by what they would show of a region in a saved map.
+#include <array>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <optional>
+
+#include "command.hpp"
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "options.hpp"
+#include "progress_bar.hpp"
+#include "run_folder.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/image_io.hpp"
+#include "saccade/io/json_io.hpp"
+#include "saccade/io/sacmap.hpp"
+#include "saccade/io/trajectory_io.hpp"
+#include "saccade/report/view_picture.hpp"
+#include "saccade/view/view_gain.hpp"
+#include "saccade/view/view_order.hpp"
+#include "saccade/view/view_sphere.hpp"
+#include "summary.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+using std::numbers::pi;
+
+constexpr std::array<std::string_view, 2> kViewFiles{"views.json", "views.png"};
+constexpr double kDefaultRadius_m{0.2};
+
+struct NbvOptions {
+  std::filesystem::path map;
+  std::optional<Eigen::Vector3d> poi;
+  std::optional<double> radius_m;
+  std::optional<Box> box;
+  bool forget{false};
+  std::filesystem::path poses_file;
+  CameraOptions camera;
+  ViewSphereConfig sphere;
+  GainConfig gain;
+  std::optional<Box> workspace;
+  std::size_t top{10};
+  bool all{false};
+  std::filesystem::path out;
+  bool force{false};
+
+  [[nodiscard]] Region region() const {
+    if (box) return *box;
+    return Sphere{*poi, radius_m.value_or(kDefaultRadius_m)};
+  }
+  [[nodiscard]] Eigen::Vector3d center() const { return box ? Eigen::Vector3d{0.5 * (box->min + box->max)} : *poi; }
+};
+
+/// Candidates: from the view sphere, whose angles are then known, or from a file.
+struct Candidates {
+  std::vector<Pose> poses;
+  std::vector<ViewCandidate> sphere;  ///< empty when they came from a file
+};
+
+Result<Candidates> make_candidates(const NbvOptions& options) {
+  Candidates candidates;
+  if (options.poses_file.empty()) {
+    SACCADE_TRY(candidates.sphere, view_sphere(options.center(), options.sphere));
+    candidates.poses = poses_of(candidates.sphere);
+  } else {
+    SACCADE_TRY(candidates.poses, read_poses(options.poses_file));
+  }
+  return candidates;
+}
+
+/// The map as the views are to be judged in: nothing of this goes back to the file.
+Result<TsdfSnapshot> prepare_map(const NbvOptions& options, const Executor& executor) {
+  SACCADE_TRY(TsdfSnapshot loaded, load_map(options.map, executor));
+  if (options.workspace) loaded.config.workspace = options.workspace;
+  if (!options.forget) return loaded;
+  TsdfMap map{std::move(loaded)};
+  SACCADE_CHECK(map.forget(options.region()));
+  return map.snapshot();
+}
+
+double degrees(double angle_rad) { return angle_rad * 180.0 / pi; }
+
+json region_json(const NbvOptions& options) {
+  const auto point = [](const Eigen::Vector3d& p) { return json{p.x(), p.y(), p.z()}; };
+  if (options.box) return {{"kind", "box"}, {"min_m", point(options.box->min)}, {"max_m", point(options.box->max)}};
+  return {
+      {"kind", "sphere"}, {"center_m", point(*options.poi)}, {"radius_m", options.radius_m.value_or(kDefaultRadius_m)}};
+}
+
+json view_json(const RankedView& view, const Candidates& candidates) {
+  json entry{{"gain", view.gain}, {"index", view.index}, {"T_world_camera", pose_to_json(view.T_world_camera)}};
+  if (!candidates.sphere.empty()) {
+    const ViewCandidate& on_sphere = candidates.sphere[view.index];
+    entry["radius_m"] = on_sphere.radius_m;
+    entry["longitude_rad"] = on_sphere.longitude_rad;
+    entry["latitude_rad"] = on_sphere.latitude_rad;
+    entry["roll_rad"] = on_sphere.roll_rad;
+  }
+  return entry;
+}
+
+json result_json(const NbvOptions& options, const Candidates& candidates, const GainResult& gains,
+                 const std::vector<RankedView>& ranked, std::size_t shown) {
+  json views = json::array();
+  for (std::size_t i = 0; i < shown; ++i) views.push_back(view_json(ranked[i], candidates));
+  return {{"map", options.map.string()},
+          {"region", region_json(options)},
+          {"forgotten", options.forget},
+          {"sensor", camera_to_json(options.gain.sensor)},
+          {"tilt_rad", options.gain.tilt_rad},
+          {"count", options.gain.count == GainCount::rays ? "rays" : "voxels"},
+          {"unknown_outside", options.gain.unknown_outside == UnknownOutside::blocks ? "blocks" : "transparent"},
+          {"candidates", candidates.poses.size()},
+          {"evaluated", gains.gains.size()},
+          {"rays_total", gains.rays_total},
+          {"rays_cast", gains.rays_cast},
+          {"ms", {{"prepare", gains.prepare_ms}, {"evaluate", gains.evaluate_ms}}},
+          {"views", std::move(views)}};
+}
+
+void print_table(const NbvOptions& options, const Candidates& candidates, const GainResult& gains,
+                 const std::vector<RankedView>& ranked, std::size_t shown) {
+  std::cout << "rank      gain  ";
+  if (!candidates.sphere.empty()) std::cout << "longitude  latitude   roll  ";
+  std::cout << "position (m)\n";
+  for (std::size_t i = 0; i < shown; ++i) {
+    const RankedView& view = ranked[i];
+    std::cout << std::right << std::setw(4) << i + 1 << std::setw(10) << view.gain << "  ";
+    if (!candidates.sphere.empty()) {
+      const ViewCandidate& on_sphere = candidates.sphere[view.index];
+      std::cout << std::setw(8) << fixed(degrees(on_sphere.longitude_rad), 0) << "°" << std::setw(9)
+                << fixed(degrees(on_sphere.latitude_rad), 0) << "°" << std::setw(6)
+                << fixed(degrees(on_sphere.roll_rad), 0) << "°  ";
+    }
+    const Eigen::Vector3d p = view.T_world_camera.translation();
+    for (int axis = 0; axis < 3; ++axis) std::cout << std::setw(8) << fixed(p[axis], 3);
+    std::cout << '\n';
+  }
+  const char* unit = options.gain.count == GainCount::rays ? "rays" : "distinct voxels";
+  std::cout << "gain: " << unit << " that would end in unknown space of the region; " << gains.gains.size()
+            << " poses in " << fixed(gains.prepare_ms + gains.evaluate_ms, 0) << " ms, " << gains.rays_cast
+            << " rays cast one by one\n";
+}
+
+Status write_outputs(const NbvOptions& options, const RunFolder& out, const TsdfSnapshot& map,
+                     const std::vector<RankedView>& ranked, const json& document, const Executor& executor) {
+  SACCADE_CHECK(out.remove(std::span{kViewFiles}.first(1)));
+  std::vector<ScoredPose> scored;
+  for (const RankedView& view : ranked) scored.push_back({view.T_world_camera, static_cast<double>(view.gain)});
+  ViewPictureConfig picture;
+  picture.sensor = options.gain.sensor;
+  picture.gain_unit = options.gain.count == GainCount::rays ? "rays" : "voxels";
+  SACCADE_CHECK(write_png(out / "views.png", view_picture(map, options.region(), scored, executor, picture)));
+  return write_json(out / "views.json", document);
+}
+
+std::string advice_without_gain(const NbvOptions& options) {
+  std::string advice{"no view shows anything unknown of the region: every gain is 0"};
+  if (!options.forget)
+    advice += "; is all of it known (--forget sets it back to unknown), or is it hidden or elsewhere?";
+  return advice;
+}
+
+Result<int> run_nbv(const NbvOptions& options, const GlobalOptions& global) {
+  const Stopwatch total;
+  Stopwatch stopwatch;
+  TimingsMs timings_ms;
+  const Executor executor = global.executor();
+  ProgressBar bar{global.quiet};
+  SACCADE_TRY(const Candidates candidates, make_candidates(options));
+  bar.update("loading the map", 0, 0);
+  SACCADE_TRY(const TsdfSnapshot map, prepare_map(options, executor));
+  SACCADE_CHECK(check_json_output(global));
+  std::optional<RunFolder> out;
+  if (!options.out.empty()) {
+    SACCADE_TRY(RunFolder opened, RunFolder::open(options.out, kViewFiles, "views.json", options.force));
+    out.emplace(std::move(opened));
+  }
+  timings_ms["load"] = stopwatch.lap_ms();
+
+  Progress progress{
+      [&bar](std::string_view, std::size_t done, std::size_t count) { bar.update("evaluating views", done, count); }};
+  const CancelOnInterrupt cancel{progress};
+  SACCADE_TRY(const GainResult gains,
+              evaluate_views(map, options.region(), candidates.poses, options.gain, executor, progress));
+  const std::vector<RankedView> ranked = order_views(gains.gains, candidates.poses);
+  timings_ms["evaluate"] = stopwatch.lap_ms();
+
+  const std::size_t shown = options.all ? ranked.size() : std::min(options.top, ranked.size());
+  timings_ms["total"] = total.elapsed_ms();
+  const json document =
+      json_envelope("nbv", global, executor, timings_ms, result_json(options, candidates, gains, ranked, shown));
+  if (out) {
+    bar.update("drawing", 0, 0);
+    SACCADE_CHECK(write_outputs(options, *out, map, ranked, document, executor));
+  }
+  bar.finish();
+  SACCADE_CHECK(write_json_output(global, document));
+  if (!global.json_to_stdout()) {
+    print_table(options, candidates, gains, ranked, shown);
+    if (out) std::cout << "results: " << options.out.string() << '\n';
+  }
+  if (ranked.front().gain > 0) return static_cast<int>(ExitStatus::done);
+  print_error("nbv", advice_without_gain(options));
+  return static_cast<int>(ExitStatus::no_result);
+}
+
+void add_region_options(CLI::App& command, NbvOptions& options) {
+  command
+      .add_option_function<std::string>(
+          "--poi", [&options](const std::string& text) { options.poi = parse_point("--poi", text); },
+          "point of interest: the centre of the region and of the view sphere, metres")
+      ->type_name("X,Y,Z");
+  command.add_option("--radius", options.radius_m, "radius of the region around --poi, metres (default: 0.2)")
+      ->type_name("METRES");
+  command
+      .add_option_function<std::string>(
+          "--box", [&options](const std::string& text) { options.box = parse_box("--box", text); },
+          "box region, instead of --poi and --radius")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  command.add_flag("--forget", options.forget, "set the region back to unknown first (the file stays as it is)");
+  command
+      .add_option_function<std::string>(
+          "--workspace", [&options](const std::string& text) { options.workspace = parse_box("--workspace", text); },
+          "box outside of which nothing counts as unknown, instead of the map's")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+}
+
+void add_candidate_options(CLI::App& command, NbvOptions& options) {
+  command
+      .add_option("--poses", options.poses_file, "candidate poses (TUM, matrices, JSON), instead of the view sphere")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::string>(
+          "--distance",
+          [&options](const std::string& text) {
+            options.sphere.radii_m = parse_numbers("--distance", text, 0);
+            for (const double radius_m : options.sphere.radii_m) require_positive(radius_m, "--distance");
+          },
+          "radius of the view sphere, metres; several separated by commas (default: 0.8)")
+      ->type_name("METRES");
+}
+
+void add_gain_options(CLI::App& command, NbvOptions& options) {
+  add_camera_options(command, options.camera, true);
+  command
+      .add_option_function<std::string>(
+          "--count",
+          [&options](const std::string& text) {
+            if (text != "rays" && text != "voxels") usage_error("--count", "must be rays or voxels");
+            options.gain.count = text == "rays" ? GainCount::rays : GainCount::distinct_voxels;
+          },
+          "what counts: rays, or the distinct voxels they end in (default: rays)")
+      ->type_name("rays|voxels");
+  command
+      .add_option_function<std::string>(
+          "--unknown-outside",
+          [&options](const std::string& text) {
+            if (text != "blocks" && text != "transparent")
+              usage_error("--unknown-outside", "must be blocks or transparent");
+            options.gain.unknown_outside = text == "blocks" ? UnknownOutside::blocks : UnknownOutside::transparent;
+          },
+          "what unknown voxels outside the region do to a ray (default: blocks)")
+      ->type_name("blocks|transparent");
+  command
+      .add_option_function<double>(
+          "--tilt", [&options](const double& tilt_deg) { options.gain.tilt_rad = tilt_deg * pi / 180.0; },
+          "the sensor will be tilted up and down by this angle, degrees (default: 0)")
+      ->type_name("DEGREES");
+}
+
+void check_nbv_options(NbvOptions& options) {
+  if (options.poi.has_value() == options.box.has_value()) usage_error("--poi", "give either --poi or --box");
+  if (options.box && options.radius_m) usage_error("--radius", "goes with --poi, not with --box");
+  if (options.radius_m) require_positive(*options.radius_m, "--radius");
+  if (options.top == 0) usage_error("--top", "must be at least 1");
+  options.gain.sensor = options.camera.camera(options.gain.sensor);
+  require_ok(options.gain.validate(), "the sensor");
+}
+
+}  // namespace
+
+void add_nbv(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command = program.add_subcommand("nbv", "ranks view poses for a region in a saved map");
+  auto options = std::make_shared<NbvOptions>();
+  command->add_option("map", options->map, "saved map (.sacmap)")->required()->type_name("MAP");
+  add_region_options(*command, *options);
+  add_candidate_options(*command, *options);
+  add_gain_options(*command, *options);
+  command->add_option("--top", options->top, "views to print and to write")->type_name("N")->capture_default_str();
+  command->add_flag("--all", options->all, "print and write all views");
+  command->add_option("--out", options->out, "folder for views.json and views.png")->type_name("DIR");
+  command->add_flag("--force", options->force, "write into a folder that holds other files");
+  command->callback([options, &global, &action] {
+    check_nbv_options(*options);
+    action = [options, &global] { return run_nbv(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli

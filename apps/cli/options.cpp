@@ -1,0 +1,167 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "options.hpp"
+
+#include <charconv>
+#include <cmath>
+
+namespace saccade::cli {
+namespace {
+
+/// The whole of `word` as a finite number.
+std::optional<double> number_of(std::string_view word) {
+  if (word.starts_with('+')) word.remove_prefix(1);
+  double value{0.0};
+  const auto [end, code] = std::from_chars(word.data(), word.data() + word.size(), value);
+  if (code != std::errc{} || end != word.data() + word.size() || !std::isfinite(value)) return std::nullopt;
+  return value;
+}
+
+/// The non-empty parts between separators.
+std::vector<std::string> split(const std::string& text, const char* separators) {
+  std::vector<std::string> parts;
+  std::size_t begin = text.find_first_not_of(separators);
+  while (begin != std::string::npos) {
+    const std::size_t end = text.find_first_of(separators, begin);
+    parts.push_back(text.substr(begin, end - begin));
+    begin = text.find_first_not_of(separators, end);
+  }
+  return parts;
+}
+
+}  // namespace
+
+void usage_error(const std::string& option, const std::string& message) { throw CLI::ValidationError(option, message); }
+
+void require_ok(const Status& status, const std::string& option) {
+  if (!status) usage_error(option, status.error().message);
+}
+
+void require_positive(double value, const std::string& option) {
+  if (!(value > 0.0) || !std::isfinite(value)) usage_error(option, "must be a positive number");
+}
+
+std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
+  std::vector<double> numbers;
+  for (const std::string& word : split(text, ", ")) {
+    const auto value = number_of(word);
+    if (!value) usage_error(option, "'" + word + "' in '" + text + "' is no number");
+    numbers.push_back(*value);
+  }
+  if (numbers.empty() || (count != 0 && numbers.size() != count)) {
+    usage_error(option, "needs " + (count == 0 ? "at least one number" : std::to_string(count) + " numbers") +
+                            " separated by commas, not '" + text + "'");
+  }
+  return numbers;
+}
+
+Eigen::Vector3d parse_point(const std::string& option, const std::string& text) {
+  const std::vector<double> n = parse_numbers(option, text, 3);
+  return {n[0], n[1], n[2]};
+}
+
+Box parse_box(const std::string& option, const std::string& text) {
+  const std::vector<double> n = parse_numbers(option, text, 6);
+  const Box box{{n[0], n[1], n[2]}, {n[3], n[4], n[5]}};
+  if (!validate(Region{box})) {
+    usage_error(option, "needs x0,y0,z0,x1,y1,z1 with each first coordinate below its second, not '" + text + "'");
+  }
+  return box;
+}
+
+std::optional<PixelPolygon> parse_polygon(const std::string& option, const std::string& text) {
+  if (text.find(';') == std::string::npos || text.find_first_not_of("0123456789+-.,; ") != std::string::npos) {
+    return std::nullopt;
+  }
+  PixelPolygon polygon;
+  for (const std::string& vertex : split(text, ";")) {
+    const std::vector<double> n = parse_numbers(option, vertex, 2);
+    polygon.emplace_back(n[0], n[1]);
+  }
+  if (polygon.size() < 3) usage_error(option, "a polygon needs at least 3 vertices, as in '0,0;100,0;100,50'");
+  return polygon;
+}
+
+PinholeCamera CameraOptions::camera(const PinholeCamera& fallback) const {
+  PinholeCamera camera = preset.value_or(fallback);
+  if (image_size) {
+    const double scale_x = image_size->first / static_cast<double>(camera.width);
+    const double scale_y = image_size->second / static_cast<double>(camera.height);
+    camera.fx *= scale_x;
+    camera.fy *= scale_y;
+    camera.cx = (camera.cx + 0.5) * scale_x - 0.5;
+    camera.cy = (camera.cy + 0.5) * scale_y - 0.5;
+    camera.width = image_size->first;
+    camera.height = image_size->second;
+  }
+  if (intrinsics) {
+    camera.fx = (*intrinsics)[0];
+    camera.fy = (*intrinsics)[1];
+    camera.cx = (*intrinsics)[2];
+    camera.cy = (*intrinsics)[3];
+  }
+  camera.min_range_m = min_range_m.value_or(camera.min_range_m);
+  camera.max_range_m = max_range_m.value_or(camera.max_range_m);
+  return camera;
+}
+
+std::optional<Intrinsics> CameraOptions::given_intrinsics() const {
+  if (!preset && !intrinsics) return std::nullopt;
+  const PinholeCamera camera = this->camera({});
+  Intrinsics given{camera.fx, camera.fy, camera.cx, camera.cy, {}, {}, {}, {}, {}};
+  if (preset) {
+    given.min_range_m = camera.min_range_m;
+    given.max_range_m = camera.max_range_m;
+    if (!intrinsics) {
+      given.width = camera.width;
+      given.height = camera.height;
+    }
+  }
+  return given;
+}
+
+void add_camera_options(CLI::App& command, CameraOptions& options, bool with_image_size) {
+  std::string names;
+  for (const CameraPreset& preset : camera_presets()) names += (names.empty() ? "" : ", ") + std::string{preset.name};
+  command
+      .add_option_function<std::string>(
+          "--camera",
+          [&options](const std::string& name) {
+            const auto preset = camera_preset(name);
+            if (!preset) usage_error("--camera", preset.error().message);
+            options.preset = *preset;
+          },
+          "camera preset: " + names)
+      ->type_name("NAME");
+  command
+      .add_option_function<std::string>(
+          "--intrinsics",
+          [&options](const std::string& text) {
+            options.intrinsics = parse_numbers("--intrinsics", text, 4);
+            require_positive((*options.intrinsics)[0], "--intrinsics: fx");
+            require_positive((*options.intrinsics)[1], "--intrinsics: fy");
+          },
+          "focal lengths and principal point, pixels")
+      ->type_name("FX,FY,CX,CY");
+  if (with_image_size) {
+    command
+        .add_option_function<std::string>(
+            "--image-size",
+            [&options](const std::string& text) {
+              const std::vector<double> n = parse_numbers("--image-size", text, 2);
+              for (const double edge : n) {
+                if (edge < 1.0 || edge > 16384.0 || edge != std::floor(edge)) {
+                  usage_error("--image-size", "needs two whole numbers from 1 to 16384, not '" + text + "'");
+                }
+              }
+              options.image_size = {static_cast<int>(n[0]), static_cast<int>(n[1])};
+            },
+            "image size, pixels; scales the preset's intrinsics along")
+        ->type_name("WIDTH,HEIGHT");
+  }
+  command.add_option("--min-range", options.min_range_m, "nearest depth that is used, metres along the optical axis")
+      ->type_name("METRES");
+  command.add_option("--max-range", options.max_range_m, "farthest depth that is used, metres along the optical axis")
+      ->type_name("METRES");
+}
+
+}  // namespace saccade::cli

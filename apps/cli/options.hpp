@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Options that several subcommands share: lists of numbers, boxes, polygons, and the camera.
+
+#include <CLI/CLI.hpp>
+#include <Eigen/Core>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saccade/core/region.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/io/camera_io.hpp"
+#include "saccade/sensor/mask.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade::cli {
+
+/// Throws what CLI11 reports as a usage error of that option.
+[[noreturn]] void usage_error(const std::string& option, const std::string& message);
+/// The same for the errors of a library check on values that came from options.
+void require_ok(const Status& status, const std::string& option);
+void require_positive(double value, const std::string& option);
+
+/// `count` finite numbers, separated by commas or blanks (any number of them, at least one, for count 0).
+[[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
+/// "x,y,z", metres.
+[[nodiscard]] Eigen::Vector3d parse_point(const std::string& option, const std::string& text);
+/// "x0,y0,z0,x1,y1,z1", metres.
+[[nodiscard]] Box parse_box(const std::string& option, const std::string& text);
+/// "u,v;u,v;u,v…", pixels; nullopt for what does not look like one (a file name).
+[[nodiscard]] std::optional<PixelPolygon> parse_polygon(const std::string& option, const std::string& text);
+
+/// What the camera options say; everything that they leave open is the caller's.
+struct CameraOptions {
+  std::optional<PinholeCamera> preset;
+  std::optional<std::vector<double>> intrinsics;  ///< fx, fy, cx, cy in pixels
+  std::optional<std::pair<int, int>> image_size;
+  std::optional<double> min_range_m;
+  std::optional<double> max_range_m;
+
+  /// The camera, where everything not given is taken from `fallback`. Without --intrinsics, --image-size scales the
+  /// focal lengths and the principal point along.
+  [[nodiscard]] PinholeCamera camera(const PinholeCamera& fallback) const;
+  /// For the reader of a folder: only what was given.
+  [[nodiscard]] std::optional<Intrinsics> given_intrinsics() const;
+};
+
+/// Adds --camera, --intrinsics, --min-range and --max-range, and --image-size where the images do not say their size.
+void add_camera_options(CLI::App& command, CameraOptions& options, bool with_image_size);
+
+}  // namespace saccade::cli

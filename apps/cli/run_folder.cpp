@@ -1,0 +1,81 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run_folder.hpp"
+
+#include <algorithm>
+#include <utility>
+
+#include "saccade/io/atomic_file.hpp"
+
+namespace saccade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+constexpr std::size_t kProbeBytes{std::size_t{1} << 20U};
+
+/// ".NAME.PID-N.tmp": what an atomic write leaves when the program is killed.
+bool is_leftover(const std::string& name) { return name.starts_with('.') && name.ends_with(".tmp"); }
+
+bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_files, std::string_view marker) {
+  std::error_code ignored;
+  if (fs::is_regular_file(path / marker, ignored)) return true;
+  for (const fs::directory_entry& entry : fs::directory_iterator{path, ignored}) {
+    const std::string name = entry.path().filename().string();
+    if (is_leftover(name)) continue;
+    if (std::find(own_files.begin(), own_files.end(), name) == own_files.end()) return false;
+  }
+  return true;
+}
+
+Status probe(const fs::path& path) {
+  SACCADE_TRY(AtomicFile file, AtomicFile::create(path / "write-test"));
+  Status written = file.write(std::string(kProbeBytes, '\0'));
+  if (written) return {};
+  Error error = written.error();
+  error.context = path.string();
+  return error;
+}
+
+}  // namespace
+
+Result<RunFolder> RunFolder::open(const fs::path& path, std::span<const std::string_view> own_files,
+                                  std::string_view marker, bool force) {
+  std::error_code code;
+  const bool there = fs::exists(path, code);
+  if (there && !fs::is_directory(path, code)) {
+    return Error{Errc::invalid_argument, "is a file; the results need a folder", path.string()};
+  }
+  if (there && !force && !is_free_to_use(path, own_files, marker)) {
+    return Error{Errc::invalid_argument,
+                 "the folder holds other files; choose another one, or pass --force to write among them",
+                 path.string()};
+  }
+  if (!there && !fs::create_directories(path, code) && code) {
+    return Error{Errc::io_failure, "cannot make the folder: " + code.message(), path.string()};
+  }
+  RunFolder folder{path, !there};
+  if (Status writable = probe(path); !writable) {
+    Error error = writable.error();
+    error.context = path.string();
+    return error;
+  }
+  return folder;
+}
+
+RunFolder::RunFolder(RunFolder&& other) noexcept
+    : path_{std::move(other.path_)}, made_{std::exchange(other.made_, false)} {}
+
+RunFolder::~RunFolder() {
+  std::error_code ignored;
+  if (made_) fs::remove(path_, ignored);  // only succeeds when it is empty
+}
+
+Status RunFolder::remove(std::span<const std::string_view> names) const {
+  for (const std::string_view name : names) {
+    std::error_code code;
+    fs::remove(path_ / name, code);
+    if (code) return Error{Errc::io_failure, "cannot be replaced: " + code.message(), (path_ / name).string()};
+  }
+  return {};
+}
+
+}  // namespace saccade::cli
