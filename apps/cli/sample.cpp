@@ -23,7 +23,8 @@
 namespace saccade::cli {
 namespace {
 
-constexpr std::array<std::string_view, 1> kMarker{"camera-intrinsics.txt"};
+constexpr const char* kIntrinsicsFile{"camera-intrinsics.txt"};
+constexpr double kMaxRange_m{2.5};
 
 struct SampleOptions {
   std::filesystem::path out;
@@ -61,7 +62,7 @@ Result<int> run_sample(const SampleOptions& options, const GlobalOptions& global
   const AnalyticScene scene = sample_tabletop();
   const std::vector<Pose> T_world_camera = sample_trajectory(options.frames);
   ProgressBar bar{global.quiet};
-  SACCADE_CHECK(write_intrinsics(out / kMarker.front(), options.camera));
+  SACCADE_CHECK(write_intrinsics(out / kIntrinsicsFile, options.camera));
   std::size_t done = 0;
   for (; done < T_world_camera.size() && !interrupted(); ++done) {
     bar.update("rendering", done, T_world_camera.size());
@@ -92,7 +93,9 @@ void add_sample(CLI::App& program, const GlobalOptions& global, Action& action) 
   add_camera_options(*command, options->camera_options, true);
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {
-    options->camera = options->camera_options.camera(PinholeCamera{});
+    PinholeCamera near_camera;  // the table, and some of the floor and the wall
+    near_camera.max_range_m = kMaxRange_m;
+    options->camera = options->camera_options.camera(near_camera);
     require_ok(options->camera.validate(), "the camera");
     action = [options, &global] { return run_sample(*options, global); };
   });
