@@ -19,8 +19,8 @@ class Fuse : public ::testing::Test {
   void SetUp() override { make_sample(folder_ / "frames", 21); }
   [[nodiscard]] fs::path frames() const { return folder_ / "frames"; }
   [[nodiscard]] fs::path run() const { return folder_ / "run"; }
-  [[nodiscard]] nlohmann::json fused(const Arguments& more) const {
-    const Outcome outcome = run_program(fuse(frames(), run(), more + Arguments{"--json", "-"}));
+  nlohmann::json fused(const Arguments& more, const std::string& out = "run") const {
+    const Outcome outcome = run_program(fuse(frames(), folder_ / out, more + Arguments{"--json", "-"}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     EXPECT_EQ(outcome.err, "");
     nlohmann::json document = outcome.json();
@@ -114,8 +114,8 @@ TEST_F(Fuse, ProgressGoesToStandardErrorAsLines) {
 }
 
 TEST_F(Fuse, ThreadsDoNotChangeTheMap) {
-  fused({"--threads", "1", "--tracking", "icp", "--no-pictures", "--out", (folder_ / "one").string()});
-  fused({"--threads", "4", "--tracking", "icp", "--no-pictures", "--out", (folder_ / "four").string()});
+  fused({"--threads", "1", "--tracking", "icp", "--no-pictures"}, "one");
+  fused({"--threads", "4", "--tracking", "icp", "--no-pictures"}, "four");
   const std::string map = text_of(folder_ / "one" / "map.sacmap");
   EXPECT_GT(map.size(), 10000U);
   EXPECT_TRUE(map == text_of(folder_ / "four" / "map.sacmap"));
@@ -124,8 +124,8 @@ TEST_F(Fuse, ThreadsDoNotChangeTheMap) {
 
 TEST_F(Fuse, ContinuingEqualsOneRun) {
   const Arguments plain{"--tracking", "forced", "--no-pictures", "--no-mesh"};
-  fused(plain + Arguments{"--out", (folder_ / "whole").string()});
-  fused(plain + Arguments{"--out", (folder_ / "parts").string(), "--count", "9"});
+  fused(plain, "whole");
+  fused(plain + Arguments{"--count", "9"}, "parts");
   const fs::path half = folder_ / "parts" / "map.sacmap";
   const Outcome outcome = run_program({"fuse", frames().string(), "--first", "9", "--continue", half.string(), "--out",
                                        (folder_ / "parts").string(), "--quiet", "--no-pictures", "--no-mesh"});
