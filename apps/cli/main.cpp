@@ -33,6 +33,12 @@ int fail(const CLI::App& program, ExitStatus status, const std::string& text) {
   return static_cast<int>(status);
 }
 
+int usage(const CLI::App& program, const std::string& text) {
+  const auto chosen = program.get_subcommands();
+  const std::string help = chosen.empty() ? "saccade --help" : "saccade " + chosen.front()->get_name() + " --help";
+  return fail(program, ExitStatus::usage, text + " (see " + help + ")");
+}
+
 int run(int argc, char** argv, CLI::App& program) {
   saccade::cli::GlobalOptions global;
   saccade::cli::Action action;
@@ -47,11 +53,12 @@ int run(int argc, char** argv, CLI::App& program) {
   saccade::cli::add_sample(program, global, action);
   try {
     program.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    if (!program.get_subcommands().empty()) return usage(program, error.what());
+    return usage(program, "name what to do: fuse, nbv, info or sample");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
-    const auto chosen = program.get_subcommands();
-    const std::string help = chosen.empty() ? "saccade --help" : "saccade " + chosen.front()->get_name() + " --help";
-    return fail(program, ExitStatus::usage, std::string{error.what()} + " (see " + help + ")");
+    return usage(program, error.what());
   }
   const saccade::Result<int> status = action();
   if (status) return *status;

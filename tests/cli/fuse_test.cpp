@@ -97,7 +97,7 @@ TEST_F(Fuse, HintsAndTheDefaultTracking) {
 }
 
 TEST_F(Fuse, PrintsASummaryForPeople) {
-  const Outcome outcome = run_program(fuse(frames(), run()));
+  const Outcome outcome = run_program(fuse(frames(), run(), {"--no-pictures"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   for (const char* part : {"21 fused, 0 lost, 0 skipped", "forced (the folder has poses)", "mm median over", "MiB"}) {
     EXPECT_NE(outcome.out.find(part), std::string::npos) << part << "\n" << outcome.out;

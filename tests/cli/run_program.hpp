@@ -132,7 +132,7 @@ inline std::vector<std::string> names_in(const fs::path& folder) {
 /// A small sample sequence: 160×120, noisy.
 inline void make_sample(const fs::path& folder, int frames) {
   const Outcome outcome = run_program({"sample", "--out", folder.string(), "--frames", std::to_string(frames),
-                                       "--noise", "--image-size", "160,120", "--quiet"});
+                                       "--noise", "--image-size", "160,120", "--max-range", "1.5", "--quiet"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
 }
 
