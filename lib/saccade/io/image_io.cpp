@@ -5,7 +5,6 @@
 
 #include <algorithm>
 #include <cstring>
-#include <fstream>
 #include <memory>
 #include <string>
 #include <type_traits>
@@ -108,7 +107,9 @@ Status write_pixels(const std::filesystem::path& path, const Image<Pixel>& image
   PngPixels png{image.width(), image.height(), channels, sample_bits, {}};
   png.bytes.resize(image.size() * sizeof(Pixel));
   std::memcpy(png.bytes.data(), image.data(), png.bytes.size());
-  return write_file_atomically(path, encode_png(png));
+  const auto file = encode_png(png);
+  if (!file) return with_path(file.error(), path);
+  return write_file_atomically(path, *file);
 }
 
 }  // namespace
@@ -151,16 +152,7 @@ Result<Image16> read_png16(const std::filesystem::path& path) { return read_with
 Result<ColorImage> read_color(const std::filesystem::path& path) { return read_with(path, decode_color); }
 Result<MaskImage> read_mask(const std::filesystem::path& path) { return read_with(path, decode_mask); }
 
-Result<PngSize> read_png_size(const std::filesystem::path& path) {
-  constexpr std::size_t kHeaderBytes{33};
-  std::ifstream file{path, std::ios::binary};
-  if (!file) return Error{Errc::not_found, "cannot open", path.string()};
-  std::array<char, kHeaderBytes> head{};
-  file.read(head.data(), head.size());
-  auto size = png_size(std::as_bytes(std::span{head.data(), static_cast<std::size_t>(file.gcount())}));
-  if (!size) return with_path(size.error(), path);
-  return size;
-}
+Result<PngSize> read_png_size(const std::filesystem::path& path) { return read_with(path, png_size); }
 
 Status write_png16(const std::filesystem::path& path, const Image16& image) { return write_pixels(path, image, 1, 16); }
 Status write_png(const std::filesystem::path& path, const ColorImage& image) { return write_pixels(path, image, 3, 8); }

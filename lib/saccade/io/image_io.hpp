@@ -15,8 +15,8 @@ namespace saccade {
 /// Raw 16-bit samples of a single-channel PNG; what they mean says DepthEncoding.
 using Image16 = Image<std::uint16_t>;
 
-/// A damaged or cut file is corrupt_data, never half an image; unsupported: other kinds of pixels, interlaced PNG,
-/// CMYK JPEG, more than kMaxImageEdge pixels a side. Nothing is printed. Safe to call concurrently.
+/// A damaged or cut file is corrupt_data, never half an image; unsupported: other kinds of pixels, CMYK JPEG,
+/// more than kMaxImageEdge pixels a side. Nothing is printed. Safe to call concurrently.
 [[nodiscard]] Result<Image16> decode_png16(std::span<const std::byte> file);
 /// PNG or JPEG, told apart by their first bytes; RGB order, grey is spread over the channels, alpha is dropped.
 [[nodiscard]] Result<ColorImage> decode_color(std::span<const std::byte> file);
@@ -27,7 +27,7 @@ using Image16 = Image<std::uint16_t>;
 [[nodiscard]] Result<Image16> read_png16(const std::filesystem::path& path);
 [[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& path);
 [[nodiscard]] Result<MaskImage> read_mask(const std::filesystem::path& path);
-/// Size of a PNG from its first bytes.
+/// Size of a PNG; its pixels are not looked at.
 [[nodiscard]] Result<PngSize> read_png_size(const std::filesystem::path& path);
 
 /// Written atomically; the same bytes for the same image. io_failure naming the path; invalid_argument when empty.

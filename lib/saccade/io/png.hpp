@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// PNG in memory: inspect_png checks a file whole, decode_png and encode_png.
+// PNG in memory: png_size, decode_png and encode_png.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,15 +28,16 @@ struct PngSize {
   int height{0};
 };
 
-/// Size from the header alone (signature, IHDR and its checksum). corrupt_data, or unsupported beyond kMaxImageEdge.
+/// Size from what precedes the pixels. corrupt_data, or unsupported beyond kMaxImageEdge.
 [[nodiscard]] Result<PngSize> png_size(std::span<const std::byte> file);
 
-/// Decodes a whole PNG. Everything is checked: signature, chunk lengths and CRCs, IEND, exact length and Adler-32 of
-/// the pixels; a file that lacks one byte is corrupt_data with the byte offset. unsupported: interlaced files and sizes
-/// beyond kMaxImageEdge. Memory is bounded by what the compressed data can expand to.
+/// Decodes a whole PNG with libpng. Whatever libpng complains of, and a byte too few or too many, is corrupt_data with
+/// the offset reached; unsupported beyond kMaxImageEdge. Transparent colours (tRNS) and ancillary chunks do not count.
+/// Memory is bounded by what the file can expand to. Safe to call concurrently; nothing is printed.
 [[nodiscard]] Result<PngPixels> decode_png(std::span<const std::byte> file);
 
-/// PNG file of the given pixels; the same bytes every time. Expects sizes that agree.
-[[nodiscard]] std::vector<std::byte> encode_png(const PngPixels& pixels);
+/// PNG file of the given pixels; the same bytes every time (with the same libpng and zlib). Expects sizes that agree;
+/// unsupported when libpng refuses the image.
+[[nodiscard]] Result<std::vector<std::byte>> encode_png(const PngPixels& pixels);
 
 }  // namespace saccade

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <cstring>
 #include <iostream>
 #include <random>
 
@@ -42,14 +43,15 @@ TEST(Png, RoundTripsEveryKindOfPixels) {
         for (auto& b : pixels.bytes)
           b = value = static_cast<std::uint8_t>(value + (random() % (1U + 60U * (round % 3))));
         const auto file = encode_png(pixels);
-        const auto back = decode_png(file);
+        ASSERT_TRUE(file) << file.error().to_string();
+        const auto back = decode_png(*file);
         ASSERT_TRUE(back) << back.error().to_string();
         EXPECT_EQ(back->width, pixels.width);
         EXPECT_EQ(back->height, pixels.height);
         EXPECT_EQ(back->channels, channels);
         EXPECT_EQ(back->sample_bits, bits);
         EXPECT_EQ(back->bytes, pixels.bytes);
-        EXPECT_EQ(encode_png(pixels), file);
+        EXPECT_EQ(encode_png(pixels).value(), *file);
         ++cases;
       }
     }
@@ -91,40 +93,114 @@ TEST(Png, SmallSamplesAndPalettesAreExpanded) {
   EXPECT_EQ(colors->bytes, (std::vector<std::uint8_t>{'a', 'b', 'c', 'd', 'e', 'f'}));
 }
 
+TEST(Png, InterlacedFilesAreRead) {
+  // 2x2 pixels: the first, the sixth and the seventh pass of Adam7; the others are empty.
+  const std::string rows{"\0\1\0\2\0\3\4", 7};
+  const auto pixels = decode(make_png({.width = 2, .height = 2, .interlaced = true, .rows = rows}));
+  ASSERT_TRUE(pixels) << pixels.error().to_string();
+  EXPECT_EQ(pixels->bytes, (std::vector<std::uint8_t>{1, 2, 3, 4}));
+}
+
+TEST(Png, SixteenBitsComeInTheOrderOfTheMachine) {
+  const auto pixels =
+      decode(make_png({.width = 1, .height = 1, .bit_depth = 16, .rows = std::string{"\0\x12\x34", 3}}));
+  ASSERT_TRUE(pixels) << pixels.error().to_string();
+  ASSERT_EQ(pixels->bytes.size(), 2U);
+  std::uint16_t value = 0;
+  std::memcpy(&value, pixels->bytes.data(), 2);
+  EXPECT_EQ(value, 0x1234);
+}
+
+/// `good` with one more chunk after its header.
+std::string with_chunk(const PngSpec& good, const std::string& chunk) {
+  const std::size_t header_bytes = test::png_header(good).size();
+  return make_png(good).insert(header_bytes, chunk);
+}
+
+TEST(Png, AncillaryChunksDoNotChangePixelsButTheirDamageCounts) {
+  const PngSpec good{.width = 1, .height = 1, .rows = {"\0\x40", 2}};
+  const std::string gamma = test::png_chunk("gAMA", test::big_endian(22222));
+  const std::string see_through = test::png_chunk("tRNS", std::string{"\0\x40", 2});
+  for (const std::string& chunk : {gamma, see_through, test::png_chunk("iCCP", "no profile")}) {
+    const auto pixels = decode(with_chunk(good, chunk));
+    ASSERT_TRUE(pixels) << pixels.error().to_string();
+    EXPECT_EQ(pixels->channels, 1);
+    EXPECT_EQ(pixels->bytes, std::vector<std::uint8_t>{0x40});
+  }
+  std::string damaged = gamma;
+  damaged[9] ^= 1;
+  EXPECT_NE(message(with_chunk(good, damaged)).find("gAMA: CRC"), std::string::npos)
+      << message(with_chunk(good, damaged));
+}
+
 TEST(Png, DamageIsAnErrorThatSaysWhere) {
   const PngSpec good{.width = 2, .height = 2, .rows = {"\0\1\2\0\3\4", 6}};
   EXPECT_EQ(message(make_png(good)), "fine");
-  const auto with = [&](auto change) {
+  const auto expect_refused = [](const std::string& file, const char* words) {
+    const std::string said = message(file);
+    EXPECT_NE(said.find(words), std::string::npos) << said;
+    EXPECT_NE(said.find("byte "), std::string::npos) << said;
+  };
+  const auto expect = [&](auto change, const char* words) {
     PngSpec spec = good;
     change(spec);
-    return message(make_png(spec));
+    expect_refused(make_png(spec), words);
   };
-  EXPECT_NE(message("").find("not a PNG"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.width = 0; }).find("zero size"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.height = 16385; }).find("16384"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.height = 16384, s.width = 16384; }).find("too few bytes"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.bit_depth = 5; }).find("kind of pixels"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.color_type = 1; }).find("kind of pixels"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.interlaced = true; }).find("interlac"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.rows[0] = 7; }).find("row filter"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.rows.pop_back(); }).find("decompress"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.rows += 'x'; }).find("decompress"), std::string::npos);
-  EXPECT_NE(with([](PngSpec& s) { s.color_type = 3; }).find("palette"), std::string::npos);
-  EXPECT_NE(message(test::png_header(good) + test::png_chunk("IEND", "")).find("no pixels"), std::string::npos);
+  expect_refused("", "not a PNG");
+  expect([](PngSpec& s) { s.width = 0; }, "width is zero");
+  expect([](PngSpec& s) { s.height = 0; }, "height is zero");
+  expect([](PngSpec& s) { s.height = 16384, s.width = 16384; }, "too few bytes");
+  expect([](PngSpec& s) { s.bit_depth = 5; }, "bit depth");
+  expect([](PngSpec& s) { s.color_type = 1; }, "color type");
+  expect([](PngSpec& s) { s.rows[0] = 7; }, "filter");
+  expect([](PngSpec& s) { s.rows.pop_back(); }, "Not enough image data");
+  expect([](PngSpec& s) { s.rows += 'x'; }, "Too much image data");
+  expect([](PngSpec& s) { s.color_type = 3; }, "PLTE");
+  expect([](PngSpec& s) { s.color_type = 3, s.palette = "abcdef"; }, "palette");
+  expect_refused(make_png(good) + "x", "bytes after its end");
+  expect_refused(test::png_header(good) + test::png_chunk("IEND", ""), "out of place");
+  expect_refused(with_chunk(good, test::png_chunk("ABCD", "")), "ABCD");
+  std::string wrong_sum = test::stored_zlib(good.rows);
+  wrong_sum.back() ^= 1;
+  const std::string tail = test::png_chunk("IDAT", wrong_sum) + test::png_chunk("IEND", "");
+  expect_refused(test::png_header(good) + tail, "incorrect data check");
+}
+
+TEST(Png, SizesBeyondTheLimitAreNamed) {
+  for (const auto& [width, height] :
+       {std::pair{2U, 16385U}, std::pair{16385U, 2U}, std::pair{0x7FFFFFFFU, 0x7FFFFFFFU}}) {
+    const auto pixels = decode(make_png({.width = width, .height = height}));
+    ASSERT_FALSE(pixels);
+    EXPECT_EQ(pixels.error().code, Errc::unsupported);
+    const std::string size = std::to_string(width) + "x" + std::to_string(height);
+    EXPECT_NE(pixels.error().message.find(size), std::string::npos) << pixels.error().message;
+  }
+  EXPECT_EQ(message(make_png({.width = 0xFFFFFFFFU})).rfind("fine"), std::string::npos);
+  PngPixels wide{1000001, 1, 1, 8, std::vector<std::uint8_t>(1000001)};
+  const auto file = encode_png(wide);
+  ASSERT_FALSE(file);
+  EXPECT_NE(file.error().message.find("width"), std::string::npos) << file.error().message;
 }
 
 TEST(Png, EveryCutAndEveryFlippedByteIsNoticed) {
-  const auto file = read_text_file(sample("depth.png"));
-  ASSERT_TRUE(file) << file.error().to_string();
-  ASSERT_EQ(message(*file), "fine");
-  for (std::size_t size = 0; size < file->size(); ++size) {
-    EXPECT_NE(message(file->substr(0, size)), "fine") << size;
+  testing::internal::CaptureStderr();
+  testing::internal::CaptureStdout();
+  std::size_t tried = 0;
+  for (const char* name : {"depth.png", "grey.png"}) {
+    const auto file = read_text_file(sample(name));
+    ASSERT_TRUE(file) << file.error().to_string();
+    ASSERT_EQ(message(*file), "fine");
+    for (std::size_t i = 0; i < file->size(); ++i) {
+      EXPECT_NE(message(file->substr(0, i)), "fine") << name << " cut to " << i;
+      std::string flipped = *file;
+      flipped[i] = static_cast<char>(flipped[i] ^ 0x10);
+      EXPECT_NE(message(flipped), "fine") << name << " byte " << i;
+      ++tried;
+    }
   }
-  for (std::size_t i = 0; i < file->size(); ++i) {
-    std::string flipped = *file;
-    flipped[i] = static_cast<char>(flipped[i] ^ 0x10);
-    EXPECT_NE(message(flipped), "fine") << i;
-  }
+  EXPECT_EQ(testing::internal::GetCapturedStderr(), "");
+  EXPECT_EQ(testing::internal::GetCapturedStdout(), "");
+  EXPECT_GT(tried, 100U);
 }
 
 TEST(ImageIo, ReadsFilesOfOtherPrograms) {
