@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade info: versions, processor and back ends; with a map or a run, what is in it.
-#include <libdeflate.h>
+#include <png.h>
 #include <tbb/version.h>
+#include <zlib.h>
 #include <zstd.h>
 
 #include <Eigen/Core>
@@ -68,7 +69,8 @@ json dependencies() {
                                 NLOHMANN_JSON_VERSION_MINOR) "." SACCADE_TEXT(NLOHMANN_JSON_VERSION_PATCH)},
           {"cli11", CLI11_VERSION},
           {"zstd", ZSTD_versionString()},
-          {"libdeflate", LIBDEFLATE_VERSION_STRING}};
+          {"libpng", PNG_LIBPNG_VER_STRING},
+          {"zlib", zlibVersion()}};
 }
 
 json program_json(const Executor& executor) {

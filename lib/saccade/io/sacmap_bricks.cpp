@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/sacmap_bricks.hpp"
 
-#include <libdeflate.h>
+#include <zlib.h>
 
 #include <algorithm>
 
@@ -135,8 +135,11 @@ BrickRef unpack(const Record& record) {
 }  // namespace
 
 std::uint32_t crc32(std::span<const std::byte> head, std::span<const std::byte> tail) {
-  const std::uint32_t crc = libdeflate_crc32(0, head.data(), head.size());
-  return tail.empty() ? crc : libdeflate_crc32(crc, tail.data(), tail.size());  // a null pointer would start anew
+  const auto extend = [](uLong crc, std::span<const std::byte> bytes) {
+    // A null pointer would start anew.
+    return bytes.empty() ? crc : ::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
+  };
+  return static_cast<std::uint32_t>(extend(extend(0, head), tail));
 }
 
 const char* fault_of(const BrickRef& brick, const TsdfConfig& config) {
