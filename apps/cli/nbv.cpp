@@ -44,6 +44,7 @@ struct NbvOptions {
   std::filesystem::path poses_file;
   CameraOptions camera;
   ViewSphereConfig sphere;
+  std::optional<Eigen::Vector3d> up;  ///< default: world z
   GainConfig gain;
   std::optional<Box> workspace;
   std::size_t top{10};
@@ -64,10 +65,18 @@ struct Candidates {
   std::vector<ViewCandidate> sphere;  ///< empty when they came from a file
 };
 
+/// Turns the candidates about the sphere's centre, so that what was up (world z) points along `up`.
+void turn_upwards(std::vector<ViewCandidate>& candidates, const Eigen::Vector3d& center, const Eigen::Vector3d& up) {
+  const Eigen::Quaterniond turn = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  const Pose T_turn = Eigen::Translation3d{center} * turn * Eigen::Translation3d{-center};
+  for (ViewCandidate& candidate : candidates) candidate.T_world_camera = T_turn * candidate.T_world_camera;
+}
+
 Result<Candidates> make_candidates(const NbvOptions& options) {
   Candidates candidates;
   if (options.poses_file.empty()) {
     SACCADE_TRY(candidates.sphere, view_sphere(options.center(), options.sphere));
+    if (options.up) turn_upwards(candidates.sphere, options.center(), *options.up);
     candidates.poses = poses_of(candidates.sphere);
   } else {
     SACCADE_TRY(candidates.poses, read_poses(options.poses_file));
@@ -156,6 +165,7 @@ Status write_outputs(const NbvOptions& options, const RunFolder& out, const Tsdf
   for (const RankedView& view : ranked) scored.push_back({view.T_world_camera, static_cast<double>(view.gain)});
   ViewPictureConfig picture;
   picture.sensor = options.gain.sensor;
+  picture.overview.up = options.up.value_or(Eigen::Vector3d::UnitZ());
   picture.gain_unit = options.gain.count == GainCount::rays ? "rays" : "voxels";
   SACCADE_CHECK(write_png(out / "views.png", view_picture(map, options.region(), scored, executor, picture)));
   return write_json(out / "views.json", document);
@@ -246,6 +256,16 @@ void add_candidate_options(CLI::App& command, NbvOptions& options) {
           },
           "radius of the view sphere, metres; several separated by commas (default: 0.8)")
       ->type_name("METRES");
+  command
+      .add_option_function<std::string>(
+          "--up",
+          [&options](const std::string& text) {
+            const Eigen::Vector3d up = parse_point("--up", text);
+            if (!(up.norm() > 0.0)) usage_error("--up", "needs a direction, not a zero vector");
+            options.up = up.normalized();
+          },
+          "what is up in the map's world: the pole of the view sphere (default: 0,0,1)")
+      ->type_name("X,Y,Z");
 }
 
 void add_gain_options(CLI::App& command, NbvOptions& options) {

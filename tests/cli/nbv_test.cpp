@@ -2,6 +2,8 @@
 // saccade nbv, info and sample as a user runs them.
 #include <gtest/gtest.h>
 
+#include <cmath>
+
 #include "cli/run_program.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/io/sacmap.hpp"
@@ -106,6 +108,23 @@ TEST_F(Nbv, PosesFromAFileBoxesAndCounts) {
   const Outcome tilted = run_program(nbv(region + Arguments{"--tilt", "5", "--distance", "0.7,0.9"}));
   ASSERT_EQ(tilted.status, 0) << tilted.err;
   EXPECT_EQ(tilted.json().at("result").at("candidates"), 1920);
+}
+
+TEST_F(Nbv, TheViewSphereTurnsWithWhatIsUp) {
+  const auto views = [&](const std::string& up) {
+    const Outcome outcome = run_program(nbv({"--poi", "0,0,0.05", "--forget", "--all", "--up", up, "--json", "-"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.json().at("result").at("views");
+  };
+  const nlohmann::json upright = views("0,0,1");
+  const nlohmann::json twice = views("0,0,2");
+  EXPECT_EQ(upright, twice);
+  ASSERT_EQ(upright.size(), 960U);
+  for (const nlohmann::json& view : views("0,-3,0")) {
+    const double height_m = -view.at("T_world_camera").at(1).at(3).get<double>();
+    EXPECT_NEAR(height_m, 0.8 * std::sin(view.at("latitude_rad").get<double>()), 1e-9);
+  }
+  expect_failure(run_program(nbv({"--poi", "0,0,0", "--up", "0,0,0"})), 2, "nbv", {"--up"});
 }
 
 TEST_F(Nbv, SaysWhenNothingCanBeSeen) {
