@@ -43,6 +43,7 @@ echo "Recorded sequences"
 fuse rgbd_redkitchen forced
 fuse rgbd_redkitchen icp
 fuse rgbd_redkitchen hint
+fuse rgbd_realsense_box forced
 fuse rgbd_realsense_box icp
 fuse rgbd_eyeinhand_shelfA forced
 fuse rgbd_eyeinhand_shelfA icp
