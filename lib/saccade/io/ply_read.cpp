@@ -195,10 +195,14 @@ Result<PlyFile> parse_ply(std::span<const std::byte> file) {
   const std::string_view text = as_text(file);
   SACCADE_TRY(PlyHeader header, parse_ply_header(text));
   const std::string_view body = text.substr(header.body_offset);
-  if (header.format == PlyFormat::ascii) return read_elements(AsciiValues{body, header.body_line}, std::move(header));
+  if (header.format == PlyFormat::ascii) {
+    const AsciiValues values{body, header.body_line};
+    return read_elements(values, std::move(header));
+  }
   const bool little = header.format == PlyFormat::binary_little_endian;
   const bool swapped = little != (std::endian::native == std::endian::little);
-  return read_elements(BinaryValues{body, header.body_offset, swapped}, std::move(header));
+  const BinaryValues values{body, header.body_offset, swapped};
+  return read_elements(values, std::move(header));
 }
 
 Result<PlyFile> read_ply(const std::filesystem::path& path) {

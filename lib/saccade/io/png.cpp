@@ -84,7 +84,7 @@ class PngReader {
     out.bytes.resize(row_bytes * height());
     if (!read_rows(out.bytes.data(), row_bytes)) return corrupt(complaint_.text.data());
     if (offset_ != file_.size()) return corrupt("bytes after its end");
-    if (png_get_color_type(png_, info_) == PNG_COLOR_TYPE_PALETTE) return with_palette(std::move(out));
+    if (png_get_color_type(png_, info_) == PNG_COLOR_TYPE_PALETTE) return with_palette(out);
     return out;
   }
 
@@ -134,7 +134,7 @@ class PngReader {
   }
 
   /// libpng would turn indices beyond the palette into black.
-  [[nodiscard]] Result<PngPixels> with_palette(PngPixels indices) const {
+  [[nodiscard]] Result<PngPixels> with_palette(const PngPixels& indices) const {
     png_colorp colors = nullptr;
     int count = 0;
     png_get_PLTE(png_, info_, &colors, &count);
