@@ -34,7 +34,7 @@ void record_report(const Frame& frame, const FrameReport& report, FuseRecord& re
 
 }  // namespace
 
-FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
+FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode, const GapFilling& gaps,
                        const Executor& executor, ProgressBar& progress) {
   FuseRecord record;
   const auto skip = [&](const Error& error) {
@@ -50,7 +50,8 @@ FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, Tra
       continue;
     }
     if (!*next) break;
-    const Frame& frame = **next;
+    Frame& frame = **next;
+    frame.depth = fill_gaps(frame.depth, gaps);
     if (!resumed && frame.T_world_camera) reconstruction.resume(*frame.T_world_camera);  // a saved map is gone on with
     resumed = true;
     const auto report = reconstruction.process(frame, source.camera(), mode, frame.T_world_camera, executor);

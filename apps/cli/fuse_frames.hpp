@@ -10,6 +10,7 @@
 #include "progress_bar.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/map/reconstruction.hpp"
+#include "saccade/sensor/gap_filling.hpp"
 
 namespace saccade::cli {
 
@@ -36,8 +37,8 @@ struct FuseRecord {
   std::vector<double> integrate_ms;  ///< of all fused frames
 };
 
-/// Until the source ends or the program is interrupted.
+/// Gaps are filled in what is tracked and fused. Until the source ends or the program is interrupted.
 [[nodiscard]] FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
-                                     const Executor& executor, ProgressBar& progress);
+                                     const GapFilling& gaps, const Executor& executor, ProgressBar& progress);
 
 }  // namespace saccade::cli

@@ -82,6 +82,10 @@ void add_reading_options(CLI::App& command, FuseOptions& options) {
           "pixels to ignore, such as the camera's own robot: PNG (0 is ignored), JSON polygons, or U,V;U,V;U,V")
       ->type_name("FILE|POLYGON")
       ->allow_extra_args(false);
+  command
+      .add_option("--fill-gaps", options.gaps.max_gap_px,
+                  "close gaps of up to so many pixels between similar depths, as registered depth images have them")
+      ->type_name("PIXELS");
   command.add_option("--first", options.folder.first, "leave out so many frames at the beginning")->type_name("N");
   command.add_option("--count", options.folder.count, "use at most so many frames")->type_name("N");
   command.add_option("--every", options.folder.every_nth, "use every n-th frame")->type_name("N");
@@ -134,6 +138,7 @@ void check_fuse_options(FuseOptions& options) {
   require_positive(options.map.voxel_size_m, "--voxel-size");
   require_positive(options.map.truncation_vox, "--truncation");
   require_ok(options.map.validate(), "--voxel-size, --truncation");
+  require_ok(options.gaps.validate(), "--fill-gaps");
   if (options.depth_scale) {
     require_positive(*options.depth_scale, "--depth-scale");
     if (!options.folder.encoding) options.folder.encoding = DepthEncoding{};

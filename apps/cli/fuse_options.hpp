@@ -10,6 +10,7 @@
 #include "options.hpp"
 #include "saccade/io/rgbd_folder.hpp"
 #include "saccade/map/reconstruction.hpp"
+#include "saccade/sensor/gap_filling.hpp"
 
 namespace saccade::cli {
 
@@ -20,6 +21,7 @@ struct FuseOptions {
   CameraOptions camera;
   RgbdFolderConfig folder;
   std::optional<double> depth_scale;
+  GapFilling gaps;
   TsdfConfig map;
   bool map_size_given{false};
   std::filesystem::path continue_map;

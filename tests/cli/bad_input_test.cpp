@@ -154,6 +154,7 @@ TEST_F(BadInput, SizesOfZeroAndLess) {
   expect_refused(2, {"--min-range"}, {"--min-range=-1"});
   expect_refused(2, {"--min-range", "--max-range"}, {"--min-range", "3", "--max-range", "2"});
   expect_refused(2, {"--depth-scale", "positive"}, {"--depth-scale", "0"});
+  expect_refused(2, {"--fill-gaps"}, {"--fill-gaps=-1"});
   expect_refused(2, {"step"}, {"--every", "0"});
   expect_refused(2, {"number of frames"}, {"--count", "0"});
   expect_refused(2, {"--intrinsics", "positive"}, {"--intrinsics", "0,131,79.5,59.5"});
