@@ -30,13 +30,14 @@ step() {
   fi
 }
 
-fuse() {  # SEQUENCE TRACKING
+fuse() {  # SEQUENCE TRACKING OPTIONS…
   local sequence="$1" tracking="$2" name="fuse_$1_$2"
+  shift 2
   if [[ ! -d $data/$sequence ]]; then
     echo "  $name: skipped, $data/$sequence is not there"
     return
   fi
-  step "$name" build/release/saccade fuse "$data/$sequence" --tracking "$tracking" --out "$out/$name" --json "$out/$name.json"
+  step "$name" build/release/saccade fuse "$data/$sequence" --tracking "$tracking" --out "$out/$name" --json "$out/$name.json" "$@"
 }
 
 echo "Recorded sequences"
@@ -44,15 +45,15 @@ fuse rgbd_redkitchen forced
 fuse rgbd_redkitchen icp
 fuse rgbd_redkitchen hint
 fuse rgbd_realsense_box forced
-fuse rgbd_realsense_box icp
-fuse rgbd_eyeinhand_shelfA forced
-fuse rgbd_eyeinhand_shelfA icp
+fuse rgbd_realsense_box icp --fill-gaps 2  # registered depth: two pixels in three are empty
+fuse rgbd_eyeinhand_shelfA forced --fill-gaps 2
+fuse rgbd_eyeinhand_shelfA icp --fill-gaps 2
 
 echo "View evaluation: 960 poses, 640×480, a forgotten sphere of 0.2 m on a table"
 map="$out/fuse_rgbd_redkitchen_forced/map.sacmap"
 if [[ -f $map ]]; then
   for run in 1 2 3; do
-    step "nbv_redkitchen_$run" build/release/saccade nbv "$map" --poi="${SACCADE_NBV_POI:--1.13,0.14,2.08}" --radius 0.2 --forget \
+    step "nbv_redkitchen_$run" build/release/saccade nbv "$map" --poi="${SACCADE_NBV_POI:--0.47,-0.01,1.78}" --radius 0.2 --forget \
       --json "$out/nbv_redkitchen_$run.json"
   done
 else
