@@ -61,6 +61,8 @@ int run(int argc, char** argv, CLI::App& program) {
     return usage(program, error.what());
   }
   const saccade::Result<int> status = action();
+  std::cout.flush();
+  if (!std::cout) return fail(program, ExitStatus::bad_input, "standard output: cannot write the result");
   if (status) return *status;
   if (status.error().code == saccade::Errc::cancelled && saccade::cli::interrupted()) {
     fail(program, ExitStatus::done, "interrupted; nothing was written");

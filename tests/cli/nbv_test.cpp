@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <cmath>
+#include <cstdlib>
 
 #include "cli/run_program.hpp"
 #include "saccade/io/image_io.hpp"
@@ -202,6 +203,12 @@ TEST(Sample, IsSeededAndKeepsOtherFiles) {
   folder.write("mine/notes.txt", "keep");
   expect_failure(run_program({"sample", "--out", (folder / "mine").string()}), 3, "sample", {"other files"});
   expect_failure(run_program({"sample", "--out", (folder / "d").string(), "--frames", "0"}), 2, "sample", {"--frames"});
+}
+
+TEST(Program, ResultsThatCannotBePrintedAreAFailure) {
+  const std::string command = std::string{SACCADE_PROGRAM} + " info > /dev/full 2> /dev/null";
+  const int status = std::system(command.c_str());
+  EXPECT_EQ(WEXITSTATUS(status), 3);
 }
 
 TEST(Program, UsageErrorsAreOneLine) {
