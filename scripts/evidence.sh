@@ -45,9 +45,9 @@ fuse rgbd_redkitchen forced
 fuse rgbd_redkitchen icp
 fuse rgbd_redkitchen hint
 fuse rgbd_realsense_box forced
-fuse rgbd_realsense_box icp --fill-gaps 2  # registered depth: two pixels in three are empty
-fuse rgbd_eyeinhand_shelfA forced --fill-gaps 2
-fuse rgbd_eyeinhand_shelfA icp --fill-gaps 2
+fuse rgbd_realsense_box icp
+fuse rgbd_eyeinhand_shelfA forced
+fuse rgbd_eyeinhand_shelfA icp
 
 echo "View evaluation: 960 poses, 640×480, a forgotten sphere of 0.2 m on a table"
 map="$out/fuse_rgbd_redkitchen_forced/map.sacmap"

@@ -134,7 +134,7 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
               {"camera", camera_to_json(run.camera)},
               {"intrinsics_from", run.info.intrinsics_from},
               {"tracking", to_string(run.tracking)},
-              {"fill_gaps_px", run.options.gaps.max_gap_px},
+              {"fill_gaps_px", record.gaps.max_gap_px},
               {"interrupted", interrupted()},
               {"frames", record.fused.size()},
               {"lost", record.lost.size()},
@@ -231,7 +231,9 @@ Result<int> run_fuse(const FuseOptions& options, const GlobalOptions& global) {
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, kRunFiles, "run.json", options.force));
   run.timings_ms["open"] = stopwatch.lap_ms();
 
-  run.record = fuse_frames(*source, reconstruction, run.tracking, options.gaps, run.executor, run.progress);
+  std::optional<GapFilling> gaps;
+  if (options.fill_gaps_px) gaps = GapFilling{*options.fill_gaps_px};
+  run.record = fuse_frames(*source, reconstruction, run.tracking, gaps, run.executor, run.progress);
   run.timings_ms["frames"] = stopwatch.lap_ms();
   if (run.record.fused.empty()) return nothing_fused(run);
 

@@ -34,13 +34,14 @@ void record_report(const Frame& frame, const FrameReport& report, FuseRecord& re
 
 }  // namespace
 
-FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode, const GapFilling& gaps,
-                       const Executor& executor, ProgressBar& progress) {
+FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
+                       const std::optional<GapFilling>& gaps, const Executor& executor, ProgressBar& progress) {
   FuseRecord record;
   const auto skip = [&](const Error& error) {
     record.skipped.push_back(left_out(error));
     progress.note(record.skipped.back().name + ": skipped: " + record.skipped.back().reason);
   };
+  std::optional<GapFilling> chosen = gaps;
   bool resumed = reconstruction.map().content().grid.empty();
   for (std::size_t done = 0; !interrupted(); ++done) {
     progress.update("fusing", done, source.size().value_or(0));
@@ -51,7 +52,13 @@ FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, Tra
     }
     if (!*next) break;
     Frame& frame = **next;
-    frame.depth = fill_gaps(frame.depth, gaps);
+    if (!chosen) {
+      chosen = choose_gap_filling(frame.depth);
+      if (chosen->max_gap_px > 0)
+        progress.note("the depth images have holes throughout: gaps of up to 2 pixels are filled");
+    }
+    record.gaps = *chosen;
+    frame.depth = fill_gaps(frame.depth, *chosen);
     if (!resumed && frame.T_world_camera) reconstruction.resume(*frame.T_world_camera);  // a saved map is gone on with
     resumed = true;
     const auto report = reconstruction.process(frame, source.camera(), mode, frame.T_world_camera, executor);

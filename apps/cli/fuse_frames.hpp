@@ -35,10 +35,13 @@ struct FuseRecord {
   std::vector<double> raycast_ms;     ///< of the fused frames that were tracked
   std::vector<double> track_ms;
   std::vector<double> integrate_ms;  ///< of all fused frames
+  GapFilling gaps;                   ///< what was filled
 };
 
-/// Gaps are filled in what is tracked and fused. Until the source ends or the program is interrupted.
+/// Gaps are filled in what is tracked and fused; without `gaps`, the first frame decides. Until the source ends or the
+/// program is interrupted.
 [[nodiscard]] FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
-                                     const GapFilling& gaps, const Executor& executor, ProgressBar& progress);
+                                     const std::optional<GapFilling>& gaps, const Executor& executor,
+                                     ProgressBar& progress);
 
 }  // namespace saccade::cli

@@ -83,8 +83,9 @@ void add_reading_options(CLI::App& command, FuseOptions& options) {
       ->type_name("FILE|POLYGON")
       ->allow_extra_args(false);
   command
-      .add_option("--fill-gaps", options.gaps.max_gap_px,
-                  "close gaps of up to so many pixels between similar depths, as registered depth images have them")
+      .add_option("--fill-gaps", options.fill_gaps_px,
+                  "close gaps of up to so many pixels between similar depths, as registered depth images have them "
+                  "(default: 2 where they are all over the first frame, else 0)")
       ->type_name("PIXELS");
   command.add_option("--first", options.folder.first, "leave out so many frames at the beginning")->type_name("N");
   command.add_option("--count", options.folder.count, "use at most so many frames")->type_name("N");
@@ -138,7 +139,7 @@ void check_fuse_options(FuseOptions& options) {
   require_positive(options.map.voxel_size_m, "--voxel-size");
   require_positive(options.map.truncation_vox, "--truncation");
   require_ok(options.map.validate(), "--voxel-size, --truncation");
-  require_ok(options.gaps.validate(), "--fill-gaps");
+  if (options.fill_gaps_px) require_ok(GapFilling{*options.fill_gaps_px}.validate(), "--fill-gaps");
   if (options.depth_scale) {
     require_positive(*options.depth_scale, "--depth-scale");
     if (!options.folder.encoding) options.folder.encoding = DepthEncoding{};

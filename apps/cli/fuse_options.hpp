@@ -21,7 +21,7 @@ struct FuseOptions {
   CameraOptions camera;
   RgbdFolderConfig folder;
   std::optional<double> depth_scale;
-  GapFilling gaps;
+  std::optional<int> fill_gaps_px;  ///< default: as the first frame needs it
   TsdfConfig map;
   bool map_size_given{false};
   std::filesystem::path continue_map;

@@ -72,4 +72,15 @@ DepthImage fill_gaps(const DepthImage& depth, const GapFilling& filling) {
   return result;
 }
 
+GapFilling choose_gap_filling(const DepthImage& depth) {
+  constexpr GapFilling kNet{2};
+  constexpr double kLeastAdded{0.25};  // measured: 0.003 for a Kinect v1, 0.69 to 0.82 for warped images
+  const auto returns = [](const DepthImage& image) {
+    return std::count_if(image.pixels().begin(), image.pixels().end(), [](float z) { return z > 0.0F; });
+  };
+  const auto measured = static_cast<double>(returns(depth));
+  const auto added = static_cast<double>(returns(fill_gaps(depth, kNet))) - measured;
+  return measured > 0.0 && added >= kLeastAdded * measured ? kNet : GapFilling{};
+}
+
 }  // namespace saccade

@@ -21,4 +21,9 @@ struct GapFilling {
 /// Expects a valid configuration. O(pixels · max_gap_px).
 [[nodiscard]] DepthImage fill_gaps(const DepthImage& depth, const GapFilling& filling);
 
+/// What a camera's images need, judged by one of them: depth registered to another camera by forward warping comes as a
+/// net of returns with gaps of one or two pixels, and is filled (2); where that would add less than a quarter to the
+/// returns, nothing is filled.
+[[nodiscard]] GapFilling choose_gap_filling(const DepthImage& depth);
+
 }  // namespace saccade

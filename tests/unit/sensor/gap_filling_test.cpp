@@ -53,6 +53,18 @@ TEST(FillGaps, IsExactOnATiltedPlane) {
   EXPECT_EQ(compared, 600);
 }
 
+TEST(FillGaps, IsChosenForNetsOfReturnsAlone) {
+  DepthImage whole{60, 40, 1.0F};
+  for (int u = 0; u < 20; ++u) whole(u, 5) = whole(3 * u, 9) = 0.0F;  // a drop-out and some single pixels
+  EXPECT_EQ(choose_gap_filling(whole).max_gap_px, 0);
+  DepthImage net{60, 40};
+  for (int v = 0; v < 40; v += 2) {
+    for (int u = 0; u < 60; u += 2) net(u, v) = 1.0F;
+  }
+  EXPECT_EQ(choose_gap_filling(net).max_gap_px, 2);
+  EXPECT_EQ(choose_gap_filling(DepthImage{60, 40}).max_gap_px, 0);
+}
+
 TEST(FillGaps, RefusesAbsurdWidths) {
   EXPECT_FALSE((GapFilling{-1}).validate());
   EXPECT_FALSE((GapFilling{65}).validate());
