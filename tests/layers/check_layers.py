@@ -14,6 +14,9 @@ ALLOWED = {room: set(CHAIN[:position]) for position, room in enumerate(CHAIN)}
 ALLOWED["surfel"] = {"core", "sensor"}
 for above_surfel in ["segment", "attention", "view", "robot", "explore"]:
     ALLOWED[above_surfel].add("surfel")
+ALLOWED["scene"] = {"core", "sensor", "map"}
+for above_scene in ["robot", "explore"]:
+    ALLOWED[above_scene].add("scene")
 ALLOWED["annotate"] = {"core", "segment"}
 ALLOWED["cuda"] = {"core", "sensor", "map", "surfel", "view"}
 KNOWS_ALL = set(ALLOWED) - {"cuda"}

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/sensor/noise.hpp"
 
+#include <algorithm>
 #include <cmath>
 
 namespace saccade {
@@ -25,6 +26,13 @@ double normal(std::uint64_t key) {
   return sum - 6.0;
 }
 
+/// Share of the returns that are lost at an angle of incidence: 0 up to grazing_from_rad, then linear up to 1 at 90°.
+double lost_share(const DepthNoise& noise, double incidence_cosine) {
+  const double angle_rad = std::acos(std::clamp(incidence_cosine, 0.0, 1.0));
+  const double span_rad = 0.5 * std::numbers::pi - noise.grazing_from_rad;
+  return span_rad > 0.0 ? std::max(0.0, (angle_rad - noise.grazing_from_rad) / span_rad) : 0.0;
+}
+
 }  // namespace
 
 Status DepthNoise::validate() const {
@@ -33,12 +41,17 @@ Status DepthNoise::validate() const {
       return Error{Errc::invalid_argument, "its parameters must be finite and not negative", "depth noise"};
     }
   }
+  if (!(grazing_from_rad >= 0.0 && grazing_from_rad <= 0.5 * std::numbers::pi)) {
+    return Error{Errc::invalid_argument, "the grazing angle is within 0 and 90 degrees", "depth noise"};
+  }
   if (dropout > 1.0) return Error{Errc::invalid_argument, "the dropout is a share, at most 1", "depth noise"};
   return {};
 }
 
-DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uint64_t frame) {
+DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uint64_t frame,
+                      const Image<float>* incidence_cosine) {
   SACCADE_EXPECTS(noise.validate().ok());
+  SACCADE_EXPECTS(incidence_cosine == nullptr || incidence_cosine->size() == depth.size());
   constexpr std::uint64_t kNumbersPerPixel{16};
   DepthImage noisy = depth;
   const std::uint64_t frame_key = mixed(mixed(noise.seed) ^ frame);
@@ -51,7 +64,10 @@ DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uin
       const double steps = std::nearbyint(noise.disparity_step_per_m / measured);
       measured = steps > 0.0 ? noise.disparity_step_per_m / steps : 0.0;
     }
-    const bool lost = unit(mixed(key + 12)) < noise.dropout || !(measured > 0.0);
+    bool lost = unit(mixed(key + 12)) < noise.dropout || !(measured > 0.0);
+    if (incidence_cosine != nullptr) {
+      lost = lost || unit(mixed(key + 13)) < lost_share(noise, incidence_cosine->data()[i]);
+    }
     noisy.data()[i] = lost ? 0.0F : static_cast<float>(measured);
   }
   return noisy;

@@ -3,6 +3,7 @@
 // Depth noise for rendered images: axial, growing with the square of the distance; seeded.
 
 #include <cstdint>
+#include <numbers>
 
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/image.hpp"
@@ -10,14 +11,15 @@
 namespace saccade {
 
 /// Axial noise of a structured-light camera: σ(z) = base_m + quadratic_per_m · (z − offset_m)², with the figures that
-/// Nguyen, Izadi and Lovell (3DIMPVT 2012) measured on a Kinect v1. Optionally rounded to disparity steps and with
-/// pixels lost.
+/// Nguyen, Izadi and Lovell (3DIMPVT 2012) measured on a Kinect v1. Optionally rounded to disparity steps, with pixels
+/// lost anywhere, and with pixels lost on surfaces seen at a grazing angle.
 struct DepthNoise {
   double base_m{0.0012};
   double quadratic_per_m{0.0019};
   double offset_m{0.4};
-  double disparity_step_per_m{0.0};  ///< depth is rounded to multiples of 1/this in 1/z; 0: not rounded
-  double dropout{0.0};               ///< share of the returns that are lost
+  double disparity_step_per_m{0.0};                 ///< depth is rounded to multiples of 1/this in 1/z; 0: not rounded
+  double dropout{0.0};                              ///< share of the returns that are lost
+  double grazing_from_rad{0.5 * std::numbers::pi};  ///< angle of incidence from which returns get lost, all at 90°
   std::uint64_t seed{1};
 
   /// invalid_argument for negative or infinite parameters, or a dropout above 1.
@@ -30,7 +32,9 @@ struct DepthNoise {
 
 /// The image with noise; pixels without a return (≤ 0, NaN) are kept. Each pixel's noise depends only on the seed, the
 /// frame number and its index, so the result is the same on every machine and for every order of frames. Expects a
-/// valid noise. O(pixels).
-[[nodiscard]] DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uint64_t frame = 0);
+/// valid noise. incidence_cosine: of the angle between each pixel's ray and the surface's normal, of the image's size;
+/// without it, nothing is lost for grazing. O(pixels).
+[[nodiscard]] DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uint64_t frame = 0,
+                                    const Image<float>* incidence_cosine = nullptr);
 
 }  // namespace saccade

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/scene/ray_scene.hpp"
+
+#include <embree3/rtcore.h>
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector3d;
+
+struct DeviceRelease {
+  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
+};
+struct SceneRelease {
+  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
+};
+using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
+using Triangles = std::unique_ptr<RTCSceneTy, SceneRelease>;
+
+Error embree_failed(RTCDevice device) {
+  return Error{Errc::unavailable, "Embree failed with its error " + std::to_string(rtcGetDeviceError(device)), "scene"};
+}
+
+/// Copies the mesh into buffers that Embree owns; the geometry's number is the object's index.
+bool attach(RTCDevice device, RTCScene scene, const TriangleMesh& mesh, unsigned object) {
+  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
+  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
+                                                               3 * sizeof(float), mesh.vertices.size()));
+  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
+      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
+  const bool allocated = vertices != nullptr && indices != nullptr;
+  if (allocated) {
+    for (const Eigen::Vector3f& vertex : mesh.vertices) vertices = std::copy_n(vertex.data(), 3, vertices);
+    for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
+    rtcCommitGeometry(geometry);
+    rtcAttachGeometryByID(scene, geometry, object);
+  }
+  rtcReleaseGeometry(geometry);
+  return allocated;
+}
+
+}  // namespace
+
+struct RayScene::Impl {
+  Scene scene;
+  std::vector<ObjectMesh> meshes;
+  Device device;        // released after
+  Triangles triangles;  // its triangles
+
+  [[nodiscard]] Rgb8 color_at(const TriangleHit& hit, const Vector3d& p_world) const;
+};
+
+namespace {
+
+/// Towards the light; fixed, so that pictures of scenes compare.
+const Vector3d& to_light_world() {
+  static const Vector3d direction = Vector3d{0.3, -0.5, 0.8}.normalized();
+  return direction;
+}
+constexpr double kAmbient{0.35};
+
+/// In double precision: the plane of the triangle, crossed by the ray.
+TriangleHit exact_hit(const TriangleMesh& mesh, std::size_t object, std::size_t triangle, const Vector3d& origin,
+                      const Vector3d& direction) {
+  const auto& [ia, ib, ic] = mesh.triangles[triangle];
+  const Vector3d a = mesh.vertices[ia].cast<double>();
+  const Vector3d ab = mesh.vertices[ib].cast<double>() - a;
+  const Vector3d ac = mesh.vertices[ic].cast<double>() - a;
+  const Vector3d normal = ab.cross(ac);
+  TriangleHit hit;
+  hit.object = object;
+  hit.triangle = triangle;
+  hit.normal_world = normal.normalized();
+  hit.t = normal.dot(a - origin) / normal.dot(direction);
+  const Vector3d ap = origin + hit.t * direction - a;
+  const double area = normal.squaredNorm();
+  hit.barycentric = {normal.dot(ap.cross(ac)) / area, normal.dot(ab.cross(ap)) / area};
+  return hit;
+}
+
+}  // namespace
+
+Rgb8 RayScene::Impl::color_at(const TriangleHit& hit, const Vector3d& p_world) const {
+  const SceneObject& object = scene.objects[hit.object];
+  const TriangleMesh& mesh = meshes[hit.object].mesh;
+  Vector3d color;
+  if (mesh.colors.empty()) {
+    const Rgb8 plain = surface_color(object, object.T_world_object.inverse() * p_world);
+    color = Vector3d{double(plain[0]), double(plain[1]), double(plain[2])};
+  } else {
+    const auto& [a, b, c] = mesh.triangles[hit.triangle];
+    for (int k = 0; k < 3; ++k) {
+      const auto channel = static_cast<std::size_t>(k);
+      color[k] = mesh.colors[a][channel] * (1.0 - hit.barycentric.sum()) +
+                 mesh.colors[b][channel] * hit.barycentric.x() + mesh.colors[c][channel] * hit.barycentric.y();
+    }
+  }
+  const double lambert = std::max(0.0, hit.normal_world.dot(to_light_world()));
+  Rgb8 shaded{};
+  for (std::size_t k = 0; k < 3; ++k) {
+    const double value = color[static_cast<Eigen::Index>(k)] * (kAmbient + (1.0 - kAmbient) * lambert);
+    shaded[k] = static_cast<std::uint8_t>(std::clamp(std::lround(value), 0L, 255L));
+  }
+  return shaded;
+}
+
+RayScene::RayScene(std::shared_ptr<const Impl> impl) : impl_{std::move(impl)} {}
+
+Result<RayScene> RayScene::build(Scene scene) {
+  SACCADE_TRY(std::vector<ObjectMesh> meshes, true_meshes(scene));
+  Device device{rtcNewDevice(nullptr)};
+  if (!device) return embree_failed(nullptr);
+  Triangles triangles{rtcNewScene(device.get())};
+  if (!triangles) return embree_failed(device.get());
+  rtcSetSceneFlags(triangles.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between neighbouring triangles
+  for (std::size_t i = 0; i < meshes.size(); ++i) {
+    if (!attach(device.get(), triangles.get(), meshes[i].mesh, static_cast<unsigned>(i)))
+      return embree_failed(device.get());
+  }
+  rtcCommitScene(triangles.get());
+  if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) return embree_failed(device.get());
+  return RayScene{
+      std::make_shared<const Impl>(Impl{std::move(scene), std::move(meshes), std::move(device), std::move(triangles)})};
+}
+
+const Scene& RayScene::scene() const { return impl_->scene; }
+
+const std::vector<ObjectMesh>& RayScene::meshes() const { return impl_->meshes; }
+
+std::optional<TriangleHit> RayScene::cast(const Vector3d& origin, const Vector3d& direction) const {
+  RTCIntersectContext context;
+  rtcInitIntersectContext(&context);
+  RTCRayHit query{};
+  query.ray.org_x = static_cast<float>(origin.x());
+  query.ray.org_y = static_cast<float>(origin.y());
+  query.ray.org_z = static_cast<float>(origin.z());
+  query.ray.dir_x = static_cast<float>(direction.x());
+  query.ray.dir_y = static_cast<float>(direction.y());
+  query.ray.dir_z = static_cast<float>(direction.z());
+  query.ray.tfar = std::numeric_limits<float>::infinity();
+  query.ray.mask = ~0U;
+  query.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+  rtcIntersect1(impl_->triangles.get(), &context, &query);
+  if (query.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
+  const std::size_t object = query.hit.geomID;
+  const TriangleHit hit = exact_hit(impl_->meshes[object].mesh, object, query.hit.primID, origin, direction);
+  if (!(hit.t > 0.0) || !std::isfinite(hit.t)) return std::nullopt;
+  return hit;
+}
+
+ExactFrame RayScene::render(const PinholeCamera& camera, const Pose& T_world_camera, const Executor& executor) const {
+  SACCADE_EXPECTS(camera.validate().ok() && T_world_camera.matrix().allFinite());
+  ExactFrame frame{DepthImage{camera.width, camera.height}, ColorImage{camera.width, camera.height},
+                   Image<int>{camera.width, camera.height, -1}, Image<float>{camera.width, camera.height}};
+  const Vector3d origin = T_world_camera.translation();
+  const auto render_pixel = [&](int u, int v) {
+    // The ray has z = 1 in the camera's frame, so t is the depth.
+    const Vector3d direction = T_world_camera.linear() * camera.ray(u, v);
+    const auto hit = cast(origin, direction);
+    if (!hit || hit->t < camera.min_range_m || hit->t > camera.max_range_m) return;
+    frame.depth(u, v) = static_cast<float>(hit->t);
+    frame.color(u, v) = impl_->color_at(*hit, origin + hit->t * direction);
+    frame.object(u, v) = static_cast<int>(hit->object);
+    frame.incidence_cosine(u, v) = static_cast<float>(std::fabs(hit->normal_world.dot(direction)) / direction.norm());
+  };
+  constexpr std::size_t kRowsPerTask{16};
+  executor.parallel_for(static_cast<std::size_t>(camera.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      for (int u = 0; u < camera.width; ++u) render_pixel(u, v);
+    }
+  });
+  return frame;
+}
+
+}  // namespace saccade

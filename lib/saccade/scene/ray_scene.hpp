@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// RayScene: the triangles of a Scene, ready for rays; rendering of exact depth, colour and labels.
+
+#include <memory>
+#include <optional>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/scene/scene.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade {
+
+/// Where a ray meets a surface first, from outside or inside.
+struct TriangleHit {
+  double t{0.0};                                          ///< p = origin + t·direction
+  Eigen::Vector3d normal_world{Eigen::Vector3d::Zero()};  ///< of the triangle, outward, length 1
+  Eigen::Vector2d barycentric{Eigen::Vector2d::Zero()};   ///< weights of its second and third vertex
+  std::size_t object{0};
+  std::size_t triangle{0};  ///< within the object's mesh
+};
+
+struct ExactFrame {
+  DepthImage depth;               ///< metres along z; 0 where nothing is hit within the camera's range
+  ColorImage color;               ///< Lambert shaded; black where depth is 0
+  Image<int> object;              ///< index into Scene::objects; −1 where depth is 0
+  Image<float> incidence_cosine;  ///< of the angle between ray and normal; 0 where depth is 0
+};
+
+/// Immutable, cheap to copy, safe for concurrent use. Rays find their triangle with Embree in single precision, and the
+/// distance to it is then computed in double precision.
+class RayScene {
+ public:
+  /// Errors: those of Scene::validate, and unavailable when Embree does not start. O(triangles · log triangles).
+  [[nodiscard]] static Result<RayScene> build(Scene scene);
+
+  [[nodiscard]] const Scene& scene() const;
+  /// The triangles, one mesh per object in the scene's order.
+  [[nodiscard]] const std::vector<ObjectMesh>& meshes() const;
+
+  /// The nearest hit with t > 0 of origin + t·direction. Expects finite numbers and a direction that is not zero.
+  [[nodiscard]] std::optional<TriangleHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
+
+  /// What a perfect camera sees, pixel (u, v) along the ray through (u, v). Expects a valid camera and a finite pose.
+  /// O(pixels · log triangles), the same for every thread count.
+  [[nodiscard]] ExactFrame render(const PinholeCamera& camera, const Pose& T_world_camera,
+                                  const Executor& executor = {}) const;
+
+ private:
+  struct Impl;
+  explicit RayScene(std::shared_ptr<const Impl> impl);
+  std::shared_ptr<const Impl> impl_;
+};
+
+}  // namespace saccade

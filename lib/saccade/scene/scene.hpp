@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Scene: named objects with poses, colours and textures, and what an exploration of it is told.
+
+#include <string>
+#include <vector>
+
+#include "saccade/core/pose.hpp"
+#include "saccade/core/region.hpp"
+#include "saccade/scene/shape.hpp"
+
+namespace saccade {
+
+/// A pattern through the body, in its own frame, so that every face has some.
+struct Texture {
+  enum class Kind { plain, checker, stripes, speckle };
+  Kind kind{Kind::plain};
+  double size_m{0.03};     ///< edge of a square, width of a stripe (along z), size of a speckle
+  double darkening{0.55};  ///< brightness of the darker parts, relative to the colour
+};
+
+struct SceneObject {
+  std::string name;
+  Shape shape;
+  Pose T_world_object{Pose::Identity()};
+  Rgb8 color{200, 200, 200};
+  Texture texture{};
+  bool support{false};  ///< what objects stand on or lean at, such as a table or a wall; no object of interest
+};
+
+/// Lengths in metres, world frame with z up.
+struct Scene {
+  std::string name;
+  std::vector<SceneObject> objects;
+  Box workspace;                 ///< where space counts as unknown until it is seen
+  std::vector<Region> regions;   ///< where to look; none: the whole workspace
+  std::vector<Pose> scan;        ///< camera poses of the initial scan
+  double max_deviation_m{1e-4};  ///< of the tessellation
+
+  /// invalid_argument, naming the object: a bad shape, texture or pose, a name that is empty or not unique; no object,
+  /// an empty workspace, a bad region, or a region outside the workspace.
+  [[nodiscard]] Status validate() const;
+};
+
+/// The triangles of one object, world frame.
+struct ObjectMesh {
+  std::string name;
+  TriangleMesh mesh;
+  bool support{false};
+};
+
+/// The true surfaces, one mesh per object in the scene's order. Errors: those of Scene::validate. O(triangles).
+[[nodiscard]] Result<std::vector<ObjectMesh>> true_meshes(const Scene& scene);
+
+/// Colour of a point of the object's surface, before lighting.
+[[nodiscard]] Rgb8 surface_color(const SceneObject& object, const Eigen::Vector3d& p_object);
+
+}  // namespace saccade

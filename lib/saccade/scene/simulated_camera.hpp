@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SimulatedCamera: what a depth camera measures of a RayScene, noise included.
+
+#include "saccade/scene/ray_scene.hpp"
+#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/noise.hpp"
+
+namespace saccade {
+
+/// Noise as of a Kinect v1: axial noise growing with z², depth in steps of an eighth of a pixel's disparity
+/// (8 · 580 px · 0.075 m = 348 steps per 1/m), and returns lost from 70° of incidence on.
+[[nodiscard]] DepthNoise kinect_v1_noise(std::uint64_t seed = 1);
+
+struct SimulatedCameraConfig {
+  PinholeCamera camera;
+  std::optional<DepthNoise> noise{kinect_v1_noise()};  ///< none: exact depth
+
+  [[nodiscard]] Status validate() const;
+};
+
+/// One caller at a time. The n-th frame of a seed is the same on every machine and for every thread count, whatever was
+/// captured before it.
+class SimulatedCamera {
+ public:
+  /// Errors: those of SimulatedCameraConfig::validate.
+  [[nodiscard]] static Result<SimulatedCamera> create(RayScene scene, const SimulatedCameraConfig& config = {});
+
+  [[nodiscard]] const PinholeCamera& camera() const { return config_.camera; }
+  [[nodiscard]] const RayScene& scene() const { return scene_; }
+  /// Frames captured so far; the next one's number.
+  [[nodiscard]] std::size_t frames() const { return frames_; }
+  /// Goes on as if so many frames had been captured, for a run that is resumed.
+  void resume_at(std::size_t frames) { frames_ = frames; }
+
+  /// The next frame, from a pose. Expects a finite pose. Cost: RayScene::render.
+  [[nodiscard]] Frame capture(const Pose& T_world_camera, const Executor& executor = {});
+
+ private:
+  SimulatedCamera(RayScene scene, const SimulatedCameraConfig& config) : scene_{std::move(scene)}, config_{config} {}
+
+  RayScene scene_;
+  SimulatedCameraConfig config_;
+  std::size_t frames_{0};
+};
+
+}  // namespace saccade
