@@ -54,10 +54,11 @@ enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
                                PlyFormat format = PlyFormat::binary_little_endian);
 
 /// Vertices (float x y z, nx ny nz and uchar red green blue where there are) and faces (list uchar int
-/// vertex_indices), as MeshLab and CloudCompare read them. invalid_argument for indices out of range or numbers of
-/// normals or colours that disagree.
+/// vertex_indices), as MeshLab and CloudCompare read them; labels, one per vertex, become the property int label.
+/// invalid_argument for indices out of range or numbers of normals, colours or labels that disagree.
 [[nodiscard]] Status write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
-                                PlyFormat format = PlyFormat::binary_little_endian);
+                                PlyFormat format = PlyFormat::binary_little_endian,
+                                std::span<const std::int32_t> labels = {});
 /// Faces of more than three corners are split into fans. corrupt_data without x y z, or for indices out of range.
 [[nodiscard]] Result<TriangleMesh> mesh_from_ply(const PlyFile& file);
 [[nodiscard]] Result<TriangleMesh> read_mesh(const std::filesystem::path& path);

@@ -168,13 +168,18 @@ Status write_ply(const std::filesystem::path& path, const ColumnTable& vertices,
   return write_ply(path, PlyFile{{}, {PlyElement{"vertex", vertices, {}, {}}}}, format);
 }
 
-Status write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, PlyFormat format) {
+Status write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh, PlyFormat format,
+                  std::span<const std::int32_t> labels) {
   SACCADE_CHECK(check_mesh(mesh));
+  if (!labels.empty() && labels.size() != mesh.vertices.size()) {
+    return Error{Errc::invalid_argument, "there must be as many labels as vertices", path.string()};
+  }
   PlyElement vertices;
   vertices.name = "vertex";
   add_vectors(vertices.table, mesh.vertices, {"x", "y", "z"});
   if (!mesh.normals.empty()) add_vectors(vertices.table, mesh.normals, {"nx", "ny", "nz"});
   if (!mesh.colors.empty()) add_colors(vertices.table, mesh.colors);
+  if (!labels.empty()) vertices.table.add("label", labels);
   return write_ply(path, PlyFile{{"made by Saccade; metres"}, {std::move(vertices), face_element(mesh)}}, format);
 }
 

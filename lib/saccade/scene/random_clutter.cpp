@@ -1,0 +1,131 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/scene/random_clutter.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <numbers>
+#include <random>
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector2d;
+using Eigen::Vector3d;
+
+constexpr double kTwoPi{2.0 * std::numbers::pi};
+
+/// std::mt19937_64 is the same everywhere; the distributions of the standard library are not.
+class Dice {
+ public:
+  explicit Dice(std::uint64_t seed) : engine_{seed} {}
+  double within(double low, double high) {
+    return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1.0p-53);
+  }
+  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
+
+ private:
+  std::mt19937_64 engine_;
+};
+
+/// A body, and the radius of the circle around its foot.
+struct Body {
+  Shape shape;
+  double reach_m{0.0};
+};
+
+Body draw_body(Dice& dice, std::size_t kind) {
+  const double r = dice.within(0.03, 0.06);
+  const double h = dice.within(0.06, 0.20);
+  switch (kind % 7) {
+    case 0: {
+      const double x = 2.0 * r;
+      const double y = dice.within(0.05, 0.16);
+      return {BoxShape{{x, y, h}}, 0.5 * std::hypot(x, y)};
+    }
+    case 1: return {CylinderShape{r, h}, r};
+    case 2: return {SphereShape{r}, r};
+    case 3: return {ConeShape{r, dice.within(0.0, 0.8) * r, h}, r};
+    case 4: {
+      const double vertical = dice.within(0.3, 1.2);
+      const double horizontal = dice.within(0.3, 1.2);
+      const double y = dice.within(0.03, 0.06);
+      return {SuperquadricShape{{r, y, 0.5 * h}, vertical, horizontal}, std::hypot(r, y)};
+    }
+    case 5: return {RevolutionShape{{{0.8 * r, 0.0}, {r, 0.4 * h}, {0.5 * r, 0.8 * h}, {0.5 * r, h}}, 0.004}, r};
+    default: {
+      JugShape jug;
+      jug.body = RevolutionShape{{{1.2 * r, 0.0}, {1.2 * r, h}}, 0.005};
+      jug.handle_bottom_m = 0.2 * h;
+      jug.handle_top_m = 0.85 * h;
+      jug.handle_radius_m = 0.006;
+      jug.handle_reach_m = 0.03;
+      return {jug, 1.2 * r + jug.handle_reach_m + jug.handle_radius_m};
+    }
+  }
+}
+
+Rgb8 draw_color(Dice& dice) {
+  constexpr std::array<Rgb8, 8> kPalette{{{198, 60, 52},
+                                          {70, 120, 200},
+                                          {80, 170, 90},
+                                          {230, 190, 60},
+                                          {150, 90, 170},
+                                          {60, 170, 170},
+                                          {220, 130, 60},
+                                          {190, 190, 185}}};
+  return kPalette[dice.below(kPalette.size())];
+}
+
+}  // namespace
+
+Scene random_clutter(std::uint64_t seed, int objects) {
+  SACCADE_EXPECTS(objects >= 1 && objects <= 16);
+  const Vector2d kHalfTable_m{0.45, 0.28};  // where bodies stand, away from the edges
+  constexpr double kGap_m{0.03};
+  constexpr int kTries{200};
+  Dice dice{seed};
+  Scene scene;
+  scene.name = "clutter:" + std::to_string(seed);
+  scene.workspace = Box{{-0.6, -0.4, -0.03}, {0.6, 0.4, 0.40}};
+  SceneObject table;
+  table.name = "table";
+  table.shape = BoxShape{{1.2, 0.8, 0.04}};
+  table.T_world_object.translation() = Vector3d{0.0, 0.0, -0.04};
+  table.color = {196, 164, 120};
+  table.texture = {Texture::Kind::speckle, 0.04, 0.8};
+  table.support = true;
+  scene.objects.push_back(table);
+
+  std::vector<std::pair<Vector2d, double>> taken;
+  const std::size_t first_kind = dice.below(7);
+  for (int i = 0; i < objects; ++i) {
+    const Body body = draw_body(dice, first_kind + static_cast<std::size_t>(i));
+    for (int attempt = 0; attempt < kTries; ++attempt) {
+      const Vector2d foot{dice.within(-kHalfTable_m.x(), kHalfTable_m.x()),
+                          dice.within(-kHalfTable_m.y(), kHalfTable_m.y())};
+      const double turn_rad = dice.within(0.0, kTwoPi);
+      const bool free = std::all_of(taken.begin(), taken.end(), [&](const auto& other) {
+        return (other.first - foot).norm() > other.second + body.reach_m + kGap_m;
+      });
+      if (!free) continue;
+      taken.emplace_back(foot, body.reach_m);
+      SceneObject object;
+      object.name = "object-" + std::to_string(i + 1);
+      object.shape = body.shape;
+      object.T_world_object.translation() = Vector3d{foot.x(), foot.y(), 0.0};
+      object.T_world_object.linear() = Eigen::AngleAxisd{turn_rad, Vector3d::UnitZ()}.toRotationMatrix();
+      object.color = draw_color(dice);
+      object.texture = {Texture::Kind::checker, 0.025, 0.6};
+      scene.objects.push_back(std::move(object));
+      break;
+    }
+  }
+  for (const double azimuth_rad : {-2.0, -1.6, -1.2}) {
+    scene.scan.push_back(look_at({1.0 * std::cos(azimuth_rad), 1.0 * std::sin(azimuth_rad), 0.65}, {0.0, 0.0, 0.05}));
+  }
+  return scene;
+}
+
+}  // namespace saccade
