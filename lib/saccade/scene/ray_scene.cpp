@@ -1,55 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/scene/ray_scene.hpp"
 
-#include <embree3/rtcore.h>
-
 #include <algorithm>
 #include <cmath>
 #include <limits>
+
+#include "saccade/scene/embree_handles.hpp"
 
 namespace saccade {
 namespace {
 
 using Eigen::Vector3d;
 
-struct DeviceRelease {
-  void operator()(RTCDevice device) const { rtcReleaseDevice(device); }
-};
-struct SceneRelease {
-  void operator()(RTCScene scene) const { rtcReleaseScene(scene); }
-};
-using Device = std::unique_ptr<RTCDeviceTy, DeviceRelease>;
-using Triangles = std::unique_ptr<RTCSceneTy, SceneRelease>;
-
-Error embree_failed(RTCDevice device) {
-  return Error{Errc::unavailable, "Embree failed with its error " + std::to_string(rtcGetDeviceError(device)), "scene"};
-}
-
-/// Copies the mesh into buffers that Embree owns; the geometry's number is the object's index.
-bool attach(RTCDevice device, RTCScene scene, const TriangleMesh& mesh, unsigned object) {
-  RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
-  auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,
-                                                               3 * sizeof(float), mesh.vertices.size()));
-  auto* indices = static_cast<std::uint32_t*>(rtcSetNewGeometryBuffer(
-      geometry, RTC_BUFFER_TYPE_INDEX, 0, RTC_FORMAT_UINT3, 3 * sizeof(std::uint32_t), mesh.triangles.size()));
-  const bool allocated = vertices != nullptr && indices != nullptr;
-  if (allocated) {
-    for (const Eigen::Vector3f& vertex : mesh.vertices) vertices = std::copy_n(vertex.data(), 3, vertices);
-    for (const auto& triangle : mesh.triangles) indices = std::copy(triangle.begin(), triangle.end(), indices);
-    rtcCommitGeometry(geometry);
-    rtcAttachGeometryByID(scene, geometry, object);
-  }
-  rtcReleaseGeometry(geometry);
-  return allocated;
-}
-
 }  // namespace
 
 struct RayScene::Impl {
   Scene scene;
   std::vector<ObjectMesh> meshes;
-  Device device;        // released after
-  Triangles triangles;  // its triangles
+  EmbreeDevice device;    // released after
+  EmbreeScene triangles;  // its triangles
 
   [[nodiscard]] Rgb8 color_at(const TriangleHit& hit, const Vector3d& p_world) const;
 };
@@ -112,13 +81,13 @@ RayScene::RayScene(std::shared_ptr<const Impl> impl) : impl_{std::move(impl)} {}
 
 Result<RayScene> RayScene::build(Scene scene) {
   SACCADE_TRY(std::vector<ObjectMesh> meshes, true_meshes(scene));
-  Device device{rtcNewDevice(nullptr)};
+  EmbreeDevice device{rtcNewDevice(nullptr)};
   if (!device) return embree_failed(nullptr);
-  Triangles triangles{rtcNewScene(device.get())};
+  EmbreeScene triangles{rtcNewScene(device.get())};
   if (!triangles) return embree_failed(device.get());
   rtcSetSceneFlags(triangles.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between neighbouring triangles
   for (std::size_t i = 0; i < meshes.size(); ++i) {
-    if (!attach(device.get(), triangles.get(), meshes[i].mesh, static_cast<unsigned>(i)))
+    if (!attach_mesh(device.get(), triangles.get(), meshes[i].mesh, static_cast<unsigned>(i)))
       return embree_failed(device.get());
   }
   rtcCommitScene(triangles.get());

@@ -1,0 +1,171 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/explore/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Objects or supports in one mesh.
+TriangleMesh joined(const std::vector<ObjectMesh>& meshes, bool supports) {
+  TriangleMesh all;
+  for (const ObjectMesh& object : meshes) {
+    if (object.support != supports) continue;
+    const auto offset = static_cast<std::uint32_t>(all.vertices.size());
+    all.vertices.insert(all.vertices.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
+    for (const auto& [a, b, c] : object.mesh.triangles) all.triangles.push_back({a + offset, b + offset, c + offset});
+  }
+  return all;
+}
+
+/// Points of the mesh inside the workspace that do not lie on a support.
+std::vector<Eigen::Vector3f> points_off_supports(const Truth& truth, const TriangleMesh& mesh, double voxel_size_m) {
+  const Box& workspace = truth.scene().scene().workspace;
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3f& point : sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m()).points) {
+    const Vector3d p = point.cast<double>();
+    if (contains(workspace, p) && truth.to_supports_m(p, 2.0 * voxel_size_m) > voxel_size_m) points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Executor& executor) {
+  if (!(std::isfinite(spacing_m) && spacing_m > 0.0)) {
+    return Error{Errc::invalid_argument, "the spacing of the samples must be positive", "truth"};
+  }
+  const TriangleMesh objects = joined(scene.meshes(), false);
+  const TriangleMesh supports = joined(scene.meshes(), true);
+  if (objects.triangles.empty()) return Error{Errc::invalid_argument, "there is nothing but supports", "truth"};
+  SACCADE_TRY(MeshDistance object_distance, MeshDistance::build(objects));
+  Data data{scene, {}, spacing_m, {}, std::move(object_distance), std::nullopt};
+  for (const SceneObject& object : scene.scene().objects) {
+    Scene alone = scene.scene();
+    alone.objects = {object};
+    SACCADE_TRY(RayScene body, RayScene::build(std::move(alone)));
+    data.bodies.push_back(std::move(body));
+  }
+  if (!supports.triangles.empty()) {
+    SACCADE_TRY(data.supports, MeshDistance::build(supports));
+  }
+  const SurfaceSamples samples = sample_surfaces(scene.meshes(), spacing_m);
+  const std::vector<std::uint8_t> seen = observable(scene, samples, {}, executor);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const bool of_object = !scene.meshes()[samples.objects[i]].support;
+    if (seen[i] == 0 || !of_object || !contains(scene.scene().workspace, samples.points[i].cast<double>())) continue;
+    data.observable_points.push_back(samples.points[i]);
+  }
+  if (data.observable_points.empty()) {
+    return Error{Errc::invalid_argument, "no surface of an object can be seen in the workspace", "truth"};
+  }
+  return Truth{std::make_shared<const Data>(std::move(data))};
+}
+
+double Truth::to_objects_m(const Vector3d& p, double beyond_m) const { return data_->objects.distance_m(p, beyond_m); }
+
+double Truth::to_supports_m(const Vector3d& p, double beyond_m) const {
+  return data_->supports ? data_->supports->distance_m(p, beyond_m) : beyond_m;
+}
+
+bool Truth::inside_solid(const Vector3d& p) const {
+  // The ray upwards leaves a closed body that p lies in once more often than it enters it. Body by body, since where
+  // one stands on another their surfaces coincide.
+  constexpr double kStep_m{1e-6};
+  const auto inside = [&p](const RayScene& body) {
+    bool odd = false;
+    Vector3d from = p;
+    for (auto hit = body.cast(from, Vector3d::UnitZ()); hit; hit = body.cast(from, Vector3d::UnitZ())) {
+      from.z() += hit->t + kStep_m;
+      odd = !odd;
+    }
+    return odd;
+  };
+  return std::any_of(data_->bodies.begin(), data_->bodies.end(), inside);
+}
+
+std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+  const double e = map.config.voxel_size_m;
+  const Box& workspace = truth.scene().scene().workspace;
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Vector3d high = -low;
+  for (const ObjectMesh& object : truth.scene().meshes()) {
+    if (object.support) continue;
+    for (const Eigen::Vector3f& vertex : object.mesh.vertices) {
+      low = low.cwiseMin(vertex.cast<double>());
+      high = high.cwiseMax(vertex.cast<double>());
+    }
+  }
+  low = (low - Vector3d::Constant(kNearObjects_m)).cwiseMax(workspace.min);
+  high = (high + Vector3d::Constant(kNearObjects_m)).cwiseMin(workspace.max);
+  if (!(low.array() < high.array()).all()) return 0;
+  const Index3 first = voxel_at(low, e);
+  const Index3 last = voxel_at(high, e);
+  const auto counts = [&](const Index3& voxel) {
+    const Vector3d p = voxel_center(voxel, e);
+    return map.grid.state(voxel) == VoxelState::unknown && contains(workspace, p) &&
+           truth.to_objects_m(p, 2.0 * kNearObjects_m) <= kNearObjects_m && !truth.inside_solid(p);
+  };
+  const auto in_layer = [&](std::size_t layer) {
+    std::size_t count = 0;
+    Index3 voxel{0, 0, first.z + static_cast<std::int32_t>(layer)};
+    for (voxel.y = first.y; voxel.y <= last.y; ++voxel.y) {
+      for (voxel.x = first.x; voxel.x <= last.x; ++voxel.x) count += counts(voxel) ? 1 : 0;
+    }
+    return count;
+  };
+  std::vector<std::size_t> layers(static_cast<std::size_t>(last.z - first.z + 1));
+  executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t layer = begin; layer < end; ++layer) layers[layer] = in_layer(layer);
+  });
+  return std::accumulate(layers.begin(), layers.end(), std::size_t{0});
+}
+
+Metrics measure(const Truth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {
+  Metrics metrics;
+  metrics.unknown_near_objects = unknown_near_objects(truth, map, executor);
+  if (mesh.triangles.empty()) return metrics;
+  const auto built = MeshDistance::build(mesh);
+  SACCADE_EXPECTS(built.ok());
+  const MeshDistance& reconstruction = *built;
+  const Box& workspace = truth.scene().scene().workspace;
+  const double farthest_m = (workspace.max - workspace.min).norm();
+
+  const std::vector<Eigen::Vector3f>& wanted = truth.observable_points();
+  const auto share = [](double count, std::size_t of) { return count / static_cast<double>(of); };
+  std::vector<double> missing_m(wanted.size());
+  executor.parallel_for(wanted.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      missing_m[i] = reconstruction.distance_m(wanted[i].cast<double>(), farthest_m);
+  });
+  const auto within = [](const std::vector<double>& distances, double limit) {
+    return static_cast<double>(std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
+  };
+  metrics.coverage = share(within(missing_m, map.config.voxel_size_m), wanted.size());
+
+  const std::vector<Eigen::Vector3f> found = points_off_supports(truth, mesh, map.config.voxel_size_m);
+  if (found.empty()) return metrics;
+  std::vector<double> wrong_m(found.size());
+  executor.parallel_for(found.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d p = found[i].cast<double>();
+      wrong_m[i] = truth.to_supports_m(p, truth.to_objects_m(p, farthest_m));
+    }
+  });
+  const auto mean = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  metrics.accuracy_m = mean(wrong_m);
+  metrics.chamfer_m = 0.5 * (mean(wrong_m) + mean(missing_m));
+  const double precision = share(within(wrong_m, kFScoreDistance_m), wrong_m.size());
+  const double recall = share(within(missing_m, kFScoreDistance_m), missing_m.size());
+  metrics.f_score = precision + recall > 0.0 ? 2.0 * precision * recall / (precision + recall) : 0.0;
+  return metrics;
+}
+
+}  // namespace saccade

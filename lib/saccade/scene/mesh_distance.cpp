@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/scene/mesh_distance.hpp"
+
+#include <cmath>
+#include <limits>
+
+#include "saccade/scene/embree_handles.hpp"
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector3d;
+
+Vector3d closest_point_on_segment(const Vector3d& p, const Vector3d& a, const Vector3d& b) {
+  const Vector3d ab = b - a;
+  const double length2 = ab.squaredNorm();
+  return length2 > 0.0 ? Vector3d{a + std::clamp(ab.dot(p - a) / length2, 0.0, 1.0) * ab} : a;
+}
+
+}  // namespace
+
+Vector3d closest_point_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  // The foot of p on the plane, if it lies inside; else the nearest point of the three edges.
+  const Vector3d normal = (b - a).cross(c - a);
+  const double area2 = normal.squaredNorm();
+  if (area2 > 0.0) {
+    const Vector3d foot = p - normal.dot(p - a) / area2 * normal;
+    const bool inside = normal.dot((b - a).cross(foot - a)) >= 0.0 && normal.dot((c - b).cross(foot - b)) >= 0.0 &&
+                        normal.dot((a - c).cross(foot - c)) >= 0.0;
+    if (inside) return foot;
+  }
+  Vector3d nearest = closest_point_on_segment(p, a, b);
+  for (const Vector3d& candidate : {closest_point_on_segment(p, b, c), closest_point_on_segment(p, c, a)}) {
+    if ((candidate - p).squaredNorm() < (nearest - p).squaredNorm()) nearest = candidate;
+  }
+  return nearest;
+}
+
+struct MeshDistance::Impl {
+  TriangleMesh mesh;
+  EmbreeDevice device;    // released after
+  EmbreeScene triangles;  // its triangles
+};
+
+namespace {
+
+/// What one search knows: Embree visits the triangles near the query's ball, which shrinks to the nearest one found.
+struct Search {
+  const TriangleMesh& mesh;
+  Vector3d p;
+  double nearest_m;
+};
+
+bool visit(RTCPointQueryFunctionArguments* arguments) {
+  Search& search = *static_cast<Search*>(arguments->userPtr);
+  const auto& [a, b, c] = search.mesh.triangles[arguments->primID];
+  const auto corner = [&](std::uint32_t i) -> Vector3d { return search.mesh.vertices[i].cast<double>(); };
+  const double distance_m = (closest_point_on_triangle(search.p, corner(a), corner(b), corner(c)) - search.p).norm();
+  if (distance_m >= search.nearest_m) return false;
+  search.nearest_m = distance_m;
+  // Rounded up, and a little more: single precision must not lose a triangle that is nearer still.
+  arguments->query->radius =
+      std::nextafter(static_cast<float>(distance_m * (1.0 + 1e-5)), std::numeric_limits<float>::max());
+  return true;
+}
+
+}  // namespace
+
+MeshDistance::MeshDistance(std::shared_ptr<const Impl> impl) : impl_{std::move(impl)} {}
+
+Result<MeshDistance> MeshDistance::build(const TriangleMesh& mesh) {
+  if (mesh.triangles.empty()) return Error{Errc::invalid_argument, "the mesh has no triangles", "mesh distance"};
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t index : triangle) {
+      if (index < mesh.vertices.size()) continue;
+      return Error{Errc::invalid_argument, "a triangle names a vertex that is not there", "mesh distance"};
+    }
+  }
+  EmbreeDevice device{rtcNewDevice(nullptr)};
+  if (!device) return embree_failed(nullptr);
+  EmbreeScene triangles{rtcNewScene(device.get())};
+  rtcSetSceneFlags(triangles.get(), RTC_SCENE_FLAG_ROBUST);
+  if (!attach_mesh(device.get(), triangles.get(), mesh, 0)) return embree_failed(device.get());
+  rtcCommitScene(triangles.get());
+  if (rtcGetDeviceError(device.get()) != RTC_ERROR_NONE) return embree_failed(device.get());
+  return MeshDistance{std::make_shared<const Impl>(Impl{mesh, std::move(device), std::move(triangles)})};
+}
+
+double MeshDistance::distance_m(const Vector3d& p, double beyond_m) const {
+  Search search{impl_->mesh, p, beyond_m};
+  RTCPointQueryContext context;
+  rtcInitPointQueryContext(&context);
+  RTCPointQuery query{};
+  query.x = static_cast<float>(p.x());
+  query.y = static_cast<float>(p.y());
+  query.z = static_cast<float>(p.z());
+  query.radius = std::nextafter(static_cast<float>(beyond_m * (1.0 + 1e-5)), std::numeric_limits<float>::max());
+  rtcPointQuery(impl_->triangles.get(), &query, &context, visit, &search);
+  return search.nearest_m;
+}
+
+}  // namespace saccade

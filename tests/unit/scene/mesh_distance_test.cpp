@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/scene/mesh_distance.hpp"
+
+#include <gtest/gtest.h>
+
+#include <random>
+
+#include "saccade/scene/shape.hpp"
+#include "support/brute_force_distance.hpp"
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector3d;
+
+TEST(ClosestPoint, IsFoundInEveryRegionOfATriangle) {
+  const Vector3d a{0.0, 0.0, 0.0};
+  const Vector3d b{2.0, 0.0, 0.0};
+  const Vector3d c{0.0, 2.0, 0.0};
+  EXPECT_TRUE(closest_point_on_triangle({0.5, 0.5, 3.0}, a, b, c).isApprox(Vector3d{0.5, 0.5, 0.0}));
+  EXPECT_TRUE(closest_point_on_triangle({-1.0, -2.0, 1.0}, a, b, c).isZero());
+  EXPECT_TRUE(closest_point_on_triangle({5.0, -1.0, 0.0}, a, b, c).isApprox(b));
+  EXPECT_TRUE(closest_point_on_triangle({-1.0, 9.0, 0.0}, a, b, c).isApprox(c));
+  EXPECT_TRUE(closest_point_on_triangle({1.0, -1.0, 1.0}, a, b, c).isApprox(Vector3d{1.0, 0.0, 0.0}));
+  EXPECT_TRUE(closest_point_on_triangle({-1.0, 1.0, 1.0}, a, b, c).isApprox(Vector3d{0.0, 1.0, 0.0}));
+  EXPECT_TRUE(closest_point_on_triangle({2.0, 2.0, 1.0}, a, b, c).isApprox(Vector3d{1.0, 1.0, 0.0}));
+  EXPECT_TRUE(closest_point_on_triangle({1.0, 1.0, 0.0}, a, b, b).isApprox(Vector3d{1.0, 0.0, 0.0}));
+  EXPECT_TRUE(closest_point_on_triangle({1.0, 1.0, 0.0}, b, b, b).isApprox(b));
+}
+
+TEST(MeshDistance, EqualsASearchThroughAllTriangles) {
+  const TriangleMesh mesh = *tessellate(RevolutionShape{{{0.05, 0.0}, {0.06, 0.05}, {0.04, 0.12}}, 0.004}, 1e-3);
+  const MeshDistance distance = *MeshDistance::build(mesh);
+  std::mt19937_64 random{3};
+  std::uniform_real_distribution<double> across{-0.2, 0.2};
+  int beyond = 0;
+  for (int i = 0; i < 500; ++i) {
+    const Vector3d p{across(random), across(random), across(random)};
+    const double exact = test::brute_force_distance_m(mesh, p);
+    EXPECT_NEAR(distance.distance_m(p, 1.0), exact, 1e-12);
+    beyond += exact > 0.05 ? 1 : 0;
+    EXPECT_NEAR(distance.distance_m(p, 0.05), std::min(exact, 0.05), 1e-12);
+  }
+  EXPECT_GT(beyond, 50);
+}
+
+TEST(MeshDistance, RefusesWhatIsNoMesh) {
+  EXPECT_FALSE(MeshDistance::build(TriangleMesh{}));
+  TriangleMesh dangling;
+  dangling.vertices.resize(2, Eigen::Vector3f::Zero());
+  dangling.triangles = {{0, 1, 2}};
+  EXPECT_FALSE(MeshDistance::build(dangling));
+}
+
+}  // namespace
+}  // namespace saccade
