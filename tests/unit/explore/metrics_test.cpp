@@ -111,7 +111,8 @@ Metrics naive(const TsdfSnapshot& map, const TriangleMesh& mesh) {
   // Solids, as the scene was written down.
   const auto solid = [](const Vector3d& p) {
     const bool slab = std::fabs(p.x()) < 0.25 && std::fabs(p.y()) < 0.25 && p.z() > -0.02 && p.z() < 0.0;
-    const bool block = std::fabs(p.x() + 0.08) < 0.04 && std::fabs(p.y() - 0.031) < 0.03 && p.z() > 0.0 && p.z() < 0.101;
+    const bool block =
+        std::fabs(p.x() + 0.08) < 0.04 && std::fabs(p.y() - 0.031) < 0.03 && p.z() > 0.0 && p.z() < 0.101;
     const double outer = 0.03 + 0.005 * p.z() / 0.061;
     const double radius = std::hypot(p.x() - 0.08, p.y() + 0.02);
     const bool cup = p.z() > 0.0 && p.z() < 0.061 && radius < outer && (radius > outer - 0.006 || p.z() < 0.006);
