@@ -163,7 +163,7 @@ Result<int> run_export(const SceneOptions& options, const GlobalOptions& global)
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, kExportFiles, "scene.json", options.force));
   ProgressBar bar{global.quiet};
   bar.update("sampling the surface", 0, 2);
-  const SurfaceSamples samples = sample_surfaces(rays.meshes(), options.spacing_m);
+  const SurfaceSamples samples = sample_surfaces(rays.meshes(), options.spacing_m, rays.scene().workspace);
   bar.update("finding what can be seen", 1, 2);
   const std::vector<std::uint8_t> seen = observable(rays, samples, {}, executor);
   bar.finish();

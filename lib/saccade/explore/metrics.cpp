@@ -27,9 +27,8 @@ TriangleMesh joined(const std::vector<ObjectMesh>& meshes, bool supports) {
 std::vector<Eigen::Vector3f> points_off_supports(const Truth& truth, const TriangleMesh& mesh, double voxel_size_m) {
   const Box& workspace = truth.scene().scene().workspace;
   std::vector<Eigen::Vector3f> points;
-  for (const Eigen::Vector3f& point : sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m()).points) {
-    const Vector3d p = point.cast<double>();
-    if (contains(workspace, p) && truth.to_supports_m(p, 2.0 * voxel_size_m) > voxel_size_m) points.push_back(point);
+  for (const Eigen::Vector3f& point : sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m(), workspace).points) {
+    if (truth.to_supports_m(point.cast<double>(), 2.0 * voxel_size_m) > voxel_size_m) points.push_back(point);
   }
   return points;
 }
@@ -54,12 +53,10 @@ Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Execut
   if (!supports.triangles.empty()) {
     SACCADE_TRY(data.supports, MeshDistance::build(supports));
   }
-  const SurfaceSamples samples = sample_surfaces(scene.meshes(), spacing_m);
+  const SurfaceSamples samples = sample_surfaces({{"objects", objects, false}}, spacing_m, scene.scene().workspace);
   const std::vector<std::uint8_t> seen = observable(scene, samples, {}, executor);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    const bool of_object = !scene.meshes()[samples.objects[i]].support;
-    if (seen[i] == 0 || !of_object || !contains(scene.scene().workspace, samples.points[i].cast<double>())) continue;
-    data.observable_points.push_back(samples.points[i]);
+    if (seen[i] != 0) data.observable_points.push_back(samples.points[i]);
   }
   if (data.observable_points.empty()) {
     return Error{Errc::invalid_argument, "no surface of an object can be seen in the workspace", "truth"};
@@ -124,6 +121,34 @@ std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, co
     for (std::size_t layer = begin; layer < end; ++layer) layers[layer] = in_layer(layer);
   });
   return std::accumulate(layers.begin(), layers.end(), std::size_t{0});
+}
+
+NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,
+                       const Executor& executor) {
+  const double e = after.config.voxel_size_m;
+  const IndexBox box = voxels_with_center_in(truth.scene().scene().workspace, e);
+  if (box.empty()) return {};
+  std::vector<NewlyKnown> layers(static_cast<std::size_t>(box.hi.z - box.lo.z));
+  const auto add_layer = [&](std::size_t layer) {
+    Index3 voxel{0, 0, box.lo.z + static_cast<std::int32_t>(layer)};
+    for (voxel.y = box.lo.y; voxel.y < box.hi.y; ++voxel.y) {
+      for (voxel.x = box.lo.x; voxel.x < box.hi.x; ++voxel.x) {
+        if (after.grid.state(voxel) == VoxelState::unknown || before.grid.state(voxel) != VoxelState::unknown) continue;
+        ++layers[layer].voxels;
+        const bool near = truth.to_objects_m(voxel_center(voxel, e), 2.0 * kAtObject_m) <= kAtObject_m;
+        layers[layer].near_objects += near ? 1 : 0;
+      }
+    }
+  };
+  executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t layer = begin; layer < end; ++layer) add_layer(layer);
+  });
+  NewlyKnown total;
+  for (const NewlyKnown& layer : layers) {
+    total.voxels += layer.voxels;
+    total.near_objects += layer.near_objects;
+  }
+  return total;
 }
 
 Metrics measure(const Truth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {

@@ -64,4 +64,18 @@ constexpr double kNearObjects_m{0.03};
 /// Unknown voxels in the workspace outside the solids, their centre within kNearObjects_m of an object's surface.
 [[nodiscard]] std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, const Executor& executor);
 
+/// What one view made known.
+struct NewlyKnown {
+  std::size_t voxels{0};
+  std::size_t near_objects{0};  ///< of those, with the centre within kAtObject_m of an object's surface
+
+  /// At least a quarter of what became known lies at objects: the view looked at one.
+  [[nodiscard]] bool points_at_object() const { return voxels > 0 && 4 * near_objects >= voxels; }
+};
+constexpr double kAtObject_m{0.05};
+
+/// Compares the map before and after a view, within the workspace. O(voxels of the workspace).
+[[nodiscard]] NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,
+                                     const Executor& executor);
+
 }  // namespace saccade

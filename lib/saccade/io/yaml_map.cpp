@@ -38,7 +38,7 @@ Eigen::Vector3d yaml_point(const YAML::Node& node) {
   return {values[0], values[1], values[2]};
 }
 
-YamlMap::YamlMap(YAML::Node node, std::string what) : node_{std::move(node)}, what_{std::move(what)} {
+YamlMap::YamlMap(const YAML::Node& node, std::string what) : node_{node}, what_{std::move(what)} {
   if (!node_.IsMap()) yaml_problem(node_, what_ + " is a list of \"key: value\"");
   std::set<std::string> seen;
   for (const auto& entry : node_) {

@@ -31,7 +31,7 @@ struct YamlProblem {
 class YamlMap {
  public:
   /// `what` names the mapping in messages ("an object").
-  YamlMap(YAML::Node node, std::string what);
+  YamlMap(const YAML::Node& node, std::string what);
 
   /// The value of a key that must be there.
   [[nodiscard]] YAML::Node need(const std::string& key);

@@ -78,6 +78,24 @@ Rgb8 draw_color(Dice& dice) {
   return kPalette[dice.below(kPalette.size())];
 }
 
+/// Floor and walls around it, 6 m across: a depth camera that looks past the table sees them.
+void add_room(Scene& scene) {
+  const auto add = [&scene](const char* name, const Vector3d& size_m, const Vector3d& at) {
+    SceneObject part;
+    part.name = name;
+    part.shape = BoxShape{size_m};
+    part.T_world_object.translation() = at;
+    part.color = {205, 205, 198};
+    part.support = true;
+    scene.objects.push_back(std::move(part));
+  };
+  add("floor", {6.2, 6.2, 0.1}, {0.0, 0.0, -0.85});
+  add("wall-left", {0.1, 6.2, 3.0}, {-3.05, 0.0, -0.75});
+  add("wall-right", {0.1, 6.2, 3.0}, {3.05, 0.0, -0.75});
+  add("wall-front", {6.0, 0.1, 3.0}, {0.0, -3.05, -0.75});
+  add("wall-back", {6.0, 0.1, 3.0}, {0.0, 3.05, -0.75});
+}
+
 }  // namespace
 
 Scene random_clutter(std::uint64_t seed, int objects) {
@@ -97,6 +115,8 @@ Scene random_clutter(std::uint64_t seed, int objects) {
   table.texture = {Texture::Kind::speckle, 0.04, 0.8};
   table.support = true;
   scene.objects.push_back(table);
+
+  add_room(scene);
 
   std::vector<std::pair<Vector2d, double>> taken;
   const std::size_t first_kind = dice.below(7);

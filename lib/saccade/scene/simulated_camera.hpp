@@ -15,6 +15,9 @@ namespace saccade {
 struct SimulatedCameraConfig {
   PinholeCamera camera;
   std::optional<DepthNoise> noise{kinect_v1_noise()};  ///< none: exact depth
+  /// Returns from beyond the camera's maximum range, up to here, are not trusted as surfaces but show that the space
+  /// before it is free (d = −maximum range). Where nothing is hit at all there is no return, and nothing is learnt.
+  double reach_m{8.0};
 
   [[nodiscard]] Status validate() const;
 };

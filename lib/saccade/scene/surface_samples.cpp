@@ -31,9 +31,17 @@ std::vector<Vector3d> free_positions(const Box& workspace, const ObservabilityCo
   return positions;
 }
 
+/// Whether the bounds of the triangle abc do not meet the box.
+bool apart(const Box& box, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
+  const Vector3d low = a.cwiseMin(b).cwiseMin(c);
+  const Vector3d high = a.cwiseMax(b).cwiseMax(c);
+  return (low.array() > box.max.array()).any() || (high.array() < box.min.array()).any();
+}
+
 }  // namespace
 
-SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spacing_m) {
+SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spacing_m,
+                               const std::optional<Box>& within) {
   SACCADE_EXPECTS(spacing_m > 0.0);
   // The plastic number's sequence fills the unit square evenly.
   constexpr double kAlpha{0.7548776662466927};
@@ -48,6 +56,7 @@ SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spa
       const Vector3d ab = mesh.vertices[ib].cast<double>() - a;
       const Vector3d ac = mesh.vertices[ic].cast<double>() - a;
       const Vector3d normal = ab.cross(ac);
+      if (within && apart(*within, a, a + ab, a + ac)) continue;
       owed += 0.5 * normal.norm() / (spacing_m * spacing_m);
       for (; owed >= 1.0; owed -= 1.0, ++n) {
         double s = std::fmod(0.5 + kAlpha * static_cast<double>(n), 1.0);
@@ -56,7 +65,9 @@ SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spa
           s = 1.0 - s;
           t = 1.0 - t;
         }
-        samples.points.push_back((a + s * ab + t * ac).cast<float>());
+        const Vector3d p = a + s * ab + t * ac;
+        if (within && !contains(*within, p)) continue;
+        samples.points.push_back(p.cast<float>());
         samples.normals.push_back(normal.normalized().cast<float>());
         samples.objects.push_back(static_cast<std::uint32_t>(object));
       }

@@ -2,6 +2,7 @@
 #pragma once
 // Points spread over the true surfaces of a scene, and which of them any camera could see at all.
 
+#include <optional>
 #include <vector>
 
 #include "saccade/scene/ray_scene.hpp"
@@ -15,9 +16,10 @@ struct SurfaceSamples {
   std::vector<std::uint32_t> objects;    ///< index into Scene::objects
 };
 
-/// About one point per spacing_m², spread evenly over the area of each mesh, in the order of its triangles. Expects a
-/// positive spacing. The same on every machine.
-[[nodiscard]] SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spacing_m);
+/// About one point per spacing_m², spread evenly over the area of each mesh, in the order of its triangles; only points
+/// in the box, where one is given. Expects a positive spacing. The same on every machine.
+[[nodiscard]] SurfaceSamples sample_surfaces(const std::vector<ObjectMesh>& meshes, double spacing_m,
+                                             const std::optional<Box>& within = {});
 
 struct ObservabilityConfig {
   int positions{800};                ///< of a free camera, evenly over a half sphere

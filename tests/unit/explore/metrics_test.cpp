@@ -89,7 +89,7 @@ Metrics naive(const TsdfSnapshot& map, const TriangleMesh& mesh) {
     missing.push_back(test::brute_force_distance_m(mesh, p.cast<double>()));
   }
   std::vector<double> wrong;
-  for (const Eigen::Vector3f& point : sample_surfaces({{"", mesh, false}}, kSpacing_m).points) {
+  for (const Eigen::Vector3f& point : sample_surfaces({{"", mesh, false}}, kSpacing_m, workspace).points) {
     const Vector3d p = point.cast<double>();
     const double to_supports = test::brute_force_distance_m(supports, p);
     if (!contains(workspace, p) || to_supports <= e) continue;

@@ -134,7 +134,7 @@ TEST(SceneYaml, ObjectsOfBuiltinScenesDoNotRunIntoEachOther) {
   for (const std::string& name : names) {
     const auto scene = find_scene(name);
     ASSERT_TRUE(scene);
-    const SurfaceSamples samples = sample_surfaces(*true_meshes(*scene), 0.01);
+    const SurfaceSamples samples = sample_surfaces(*true_meshes(*scene), 0.01, scene->workspace);
     for (const SceneObject& object : scene->objects) {
       if (object.support) continue;
       Scene alone = *scene;

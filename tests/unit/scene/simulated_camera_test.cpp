@@ -95,6 +95,17 @@ TEST(SimulatedCamera, GrazingReturnsAreLostFromTheAngleOn) {
   EXPECT_NEAR(lost, expected, 4.0 * std::sqrt(expected));
 }
 
+TEST(SimulatedCamera, WhatLiesBeyondTheRangeShowsFreeSpace) {
+  SimulatedCameraConfig config;
+  config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.2, 1.5};
+  config.reach_m = 2.5;
+  SimulatedCamera camera = *SimulatedCamera::create(plate(), config);
+  EXPECT_EQ(camera.capture(above(2.0)).depth, (DepthImage{160, 120, -1.5F}));
+  EXPECT_EQ(camera.capture(above(3.0)).depth, (DepthImage{160, 120}));
+  const DepthImage near = camera.capture(above(1.0)).depth;
+  for (const float z : near.pixels()) EXPECT_GT(z, 0.9F);
+}
+
 TEST(SimulatedCamera, SeedsAndFrameNumbersDecideTheNoise) {
   SimulatedCamera one = camera_with(kinect_v1_noise(7));
   SimulatedCamera same = camera_with(kinect_v1_noise(7));
