@@ -96,6 +96,16 @@ json view_json(ExploreRun& run, const ExploredView& view, const TsdfSnapshot& be
             {"fusion", view.fusion_ms}}}};
 }
 
+/// An earlier, longer run may have left more pictures than this one will write over.
+Status remove_pictures(const RunFolder& out) {
+  std::vector<std::string> names;
+  for (const auto& entry : std::filesystem::directory_iterator{out.path()}) {
+    const std::string name = entry.path().filename().string();
+    if (name.starts_with("view-") && name.ends_with(".png")) names.push_back(name);
+  }
+  return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
+}
+
 /// Regions of the scene, or its whole workspace; never the true objects.
 std::vector<Region> regions_of(const Scene& scene) {
   return scene.regions.empty() ? std::vector<Region>{scene.workspace} : scene.regions;
@@ -131,7 +141,7 @@ Result<ExplorationResult> scan_and_explore(ExploreRun& run, const GlobalOptions&
     return drawn.ok() && !interrupted();
   };
   auto result = explore(run.map, cell, regions_of(scene), config, run.executor, on_view);
-  SACCADE_CHECK(drawn);
+  if (!drawn.ok()) return drawn.error();
   return result;
 }
 
@@ -159,6 +169,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   SACCADE_TRY(Scene scene, find_scene(options.scene));
   SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "run.json", options.force));
+  SACCADE_CHECK(remove_pictures(out));
   constexpr double kTruthSpacing_m{0.004};
   SACCADE_TRY(Truth truth, Truth::build(rays, kTruthSpacing_m, executor));
   TsdfConfig config = options.map;

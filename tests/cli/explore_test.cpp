@@ -50,6 +50,16 @@ TEST(ExploreCommand, GoesFromViewToView) {
     EXPECT_TRUE(fs::exists(run / picture));
 }
 
+TEST(ExploreCommand, AShorterRunLeavesNoPicturesOfALongerOne) {
+  const TempFolder folder;
+  const fs::path run = folder / "run";
+  ASSERT_EQ(run_program(explore(run, {"--max-views", "1", "--min-gain", "5"})).status, 0);
+  EXPECT_TRUE(fs::exists(run / "view-01.png"));
+  ASSERT_EQ(run_program(explore(run, {"--max-views", "0"})).status, 0);
+  EXPECT_TRUE(fs::exists(run / "view-00.png"));
+  EXPECT_FALSE(fs::exists(run / "view-01.png"));
+}
+
 TEST(ExploreCommand, TheSeedDecidesAndTheThreadsDoNot) {
   const TempFolder folder;
   const auto views = [&](const char* name, const char* seed, const char* threads) {
