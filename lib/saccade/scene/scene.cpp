@@ -13,6 +13,8 @@ using Eigen::Vector3d;
 
 // Keeps patterns from flickering on faces that lie on their lattice.
 constexpr double kLatticeShift{0.37};
+// Beyond it, single precision is coarser than a tenth of a millimetre.
+constexpr float kFarthest_m{1000.0F};
 
 Error bad(const std::string& what, const std::string& where) { return Error{Errc::invalid_argument, what, where}; }
 
@@ -91,6 +93,10 @@ Result<std::vector<ObjectMesh>> true_meshes(const Scene& scene) {
     SACCADE_TRY(TriangleMesh mesh, tessellate(object.shape, scene.max_deviation_m));
     for (Eigen::Vector3f& vertex : mesh.vertices)
       vertex = (object.T_world_object * vertex.cast<double>()).cast<float>();
+    const auto near = [](const Eigen::Vector3f& vertex) { return vertex.allFinite() && vertex.norm() <= kFarthest_m; };
+    if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), near)) {
+      return bad("it reaches farther than a kilometre from the origin", "object " + object.name);
+    }
     for (Eigen::Vector3f& normal : mesh.normals) normal = object.T_world_object.linear().cast<float>() * normal;
     meshes.push_back({object.name, std::move(mesh), object.support});
   }

@@ -49,7 +49,8 @@ struct ObjectMesh {
   bool support{false};
 };
 
-/// The true surfaces, one mesh per object in the scene's order. Errors: those of Scene::validate. O(triangles).
+/// The true surfaces, one mesh per object in the scene's order. Errors: those of Scene::validate, and
+/// invalid_argument for an object that reaches farther than a kilometre from the origin. O(triangles).
 [[nodiscard]] Result<std::vector<ObjectMesh>> true_meshes(const Scene& scene);
 
 /// Colour of a point of the object's surface, before lighting.

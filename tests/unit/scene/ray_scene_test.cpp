@@ -138,6 +138,8 @@ TEST(Scene, SaysWhichObjectIsWrong) {
   refused(scene_of({}), "needs objects");
   refused(scene_of({object("flat", BoxShape{{1.0, 0.0, 1.0}}, Vector3d::Zero())}), "object flat");
   refused(scene_of({good.objects[0], good.objects[0]}), "two objects of this name");
+  refused(scene_of({object("sun", SphereShape{1e300}, Vector3d::Zero())}), "object sun");
+  refused(scene_of({object("moon", SphereShape{0.1}, {1e200, 0.0, 0.0})}), "farther than a kilometre");
   Scene skewed = good;
   skewed.objects[0].T_world_object.linear()(0, 0) = 2.0;
   refused(skewed, "no rigid motion");
