@@ -1,7 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_folder.hpp"
 
+#include <fcntl.h>
+#include <sys/file.h>
+#include <unistd.h>
+
 #include <algorithm>
+#include <cerrno>
 #include <utility>
 
 #include "saccade/io/atomic_file.hpp"
@@ -53,6 +58,10 @@ Result<RunFolder> RunFolder::open(const fs::path& path, std::span<const std::str
     return Error{Errc::io_failure, "cannot make the folder: " + code.message(), path.string()};
   }
   RunFolder folder{path, !there};
+  folder.lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
+  if (folder.lock_ >= 0 && ::flock(folder.lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    return Error{Errc::invalid_argument, "another run is writing into this folder; choose another one", path.string()};
+  }
   if (Status writable = probe(path); !writable) {
     Error error = writable.error();
     error.context = path.string();
@@ -62,9 +71,10 @@ Result<RunFolder> RunFolder::open(const fs::path& path, std::span<const std::str
 }
 
 RunFolder::RunFolder(RunFolder&& other) noexcept
-    : path_{std::move(other.path_)}, made_{std::exchange(other.made_, false)} {}
+    : path_{std::move(other.path_)}, made_{std::exchange(other.made_, false)}, lock_{std::exchange(other.lock_, -1)} {}
 
 RunFolder::~RunFolder() {
+  if (lock_ >= 0) ::close(lock_);
   std::error_code ignored;
   if (made_) fs::remove(path_, ignored);  // only succeeds when it is empty
 }

@@ -17,7 +17,8 @@ class RunFolder {
  public:
   /// Makes the folder, or takes one that is empty, holds an earlier run (nothing but `own_files`, or a JSON document
   /// `marker`) or is forced. A write of some size is tried, so that a folder that cannot be written and a full disk
-  /// show before the work. invalid_argument for foreign content; io_failure.
+  /// show before the work. The folder is locked while this lives. invalid_argument for foreign content, or when another
+  /// run holds the lock; io_failure.
   [[nodiscard]] static Result<RunFolder> open(const std::filesystem::path& path,
                                               std::span<const std::string_view> own_files, std::string_view marker,
                                               bool force);
@@ -34,6 +35,7 @@ class RunFolder {
   RunFolder(std::filesystem::path path, bool made) : path_{std::move(path)}, made_{made} {}
   std::filesystem::path path_;
   bool made_;
+  int lock_{-1};  // a descriptor of the folder itself, so that the lock leaves no file and ends with the process
 };
 
 }  // namespace saccade::cli

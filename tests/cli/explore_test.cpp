@@ -3,6 +3,8 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <csignal>
+#include <fstream>
 
 #include "run_program.hpp"
 #include "saccade/io/json_io.hpp"
@@ -74,6 +76,102 @@ TEST(ExploreCommand, TheSeedDecidesAndTheThreadsDoNot) {
   const std::string first = views("a", "3", "1");
   EXPECT_EQ(first, views("b", "3", "3"));
   EXPECT_NE(first, views("c", "4", "1"));
+}
+
+/// What a run found, without how long it took.
+nlohmann::json figures(const fs::path& run) {
+  nlohmann::json result = nlohmann::json::parse(text_of(run / "run.json")).at("result");
+  result.erase("out");
+  for (nlohmann::json& view : result.at("views")) view.erase("ms");
+  return result;
+}
+
+TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
+  const TempFolder folder;
+  const Arguments options{"--max-views", "3", "--min-gain", "5"};
+  ASSERT_EQ(run_program(explore(folder / "whole", options)).status, 0);
+
+  const fs::path killed = folder / "killed";
+  Arguments loud = explore(killed, options);
+  loud.erase(std::find(loud.begin(), loud.end(), "--quiet"));
+  {
+    RunningProgram program{loud};
+    ASSERT_TRUE(program.wait_for("exploring: 2"));
+    program.send(SIGKILL);
+    EXPECT_EQ(program.finish().status, -1);
+  }
+  ASSERT_TRUE(fs::exists(killed / "journal.json"));
+  EXPECT_FALSE(fs::exists(killed / "run.json"));
+  expect_failure(run_program(explore(killed, options)), 3, "explore", {"interrupted run", "--resume", "--force"});
+  expect_failure(run_program(explore(killed, options + Arguments{"--resume", "--seed", "7"})), 3, "explore",
+                 {"seed 1, not 7"});
+  const Outcome resumed = run_program(explore(killed, options + Arguments{"--resume"}));
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_EQ(figures(killed), figures(folder / "whole"));
+  EXPECT_EQ(text_of(killed / "map.sacmap"), text_of(folder / "whole" / "map.sacmap"));
+  EXPECT_EQ(names_in(killed), names_in(folder / "whole"));  // no journal and no checkpoint are left
+  expect_failure(run_program(explore(killed, options + Arguments{"--resume"})), 3, "explore", {"no interrupted run"});
+}
+
+TEST(ExploreCommand, CtrlCKeepsWhatWasSeen) {
+  const TempFolder folder;
+  const fs::path run = folder / "run";
+  Arguments loud = explore(run, {"--max-views", "50", "--min-gain", "1"});
+  loud.erase(std::find(loud.begin(), loud.end(), "--quiet"));
+  RunningProgram program{loud};
+  ASSERT_TRUE(program.wait_for("exploring: 1"));
+  expect_failure(run_program(explore(run, {"--force"})), 3, "explore", {"another run"});
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130);
+  EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
+  const nlohmann::json result = figures(run);
+  EXPECT_EQ(result.at("interrupted"), true);
+  EXPECT_EQ(result.at("stopped_because"), "cancelled");
+  EXPECT_GE(result.at("views").size(), 1U);
+  EXPECT_TRUE(load_map(run / "map.sacmap"));
+}
+
+TEST(ExploreCommand, ADamagedJournalIsAnErrorAndNotACrash) {
+  const TempFolder folder;
+  const fs::path run = folder / "run";
+  const Arguments options{"--max-views", "2", "--min-gain", "5", "--no-pictures"};
+  ASSERT_EQ(run_program(explore(run, options + Arguments{"--step"}), 0, "y\ny\ny\nq\n").status, 0);
+  const std::string good = text_of(run / "journal.json");
+  const auto resumed_with = [&](const std::string& journal) {
+    std::ofstream{run / "journal.json"} << journal;
+    return run_program(explore(run, options + Arguments{"--resume"}));
+  };
+  expect_failure(resumed_with(good.substr(0, good.size() / 2)), 3, "explore", {"JSON"});
+  expect_failure(resumed_with("{}"), 3, "explore", {"damaged", "--force"});
+  nlohmann::json odd = nlohmann::json::parse(good);
+  odd["views"] = {{{"region", "x"}}};
+  expect_failure(resumed_with(odd.dump()), 3, "explore", {"damaged"});
+  odd = nlohmann::json::parse(good);
+  odd["map"] = "../checkpoint-1.sacmap";
+  expect_failure(resumed_with(odd.dump()), 3, "explore", {"strange map"});
+  odd["map"] = "checkpoint-9.sacmap";
+  expect_failure(resumed_with(odd.dump()), 3, "explore", {"checkpoint-9"});
+  EXPECT_EQ(resumed_with(good).status, 0);
+}
+
+TEST(ExploreCommand, StepAsksBeforeEachMove) {
+  const TempFolder folder;
+  const Arguments options{"--max-views", "2", "--min-gain", "5", "--no-pictures", "--step", "--json", "-"};
+  // The scan has two poses; of the views, one is skipped, one taken, and then the user leaves.
+  const Outcome outcome = run_program(explore(folder / "run", options), 0, "y\ny\nwhat?\ns\ny\nq\n");
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json result = outcome.json().at("result");
+  EXPECT_EQ(result.at("views").size(), 1U);
+  EXPECT_EQ(result.at("stopped_because"), "cancelled");
+  std::size_t questions = 0;
+  for (std::size_t at = outcome.err.find("[y]es"); at != std::string::npos; at = outcome.err.find("[y]es", at + 1)) {
+    ++questions;
+  }
+  EXPECT_EQ(questions, 6U) << outcome.err;
+  // Without anyone to answer, nothing moves.
+  const Outcome silent = run_program(explore(folder / "silent", options), 0, "");
+  EXPECT_EQ(silent.json().at("result").at("views").size(), 0U);
 }
 
 TEST(ExploreCommand, RefusesWhatItCannotDo) {

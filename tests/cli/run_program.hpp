@@ -43,7 +43,10 @@ struct Outcome {
 class RunningProgram {
  public:
   /// file_bytes > 0: writing a larger file fails in the program, as on a full disk.
-  explicit RunningProgram(const Arguments& arguments, rlim_t file_bytes = 0) {
+  /// `input` is what stands on its standard input.
+  explicit RunningProgram(const Arguments& arguments, rlim_t file_bytes = 0, const std::string& input = "") {
+    std::ofstream{folder_ / "in"} << input;
+    const std::string in = (folder_ / "in").string();
     std::vector<char*> argv{const_cast<char*>(SACCADE_PROGRAM)};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
@@ -51,6 +54,7 @@ class RunningProgram {
     const std::string err = (folder_ / "err").string();
     pid_ = ::fork();
     if (pid_ != 0) return;
+    ::dup2(::open(in.c_str(), O_RDONLY), STDIN_FILENO);
     ::dup2(::open(out.c_str(), O_WRONLY | O_CREAT, 0600), STDOUT_FILENO);
     ::dup2(::open(err.c_str(), O_WRONLY | O_CREAT, 0600), STDERR_FILENO);
     const rlimit limit{file_bytes, file_bytes};
@@ -89,8 +93,8 @@ class RunningProgram {
   pid_t pid_{-1};
 };
 
-inline Outcome run_program(const Arguments& arguments, rlim_t file_bytes = 0) {
-  return RunningProgram{arguments, file_bytes}.finish();
+inline Outcome run_program(const Arguments& arguments, rlim_t file_bytes = 0, const std::string& input = "") {
+  return RunningProgram{arguments, file_bytes, input}.finish();
 }
 
 inline Arguments operator+(Arguments left, const Arguments& right) {

@@ -11,18 +11,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Objects or supports in one mesh.
-TriangleMesh joined(const std::vector<ObjectMesh>& meshes, bool supports) {
-  TriangleMesh all;
-  for (const ObjectMesh& object : meshes) {
-    if (object.support != supports) continue;
-    const auto offset = static_cast<std::uint32_t>(all.vertices.size());
-    all.vertices.insert(all.vertices.end(), object.mesh.vertices.begin(), object.mesh.vertices.end());
-    for (const auto& [a, b, c] : object.mesh.triangles) all.triangles.push_back({a + offset, b + offset, c + offset});
-  }
-  return all;
-}
-
 /// Points of the mesh inside the workspace that do not lie on a support.
 std::vector<Eigen::Vector3f> points_off_supports(const Truth& truth, const TriangleMesh& mesh, double voxel_size_m) {
   const Box& workspace = truth.scene().scene().workspace;
@@ -39,17 +27,13 @@ Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Execut
   if (!(std::isfinite(spacing_m) && spacing_m > 0.0)) {
     return Error{Errc::invalid_argument, "the spacing of the samples must be positive", "truth"};
   }
-  const TriangleMesh objects = joined(scene.meshes(), false);
-  const TriangleMesh supports = joined(scene.meshes(), true);
+  const auto is_support = [&scene](std::size_t i) { return scene.meshes()[i].support; };
+  const TriangleMesh objects = joined_mesh(scene.meshes(), [&](std::size_t i) { return !is_support(i); });
+  const TriangleMesh supports = joined_mesh(scene.meshes(), is_support);
   if (objects.triangles.empty()) return Error{Errc::invalid_argument, "there is nothing but supports", "truth"};
   SACCADE_TRY(MeshDistance object_distance, MeshDistance::build(objects));
-  Data data{scene, {}, spacing_m, {}, std::move(object_distance), std::nullopt};
-  for (const SceneObject& object : scene.scene().objects) {
-    Scene alone = scene.scene();
-    alone.objects = {object};
-    SACCADE_TRY(RayScene body, RayScene::build(std::move(alone)));
-    data.bodies.push_back(std::move(body));
-  }
+  SACCADE_TRY(Solids bodies, Solids::build(scene, [](const SceneObject&) { return true; }));
+  Data data{scene, std::move(bodies), spacing_m, {}, std::move(object_distance), std::nullopt};
   if (!supports.triangles.empty()) {
     SACCADE_TRY(data.supports, MeshDistance::build(supports));
   }
@@ -70,21 +54,7 @@ double Truth::to_supports_m(const Vector3d& p, double beyond_m) const {
   return data_->supports ? data_->supports->distance_m(p, beyond_m) : beyond_m;
 }
 
-bool Truth::inside_solid(const Vector3d& p) const {
-  // The ray upwards leaves a closed body that p lies in once more often than it enters it. Body by body, since where
-  // one stands on another their surfaces coincide.
-  constexpr double kStep_m{1e-6};
-  const auto inside = [&p](const RayScene& body) {
-    bool odd = false;
-    Vector3d from = p;
-    for (auto hit = body.cast(from, Vector3d::UnitZ()); hit; hit = body.cast(from, Vector3d::UnitZ())) {
-      from.z() += hit->t + kStep_m;
-      odd = !odd;
-    }
-    return odd;
-  };
-  return std::any_of(data_->bodies.begin(), data_->bodies.end(), inside);
-}
+bool Truth::inside_solid(const Vector3d& p) const { return data_->bodies.contain(p); }
 
 std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
   const double e = map.config.voxel_size_m;

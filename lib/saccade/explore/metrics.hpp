@@ -8,6 +8,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/mesh_distance.hpp"
+#include "saccade/scene/solids.hpp"
 #include "saccade/scene/surface_samples.hpp"
 
 namespace saccade {
@@ -33,7 +34,7 @@ class Truth {
  private:
   struct Data {
     RayScene scene;
-    std::vector<RayScene> bodies;  // each object alone
+    Solids bodies;
     double spacing_m;
     std::vector<Eigen::Vector3f> observable_points;
     MeshDistance objects;

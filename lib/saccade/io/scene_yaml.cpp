@@ -127,6 +127,13 @@ Texture read_texture(const YAML::Node& node) {
   return texture;
 }
 
+bool read_flag(YamlMap& map, const char* key) {
+  bool value = false;
+  const YAML::Node node = map.find(key);
+  if (node.IsDefined() && !YAML::convert<bool>::decode(node, value)) yaml_problem(node, "expected true or false");
+  return value;
+}
+
 SceneObject read_object(const YAML::Node& node, const fs::path& folder) {
   YamlMap map{node, "an object"};
   SceneObject object;
@@ -142,9 +149,8 @@ SceneObject read_object(const YAML::Node& node, const fs::path& folder) {
   }
   if (const YAML::Node color = map.find("color"); color.IsDefined()) object.color = read_rgb(color);
   if (const YAML::Node texture = map.find("texture"); texture.IsDefined()) object.texture = read_texture(texture);
-  if (const YAML::Node support = map.find("support"); support.IsDefined()) {
-    if (!YAML::convert<bool>::decode(support, object.support)) yaml_problem(support, "expected true or false");
-  }
+  object.support = read_flag(map, "support");
+  object.fixture = read_flag(map, "fixture");
   map.finish();
   return object;
 }
@@ -160,9 +166,18 @@ Region read_region(const YAML::Node& node) {
   YamlMap map{node, "a region"};
   const YAML::Node sphere = map.find("sphere");
   const YAML::Node box = map.find("box");
+  const YAML::Node cylinder = map.find("cylinder");
   map.finish();
-  if (sphere.IsDefined() == box.IsDefined()) yaml_problem(node, "a region is a sphere or a box");
+  if ((sphere.IsDefined() ? 1 : 0) + (box.IsDefined() ? 1 : 0) + (cylinder.IsDefined() ? 1 : 0) != 1) {
+    yaml_problem(node, "a region is a sphere, a box or a cylinder");
+  }
   if (box.IsDefined()) return read_box(box, "a box");
+  if (cylinder.IsDefined()) {
+    YamlMap can{cylinder, "a cylinder"};
+    const Cylinder region{yaml_point(can.need("base")), yaml_point(can.need("top")), yaml_number(can.need("radius"))};
+    can.finish();
+    return region;
+  }
   YamlMap ball{sphere, "a sphere"};
   const Sphere region{yaml_point(ball.need("center")), yaml_number(ball.need("radius"))};
   ball.finish();
@@ -192,7 +207,7 @@ Scene read_document(const YAML::Node& document, const fs::path& folder) {
   scene.name = yaml_text(map.need("scene"));
   scene.workspace = read_box(map.need("workspace"), "the workspace");
   scene.max_deviation_m = map.number("max_deviation", scene.max_deviation_m);
-  read_list(map.need("objects"), [&](const YAML::Node& item) { scene.objects.push_back(read_object(item, folder)); });
+  read_list(map.find("objects"), [&](const YAML::Node& item) { scene.objects.push_back(read_object(item, folder)); });
   read_list(map.find("regions"), [&](const YAML::Node& item) { scene.regions.push_back(read_region(item)); });
   read_list(map.find("scan"), [&](const YAML::Node& item) { scene.scan.push_back(read_scan_pose(item)); });
   map.finish();

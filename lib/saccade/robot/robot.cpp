@@ -3,9 +3,10 @@
 
 namespace saccade {
 
-Result<bool> FreeRobot::move_to(const Pose& T_world_camera) {
+Result<std::optional<Pose>> FreeRobot::move_to(const Pose& T_world_camera) {
+  if (allowed_ && !allowed_(T_world_camera.translation())) return std::optional<Pose>{};
   T_world_camera_ = T_world_camera;
-  return true;
+  return std::optional{T_world_camera};
 }
 
 }  // namespace saccade

@@ -142,9 +142,7 @@ Scene random_clutter(std::uint64_t seed, int objects) {
       break;
     }
   }
-  for (const double azimuth_rad : {-2.0, -1.6, -1.2}) {
-    scene.scan.push_back(look_at({1.0 * std::cos(azimuth_rad), 1.0 * std::sin(azimuth_rad), 0.65}, {0.0, 0.0, 0.05}));
-  }
+  for (const double y : {0.0, -0.2}) scene.scan.push_back(look_at({-0.95, y, 0.25}, {-0.15, 0.0, 0.08}));
   return scene;
 }
 

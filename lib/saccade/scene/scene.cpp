@@ -60,18 +60,29 @@ bool dark(const Texture& texture, const Vector3d& p_object) {
   return (key >> 33U) % 3U == 0;
 }
 
+Status check_workspace(const Box& workspace, const std::string& where) {
+  if (!workspace.min.allFinite() || !workspace.max.allFinite()) return bad("the workspace is not finite", where);
+  constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+  for (int axis = 0; axis < 3; ++axis) {
+    if (workspace.min[axis] < workspace.max[axis]) continue;
+    return bad(std::string{"the workspace is empty: its min is not below its max along "} +
+                   kAxes[static_cast<std::size_t>(axis)],
+               where);
+  }
+  return {};
+}
+
 }  // namespace
 
 Status Scene::validate() const {
   const std::string where = "scene " + name;
-  if (objects.empty()) return bad("a scene needs objects", where);
   std::set<std::string> names;
   for (const SceneObject& object : objects) {
     if (object.name.empty()) return bad("every object needs a name", where);
     if (!names.insert(object.name).second) return bad("there are two objects of this name", "object " + object.name);
     SACCADE_CHECK(check_object(object));
   }
-  if (!saccade::validate(Region{workspace}).ok()) return bad("the workspace is empty or not finite", where);
+  SACCADE_CHECK(check_workspace(workspace, where));
   for (const Region& region : regions) {
     if (const Status good = saccade::validate(region); !good.ok())
       return bad(good.error().message, where + ", regions");
@@ -88,6 +99,7 @@ Status Scene::validate() const {
 
 Result<std::vector<ObjectMesh>> true_meshes(const Scene& scene) {
   SACCADE_CHECK(scene.validate());
+  if (scene.objects.empty()) return bad("there are no objects to see", "scene " + scene.name);
   std::vector<ObjectMesh> meshes;
   for (const SceneObject& object : scene.objects) {
     SACCADE_TRY(TriangleMesh mesh, tessellate(object.shape, scene.max_deviation_m));

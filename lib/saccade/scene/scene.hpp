@@ -26,6 +26,7 @@ struct SceneObject {
   Rgb8 color{200, 200, 200};
   Texture texture{};
   bool support{false};  ///< what objects stand on or lean at, such as a table or a wall; no object of interest
+  bool fixture{false};  ///< known beforehand: what moves the camera keeps clear of it
 };
 
 /// Lengths in metres, world frame with z up.
@@ -37,8 +38,8 @@ struct Scene {
   std::vector<Pose> scan;        ///< camera poses of the initial scan
   double max_deviation_m{1e-4};  ///< of the tessellation
 
-  /// invalid_argument, naming the object: a bad shape, texture or pose, a name that is empty or not unique; no object,
-  /// an empty workspace, a bad region, or a region outside the workspace.
+  /// invalid_argument, naming the object: a bad shape, texture or pose, a name that is empty or not unique; an empty
+  /// workspace, a bad region, or a region outside the workspace. A cell with a real camera has no objects.
   [[nodiscard]] Status validate() const;
 };
 
@@ -50,7 +51,8 @@ struct ObjectMesh {
 };
 
 /// The true surfaces, one mesh per object in the scene's order. Errors: those of Scene::validate, and
-/// invalid_argument for an object that reaches farther than a kilometre from the origin. O(triangles).
+/// invalid_argument for a scene without objects or an object that reaches farther than a kilometre from the origin.
+/// O(triangles).
 [[nodiscard]] Result<std::vector<ObjectMesh>> true_meshes(const Scene& scene);
 
 /// Colour of a point of the object's surface, before lighting.

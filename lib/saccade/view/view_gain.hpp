@@ -46,7 +46,7 @@ struct GainConfig {
   double tilt_rad{0.0};  ///< the real sensor is tilted by ± this angle: see widened_vertically
   GainCount count{GainCount::rays};
   UnknownOutside unknown_outside{UnknownOutside::blocks};
-  GainSavings savings;
+  GainSavings savings{};
 
   /// invalid_argument for a bad sensor, or a tilt that is negative or opens the view to 180°.
   [[nodiscard]] Status validate() const;

@@ -19,11 +19,11 @@ class Explore : public ::testing::Test {
     SimulatedCameraConfig config;
     config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.4, 3.0};
     camera_.emplace(*SimulatedCamera::create(rays(), config));
-    exploration_.sphere.longitude_step_rad = 1.0471975511965976;
-    exploration_.sphere.latitude_step_rad = 0.52359877559829887;
-    exploration_.sphere.roll_step_rad = 1.5707963267948966;
-    exploration_.sphere.radii_m = {1.0};
-    exploration_.gain.sensor = config.camera;
+    sphere_.longitude_step_rad = 1.0471975511965976;
+    sphere_.latitude_step_rad = 0.52359877559829887;
+    sphere_.roll_step_rad = 1.5707963267948966;
+    sphere_.radii_m = {1.0};
+    gain_.sensor = config.camera;
     exploration_.min_gain = 20;
     exploration_.max_views = 6;
     exploration_.oscillation_frames = 3;
@@ -50,15 +50,22 @@ class Explore : public ::testing::Test {
   ExplorationCell cell(Robot& robot) {
     return {camera_->camera(), [this](const Pose& pose) -> Result<Frame> { return camera_->capture(pose); }, robot};
   }
+  SphereStrategy sphere() const { return {sphere_, ray_gain(gain_)}; }
+  RandomStrategy random(std::uint64_t seed) const {
+    return {sphere_, ray_gain(gain_), static_cast<std::size_t>(exploration_.max_views), seed};
+  }
+
   /// Scans, then explores the whole workspace.
-  ExplorationResult run(TsdfMap& map, Robot& robot, const std::function<bool(const ExploredView&)>& on_view = {}) {
+  ExplorationResult run(TsdfMap& map, Robot& robot, const Strategy& strategy, const ExplorationHooks& hooks = {}) {
     ExplorationCell here = cell(robot);
-    EXPECT_TRUE(scan(map, here, {rays().scene().scan.front()}, exploration_, Executor{}));
-    auto result = explore(map, here, {rays().scene().workspace}, exploration_, Executor{}, on_view);
+    EXPECT_TRUE(*scan(map, here, {rays().scene().scan.front()}, exploration_, Executor{}, hooks));
+    auto result = explore(map, here, {rays().scene().workspace}, strategy, exploration_, Executor{}, hooks);
     EXPECT_TRUE(result) << result.error().to_string();
     return *result;
   }
 
+  ViewSphereConfig sphere_;
+  GainConfig gain_;
   ExplorationConfig exploration_;
   std::optional<SimulatedCamera> camera_;
 };
@@ -67,15 +74,18 @@ TEST_F(Explore, EveryViewLeavesLessUnknownAndTheObjectsGetCovered) {
   FreeRobot robot;
   TsdfMap map = empty_map();
   std::size_t unknown = count_unknown(map.content(), rays().scene().workspace);
-  const auto check = [&](const ExploredView& view) {
+  ExplorationHooks hooks;
+  hooks.after_view = [&](const ExploredView& view, const Proposals& proposals) {
     const std::size_t left = count_unknown(map.content(), rays().scene().workspace);
     EXPECT_LT(left, unknown);
     EXPECT_GE(view.gain, exploration_.min_gain);
     EXPECT_GT(view.candidates, 50U);
+    EXPECT_EQ(proposals.views.size(), view.candidates);
+    EXPECT_EQ(view.frames, 3U);
     unknown = left;
     return true;
   };
-  const ExplorationResult result = run(map, robot, check);
+  const ExplorationResult result = run(map, robot, sphere(), hooks);
   EXPECT_GE(result.views.size(), 3U);
   TsdfMap scanned = empty_map();
   ExplorationCell here = cell(robot);
@@ -88,14 +98,13 @@ TEST_F(Explore, ChoosingBeatsChance) {
   exploration_.max_views = 2;
   FreeRobot robot;
   TsdfMap chosen = empty_map();
-  run(chosen, robot);
+  run(chosen, robot, sphere());
   const std::size_t left_by_choice = count_unknown(chosen.content(), rays().scene().workspace);
-  exploration_.strategy = Strategy::random;
   double left_by_chance = 0.0;
-  for (exploration_.seed = 1; exploration_.seed <= 5; ++exploration_.seed) {
-    TsdfMap random = empty_map();
-    EXPECT_EQ(run(random, robot).views.size(), 2U);
-    left_by_chance += static_cast<double>(count_unknown(random.content(), rays().scene().workspace)) / 5.0;
+  for (std::uint64_t seed = 1; seed <= 5; ++seed) {
+    TsdfMap map = empty_map();
+    EXPECT_EQ(run(map, robot, random(seed)).views.size(), 2U);
+    left_by_chance += static_cast<double>(count_unknown(map.content(), rays().scene().workspace)) / 5.0;
   }
   EXPECT_LT(static_cast<double>(left_by_choice), left_by_chance);
 }
@@ -104,27 +113,110 @@ TEST_F(Explore, SaysWhyItStops) {
   FreeRobot robot;
   exploration_.max_views = 1;
   TsdfMap used_up = empty_map();
-  EXPECT_EQ(run(used_up, robot).stopped_because, StopReason::views_used_up);
+  EXPECT_EQ(run(used_up, robot, sphere()).stopped_because, StopReason::views_used_up);
   TsdfMap stopped = empty_map();
   exploration_.max_views = 6;
-  const ExplorationResult cancelled = run(stopped, robot, [](const ExploredView&) { return false; });
+  ExplorationHooks enough;
+  enough.after_view = [](const ExploredView&, const Proposals&) { return false; };
+  const ExplorationResult cancelled = run(stopped, robot, sphere(), enough);
   EXPECT_EQ(cancelled.stopped_because, StopReason::cancelled);
   EXPECT_EQ(cancelled.views.size(), 1U);
-  exploration_.min_gain = 1'000'000'000;
+  exploration_.min_gain = 1e9;
   TsdfMap done = empty_map();
-  const ExplorationResult nothing = run(done, robot);
+  const ExplorationResult nothing = run(done, robot, sphere());
   EXPECT_EQ(nothing.stopped_because, StopReason::regions_done);
   EXPECT_TRUE(nothing.views.empty());
+}
+
+TEST_F(Explore, ARunThatGoesOnEndsAsOneThatWasNeverInterrupted) {
+  exploration_.max_views = 3;
+  FreeRobot robot;
+  TsdfMap whole = empty_map();
+  const ExplorationResult expected = run(whole, robot, sphere());
+  ASSERT_EQ(expected.views.size(), 3U);
+
+  camera_->resume_at(0);
+  TsdfMap parts = empty_map();
+  ExplorationHooks once;
+  once.after_view = [](const ExploredView&, const Proposals&) { return false; };
+  const ExplorationResult first = run(parts, robot, sphere(), once);
+  ASSERT_EQ(first.views.size(), 1U);
+  TsdfMap later{parts.snapshot()};
+  ExplorationCell here = cell(robot);
+  const auto rest =
+      explore(later, here, {rays().scene().workspace}, sphere(), exploration_, Executor{}, {}, {}, first.views);
+  ASSERT_TRUE(rest);
+  ASSERT_EQ(rest->views.size(), 3U);
+  for (std::size_t i = 0; i < 3; ++i) {
+    EXPECT_EQ(rest->views[i].gain, expected.views[i].gain);
+    EXPECT_EQ(rest->views[i].T_world_camera.matrix(), expected.views[i].T_world_camera.matrix());
+  }
+  EXPECT_EQ(rest->stopped_because, expected.stopped_because);
+  EXPECT_EQ(later.content().grid, whole.content().grid);
+}
+
+TEST_F(Explore, TheCallerMayPassOverViewsOrStopBeforeAMove) {
+  FreeRobot robot;
+  exploration_.max_views = 1;
+  std::vector<Eigen::Vector3d> asked;
+  ExplorationHooks hooks;
+  hooks.before_move = [&](const Proposal& view) {
+    asked.emplace_back(view.T_world_camera.translation());
+    return asked.size() == 2 ? Consent::pass_over : Consent::go;  // the first is the scan's
+  };
+  TsdfMap map = empty_map();
+  const ExplorationResult result = run(map, robot, sphere(), hooks);
+  ASSERT_EQ(result.views.size(), 1U);
+  ASSERT_EQ(asked.size(), 3U);
+  EXPECT_EQ(result.views[0].T_world_camera.translation(), asked[2]);
+
+  hooks.before_move = [](const Proposal&) { return Consent::stop; };
+  TsdfMap untouched = empty_map();
+  ExplorationCell here = cell(robot);
+  EXPECT_FALSE(*scan(untouched, here, rays().scene().scan, exploration_, Executor{}, hooks));
+  EXPECT_EQ(count_unknown(untouched.content(), rays().scene().workspace),
+            count_unknown(empty_map().content(), rays().scene().workspace));
+  const auto stopped = explore(untouched, here, {rays().scene().workspace}, sphere(), exploration_, Executor{}, hooks);
+  ASSERT_TRUE(stopped);
+  EXPECT_TRUE(stopped->views.empty());
+  EXPECT_EQ(stopped->stopped_because, StopReason::cancelled);
+}
+
+TEST_F(Explore, RegionsAreTakenInTurn) {
+  const Box& all = rays().scene().workspace;
+  const double middle = 0.5 * (all.min.x() + all.max.x());
+  Box left = all;
+  left.max.x() = middle;
+  Box right = all;
+  right.min.x() = middle;
+  FreeRobot robot;
+  ExplorationCell here = cell(robot);
+  for (const bool by_chance : {false, true}) {
+    TsdfMap map = empty_map();
+    exploration_.max_views = 4;
+    const RandomStrategy two_each{sphere_, ray_gain(gain_), 2, 1};
+    const SphereStrategy best = sphere();
+    const Strategy& strategy = by_chance ? static_cast<const Strategy&>(two_each) : best;
+    const auto result = explore(map, here, {left, right}, strategy, exploration_, Executor{});
+    ASSERT_TRUE(result);
+    ASSERT_EQ(result->views.size(), 4U);
+    EXPECT_EQ(result->views.front().region, 0U);
+    if (by_chance) {
+      EXPECT_EQ(result->views[1].region, 0U);
+      EXPECT_EQ(result->views[2].region, 1U);
+    }
+    for (std::size_t i = 1; i < 4; ++i) EXPECT_GE(result->views[i].region, result->views[i - 1].region);
+  }
 }
 
 /// Reaches nothing beyond a plane.
 class FencedRobot final : public Robot {
  public:
   explicit FencedRobot(double max_y_m) : max_y_m_{max_y_m} {}
-  [[nodiscard]] Result<bool> move_to(const Pose& T_world_camera) override {
-    if (T_world_camera.translation().y() > max_y_m_) return false;
+  [[nodiscard]] Result<std::optional<Pose>> move_to(const Pose& T_world_camera) override {
+    if (T_world_camera.translation().y() > max_y_m_) return std::optional<Pose>{};
     positions.push_back(T_world_camera.translation());
-    return true;
+    return std::optional{T_world_camera};
   }
   std::vector<Eigen::Vector3d> positions;
 
@@ -135,12 +227,12 @@ class FencedRobot final : public Robot {
 TEST_F(Explore, PosesOutOfReachArePassedOver) {
   FencedRobot front{-0.2};
   TsdfMap map = empty_map();
-  const ExplorationResult result = run(map, front);
+  const ExplorationResult result = run(map, front, sphere());
   EXPECT_GE(result.views.size(), 1U);
   for (const Eigen::Vector3d& p : front.positions) EXPECT_LE(p.y(), -0.2);
   FencedRobot nowhere{-100.0};
   TsdfMap untouched = empty_map();
-  const ExplorationResult none = run(untouched, nowhere);
+  const ExplorationResult none = run(untouched, nowhere, sphere());
   EXPECT_TRUE(none.views.empty());
   EXPECT_EQ(none.stopped_because, StopReason::no_candidate);
 }
@@ -150,7 +242,16 @@ TEST_F(Explore, RefusesNonsense) {
   TsdfMap map = empty_map();
   ExplorationCell here = cell(robot);
   exploration_.oscillation_frames = 0;
-  EXPECT_FALSE(explore(map, here, {rays().scene().workspace}, exploration_, Executor{}));
+  EXPECT_FALSE(explore(map, here, {rays().scene().workspace}, sphere(), exploration_, Executor{}));
+  exploration_.oscillation_frames = 1;
+  const SphereStrategy short_of_gains{
+      sphere_,
+      [](const TsdfSnapshot&, const Region&, std::span<const Pose>, const Executor&) -> Result<std::vector<double>> {
+        return std::vector<double>{1.0};
+      }};
+  const auto refused = explore(map, here, {rays().scene().workspace}, short_of_gains, exploration_, Executor{});
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::size_mismatch);
 }
 
 }  // namespace

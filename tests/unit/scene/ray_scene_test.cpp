@@ -135,7 +135,7 @@ TEST(Scene, SaysWhichObjectIsWrong) {
     EXPECT_NE(rays.error().to_string().find(part), std::string::npos) << rays.error().to_string();
   };
   const Scene good = scene_of({object("ball", SphereShape{0.2}, Vector3d::Zero())});
-  refused(scene_of({}), "needs objects");
+  refused(scene_of({}), "no objects to see");
   refused(scene_of({object("flat", BoxShape{{1.0, 0.0, 1.0}}, Vector3d::Zero())}), "object flat");
   refused(scene_of({good.objects[0], good.objects[0]}), "two objects of this name");
   refused(scene_of({object("sun", SphereShape{1e300}, Vector3d::Zero())}), "object sun");

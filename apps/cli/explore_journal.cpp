@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "explore_journal.hpp"
+
+#include "saccade/io/json_io.hpp"
+#include "saccade/io/sacmap.hpp"
+
+namespace saccade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+constexpr std::string_view kFile{"journal.json"};
+constexpr std::string_view kSchema{"saccade-exploration/1"};
+
+bool is_checkpoint(const std::string& name) { return name.starts_with("checkpoint-") && name.ends_with(".sacmap"); }
+
+/// Removes the maps of a journal but for one.
+Status remove_checkpoints(const fs::path& folder, const std::string& but) {
+  std::error_code code;
+  for (const fs::directory_entry& entry : fs::directory_iterator{folder, code}) {
+    const std::string name = entry.path().filename().string();
+    if (!is_checkpoint(name) || name == but) continue;
+    fs::remove(entry.path(), code);
+    if (code) return Error{Errc::io_failure, "cannot be removed: " + code.message(), entry.path().string()};
+  }
+  return {};
+}
+
+}  // namespace
+
+Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, const Executor& executor) const {
+  const std::string checkpoint = "checkpoint-" + std::to_string(views.size()) + ".sacmap";
+  SACCADE_CHECK(save_map(map, folder / checkpoint, executor));
+  SACCADE_CHECK(write_json(folder / kFile, {{"schema", kSchema},
+                                            {"settings", settings},
+                                            {"map", checkpoint},
+                                            {"frames", frames},
+                                            {"initial", initial},
+                                            {"views", views}}));
+  return remove_checkpoints(folder, checkpoint);
+}
+
+bool has_journal(const fs::path& folder) {
+  std::error_code ignored;
+  return fs::is_regular_file(folder / kFile, ignored);
+}
+
+Result<SavedExploration> load_journal(const fs::path& folder, const Executor& executor) {
+  if (!has_journal(folder)) {
+    return Error{Errc::not_found, "there is no interrupted run here to go on with", folder.string()};
+  }
+  SACCADE_TRY(const json document, read_json(folder / kFile));
+  try {
+    if (document.at("schema") != kSchema) {
+      return Error{Errc::unsupported, "the journal is of another version; start anew with --force", folder.string()};
+    }
+    const auto checkpoint = document.at("map").get<std::string>();
+    if (!is_checkpoint(checkpoint) || checkpoint.find('/') != std::string::npos) {
+      return Error{Errc::corrupt_data, "the journal names a strange map", (folder / kFile).string()};
+    }
+    ExploreJournal journal{document.at("settings"), document.at("initial"), document.at("views"),
+                           document.at("frames").get<std::size_t>()};
+    if (!journal.views.is_array()) throw std::runtime_error{"views is not a list"};
+    SACCADE_TRY(TsdfSnapshot map, load_map(folder / checkpoint, executor));
+    return SavedExploration{std::move(journal), std::move(map)};
+  } catch (const std::exception& e) {
+    return Error{Errc::corrupt_data, std::string{"the journal is damaged ("} + e.what() + "); start anew with --force",
+                 (folder / kFile).string()};
+  }
+}
+
+Status remove_journal(const fs::path& folder) {
+  std::error_code code;
+  fs::remove(folder / kFile, code);
+  if (code) return Error{Errc::io_failure, "cannot be removed: " + code.message(), (folder / kFile).string()};
+  return remove_checkpoints(folder, "");
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ExploreJournal: what an exploration has done so far, kept in its folder so that it can go on after an interruption.
+
+#include <nlohmann/json.hpp>
+#include <optional>
+
+#include "run_folder.hpp"
+#include "saccade/core/executor.hpp"
+#include "saccade/map/tsdf_map.hpp"
+
+namespace saccade::cli {
+
+struct ExploreJournal {
+  nlohmann::json settings;  ///< all that decides how the run goes on; another run's are not its own
+  nlohmann::json initial;   ///< as in the result
+  nlohmann::json views = nlohmann::json::array();
+  std::size_t frames{0};  ///< that the camera has taken
+
+  /// Writes the map and then the journal that names it, and removes the map of the last time: whatever happens in
+  /// between, one complete pair is there. io_failure.
+  [[nodiscard]] Status save(const std::filesystem::path& folder, const TsdfSnapshot& map,
+                            const Executor& executor) const;
+};
+
+struct SavedExploration {
+  ExploreJournal journal;
+  TsdfSnapshot map;
+};
+
+/// Whether the folder holds an unfinished run.
+[[nodiscard]] bool has_journal(const std::filesystem::path& folder);
+/// not_found without one; corrupt_data for one that is damaged; errors of load_map.
+[[nodiscard]] Result<SavedExploration> load_journal(const std::filesystem::path& folder, const Executor& executor);
+/// The run is complete, or to be forgotten. io_failure.
+[[nodiscard]] Status remove_journal(const std::filesystem::path& folder);
+
+}  // namespace saccade::cli

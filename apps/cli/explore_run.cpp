@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "explore_run.hpp"
+
+#include <poll.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <numbers>
+#include <sstream>
+
+#include "interrupt.hpp"
+#include "saccade/io/camera_io.hpp"
+#include "saccade/io/image_io.hpp"
+#include "saccade/io/json_io.hpp"
+#include "saccade/report/ternary_picture.hpp"
+#include "saccade/scene/scene_hash.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+constexpr int kPictureWidth{720};
+constexpr int kPictureHeight{540};
+
+json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+/// Gains are counts as a rule, and read better as such.
+json gain_json(double gain) {
+  constexpr double kExact{9007199254740992.0};
+  return gain >= 0.0 && gain < kExact && gain == std::floor(gain) ? json(static_cast<std::uint64_t>(gain)) : json(gain);
+}
+
+/// All that decides how a run goes on.
+json settings_of(const ExploreOptions& options, const ExploreCase& subject, const PinholeCamera& camera) {
+  const SimulatedRunConfig& run = options.run;
+  return {{"scene", subject.scene.name},
+          {"scene_hash", subject.rays ? scene_hash(*subject.rays) : ""},
+          {"strategy", to_string(run.strategy)},
+          {"robot", options.robot_command.empty() ? options.robot : options.robot_command},
+          {"camera", options.camera_command.empty() ? "simulated" : options.camera_command},
+          {"intrinsics", camera_to_json(camera)},
+          {"noise", run.noise},
+          {"seed", run.seed},
+          {"voxel_size_m", run.voxel_size_m},
+          {"radii_m", run.sphere.radii_m},
+          {"gain_width_px", run.gain_width_px},
+          {"min_gain", run.exploration.min_gain}};
+}
+
+Result<std::vector<ExploredView>> views_from_json(const json& views) {
+  std::vector<ExploredView> all;
+  try {
+    for (const json& view : views) {
+      SACCADE_TRY(const Pose pose, pose_from_json(view.at("T_world_camera")));
+      ExploredView& explored = all.emplace_back();
+      explored.region = view.at("region").get<std::size_t>();
+      explored.gain = view.at("gain").get<double>();
+      explored.T_world_camera = pose;
+    }
+  } catch (const json::exception& e) {
+    return Error{Errc::corrupt_data, std::string{"the journal is damaged: "} + e.what(), ""};
+  }
+  return all;
+}
+
+/// One line from the terminal; nullopt at its end, or when the user interrupts.
+std::optional<std::string> read_answer() {
+  constexpr int kPoll_ms{100};
+  std::string line;
+  while (!interrupted()) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (::poll(&input, 1, kPoll_ms) <= 0) continue;
+    char c = 0;
+    if (::read(STDIN_FILENO, &c, 1) != 1) return std::nullopt;
+    if (c == '\n') return line;
+    line.push_back(c);
+  }
+  return std::nullopt;
+}
+
+}  // namespace
+
+ExploreRun::ExploreRun(const ExploreOptions& options, const ExploreCase& subject, ExploreDevices& devices,
+                       const RunFolder& out, const Executor& executor, ProgressBar& progress, TsdfMap map)
+    : options_{options},
+      subject_{subject},
+      devices_{devices},
+      out_{out},
+      executor_{executor},
+      progress_{progress},
+      map_{std::move(map)},
+      before_{map_.snapshot()} {
+  journal_.settings = settings_of(options, subject, devices.camera());
+}
+
+Result<ExploreRun> ExploreRun::create(const ExploreOptions& options, const ExploreCase& subject,
+                                      ExploreDevices& devices, const RunFolder& out, const Executor& executor,
+                                      ProgressBar& progress) {
+  TsdfConfig config = options.run.map();
+  config.workspace = subject.scene.workspace;
+  SACCADE_TRY(TsdfMap map, TsdfMap::create(config));
+  return ExploreRun{options, subject, devices, out, executor, progress, std::move(map)};
+}
+
+Status ExploreRun::resume() {
+  SACCADE_TRY(SavedExploration saved, load_journal(out_.path(), executor_));
+  for (const auto& [key, value] : journal_.settings.items()) {
+    const json& then = saved.journal.settings.contains(key) ? saved.journal.settings.at(key) : json(nullptr);
+    if (then == value) continue;
+    return Error{Errc::invalid_argument,
+                 "the interrupted run had " + key + " " + then.dump() + ", not " + value.dump() +
+                     "; give the same options to go on, or --force to start anew",
+                 out_.path().string()};
+  }
+  journal_ = std::move(saved.journal);
+  map_ = TsdfMap{std::move(saved.map)};
+  before_ = map_.snapshot();
+  devices_.resume_at(journal_.frames);
+  return {};
+}
+
+Result<StopReason> ExploreRun::run() {
+  ExplorationCell cell{devices_.camera(), [this](const Pose& pose) { return devices_.observe(pose); },
+                       devices_.robot()};
+  Status recorded;
+  ExplorationHooks hooks;
+  hooks.before_move = [this](const Proposal& view) { return ask(view); };
+  hooks.after_view = [&](const ExploredView& view, const Proposals& proposals) {
+    recorded = record_view(view, proposals);
+    return recorded.ok() && !interrupted();
+  };
+  const ExplorationConfig& config = options_.run.exploration;
+  if (journal_.initial.is_null()) {
+    progress_.update("initial scan", 0, 0);
+    SACCADE_TRY(const bool scanned, scan(map_, cell, subject_.scene.scan, config, executor_, hooks));
+    if (!scanned) return StopReason::cancelled;
+    SACCADE_CHECK(record_scan());
+  }
+  const std::vector<Region> regions = regions_of(subject_.scene);
+  const std::unique_ptr<Strategy> strategy = make_strategy(options_.run, devices_.camera(), regions.size());
+  SACCADE_TRY(std::vector<ExploredView> so_far, views_from_json(journal_.views));
+  SACCADE_TRY(const ExplorationResult explored,
+              explore(map_, cell, regions, *strategy, config, executor_, hooks, {}, std::move(so_far)));
+  if (!recorded.ok()) return recorded.error();
+  return explored.stopped_because;
+}
+
+Consent ExploreRun::ask(const Proposal& view) {
+  if (interrupted()) return Consent::stop;
+  if (!options_.step) return Consent::go;
+  progress_.finish();
+  const Eigen::Vector3d p = view.T_world_camera.translation();
+  const Eigen::Vector3d axis = view.T_world_camera.linear().col(2);
+  // The angle that the image's horizontal makes with the world's.
+  const double roll_rad = std::atan2(view.T_world_camera.linear()(2, 0), -view.T_world_camera.linear()(2, 1));
+  for (;;) {
+    std::cerr << std::fixed << std::setprecision(3) << "move the camera to (" << p.x() << ", " << p.y() << ", " << p.z()
+              << ") m, looking along (" << axis.x() << ", " << axis.y() << ", " << axis.z() << "), rolled "
+              << std::setprecision(0) << roll_rad * 180.0 / std::numbers::pi << " degrees";
+    if (view.gain > 0.0) std::cerr << ", gain " << view.gain;
+    std::cerr << "? [y]es, [s]kip, [q]uit: " << std::flush;
+    const std::optional<std::string> answer = read_answer();
+    if (!answer || *answer == "q") return Consent::stop;
+    if (*answer == "y") return Consent::go;
+    if (*answer == "s") return Consent::pass_over;
+  }
+}
+
+MeasuredMap ExploreRun::measure_now() const {
+  if (subject_.truth) return measure_map(*subject_.truth, map(), executor_);
+  return {{}, count_unknown(map(), subject_.scene.workspace)};
+}
+
+Status ExploreRun::record_scan() {
+  const MeasuredMap measured = measure_now();
+  journal_.initial = {{"coverage", subject_.truth ? json(measured.metrics.coverage) : json(nullptr)},
+                      {"unknown_left", measured.unknown_left}};
+  journal_.frames = devices_.frames();
+  before_ = map_.snapshot();
+  SACCADE_CHECK(draw(0, "After the initial scan"));
+  return journal_.save(out_.path(), map(), executor_);
+}
+
+Status ExploreRun::record_view(const ExploredView& view, const Proposals& proposals) {
+  const MeasuredMap measured = measure_now();
+  json record{{"index", journal_.views.size()},
+              {"region", view.region},
+              {"gain", gain_json(view.gain)},
+              {"candidates", proposals.views.size()},
+              {"frames", view.frames},
+              {"T_world_camera", pose_to_json(view.T_world_camera)},
+              {"unknown_left", measured.unknown_left},
+              {"unknown_near_objects", nullptr},
+              {"points_at_object", nullptr},
+              {"coverage", nullptr},
+              {"ms",
+               {{"candidates", view.candidates_ms},
+                {"evaluation", view.evaluation_ms},
+                {"motion", view.motion_ms},
+                {"fusion", view.fusion_ms}}}};
+  if (subject_.truth) {
+    record["unknown_near_objects"] = measured.metrics.unknown_near_objects;
+    record["points_at_object"] = newly_known(*subject_.truth, before_, map(), executor_).points_at_object();
+    record["coverage"] = measured.metrics.coverage;
+  }
+  journal_.views.push_back(std::move(record));
+  journal_.frames = devices_.frames();
+  progress_.update("exploring", journal_.views.size(), static_cast<std::size_t>(options_.run.exploration.max_views));
+  SACCADE_CHECK(draw(journal_.views.size(), "After view " + std::to_string(journal_.views.size())));
+  before_ = map_.snapshot();
+  return journal_.save(out_.path(), map(), executor_);
+}
+
+json ExploreRun::final() const {
+  const MeasuredMap measured = measure_now();
+  const Metrics& metrics = measured.metrics;
+  const bool truth = subject_.truth.has_value();
+  return {{"coverage", truth ? json(metrics.coverage) : json(nullptr)},
+          {"unknown_left", measured.unknown_left},
+          {"unknown_near_objects", truth ? json(metrics.unknown_near_objects) : json(nullptr)},
+          {"accuracy_m", optional_json(metrics.accuracy_m)},
+          {"chamfer_m", optional_json(metrics.chamfer_m)},
+          {"f_score", optional_json(metrics.f_score)}};
+}
+
+/// The map with unknown in black, from the same place for every view.
+Status ExploreRun::draw(std::size_t number, const std::string& title) const {
+  if (!options_.write_pictures) return {};
+  std::ostringstream name;
+  name << "view-" << std::setw(2) << std::setfill('0') << number << ".png";
+  OverviewConfig overview;
+  overview.width = kPictureWidth;
+  overview.height = kPictureHeight;
+  const Viewpoint from = overview_of(subject_.scene.workspace, overview);
+  return write_png(out_ / name.str(), ternary_figure(map(), from, executor_, title));
+}
+
+}  // namespace saccade::cli

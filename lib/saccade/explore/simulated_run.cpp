@@ -1,0 +1,110 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/explore/simulated_run.hpp"
+
+#include "saccade/map/mesh.hpp"
+
+namespace saccade {
+
+std::string_view to_string(StrategyKind kind) { return kind == StrategyKind::sphere ? "sphere" : "random"; }
+
+Result<StrategyKind> strategy_kind(std::string_view name) {
+  for (const StrategyKind kind : {StrategyKind::sphere, StrategyKind::random}) {
+    if (to_string(kind) == name) return kind;
+  }
+  return Error{Errc::invalid_argument, "there is no strategy \"" + std::string{name} + "\"; known: sphere, random", ""};
+}
+
+Status SimulatedRunConfig::validate() const {
+  SACCADE_CHECK(camera.validate());
+  SACCADE_CHECK(sphere.validate());
+  SACCADE_CHECK(exploration.validate());
+  SACCADE_CHECK(map().validate());
+  if (gain_width_px < 1) {
+    return Error{Errc::invalid_argument, "the virtual sensor must be one pixel wide at least", "exploration"};
+  }
+  return {};
+}
+
+TsdfConfig SimulatedRunConfig::map() const {
+  TsdfConfig config;
+  config.voxel_size_m = voxel_size_m;
+  return config;
+}
+
+std::vector<Region> regions_of(const Scene& scene) {
+  return scene.regions.empty() ? std::vector<Region>{scene.workspace} : scene.regions;
+}
+
+std::unique_ptr<Strategy> make_strategy(const SimulatedRunConfig& config, const PinholeCamera& camera,
+                                        std::size_t regions) {
+  SACCADE_EXPECTS(regions > 0);
+  GainConfig config_of_gain;
+  config_of_gain.sensor = coarser(camera, std::min(config.gain_width_px, camera.width));
+  config_of_gain.tilt_rad = config.exploration.oscillation_rad;
+  GainFunction gain = ray_gain(config_of_gain);
+  if (config.strategy == StrategyKind::sphere) return std::make_unique<SphereStrategy>(config.sphere, std::move(gain));
+  const auto max_views = static_cast<std::size_t>(config.exploration.max_views);
+  const std::size_t views_per_region = (max_views + regions - 1) / regions;
+  return std::make_unique<RandomStrategy>(config.sphere, std::move(gain), views_per_region, config.seed);
+}
+
+Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedRunConfig& config) {
+  SimulatedCameraConfig camera;
+  camera.camera = config.camera;
+  camera.noise = config.noise ? std::optional{kinect_v1_noise(config.seed)} : std::nullopt;
+  return SimulatedCamera::create(scene, camera);
+}
+
+Result<FreeRobot> flying_camera(const RayScene& scene) {
+  SACCADE_TRY(const Solids fixtures, Solids::build(scene, [](const SceneObject& object) { return object.fixture; }));
+  return FreeRobot{[fixtures](const Eigen::Vector3d& p) {
+    return fixtures.distance_m(p, 2.0 * kCameraClearance_m) > kCameraClearance_m && !fixtures.contain(p);
+  }};
+}
+
+MeasuredMap measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+  return {measure(truth, map, extract_mesh(map, executor), executor),
+          count_unknown(map, truth.scene().scene().workspace)};
+}
+
+Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Executor& executor,
+                                   const Progress& progress) {
+  SACCADE_CHECK(config.validate());
+  const std::size_t regions = regions_of(truth.scene().scene()).size();
+  return run_simulated(truth, config, *make_strategy(config, config.camera, regions), executor, progress);
+}
+
+Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Strategy& strategy,
+                                   const Executor& executor, const Progress& progress) {
+  SACCADE_CHECK(config.validate());
+  const Scene& scene = truth.scene().scene();
+  TsdfConfig map_config = config.map();
+  map_config.workspace = scene.workspace;
+  SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
+  SACCADE_TRY(SimulatedCamera camera, simulated_camera(truth.scene(), config));
+  SACCADE_TRY(FreeRobot robot, flying_camera(truth.scene()));
+  ExplorationCell cell{config.camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); },
+                       robot};
+
+  SimulatedRun run;
+  SACCADE_TRY(const bool scanned, scan(map, cell, scene.scan, config.exploration, executor, {}, progress));
+  run.initial = measure_map(truth, map.content(), executor);
+  if (!scanned) {
+    run.stopped_because = StopReason::cancelled;
+    return run;
+  }
+  TsdfSnapshot before = map.snapshot();
+  ExplorationHooks hooks;
+  hooks.after_view = [&](const ExploredView& view, const Proposals&) {
+    run.views.push_back(
+        {view, measure_map(truth, map.content(), executor), newly_known(truth, before, map.content(), executor)});
+    before = map.snapshot();
+    return true;
+  };
+  SACCADE_TRY(const ExplorationResult explored,
+              explore(map, cell, regions_of(scene), strategy, config.exploration, executor, hooks, progress));
+  run.stopped_because = explored.stopped_because;
+  return run;
+}
+
+}  // namespace saccade

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SimulatedRun: one exploration of a scene whose truth is known, measured view by view.
+
+#include <memory>
+
+#include "saccade/explore/exploration.hpp"
+#include "saccade/explore/metrics.hpp"
+#include "saccade/scene/simulated_camera.hpp"
+
+namespace saccade {
+
+/// The strategies that have a name.
+enum class StrategyKind : std::uint8_t { sphere, random };
+[[nodiscard]] std::string_view to_string(StrategyKind kind);
+/// invalid_argument, with the known names, for any other.
+[[nodiscard]] Result<StrategyKind> strategy_kind(std::string_view name);
+
+struct SimulatedRunConfig {
+  double voxel_size_m{0.0058};
+  PinholeCamera camera{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 2.0};  ///< beyond 2 m depth is too coarse here
+  bool noise{true};
+  StrategyKind strategy{StrategyKind::sphere};
+  ViewSphereConfig sphere;
+  int gain_width_px{
+      160};  ///< width of the virtual sensor that views are chosen with; its field of view is the camera's
+  ExplorationConfig exploration;
+  std::uint64_t seed{1};  ///< of noise and chance
+
+  [[nodiscard]] Status validate() const;
+  /// Of the map, but for the workspace, which is the scene's.
+  [[nodiscard]] TsdfConfig map() const;
+};
+
+/// Where to look: the regions of the scene, or its whole workspace; never the true objects.
+[[nodiscard]] std::vector<Region> regions_of(const Scene& scene);
+
+/// The strategy that config names, for a camera and so many regions (one at least).
+[[nodiscard]] std::unique_ptr<Strategy> make_strategy(const SimulatedRunConfig& config, const PinholeCamera& camera,
+                                                      std::size_t regions);
+
+/// The camera that config describes. Errors: those of SimulatedCamera::create.
+[[nodiscard]] Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedRunConfig& config);
+
+/// A camera that flies, but not into fixtures: its centre stays this far from them.
+constexpr double kCameraClearance_m{0.1};
+[[nodiscard]] Result<FreeRobot> flying_camera(const RayScene& scene);
+
+/// A map as it is after some views, held against the truth.
+struct MeasuredMap {
+  Metrics metrics;
+  std::size_t unknown_left{0};  ///< voxels of the workspace
+};
+
+/// Measures the map and its mesh. Cost: measure() + extract_mesh().
+[[nodiscard]] MeasuredMap measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor);
+
+struct MeasuredView {
+  ExploredView view;
+  MeasuredMap after;
+  NewlyKnown newly_known;
+};
+
+struct SimulatedRun {
+  MeasuredMap initial;  ///< after the initial scan
+  std::vector<MeasuredView> views;
+  StopReason stopped_because{StopReason::regions_done};
+
+  [[nodiscard]] const MeasuredMap& final() const { return views.empty() ? initial : views.back().after; }
+};
+
+/// Explores the scene of `truth` with a flying camera, and measures after every view.
+/// @param strategy one of your own, in place of the one that config names
+/// @return errors of SimulatedRunConfig::validate, explore, and TsdfMap::create. The same figures for every thread
+///         count; deterministic by seed.
+[[nodiscard]] Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config,
+                                                 const Strategy& strategy, const Executor& executor,
+                                                 const Progress& progress = {});
+[[nodiscard]] Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config,
+                                                 const Executor& executor, const Progress& progress = {});
+
+}  // namespace saccade

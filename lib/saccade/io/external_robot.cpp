@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/io/external_robot.hpp"
+
+#include "saccade/io/process_messages.hpp"
+
+namespace saccade {
+
+Status ExternalRobotConfig::validate() const {
+  SACCADE_CHECK(validate_time_limit(start_timeout_s, "robot"));
+  return validate_time_limit(move_timeout_s, "robot");
+}
+
+Result<std::unique_ptr<ExternalRobot>> ExternalRobot::start(const ExternalRobotConfig& config) {
+  SACCADE_CHECK(config.validate());
+  SACCADE_TRY(std::unique_ptr<ExternalProcess> process, ExternalProcess::start("robot", config.command));
+  const Request request{"hello", config.start_timeout_s};
+  SACCADE_TRY(const std::string line, process->ask(request, hello_request("robot")));
+  const Status ready = parse_robot_hello(line);
+  if (!ready.ok()) return process->refused(request, ready.error());
+  return std::unique_ptr<ExternalRobot>{new ExternalRobot{config, std::move(process)}};
+}
+
+Result<std::optional<Pose>> ExternalRobot::move_to(const Pose& T_world_camera) {
+  const std::size_t number = asked_++;
+  const Request request{"move " + std::to_string(number), config_.move_timeout_s};
+  why_not_reached_.clear();
+  SACCADE_TRY(const std::string line, process_->ask(request, move_request(number, T_world_camera)));
+  auto answer = parse_move_answer(line, number, T_world_camera);
+  if (!answer) return process_->refused(request, answer.error());
+  if (!answer->T_world_camera) why_not_reached_ = std::move(answer->why);
+  return answer->T_world_camera;
+}
+
+}  // namespace saccade

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Solids: whether a point lies in a body of a scene, and how far it is from one.
+
+#include <functional>
+#include <vector>
+
+#include "saccade/scene/mesh_distance.hpp"
+#include "saccade/scene/ray_scene.hpp"
+
+namespace saccade {
+
+/// Some of the objects in one mesh, world frame.
+[[nodiscard]] TriangleMesh joined_mesh(const std::vector<ObjectMesh>& meshes,
+                                       const std::function<bool(std::size_t object)>& wanted);
+
+/// Closed bodies of a scene. Immutable, cheap to copy, safe for concurrent use.
+class Solids {
+ public:
+  /// The objects for which `wanted` holds; there may be none. Errors: those of RayScene::build.
+  [[nodiscard]] static Result<Solids> build(const RayScene& scene,
+                                            const std::function<bool(const SceneObject&)>& wanted);
+
+  /// Whether p lies in one of them, counted body by body, since surfaces coincide where one stands on another.
+  /// O(bodies · log triangles).
+  [[nodiscard]] bool contain(const Eigen::Vector3d& p) const;
+  /// Distance to the nearest surface, or `beyond_m` where none is nearer.
+  [[nodiscard]] double distance_m(const Eigen::Vector3d& p, double beyond_m) const;
+
+ private:
+  Solids(std::vector<RayScene> bodies, std::optional<MeshDistance> surface)
+      : bodies_{std::move(bodies)}, surface_{std::move(surface)} {}
+  std::vector<RayScene> bodies_;  // each object alone
+  std::optional<MeshDistance> surface_;
+};
+
+}  // namespace saccade
