@@ -19,7 +19,7 @@ namespace {
 
 constexpr std::chrono::milliseconds kCloseGrace{1000};
 constexpr std::chrono::milliseconds kTerminateGrace{500};
-constexpr std::chrono::milliseconds kExitStatusWait{1000};  // between the end of the output and that of the process
+constexpr std::chrono::milliseconds kExitStatusWait{500};  // between the end of the output and that of the process
 constexpr std::chrono::milliseconds kLastWordsWait{100};
 constexpr std::size_t kQuotedBytes{80};
 
@@ -250,7 +250,7 @@ Status ExternalProcess::read_bytes(const Request& request, std::span<std::byte> 
   std::size_t done = 0;
   for (;;) {
     const std::size_t taken = std::min(received_.size(), bytes.size() - done);
-    std::memcpy(bytes.data() + done, received_.data(), taken);
+    std::copy_n(std::as_bytes(std::span{received_}).begin(), taken, bytes.begin() + static_cast<std::ptrdiff_t>(done));
     received_.erase(0, taken);
     done += taken;
     if (done == bytes.size()) return {};
@@ -262,10 +262,12 @@ Status ExternalProcess::read_bytes(const Request& request, std::span<std::byte> 
 }
 
 Error ExternalProcess::late(const Request& request, const std::string& what) {
-  std::ostringstream limit;
-  limit << request.limit_s();
-  return fail(Errc::io_failure, request.name() + " took longer than the " + limit.str() + " s allowed: " + what +
-                                    "; see why it hangs, whether it flushes its output, or allow more time");
+  const auto end = end_of(pid_);  // something that it has started may hold the pipes open
+  std::ostringstream text;
+  text << request.name() << " took longer than the " << request.limit_s() << " s allowed: " << what;
+  text << (end ? "; the program itself " + in_words(*end)
+               : "; see why it hangs, whether it flushes its output, or allow more time");
+  return fail(Errc::io_failure, text.str());
 }
 
 Error ExternalProcess::ended(const std::string& missing, const char* stream) {

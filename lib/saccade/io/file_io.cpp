@@ -8,22 +8,10 @@
 #include <cerrno>
 #include <cstring>
 
+#include "saccade/io/descriptor.hpp"
+
 namespace saccade {
 namespace {
-
-class Descriptor {
- public:
-  explicit Descriptor(const std::filesystem::path& path) : fd_{::open(path.c_str(), O_RDONLY | O_CLOEXEC)} {}
-  Descriptor(const Descriptor&) = delete;
-  Descriptor& operator=(const Descriptor&) = delete;
-  ~Descriptor() {
-    if (fd_ >= 0) ::close(fd_);
-  }
-  [[nodiscard]] int get() const { return fd_; }
-
- private:
-  int fd_;
-};
 
 Error open_error(const std::filesystem::path& path) {
   const int code = errno;
@@ -33,7 +21,7 @@ Error open_error(const std::filesystem::path& path) {
 
 template <class Container>
 Result<Container> read_all(const std::filesystem::path& path, std::uintmax_t max_bytes) {
-  const Descriptor file{path};
+  const Descriptor file{::open(path.c_str(), O_RDONLY | O_CLOEXEC)};
   struct stat info {};
   if (file.get() < 0 || ::fstat(file.get(), &info) != 0) return open_error(path);
   if (S_ISDIR(info.st_mode)) return Error{Errc::io_failure, "is a folder, not a file", path.string()};

@@ -9,6 +9,7 @@
 #include "saccade/io/image_io.hpp"
 #include "saccade/io/pcd_io.hpp"
 #include "saccade/io/ply_io.hpp"
+#include "saccade/io/process_messages.hpp"
 
 namespace saccade {
 namespace {
@@ -43,6 +44,15 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
                           if (name == "cam.info.txt") return parse_cam_info(content).ok();
                           if (name == "polygons.json") return parse_polygons(content).ok();
                           return parse_intrinsics(content).ok();
+                        }),
+            6U);
+  EXPECT_GE(check_seeds("process_message",
+                        [](const std::string& content, const std::string& name) {
+                          const std::string line = content.substr(0, content.find('\n'));
+                          if (name.starts_with("camera")) return parse_camera_hello(line).ok();
+                          if (name == "capture") return parse_capture_answer(line, 0, 16).ok();
+                          const auto move = parse_move_answer(line, 0, Pose::Identity());
+                          return name == "error" ? move.error().code == Errc::unavailable : move.ok();
                         }),
             6U);
 }
