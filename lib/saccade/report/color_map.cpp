@@ -51,7 +51,7 @@ ColorBar round_bar(double high, std::string title) {
 void draw_color_bar(ColorImage& image, int x, int y, int width, const ColorMap& colors, const ColorBar& bar) {
   constexpr int kHeight{10};
   for (int i = 0; i < width; ++i) fill_rect(image, x + i, y, 1, kHeight, colors((i + 0.5) / width));
-  draw_text(image, x, y - 5, bar.title, {.size_px = 9.0});
+  draw_text(image, x, y - 5, bar.title, {.size_px = bar.text_px});
   for (int i = 0; i < bar.ticks; ++i) {
     const double f = static_cast<double>(i) / (bar.ticks - 1);
     std::array<char, 32> text{};
@@ -59,7 +59,7 @@ void draw_color_bar(ColorImage& image, int x, int y, int width, const ColorMap& 
     const double at = x + f * (width - 1);
     fill_rect(image, static_cast<int>(std::lround(at)), y + kHeight, 1, 4, {90, 94, 102});
     const TextAnchor anchor = i == 0 ? TextAnchor::left : i + 1 == bar.ticks ? TextAnchor::right : TextAnchor::center;
-    draw_text(image, at, y + kHeight + 15, text.data(), {.size_px = 9.0, .color = {70, 74, 82}, .anchor = anchor});
+    draw_text(image, at, y + kHeight + 6 + bar.text_px, text.data(), {.size_px = bar.text_px, .color = {70, 74, 82}, .anchor = anchor});
   }
 }
 

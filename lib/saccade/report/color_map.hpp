@@ -36,6 +36,7 @@ struct ColorBar {
   std::string title;  ///< with the unit
   int decimals{1};
   int ticks{5};
+  double text_px{9.0};  ///< height of capitals; 14 pixels above and 26 below the bar hold it up to 11
 };
 
 /// A bar from 0 to a round number at or above `high` (> 0), with ticks at round numbers.

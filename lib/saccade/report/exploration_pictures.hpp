@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// seen_picture, candidates_picture, map_picture: what a view of an exploration saw, among which candidates it was
+// chosen, and the map after it.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/map/tsdf_map.hpp"
+#include "saccade/report/depth_picture.hpp"
+#include "saccade/report/view_picture.hpp"
+#include "saccade/sensor/camera_source.hpp"
+
+namespace saccade {
+
+/// Colour, where the frame has it, beside depth with its scale; each `panel_width` pixels wide, or as wide as the frame
+/// if that is less. Expects depth, and colour of the same size.
+[[nodiscard]] ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_width = 480);
+
+/// What a view was chosen from.
+struct CandidatesScene {
+  const TsdfSnapshot& map;  ///< before the move
+  Region region;
+  std::span<const ScoredPose> candidates;  ///< in any order; a gain that is NaN: not evaluated
+  Pose T_world_chosen{Pose::Identity()};
+  std::span<const Pose> T_world_earlier;  ///< views taken before
+};
+
+struct CandidatesPictureConfig {
+  std::string gain_unit{"rays"};
+  PinholeCamera sensor;  ///< shape of the frusta
+  OverviewConfig overview{.width = 720, .height = 540};
+  double margin_m{0.1};  ///< shown around the candidates and the region
+  int samples{1};        ///< of the map, per pixel and direction
+};
+
+/// The map around the region as seen from outside, cut to what lies among the candidates, as in view_picture; every
+/// candidate's place in the colour of the best gain there, the chosen view as a frustum, earlier ones as thin grey ones.
+/// The same picture for every thread count.
+[[nodiscard]] ColorImage candidates_picture(const CandidatesScene& scene, const Executor& executor,
+                                            const CandidatesPictureConfig& config = {});
+
+struct MapPictureConfig {
+  OverviewConfig overview{.width = 720, .height = 540};
+  double margin_m{0.1};  ///< shown around the box
+  int samples{1};        ///< per pixel and direction
+};
+
+/// The map in a box, usually the workspace, as seen from outside; unknown nearly black. The same place for the same box,
+/// so that pictures of a run can be compared. The same picture for every thread count.
+[[nodiscard]] ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& executor,
+                                     const MapPictureConfig& config = {});
+
+/// What the marks of candidates_picture stand for, beside the scale of gains.
+[[nodiscard]] std::vector<LegendEntry> candidates_legend();
+
+}  // namespace saccade

@@ -1,0 +1,273 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/report/run_report_parts.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <span>
+
+#include "saccade/report/color_map.hpp"
+#include "saccade/report/exploration_pictures.hpp"
+#include "saccade/report/html_text.hpp"
+#include "saccade/report/run_report_curves.hpp"
+#include "saccade/report/ternary_picture.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr double kMillimetres{1000.0};
+
+/// Tiles: a label, a large figure, and a line that says more.
+std::string tile(std::string_view label, const std::string& value, const std::string& more = {}) {
+  return "<div><dt>" + html_escaped(label) + "</dt><dd class=\"big\">" + html_escaped(value) + "</dd>" +
+         (more.empty() ? "" : "<dd class=\"small\">" + html_escaped(more) + "</dd>") + "</div>";
+}
+
+std::string millimetres(double metres) { return number_text(kMillimetres * metres, 2) + " mm"; }
+
+template <class Get>
+bool any_view(const RunReport& report, const Get& get) {
+  return std::any_of(report.views.begin(), report.views.end(), [&](const ReportView& view) { return get(view); });
+}
+
+/// Names of all phases in the order in which they first appear.
+std::vector<std::string> phase_names(const RunReport& report) {
+  std::vector<std::string> names;
+  for (const ReportView& view : report.views) {
+    for (const ReportPhase& phase : view.phases) {
+      if (std::find(names.begin(), names.end(), phase.name) == names.end()) names.push_back(phase.name);
+    }
+  }
+  return names;
+}
+
+std::vector<std::string> positions_of(const RunReport& report) {
+  std::vector<std::string> positions{"scan"};
+  for (const ReportView& view : report.views) positions.push_back(std::to_string(view.index));
+  return positions;
+}
+
+std::string chart(const std::string& title, const std::string& svg, const std::string& key = {}) {
+  return "<figure><figcaption>" + html_escaped(title) + "</figcaption>" + svg + key + "</figure>";
+}
+
+std::string time_chart(const RunReport& report) {
+  PhaseCurve curve{"Time per view", phase_names(report), {{}}, positions_of(report)};
+  if (curve.names.empty()) return {};
+  for (const ReportView& view : report.views) {
+    std::vector<double>& ms = curve.ms.emplace_back(curve.names.size(), 0.0);
+    for (const ReportPhase& phase : view.phases) {
+      const auto it = std::find(curve.names.begin(), curve.names.end(), phase.name);
+      ms[static_cast<std::size_t>(it - curve.names.begin())] += phase.ms;
+    }
+  }
+  std::string key = "<ul class=\"key\">";
+  for (std::size_t i = 0; i < curve.names.size(); ++i) {
+    key += "<li><span class=\"swatch p" + std::to_string(i % kPhaseColors) + "\"></span>" +
+           html_escaped(curve.names[i]) + "</li>";
+  }
+  return chart(curve.title, stacked_svg(curve), key + "</ul>");
+}
+
+/// A column of the table: its head, and what stands in it for a view.
+struct Column {
+  std::string head;
+  std::function<std::string(const ReportView&)> cell;
+};
+
+std::vector<Column> columns_of(const RunReport& report) {
+  const std::string none = "–";
+  const auto number = [&](const auto& value, const auto& format) { return value ? format(*value) : none; };
+  std::vector<Column> columns;
+  if (any_view(report, [](const ReportView& view) { return view.gain.has_value(); })) {
+    columns.push_back({"gain, " + report.gain_unit, [=](const ReportView& v) { return number(v.gain, gain_text); }});
+  }
+  if (any_view(report, [](const ReportView& view) { return view.candidates > 0; })) {
+    columns.push_back({"candidates", [](const ReportView& v) { return grouped(v.candidates); }});
+  }
+  if (any_view(report, [](const ReportView& view) { return view.coverage.has_value(); })) {
+    columns.push_back({"coverage", [=](const ReportView& v) { return number(v.coverage, percent_text); }});
+  }
+  columns.push_back({"unknown left", [](const ReportView& v) { return grouped(v.unknown_left); }});
+  if (any_view(report, [](const ReportView& view) { return view.unknown_near_objects.has_value(); })) {
+    columns.push_back(
+        {"unknown near objects", [=](const ReportView& v) { return number(v.unknown_near_objects, count_text); }});
+  }
+  if (any_view(report, [](const ReportView& view) { return view.points_at_object.has_value(); })) {
+    const auto word = [](bool yes) { return std::string{yes ? "yes" : "no"}; };
+    columns.push_back({"points at an object", [=](const ReportView& v) { return number(v.points_at_object, word); }});
+  }
+  if (any_view(report, [](const ReportView& view) { return !view.phases.empty(); })) {
+    columns.push_back({"time", [](const ReportView& v) { return duration_text(total_ms(v)); }});
+  }
+  return columns;
+}
+
+/// Width and height from the header of a PNG; zeros where there is none.
+std::array<unsigned, 2> png_shape(std::span<const std::byte> png) {
+  constexpr std::array<unsigned, 8> kSignature{0x89, 'P', 'N', 'G', 0x0D, 0x0A, 0x1A, 0x0A};
+  constexpr std::size_t kHeaderBytes{24};
+  if (png.size() < kHeaderBytes) return {};
+  for (std::size_t i = 0; i < kSignature.size(); ++i) {
+    if (std::to_integer<unsigned>(png[i]) != kSignature[i]) return {};
+  }
+  std::array<unsigned, 2> shape{};
+  for (std::size_t i = 0; i < 8; ++i) shape[i / 4] = shape[i / 4] << 8U | std::to_integer<unsigned>(png[16 + i]);
+  return shape;
+}
+
+std::string css_color(const Rgb8& color) {
+  return "rgb(" + std::to_string(color[0]) + ", " + std::to_string(color[1]) + ", " + std::to_string(color[2]) + ")";
+}
+
+std::string swatch(const std::string& background, const std::string& text, const std::string& css_class = {}) {
+  return "<li><span class=\"swatch" + css_class + "\" style=\"background: " + background + "\"></span>" +
+         html_escaped(text) + "</li>";
+}
+
+}  // namespace
+
+std::string percent_text(double share) { return number_text(100.0 * share, 1) + " %"; }
+
+std::string count_text(std::size_t count) { return grouped(count); }
+
+std::string gain_text(double gain) { return number_text(gain, gain == std::floor(gain) ? 0 : 2); }
+
+std::string signed_text(double value, int decimals) {
+  const std::string size = number_text(std::abs(value), decimals);
+  if (size.find_first_of("123456789") == std::string::npos) return "±" + size;
+  return value > 0.0 ? "+" + size : number_text(value, decimals);
+}
+
+std::string stop_sentence(const std::string& stop_reason) {
+  if (stop_reason == "regions_done") return "It stopped because no view gains enough any more.";
+  if (stop_reason == "views_used_up") return "It stopped at the number of views it was given.";
+  if (stop_reason == "no_candidate") return "It stopped because none of the views that gain enough can be reached.";
+  if (stop_reason == "cancelled") return "It was interrupted.";
+  return "It stopped: " + stop_reason + ".";
+}
+
+double total_ms(const ReportView& view) {
+  double sum{0.0};
+  for (const ReportPhase& phase : view.phases) sum += phase.ms;
+  return sum;
+}
+
+std::string phases_text(const ReportView& view) {
+  std::string text;
+  for (const ReportPhase& phase : view.phases) {
+    text += (text.empty() ? "" : ", ") + phase.name + ' ' + duration_text(phase.ms);
+  }
+  return text.empty() ? text : " (" + text + ")";
+}
+
+void FactList::add(std::string_view name, std::string_view value) {
+  if (name.empty() || value.empty()) return;
+  const bool boxed = css_class_ == "facts";
+  items_ += std::string{boxed ? "<div>" : ""} + "<dt>" + html_escaped(name) + "</dt><dd>" + html_escaped(value) +
+            "</dd>" + (boxed ? "</div>" : "");
+}
+
+std::string FactList::html() const {
+  return items_.empty() ? std::string{} : "<dl class=\"" + css_class_ + "\">" + items_ + "</dl>";
+}
+
+std::string tiles_html(const RunReport& report) {
+  std::string out = "<dl class=\"tiles\">";
+  const ReportFinal& end = report.final;
+  if (end.coverage) {
+    const auto& before = report.initial.coverage;
+    out += tile("coverage", percent_text(*end.coverage), before ? percent_text(*before) + " after the scan" : "");
+  }
+  out += tile("unknown left", grouped(end.unknown_left),
+              "voxels, of " + grouped(report.initial.unknown_left) + " after the scan");
+  if (end.unknown_near_objects) out += tile("near objects", grouped(*end.unknown_near_objects), "unknown voxels");
+  if (end.f_score) out += tile("F-score", number_text(*end.f_score, 3), "at 5 mm");
+  if (end.chamfer_m) out += tile("Chamfer distance", millimetres(*end.chamfer_m));
+  if (end.accuracy_m) out += tile("accuracy", millimetres(*end.accuracy_m));
+  double time_ms{0.0};
+  for (const ReportView& view : report.views) time_ms += total_ms(view);
+  out += tile("views", grouped(report.views.size()), time_ms > 0.0 ? "in " + duration_text(time_ms) : "");
+  return out + "</dl>";
+}
+
+std::string charts_html(const RunReport& report) {
+  if (report.views.empty()) return {};
+  ViewCurve coverage{"Coverage", {}, positions_of(report), {}, {}, 1, " %"};
+  ViewCurve unknown{"Unknown left, voxels", {}, positions_of(report), {}, {}, 0, ""};
+  ViewCurve gain{"Predicted gain, " + report.gain_unit, {{}}, positions_of(report), {}, report.min_gain, 0, ""};
+  const auto percent = [](const std::optional<double>& share) {
+    return share ? std::optional{100.0 * *share} : std::nullopt;
+  };
+  coverage.high = 100.0;
+  coverage.values.push_back(percent(report.initial.coverage));
+  unknown.values.emplace_back(static_cast<double>(report.initial.unknown_left));
+  for (const ReportView& view : report.views) {
+    coverage.values.push_back(percent(view.coverage));
+    unknown.values.emplace_back(static_cast<double>(view.unknown_left));
+    gain.values.push_back(view.gain);
+  }
+  const auto has_values = [](const ViewCurve& curve) {
+    return std::any_of(curve.values.begin(), curve.values.end(), [](const auto& value) { return value.has_value(); });
+  };
+  std::string out;
+  if (has_values(coverage)) out += chart(coverage.title, line_svg(coverage));
+  out += chart(unknown.title, line_svg(unknown));
+  if (has_values(gain)) {
+    std::string key;
+    if (report.min_gain) key = "<p class=\"key\">dashed: below " + html_escaped(gain_text(*report.min_gain)) +
+                               " a region is done</p>";
+    out += chart(gain.title, bars_svg(gain), key);
+  }
+  out += time_chart(report);
+  return "<div class=\"charts\">" + out + "</div>";
+}
+
+std::string table_html(const RunReport& report) {
+  if (report.views.empty()) return {};
+  const std::vector<Column> columns = columns_of(report);
+  std::string out = "<div class=\"scroll\"><table><thead><tr><th>view</th>";
+  for (const Column& column : columns) out += "<th>" + html_escaped(column.head) + "</th>";
+  out += "</tr></thead><tbody>";
+  for (const ReportView& view : report.views) {
+    const std::string index = std::to_string(view.index);
+    out += "<tr><td><a href=\"#view-" + index + "\">" + index + "</a></td>";
+    for (const Column& column : columns) out += "<td>" + html_escaped(column.cell(view)) + "</td>";
+    out += "</tr>";
+  }
+  return out + "</tbody></table></div>";
+}
+
+std::string legend_html(const RunReport& report) {
+  const bool pictures = !report.initial.pictures.empty() ||
+                        any_view(report, [](const ReportView& view) { return !view.pictures.empty(); });
+  if (!pictures) return {};
+  std::string gradient = "linear-gradient(90deg";
+  constexpr int kStops{6};
+  for (int i = 0; i <= kStops; ++i) gradient += ", " + css_color(amount_colors()(static_cast<double>(i) / kStops));
+  std::string items;
+  TernaryPictureConfig with_region;
+  with_region.unknown_within = Sphere{};
+  std::vector<LegendEntry> map = ternary_legend();
+  map.push_back(ternary_legend(with_region).back());
+  for (const LegendEntry& entry : map) items += swatch(css_color(entry.color), entry.text);
+  items += swatch(gradient + ")", "candidates, by the best gain at each place", " wide");
+  for (const LegendEntry& entry : candidates_legend()) items += swatch(css_color(entry.color), entry.text);
+  return "<section id=\"legend\"><h2>How to read the pictures</h2><ul class=\"key\">" + items + "</ul></section>\n";
+}
+
+std::string picture_html(const ReportPicture& picture) {
+  constexpr unsigned kWide{17};  // tenths of the height
+  const auto [width, height] = png_shape(picture.png);
+  if (width == 0 || height == 0) return {};
+  const bool wide = 10 * static_cast<std::uint64_t>(width) > kWide * static_cast<std::uint64_t>(height);
+  std::string out = wide ? "<figure class=\"wide\">" : "<figure>";
+  out += "<img width=\"" + std::to_string(width) + "\" height=\"" + std::to_string(height) + "\" alt=\"" +
+         html_escaped(picture.alt) + "\"";
+  if (!picture.kind.empty()) out += " data-kind=\"" + html_escaped(picture.kind) + "\"";
+  out += " src=\"data:image/png;base64," + base64(picture.png) + "\"/>";
+  if (!picture.caption.empty()) out += "<figcaption>" + html_escaped(picture.caption) + "</figcaption>";
+  return out + "</figure>\n";
+}
+
+}  // namespace saccade

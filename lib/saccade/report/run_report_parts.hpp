@@ -1,0 +1,55 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The parts of the run report: figures in words, lists of facts, tiles, charts, the table of views, pictures, legend.
+
+#include <functional>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "saccade/report/run_report.hpp"
+
+namespace saccade {
+
+/// A share in [0, 1] as "93.4 %".
+[[nodiscard]] std::string percent_text(double share);
+[[nodiscard]] std::string count_text(std::size_t count);
+/// Whole gains without decimals, others with two.
+[[nodiscard]] std::string gain_text(double gain);
+/// With its sign, "+" and "±0" included.
+[[nodiscard]] std::string signed_text(double value, int decimals);
+/// Why the run stopped, as a sentence.
+[[nodiscard]] std::string stop_sentence(const std::string& stop_reason);
+[[nodiscard]] double total_ms(const ReportView& view);
+/// " (candidates 0.4 ms, evaluation 31 ms)".
+[[nodiscard]] std::string phases_text(const ReportView& view);
+
+/// Names and values as a description list. Empty names and values are left out.
+class FactList {
+ public:
+  explicit FactList(std::string css_class = "facts") : css_class_{std::move(css_class)} {}
+  void add(std::string_view name, std::string_view value);
+  /// Nothing where there is no value.
+  template <class T, class Format>
+  void add(std::string_view name, const std::optional<T>& value, const Format& format) {
+    if (value) add(name, format(*value));
+  }
+  [[nodiscard]] std::string html() const;
+
+ private:
+  std::string css_class_;
+  std::string items_;
+};
+
+/// Headline figures.
+[[nodiscard]] std::string tiles_html(const RunReport& report);
+/// Coverage, unknown left, gain and time over the views; what has no values has no chart.
+[[nodiscard]] std::string charts_html(const RunReport& report);
+/// One row per view, with a link to it. Empty without views.
+[[nodiscard]] std::string table_html(const RunReport& report);
+/// What colours in the pictures stand for. Empty without pictures.
+[[nodiscard]] std::string legend_html(const RunReport& report);
+/// A figure; empty for what is no PNG. Pictures much wider than high take the whole width.
+[[nodiscard]] std::string picture_html(const ReportPicture& picture);
+
+}  // namespace saccade
