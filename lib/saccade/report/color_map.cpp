@@ -59,7 +59,8 @@ void draw_color_bar(ColorImage& image, int x, int y, int width, const ColorMap& 
     const double at = x + f * (width - 1);
     fill_rect(image, static_cast<int>(std::lround(at)), y + kHeight, 1, 4, {90, 94, 102});
     const TextAnchor anchor = i == 0 ? TextAnchor::left : i + 1 == bar.ticks ? TextAnchor::right : TextAnchor::center;
-    draw_text(image, at, y + kHeight + 6 + bar.text_px, text.data(), {.size_px = bar.text_px, .color = {70, 74, 82}, .anchor = anchor});
+    draw_text(image, at, y + kHeight + 6 + bar.text_px, text.data(),
+              {.size_px = bar.text_px, .color = {70, 74, 82}, .anchor = anchor});
   }
 }
 

@@ -94,8 +94,8 @@ void draw_places(Canvas& canvas, const std::vector<Place>& places, double full_g
 
 ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_width) {
   SACCADE_EXPECTS(!frame.depth.empty() && panel_width > 0);
-  SACCADE_EXPECTS(!frame.color || (frame.color->width() == frame.depth.width() &&
-                                   frame.color->height() == frame.depth.height()));
+  SACCADE_EXPECTS(!frame.color ||
+                  (frame.color->width() == frame.depth.width() && frame.color->height() == frame.depth.height()));
   constexpr int kGap{12};
   const int width = std::min(panel_width, frame.depth.width());
   const int height = std::max(1, frame.depth.height() * width / frame.depth.width());
@@ -150,8 +150,8 @@ ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& 
   return ternary_picture(map, overview_of(box, config.overview), executor, ternary);
 }
 
-std::vector<LegendEntry> candidates_legend() {
-  return {{kChosen, "the view chosen"}, {kEarlier, "views before it"}, {kNoGain, "candidates without gain"}};
+std::vector<CandidateMark> candidate_marks() {
+  return {{kNoGain, "candidates without gain", true}, {kChosen, "the view chosen"}, {kEarlier, "views before it"}};
 }
 
 }  // namespace saccade

@@ -37,8 +37,8 @@ struct CandidatesPictureConfig {
 };
 
 /// The map around the region as seen from outside, cut to what lies among the candidates, as in view_picture; every
-/// candidate's place in the colour of the best gain there, the chosen view as a frustum, earlier ones as thin grey ones.
-/// The same picture for every thread count.
+/// candidate's place in the colour of the best gain there, the chosen view as a frustum, earlier ones as thin grey
+/// ones. The same picture for every thread count.
 [[nodiscard]] ColorImage candidates_picture(const CandidatesScene& scene, const Executor& executor,
                                             const CandidatesPictureConfig& config = {});
 
@@ -48,12 +48,17 @@ struct MapPictureConfig {
   int samples{1};        ///< per pixel and direction
 };
 
-/// The map in a box, usually the workspace, as seen from outside; unknown nearly black. The same place for the same box,
-/// so that pictures of a run can be compared. The same picture for every thread count.
+/// The map in a box, usually the workspace, as seen from outside; unknown nearly black. The same place for the same
+/// box, so that pictures of a run can be compared. The same picture for every thread count.
 [[nodiscard]] ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& executor,
                                      const MapPictureConfig& config = {});
 
-/// What the marks of candidates_picture stand for, beside the scale of gains.
-[[nodiscard]] std::vector<LegendEntry> candidates_legend();
+/// A mark in candidates_picture beside those coloured by gain.
+struct CandidateMark {
+  Rgb8 color;
+  std::string text;
+  bool is_point{false};  ///< else a frustum
+};
+[[nodiscard]] std::vector<CandidateMark> candidate_marks();
 
 }  // namespace saccade

@@ -73,8 +73,8 @@ std::string view_html(const std::string& id, const std::string& title, const Fac
                       const std::vector<ReportPicture>& pictures) {
   std::string figures;
   for (const ReportPicture& picture : pictures) figures += picture_html(picture);
-  std::string out = "<section id=\"" + id + "\" class=\"view" + (pictures.size() == 1 ? " single" : "") + "\"><div><h2>" +
-                    title + "</h2>" + facts.html() + "</div>";
+  std::string out = "<section id=\"" + id + "\" class=\"view" + (pictures.size() == 1 ? " single" : "") +
+                    "\"><div><h2>" + title + "</h2>" + facts.html() + "</div>";
   if (!figures.empty()) out += "<div class=\"pictures\">" + figures + "</div>";
   return out + "</section>\n";
 }
@@ -102,11 +102,10 @@ std::string view_section(const RunReport& report, const ReportView& view, const 
     if (before.coverage) text += " (" + signed_text(100.0 * (*view.coverage - *before.coverage), 1) + " points)";
     facts.add("coverage", text);
   }
-  facts.add("unknown left", grouped(view.unknown_left) + " (" +
-                                signed_text(static_cast<double>(view.unknown_left) -
-                                                static_cast<double>(before.unknown_left),
-                                            0) +
-                                ")");
+  facts.add("unknown left",
+            grouped(view.unknown_left) + " (" +
+                signed_text(static_cast<double>(view.unknown_left) - static_cast<double>(before.unknown_left), 0) +
+                ")");
   facts.add("unknown near objects", view.unknown_near_objects, count_text);
   facts.add("points at an object", view.points_at_object, [](bool yes) { return std::string{yes ? "yes" : "no"}; });
   if (!view.phases.empty()) facts.add("time", duration_text(total_ms(view)) + phases_text(view));

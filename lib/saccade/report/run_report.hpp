@@ -27,7 +27,7 @@ struct ReportPhase {
 
 /// One view that was taken, and the map after it. Figures against the truth are absent where there is none.
 struct ReportView {
-  std::size_t index{1};        ///< its number on the page; the first view after the initial scan is 1
+  std::size_t index{1};        ///< its number on the page, each once; the first view after the scan is 1
   std::optional<double> gain;  ///< as predicted
   std::size_t candidates{0};
   std::optional<double> coverage;  ///< share, 0 to 1

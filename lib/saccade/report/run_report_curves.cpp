@@ -98,8 +98,8 @@ void draw_threshold(Chart& chart, const ViewCurve& curve) {
   if (!drawn(curve.threshold)) return;
   const std::string y = at(chart.y(*curve.threshold));
   chart.add("<line class=\"threshold\" x1=\"" + at(kLeft) + "\" x2=\"" + at(kWidth - kRight) + "\" y1=\"" + y +
-            "\" y2=\"" + y + "\"><title>" + html_escaped("threshold: " + number_text(*curve.threshold, curve.decimals)) +
-            "</title></line>");
+            "\" y2=\"" + y + "\"><title>" +
+            html_escaped("threshold: " + number_text(*curve.threshold, curve.decimals)) + "</title></line>");
 }
 
 }  // namespace

@@ -27,9 +27,9 @@ struct ViewCurve {
 /// Durations of several phases over the views.
 struct PhaseCurve {
   std::string title;
-  std::vector<std::string> names;            ///< of the phases, the lowest in the stack first
-  std::vector<std::vector<double>> ms;       ///< by position, then by phase
-  std::vector<std::string> positions;        ///< as many as ms
+  std::vector<std::string> names;       ///< of the phases, the lowest in the stack first
+  std::vector<std::vector<double>> ms;  ///< by position, then by phase
+  std::vector<std::string> positions;   ///< as many as ms
 };
 /// Stacked bars; phase i in the colour of the class "p" and i mod kPhaseColors.
 [[nodiscard]] std::string stacked_svg(const PhaseCurve& curve);

@@ -120,9 +120,8 @@ std::string css_color(const Rgb8& color) {
   return "rgb(" + std::to_string(color[0]) + ", " + std::to_string(color[1]) + ", " + std::to_string(color[2]) + ")";
 }
 
-std::string swatch(const std::string& background, const std::string& text, const std::string& css_class = {}) {
-  return "<li><span class=\"swatch" + css_class + "\" style=\"background: " + background + "\"></span>" +
-         html_escaped(text) + "</li>";
+std::string swatch(const std::string& style, const std::string& text, const std::string& css_class = {}) {
+  return "<li><span class=\"swatch" + css_class + "\" style=\"" + style + "\"></span>" + html_escaped(text) + "</li>";
 }
 
 }  // namespace
@@ -134,6 +133,7 @@ std::string count_text(std::size_t count) { return grouped(count); }
 std::string gain_text(double gain) { return number_text(gain, gain == std::floor(gain) ? 0 : 2); }
 
 std::string signed_text(double value, int decimals) {
+  if (!std::isfinite(value)) return number_text(value, decimals);
   const std::string size = number_text(std::abs(value), decimals);
   if (size.find_first_of("123456789") == std::string::npos) return "±" + size;
   return value > 0.0 ? "+" + size : number_text(value, decimals);
@@ -215,8 +215,8 @@ std::string charts_html(const RunReport& report) {
   out += chart(unknown.title, line_svg(unknown));
   if (has_values(gain)) {
     std::string key;
-    if (report.min_gain) key = "<p class=\"key\">dashed: below " + html_escaped(gain_text(*report.min_gain)) +
-                               " a region is done</p>";
+    if (report.min_gain)
+      key = "<p class=\"key\">dashed: below " + html_escaped(gain_text(*report.min_gain)) + " a region is done</p>";
     out += chart(gain.title, bars_svg(gain), key);
   }
   out += time_chart(report);
@@ -245,14 +245,19 @@ std::string legend_html(const RunReport& report) {
   std::string gradient = "linear-gradient(90deg";
   constexpr int kStops{6};
   for (int i = 0; i <= kStops; ++i) gradient += ", " + css_color(amount_colors()(static_cast<double>(i) / kStops));
-  std::string items;
   TernaryPictureConfig with_region;
   with_region.unknown_within = Sphere{};
-  std::vector<LegendEntry> map = ternary_legend();
-  map.push_back(ternary_legend(with_region).back());
-  for (const LegendEntry& entry : map) items += swatch(css_color(entry.color), entry.text);
-  items += swatch(gradient + ")", "candidates, by the best gain at each place", " wide");
-  for (const LegendEntry& entry : candidates_legend()) items += swatch(css_color(entry.color), entry.text);
+  const LegendEntry region = ternary_legend(with_region).back();
+  std::string items;
+  for (const LegendEntry& entry : ternary_legend())
+    items += swatch("background: " + css_color(entry.color), entry.text);
+  items += swatch("border-color: " + css_color(region.color), region.text, " ring");
+  items += swatch("background: " + gradient + ")", "candidates, by the best gain at each place", " wide");
+  for (const CandidateMark& mark : candidate_marks()) {
+    const std::string color = css_color(mark.color);
+    items += mark.is_point ? swatch("background: " + color, mark.text, " point")
+                           : swatch("border-color: " + color, mark.text, " ring");
+  }
   return "<section id=\"legend\"><h2>How to read the pictures</h2><ul class=\"key\">" + items + "</ul></section>\n";
 }
 

@@ -52,6 +52,7 @@ figcaption { font-size: 0.875rem; margin-top: 0.35rem; }
   vertical-align: -0.08rem; border: 1px solid rgba(128, 128, 128, 0.35); print-color-adjust: exact;
   -webkit-print-color-adjust: exact; }
 .swatch.wide { width: 2.6rem; }
+.swatch.point { border-radius: 50%; }
 .swatch.ring { background: transparent; border-width: 2px; }
 .chart { display: block; width: 100%; height: auto; }
 .chart text { font-size: 13px; fill: var(--soft); }
@@ -84,6 +85,7 @@ dialog img { width: 100%; height: 100%; object-fit: contain; display: block; cur
   section { padding: 0.9rem 0.9rem 1rem; margin: 0.9rem 0; }
   .tiles { grid-template-columns: repeat(2, minmax(0, 1fr)); } .tiles .big { font-size: 1.25rem; }
   .pictures, .single { grid-template-columns: minmax(0, 1fr); } .single { gap: 0; }
+  .chart text { font-size: 15px; }
   .pairs { grid-template-columns: minmax(0, 1fr); gap: 0; } .pairs dd { margin-bottom: 0.5rem; } }
 @media print { :root { --page: #ffffff; --card: #ffffff; --ink: #000000; --soft: #444444; --line: #bbbbbb;
     --accent: #000000; --dim: none; color-scheme: light; }
