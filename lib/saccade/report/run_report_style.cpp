@@ -35,15 +35,16 @@ nav a:hover, nav a[aria-current] { background: var(--line); }
 a:focus-visible, img:focus-visible { outline: 2px solid var(--accent); outline-offset: 2px; }
 section { background: var(--card); border: 1px solid var(--line); border-radius: 0.7rem; padding: 1.1rem 1.25rem 1.25rem;
   margin: 1.25rem 0; }
-.tiles { display: grid; grid-template-columns: repeat(auto-fit, minmax(8rem, 1fr)); gap: 1rem 1.1rem; margin: 0.9rem 0 0; }
+.tiles { display: grid; grid-template-columns: repeat(auto-fill, minmax(8rem, 1fr)); gap: 1rem 1.1rem; margin: 0.9rem 0 0; }
 .tiles div { border-top: 2px solid var(--line); padding-top: 0.5rem; }
 .tiles dt { color: var(--soft); font-size: 0.875rem; }
 .tiles dd { margin: 0; }
 .tiles .big { font-size: 1.5rem; line-height: 1.3; font-weight: 600; }
 .tiles .small { font-size: 0.8125rem; color: var(--soft); }
-.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 26rem), 1fr)); gap: 1.25rem 1.75rem;
+.charts { display: grid; grid-template-columns: repeat(auto-fit, minmax(min(100%, 22rem), 1fr)); gap: 1.25rem 1.75rem;
   margin-top: 1.4rem; }
 figure { margin: 0; min-width: 0; }
+.charts figure { max-width: 38rem; }
 figcaption { font-size: 0.875rem; margin-top: 0.35rem; }
 .charts figcaption { color: var(--ink); font-size: 0.9375rem; font-weight: 600; margin: 0 0 0.3rem; }
 .key { display: flex; flex-wrap: wrap; gap: 0.2rem 1rem; font-size: 0.8125rem; color: var(--soft); margin: 0.3rem 0 0;
@@ -89,7 +90,9 @@ dialog img { width: 100%; height: 100%; object-fit: contain; display: block; cur
   .pairs { grid-template-columns: minmax(0, 1fr); gap: 0; } .pairs dd { margin-bottom: 0.5rem; } }
 @media print { :root { --page: #ffffff; --card: #ffffff; --ink: #000000; --soft: #444444; --line: #bbbbbb;
     --accent: #000000; --dim: none; color-scheme: light; }
-  nav, .hint, dialog { display: none; } body { font-size: 10.5pt; } section { border: 0; padding: 0; }
+  nav, .hint, dialog { display: none; } body { font-size: 10pt; } section { border: 0; padding: 0; }
+  .charts { grid-template-columns: repeat(2, minmax(0, 1fr)); } .scroll { overflow: visible; }
+  table { font-size: 9pt; } th { white-space: normal; } th, td { padding-left: 0.7rem; }
   h2 { break-after: avoid; } figure, tr, .tiles div { break-inside: avoid; } .view { break-inside: avoid; } }
 )css";
 }
