@@ -10,7 +10,7 @@ help:  ## this list
 build:  ## installs what is missing and builds the program, build/release/saccade
 	@scripts/build.sh
 
-demo: build  ## makes a small depth sequence, fuses it, ranks the next views; results in out/demo
+demo: build  ## explores a simulated table and opens the report; results in out/demo
 	@scripts/demo.sh
 
 test:  ## installs what is missing, builds and runs every test, sanitizers, fuzzing, lint

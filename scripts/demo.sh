@@ -1,22 +1,18 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The main job on a made-up table: a depth sequence, its map, and the views that would show most of what is still unseen.
-# Everything lands in out/demo.   Usage: scripts/demo.sh (make demo builds the program first)
+# The main job in a simulated cell: a camera looks at a table from one side, and then goes to where it sees most of what
+# is still unknown, until nothing worth a move is left. Everything lands in out/demo, with a report to look at.
+# Usage: scripts/demo.sh (make demo builds the program first)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
-saccade=build/release/saccade
 out=out/demo
 rm -rf "$out"
 mkdir -p "$out"
 
-echo "1. A depth camera goes round the near side of a table."
-"$saccade" sample --frames 40 --noise --out "$out/frames"
+echo "A depth camera explores eight objects on a table."
+build/release/saccade explore tabletop-2 --out "$out"
 echo
-echo "2. Its frames are tracked and fused into a map of occupied, empty and unknown."
-"$saccade" fuse "$out/frames" --tracking icp --out "$out/run"
-echo
-echo "3. Which views of the things on the table would show most of what is unknown?"
-"$saccade" nbv "$out/run/map.sacmap" --poi 0,0,0.1 --radius 0.3 --out "$out/views"
-echo
-echo "The results are in $out:"
-find "$out/run" "$out/views" -type f | sort | sed 's/^/  /'
+echo "The report of the run: file://$PWD/$out/report.html"
+if [[ -n ${DISPLAY:-}${WAYLAND_DISPLAY:-} ]] && command -v xdg-open >/dev/null; then
+  xdg-open "$out/report.html" >/dev/null 2>&1 || true
+fi

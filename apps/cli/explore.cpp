@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "exit_status.hpp"
+#include "explore_report.hpp"
 #include "explore_run.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
@@ -39,7 +40,7 @@ Status make_room(const ExploreOptions& options, const RunFolder& out) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator{out.path()}) {
     const std::string name = entry.path().filename().string();
-    if (name.starts_with("view-") && name.ends_with(".png")) names.push_back(name);
+    if (is_view_picture(name)) names.push_back(name);
   }
   SACCADE_CHECK(remove_journal(out.path()));
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
@@ -65,7 +66,7 @@ void print_summary(const ExploreOptions& options, const json& result) {
               << final["f_score"].get<double>() << '\n';
   }
   std::cout << "stopped   " << result["stopped_because"].get<std::string>() << '\n'
-            << "results   " << options.out.string() << '\n';
+            << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
 }
 
 json result_json(const ExploreOptions& options, const ExploreCase& subject, const ExploreDevices& devices,
@@ -104,6 +105,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   progress.finish();
   const json document = json_envelope("explore", global, executor, {{"total", total.elapsed_ms()}}, result);
   SACCADE_CHECK(write_json(out / "run.json", document));
+  if (options.write_pictures) SACCADE_CHECK(write_report(out, document, options));
   SACCADE_CHECK(write_json_output(global, document));
   if (!global.json_to_stdout()) print_summary(options, result);
   if (reason != StopReason::cancelled) {

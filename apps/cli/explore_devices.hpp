@@ -37,7 +37,7 @@ class ExploreDevices {
   /// Goes on as if so many frames had been taken.
   void resume_at(std::size_t frames);
   /// The frames since the last call.
-  [[nodiscard]] std::vector<Frame> take_frames() { return std::exchange(seen_, {}); }
+  std::vector<Frame> take_frames() { return std::exchange(seen_, {}); }
 
  private:
   using Camera = std::variant<SimulatedCamera, ExternalCamera>;

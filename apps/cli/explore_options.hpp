@@ -19,7 +19,7 @@ struct ExploreOptions {
   std::string robot{"free"};
   std::string robot_command;   ///< a program that moves a robot; empty: robot
   std::string camera_command;  ///< a program that has a camera; empty: a simulated one
-  double process_timeout_s{30.0};
+  double process_timeout_s{60.0};
   bool step{false};
   bool resume{false};
   bool write_pictures{true};

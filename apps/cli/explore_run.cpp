@@ -8,22 +8,17 @@
 #include <iomanip>
 #include <iostream>
 #include <numbers>
-#include <sstream>
 
+#include "explore_report.hpp"
 #include "interrupt.hpp"
 #include "saccade/io/camera_io.hpp"
-#include "saccade/io/image_io.hpp"
 #include "saccade/io/json_io.hpp"
-#include "saccade/report/ternary_picture.hpp"
 #include "saccade/scene/scene_hash.hpp"
 
 namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-constexpr int kPictureWidth{720};
-constexpr int kPictureHeight{540};
 
 json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
@@ -180,7 +175,8 @@ Status ExploreRun::record_scan() {
                       {"unknown_left", measured.unknown_left}};
   journal_.frames = devices_.frames();
   before_ = map_.snapshot();
-  SACCADE_CHECK(draw(0, "After the initial scan"));
+  devices_.take_frames();
+  if (options_.write_pictures) SACCADE_CHECK(draw_scan(out_, map(), subject_.scene.workspace, executor_));
   return journal_.save(out_.path(), map(), executor_);
 }
 
@@ -209,7 +205,8 @@ Status ExploreRun::record_view(const ExploredView& view, const Proposals& propos
   journal_.views.push_back(std::move(record));
   journal_.frames = devices_.frames();
   progress_.update("exploring", journal_.views.size(), static_cast<std::size_t>(options_.run.exploration.max_views));
-  SACCADE_CHECK(draw(journal_.views.size(), "After view " + std::to_string(journal_.views.size())));
+  const std::vector<Frame> frames = devices_.take_frames();
+  if (options_.write_pictures) SACCADE_CHECK(draw(view, proposals, frames));
   before_ = map_.snapshot();
   return journal_.save(out_.path(), map(), executor_);
 }
@@ -226,16 +223,15 @@ json ExploreRun::final() const {
           {"f_score", optional_json(metrics.f_score)}};
 }
 
-/// The map with unknown in black, from the same place for every view.
-Status ExploreRun::draw(std::size_t number, const std::string& title) const {
-  if (!options_.write_pictures) return {};
-  std::ostringstream name;
-  name << "view-" << std::setw(2) << std::setfill('0') << number << ".png";
-  OverviewConfig overview;
-  overview.width = kPictureWidth;
-  overview.height = kPictureHeight;
-  const Viewpoint from = overview_of(subject_.scene.workspace, overview);
-  return write_png(out_ / name.str(), ternary_figure(map(), from, executor_, title));
+Status ExploreRun::draw(const ExploredView& view, const Proposals& proposals, const std::vector<Frame>& frames) const {
+  SACCADE_TRY(std::vector<ExploredView> views, views_from_json(journal_.views));
+  std::vector<Pose> earlier;
+  for (std::size_t i = 0; i + 1 < views.size(); ++i) earlier.push_back(views[i].T_world_camera);
+  const Region region = regions_of(subject_.scene).at(view.region);
+  return draw_view(out_,
+                   {views.size(), before_, map(), region, view, proposals, std::move(earlier), frames,
+                    subject_.scene.workspace, devices_.camera()},
+                   executor_);
 }
 
 }  // namespace saccade::cli

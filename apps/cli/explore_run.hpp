@@ -33,7 +33,8 @@ class ExploreRun {
   [[nodiscard]] Consent ask(const Proposal& view);
   [[nodiscard]] Status record_scan();
   [[nodiscard]] Status record_view(const ExploredView& view, const Proposals& proposals);
-  [[nodiscard]] Status draw(std::size_t number, const std::string& title) const;
+  [[nodiscard]] Status draw(const ExploredView& view, const Proposals& proposals,
+                            const std::vector<Frame>& frames) const;
   [[nodiscard]] MeasuredMap measure_now() const;
 
   const ExploreOptions& options_;

@@ -48,7 +48,8 @@ TEST(ExploreCommand, GoesFromViewToView) {
   EXPECT_GT(final.at("chamfer_m").get<double>(), 0.0);
   EXPECT_TRUE(load_map(run / "map.sacmap"));
   EXPECT_TRUE(read_mesh(run / "mesh.ply"));
-  for (const char* picture : {"view-00.png", "view-01.png", "view-02.png", "run.json"})
+  for (const char* picture :
+       {"view-00-map.png", "view-01-map.png", "view-01-choice.png", "view-02-seen.png", "run.json", "report.html"})
     EXPECT_TRUE(fs::exists(run / picture));
 }
 
@@ -56,10 +57,10 @@ TEST(ExploreCommand, AShorterRunLeavesNoPicturesOfALongerOne) {
   const TempFolder folder;
   const fs::path run = folder / "run";
   ASSERT_EQ(run_program(explore(run, {"--max-views", "1", "--min-gain", "5"})).status, 0);
-  EXPECT_TRUE(fs::exists(run / "view-01.png"));
+  EXPECT_TRUE(fs::exists(run / "view-01-map.png"));
   ASSERT_EQ(run_program(explore(run, {"--max-views", "0"})).status, 0);
-  EXPECT_TRUE(fs::exists(run / "view-00.png"));
-  EXPECT_FALSE(fs::exists(run / "view-01.png"));
+  EXPECT_TRUE(fs::exists(run / "view-00-map.png"));
+  EXPECT_FALSE(fs::exists(run / "view-01-map.png"));
 }
 
 TEST(ExploreCommand, TheSeedDecidesAndTheThreadsDoNot) {
@@ -92,11 +93,9 @@ TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
   ASSERT_EQ(run_program(explore(folder / "whole", options)).status, 0);
 
   const fs::path killed = folder / "killed";
-  Arguments loud = explore(killed, options);
-  loud.erase(std::find(loud.begin(), loud.end(), "--quiet"));
   {
-    RunningProgram program{loud};
-    ASSERT_TRUE(program.wait_for("exploring: 2"));
+    RunningProgram program{explore(killed, options)};
+    ASSERT_TRUE(wait_for_file(killed / "checkpoint-2.sacmap"));
     program.send(SIGKILL);
     EXPECT_EQ(program.finish().status, -1);
   }
@@ -116,10 +115,8 @@ TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
 TEST(ExploreCommand, CtrlCKeepsWhatWasSeen) {
   const TempFolder folder;
   const fs::path run = folder / "run";
-  Arguments loud = explore(run, {"--max-views", "50", "--min-gain", "1"});
-  loud.erase(std::find(loud.begin(), loud.end(), "--quiet"));
-  RunningProgram program{loud};
-  ASSERT_TRUE(program.wait_for("exploring: 1"));
+  RunningProgram program{explore(run, {"--max-views", "50", "--min-gain", "1"})};
+  ASSERT_TRUE(wait_for_file(run / "checkpoint-1.sacmap"));
   expect_failure(run_program(explore(run, {"--force"})), 3, "explore", {"another run"});
   program.send(SIGINT);
   const Outcome outcome = program.finish();

@@ -97,6 +97,12 @@ inline Outcome run_program(const Arguments& arguments, rlim_t file_bytes = 0, co
   return RunningProgram{arguments, file_bytes, input}.finish();
 }
 
+/// Whether the file appears within 60 s.
+inline bool wait_for_file(const fs::path& path) {
+  for (int i = 0; i < 12000 && !fs::exists(path); ++i) std::this_thread::sleep_for(std::chrono::milliseconds{5});
+  return fs::exists(path);
+}
+
 inline Arguments operator+(Arguments left, const Arguments& right) {
   left.insert(left.end(), right.begin(), right.end());
   return left;

@@ -1,0 +1,139 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "explore_report.hpp"
+
+#include <cstddef>
+#include <iomanip>
+#include <sstream>
+
+#include "saccade/io/atomic_file.hpp"
+#include "saccade/io/file_io.hpp"
+#include "saccade/io/image_io.hpp"
+#include "saccade/report/exploration_pictures.hpp"
+#include "saccade/report/run_report.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::uintmax_t kMaxPictureBytes{std::uintmax_t{64} << 20U};
+
+std::string picture_name(std::size_t number, const char* kind) {
+  std::ostringstream name;
+  name << "view-" << std::setw(2) << std::setfill('0') << number << '-' << kind << ".png";
+  return name.str();
+}
+
+template <class T>
+std::optional<T> optional_of(const json& value) {
+  return value.is_null() ? std::nullopt : std::optional<T>{value.get<T>()};
+}
+
+/// Those of the pictures that are there.
+std::vector<ReportPicture> pictures_of(const RunFolder& out, std::size_t number,
+                                       std::initializer_list<ReportPicture> wanted) {
+  std::vector<ReportPicture> pictures;
+  for (const ReportPicture& picture : wanted) {
+    auto bytes = read_text_file(out / picture_name(number, picture.kind.c_str()), kMaxPictureBytes);
+    if (!bytes) continue;
+    const auto* first = reinterpret_cast<const std::byte*>(bytes->data());
+    pictures.push_back({{first, first + bytes->size()}, picture.caption, picture.alt, picture.kind});
+  }
+  return pictures;
+}
+
+ReportView view_of(const RunFolder& out, const json& view) {
+  ReportView shown;
+  shown.index = view.at("index").get<std::size_t>() + 1;
+  shown.gain = view.at("gain").get<double>();
+  shown.candidates = view.at("candidates").get<std::size_t>();
+  shown.coverage = optional_of<double>(view.at("coverage"));
+  shown.unknown_left = view.at("unknown_left").get<std::size_t>();
+  shown.unknown_near_objects = optional_of<std::size_t>(view.at("unknown_near_objects"));
+  shown.points_at_object = optional_of<bool>(view.at("points_at_object"));
+  for (const char* phase : {"candidates", "evaluation", "motion", "fusion"}) {
+    shown.phases.push_back({phase, view.at("ms").at(phase).get<double>()});
+  }
+  shown.pictures = pictures_of(
+      out, shown.index,
+      {{{}, "The chosen view among its candidates", "The candidates around the region and the chosen view", "choice"},
+       {{}, "What the camera saw: colour and depth", "Colour picture beside the depth picture", "seen"},
+       {{}, "The map after the view, unknown in black", "The map from outside, unknown in black", "map"}});
+  return shown;
+}
+
+std::string camera_text(const json& camera) {
+  std::ostringstream text;
+  text << camera.at("width") << " × " << camera.at("height") << ", f = " << camera.at("fx").get<double>() << " px, "
+       << camera.at("min_range_m").get<double>() << "–" << camera.at("max_range_m").get<double>() << " m";
+  return text.str();
+}
+
+}  // namespace
+
+Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor& executor) {
+  std::vector<ScoredPose> candidates;
+  candidates.reserve(scenes.proposals.views.size());
+  for (const Proposal& proposal : scenes.proposals.views)
+    candidates.push_back({proposal.T_world_camera, proposal.gain});
+  CandidatesPictureConfig config;
+  config.sensor = scenes.camera;
+  SACCADE_CHECK(write_png(
+      out / picture_name(scenes.number, "choice"),
+      candidates_picture({scenes.before, scenes.region, candidates, scenes.view.T_world_camera, scenes.T_world_earlier},
+                         executor, config)));
+  if (!scenes.frames.empty()) {
+    const Frame& middle = scenes.frames[scenes.frames.size() / 2];
+    const DepthScale scale{scenes.camera.min_range_m, scenes.camera.max_range_m};
+    SACCADE_CHECK(write_png(out / picture_name(scenes.number, "seen"), seen_picture(middle, scale)));
+  }
+  return write_png(out / picture_name(scenes.number, "map"), map_picture(scenes.after, scenes.workspace, executor));
+}
+
+Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace, const Executor& executor) {
+  return write_png(out / picture_name(0, "map"), map_picture(map, workspace, executor));
+}
+
+bool is_view_picture(const std::string& file_name) {
+  return file_name.starts_with("view-") && file_name.ends_with(".png");
+}
+
+Status write_report(const RunFolder& out, const json& document, const ExploreOptions& options) {
+  const json& result = document.at("result");
+  RunReport report;
+  report.scene = result.at("scene").get<std::string>();
+  report.title = "Exploration of " + report.scene;
+  report.strategy = result.at("strategy").get<std::string>();
+  report.robot = result.at("robot").get<std::string>();
+  report.noise = !options.camera_command.empty() ? "" : result.at("noise").get<bool>() ? "Kinect v1" : "none";
+  report.seed = document.at("seed").get<std::uint64_t>();
+  report.threads = document.at("threads").get<std::size_t>();
+  report.version = document.at("version").get<std::string>();
+  std::ostringstream voxel;
+  voxel << 1e3 * options.run.voxel_size_m << " mm";
+  report.facts = {{"voxel size", voxel.str()},
+                  {"camera", camera_text(result.at("camera"))},
+                  {"back end", document.at("backend").get<std::string>()}};
+  report.min_gain = options.run.exploration.min_gain;
+  report.stop_reason = result.at("stopped_because").get<std::string>();
+  if (const json& initial = result.at("initial"); !initial.is_null()) {
+    report.initial.coverage = optional_of<double>(initial.at("coverage"));
+    report.initial.unknown_left = initial.at("unknown_left").get<std::size_t>();
+  }
+  report.initial.pictures =
+      pictures_of(out, 0, {{{}, "The map after the scan, unknown in black", "The map from outside", "map"}});
+  for (const json& view : result.at("views")) report.views.push_back(view_of(out, view));
+  const json& final = result.at("final");
+  report.final = {optional_of<double>(final.at("coverage")),
+                  final.at("unknown_left").get<std::size_t>(),
+                  optional_of<std::size_t>(final.at("unknown_near_objects")),
+                  optional_of<double>(final.at("accuracy_m")),
+                  optional_of<double>(final.at("chamfer_m")),
+                  optional_of<double>(final.at("f_score"))};
+  report.links = {{"mesh.ply", "the surface, with colours"},
+                  {"map.sacmap", "the map of occupied, empty and unknown, for saccade nbv"},
+                  {"run.json", "all figures, for programs"}};
+  return write_file_atomically(out / "report.html", run_report_html(report));
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The pictures of an exploration, drawn after each view, and the page that shows them at the end.
+
+#include <nlohmann/json.hpp>
+#include <string>
+
+#include "explore_devices.hpp"
+#include "run_folder.hpp"
+
+namespace saccade::cli {
+
+/// What there is to draw of one view. The references outlive the call.
+struct ViewScenes {
+  std::size_t number{1};  ///< 1 for the first view
+  const TsdfSnapshot& before;
+  const TsdfSnapshot& after;
+  const Region& region;
+  const ExploredView& view;
+  const Proposals& proposals;
+  std::vector<Pose> T_world_earlier;
+  const std::vector<Frame>& frames;  ///< of the oscillation, the view itself in the middle
+  const Box& workspace;
+  PinholeCamera camera;
+};
+
+/// Writes view-NN-choice.png, view-NN-seen.png and view-NN-map.png. io_failure.
+[[nodiscard]] Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor& executor);
+/// Writes view-00-map.png.
+[[nodiscard]] Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace,
+                               const Executor& executor);
+[[nodiscard]] bool is_view_picture(const std::string& file_name);
+
+/// Writes report.html from the document that goes to run.json and the pictures in the folder; pictures that are not
+/// there are left out. io_failure.
+[[nodiscard]] Status write_report(const RunFolder& out, const nlohmann::json& document, const ExploreOptions& options);
+
+}  // namespace saccade::cli
