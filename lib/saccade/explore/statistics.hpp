@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// MeanEstimate: the mean of a few measurements and how sure it is, by Student's t distribution.
+
+#include <cstddef>
+#include <optional>
+#include <span>
+
+namespace saccade {
+
+/// Share of repetitions in which an interval holds the true mean.
+constexpr double kConfidence{0.95};
+
+struct MeanEstimate {
+  std::size_t n{0};
+  double mean{0.0};
+  std::optional<double> standard_deviation;  ///< of the sample, with n − 1; none for n < 2
+  std::optional<double> half_width;          ///< of the mean's confidence interval; none for n < 2
+
+  [[nodiscard]] std::optional<double> low() const;
+  [[nodiscard]] std::optional<double> high() const;
+};
+
+/// mean ± t·s/√n, where t is the two-sided quantile for n − 1 degrees of freedom. The values are taken as independent
+/// and normally distributed. Expects finite values and a confidence within (0, 1). O(n).
+[[nodiscard]] MeanEstimate estimate_mean(std::span<const double> values, double confidence = kConfidence);
+
+/// Whether both intervals exist and have no point in common.
+[[nodiscard]] bool are_apart(const MeanEstimate& a, const MeanEstimate& b);
+
+/// Probability that a variable of Student's t distribution lies within ±t. By the finite series for whole degrees of
+/// freedom (Abramowitz and Stegun, 26.7.3 and 26.7.4). Expects t ≥ 0 and degrees ≥ 1. O(degrees).
+[[nodiscard]] double student_t_probability(double t, std::size_t degrees);
+
+/// The t ≥ 0 for which student_t_probability is `confidence`, by bisection. Exact to about 1e-12 of t for a confidence
+/// up to 0.9999. Expects a confidence within (0, 1) and degrees ≥ 1.
+[[nodiscard]] double student_t_quantile(double confidence, std::size_t degrees);
+
+}  // namespace saccade
