@@ -1,0 +1,91 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Campaign: the runs of a comparison in one SQLite file, each stored once, whole or not at all. Tables:
+// docs/compare.md.
+
+#include <cstdint>
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "saccade/core/pose.hpp"
+#include "saccade/io/sqlite_file.hpp"
+
+namespace saccade {
+
+/// Everything that decides a run's figures. Two runs with one key are the same run.
+struct CampaignKey {
+  std::string scene;
+  std::string scene_hash;  ///< of the scene's content (scene_hash): an edited scene is another one
+  std::string strategy;
+  std::uint64_t seed{1};  ///< below 2⁶³
+  std::string settings;   ///< canonical JSON of all that else changes the figures: keys sorted, no blanks
+
+  [[nodiscard]] bool operator==(const CampaignKey&) const = default;
+};
+
+/// A map held against the truth; definitions: docs/metrics.md.
+struct CampaignFigures {
+  double coverage{0.0};
+  std::size_t unknown_left{0};
+  std::size_t unknown_near_objects{0};
+  std::optional<double> accuracy_m;
+  std::optional<double> chamfer_m;
+  std::optional<double> f_score;
+
+  [[nodiscard]] bool operator==(const CampaignFigures&) const = default;
+};
+
+struct CampaignView {
+  std::size_t region{0};
+  std::optional<double> gain;  ///< as predicted
+  Pose T_world_camera{Pose::Identity()};
+  std::size_t candidates{0};
+  std::size_t frames{0};
+  CampaignFigures after;
+  bool points_at_object{false};
+  double candidates_ms{0.0};
+  double evaluation_ms{0.0};
+  double motion_ms{0.0};
+  double fusion_ms{0.0};
+};
+
+struct CampaignRun {
+  CampaignKey key;
+  CampaignFigures initial;  ///< after the initial scan
+  std::vector<CampaignView> views;
+  std::string stopped_because;
+  double seconds{0.0};
+  std::string program_version;
+  std::string finished_at;  ///< UTC, as 2024-06-30T12:00:00Z; set when the run is stored
+
+  [[nodiscard]] const CampaignFigures& final() const { return views.empty() ? initial : views.back().after; }
+};
+
+/// An open campaign file. A run is stored in one transaction that reaches the disk before add() returns: whatever ends
+/// the program later, the run is there, and an unfinished one has left no trace. Several processes may use one file at
+/// once; each waits up to ten seconds for the others. One thread. Errors carry the file's path: those of SqliteFile.
+class Campaign {
+ public:
+  /// Opens the file, or creates it, and tries whether it can be written. invalid_argument for another program's
+  /// database; unsupported for one of a newer Saccade.
+  [[nodiscard]] static Result<Campaign> open(const std::filesystem::path& path);
+
+  [[nodiscard]] Result<bool> has(const CampaignKey& key) const;
+  /// @return whether the run was stored: false when there was one with its key, which stays. invalid_argument for a
+  ///         seed of 2⁶³ or more, and for a figure that is not finite.
+  [[nodiscard]] Result<bool> add(const CampaignRun& run) const;
+  /// nullopt: no such run.
+  [[nodiscard]] Result<std::optional<CampaignRun>> find(const CampaignKey& key) const;
+  /// All runs, in the order in which they were stored.
+  [[nodiscard]] Result<std::vector<CampaignRun>> runs() const;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return file_.path(); }
+
+ private:
+  explicit Campaign(SqliteFile file) : file_{std::move(file)} {}
+  SqliteFile file_;
+};
+
+}  // namespace saccade

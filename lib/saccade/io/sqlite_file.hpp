@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SqliteFile, SqliteStatement: an SQLite database with errors as values.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "saccade/core/result.hpp"
+
+struct sqlite3;
+struct sqlite3_stmt;
+
+namespace saccade {
+
+/// An open database file. What goes wrong carries the file's path: corrupt_data for a file that is no database or a
+/// damaged one, io_failure for a full disk, a missing permission, or another process that holds the file too long. One
+/// thread; several processes may have the file open.
+class SqliteFile {
+ public:
+  /// Opens the file, or creates it. How long a write waits for another process: busy_ms.
+  [[nodiscard]] static Result<SqliteFile> open(const std::filesystem::path& path, int busy_ms);
+
+  /// Runs statements that give no rows.
+  [[nodiscard]] Status run(const std::string& sql) const;
+  [[nodiscard]] Result<std::int64_t> integer(const std::string& query) const;
+
+  [[nodiscard]] const std::filesystem::path& path() const { return path_; }
+  [[nodiscard]] std::int64_t last_row_id() const;
+  /// Rows that the last statement changed.
+  [[nodiscard]] int changed_rows() const;
+  /// The Error of a result code of SQLite.
+  [[nodiscard]] Error error(int code) const;
+
+ private:
+  friend class SqliteStatement;
+  struct Close {
+    void operator()(sqlite3* database) const;
+  };
+  SqliteFile() = default;
+  std::filesystem::path path_;
+  std::unique_ptr<sqlite3, Close> database_;
+};
+
+/// One statement: prepared once, its ? bound from 1 on, stepped through its rows, and started again. The file must
+/// outlive it. Expects columns and parameters that the statement has.
+class SqliteStatement {
+ public:
+  [[nodiscard]] static Result<SqliteStatement> prepare(const SqliteFile& file, std::string_view sql);
+
+  // Each binds the next parameter.
+  void bind(std::string_view text);
+  void bind(std::int64_t number);
+  void bind(double number);
+  void bind(const std::optional<double>& number);
+
+  /// Whether there is another row.
+  [[nodiscard]] Result<bool> step();
+  /// For a statement without rows: runs it, and makes it ready to be bound anew.
+  [[nodiscard]] Status run();
+
+  // Each reads the next column of the row.
+  [[nodiscard]] std::string text();
+  [[nodiscard]] std::int64_t integer();
+  [[nodiscard]] double real();
+  [[nodiscard]] std::optional<double> optional_real();
+
+ private:
+  struct Finalize {
+    void operator()(sqlite3_stmt* statement) const;
+  };
+  explicit SqliteStatement(const SqliteFile& file) : file_{&file} {}
+  const SqliteFile* file_;
+  std::unique_ptr<sqlite3_stmt, Finalize> statement_;
+  int parameter_{0};
+  int column_{0};
+};
+
+/// A transaction that takes the right to write at once. Without a commit it is undone.
+class SqliteTransaction {
+ public:
+  [[nodiscard]] static Result<SqliteTransaction> begin(const SqliteFile& file);
+  SqliteTransaction(SqliteTransaction&& other) noexcept;
+  SqliteTransaction& operator=(SqliteTransaction&&) = delete;
+  ~SqliteTransaction();
+  [[nodiscard]] Status commit();
+
+ private:
+  explicit SqliteTransaction(const SqliteFile& file) : file_{&file} {}
+  const SqliteFile* file_;
+};
+
+}  // namespace saccade

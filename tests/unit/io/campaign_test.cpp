@@ -1,0 +1,327 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/io/campaign.hpp"
+
+#include <gtest/gtest.h>
+#include <sys/resource.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <cmath>
+#include <csignal>
+#include <limits>
+#include <thread>
+
+#include "saccade/io/campaign_csv.hpp"
+#include "saccade/io/file_io.hpp"
+#include "support/temp_folder.hpp"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+using test::TempFolder;
+
+CampaignKey key_of(std::uint64_t seed, const std::string& strategy = "sphere") {
+  return {"jug", "00ff00ff00ff00ff", strategy, seed, R"({"max_views":3,"voxel_size_m":0.01})"};
+}
+
+CampaignRun run_of(const CampaignKey& key, std::size_t views = 2) {
+  CampaignRun run;
+  run.key = key;
+  run.initial = {0.25, 1000, 100, std::nullopt, std::nullopt, std::nullopt};
+  for (std::size_t i = 0; i < views; ++i) {
+    CampaignView view;
+    view.region = i;
+    view.gain = i == 1 ? std::nullopt : std::optional{321.5};
+    view.T_world_camera =
+        Pose{Eigen::Translation3d{0.1, 0.2, 0.3 + 1.0 / 3.0} * Eigen::AngleAxisd{0.7, Eigen::Vector3d::UnitX()}};
+    view.candidates = 960;
+    view.frames = 5;
+    view.after = {0.5 + 0.1 * static_cast<double>(i) + 0.001 * static_cast<double>(key.seed),
+                  900 - i,
+                  90 - i,
+                  0.0012,
+                  0.0034,
+                  0.9};
+    view.points_at_object = i % 2 == 0;
+    view.candidates_ms = 0.1;
+    view.evaluation_ms = 20.25;
+    view.motion_ms = 0.0;
+    view.fusion_ms = 7.0;
+    run.views.push_back(view);
+  }
+  run.stopped_because = "views_used_up";
+  run.seconds = 1.5;
+  run.program_version = "0.1.0";
+  return run;
+}
+
+void expect_same(const CampaignRun& a, const CampaignRun& b) {
+  EXPECT_EQ(a.key, b.key);
+  EXPECT_EQ(a.initial, b.initial);
+  EXPECT_EQ(a.final(), b.final());
+  EXPECT_EQ(a.stopped_because, b.stopped_because);
+  EXPECT_EQ(a.seconds, b.seconds);
+  EXPECT_EQ(a.program_version, b.program_version);
+  ASSERT_EQ(a.views.size(), b.views.size());
+  for (std::size_t i = 0; i < a.views.size(); ++i) {
+    EXPECT_EQ(a.views[i].region, b.views[i].region);
+    EXPECT_EQ(a.views[i].gain, b.views[i].gain);
+    EXPECT_LT((a.views[i].T_world_camera.matrix() - b.views[i].T_world_camera.matrix()).norm(), 1e-15);
+    EXPECT_EQ(a.views[i].candidates, b.views[i].candidates);
+    EXPECT_EQ(a.views[i].frames, b.views[i].frames);
+    EXPECT_EQ(a.views[i].after, b.views[i].after);
+    EXPECT_EQ(a.views[i].points_at_object, b.views[i].points_at_object);
+    EXPECT_EQ(a.views[i].candidates_ms, b.views[i].candidates_ms);
+    EXPECT_EQ(a.views[i].evaluation_ms, b.views[i].evaluation_ms);
+    EXPECT_EQ(a.views[i].motion_ms, b.views[i].motion_ms);
+    EXPECT_EQ(a.views[i].fusion_ms, b.views[i].fusion_ms);
+  }
+}
+
+TEST(Campaign, GivesBackWhatWasStoredAfterReopening) {
+  const TempFolder folder;
+  const fs::path path = folder / "campaign.sqlite";
+  {
+    const auto campaign = Campaign::open(path);
+    ASSERT_TRUE(campaign) << campaign.error().to_string();
+    EXPECT_FALSE(*campaign->has(key_of(1)));
+    EXPECT_TRUE(*campaign->add(run_of(key_of(1))));
+    EXPECT_TRUE(*campaign->add(run_of(key_of(2), 0)));
+  }
+  const auto campaign = Campaign::open(path);
+  ASSERT_TRUE(campaign);
+  const auto runs = campaign->runs();
+  ASSERT_TRUE(runs) << runs.error().to_string();
+  ASSERT_EQ(runs->size(), 2U);
+  expect_same((*runs)[0], run_of(key_of(1)));
+  expect_same((*runs)[1], run_of(key_of(2), 0));
+  EXPECT_EQ((*runs)[0].finished_at.size(), std::string{"2024-06-30T12:00:00Z"}.size());
+  const auto found = campaign->find(key_of(2));
+  ASSERT_TRUE(found && *found);
+  expect_same(**found, run_of(key_of(2), 0));
+  EXPECT_FALSE(*campaign->find(key_of(3)));
+  // One file, and nothing beside it.
+  EXPECT_EQ(std::distance(fs::directory_iterator{folder.path()}, fs::directory_iterator{}), 1);
+}
+
+TEST(Campaign, EveryPartOfTheKeyTellsRunsApart) {
+  const TempFolder folder;
+  const auto campaign = Campaign::open(folder / "c");
+  ASSERT_TRUE(campaign);
+  ASSERT_TRUE(*campaign->add(run_of(key_of(1))));
+  CampaignRun again = run_of(key_of(1), 1);
+  EXPECT_FALSE(*campaign->add(again));  // the first one stays
+  EXPECT_EQ((**campaign->find(key_of(1))).views.size(), 2U);
+  std::vector<CampaignKey> others(5, key_of(1));
+  others[0].scene = "Jug";
+  others[1].scene_hash += "0";
+  others[2].strategy = "random";
+  others[3].seed = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
+  others[4].settings = R"({"max_views":3,"voxel_size_m":0.0100001})";
+  for (const CampaignKey& other : others) {
+    EXPECT_FALSE(*campaign->has(other));
+    EXPECT_TRUE(*campaign->add(run_of(other)));
+    EXPECT_EQ((**campaign->find(other)).key, other);
+  }
+  EXPECT_EQ(campaign->runs()->size(), 6U);
+}
+
+TEST(Campaign, RefusesWhatItCannotKeep) {
+  const TempFolder folder;
+  const auto campaign = Campaign::open(folder / "c");
+  ASSERT_TRUE(campaign);
+  CampaignRun run = run_of(key_of(std::uint64_t{1} << 63U));
+  EXPECT_EQ(campaign->add(run).error().code, Errc::invalid_argument);
+  EXPECT_EQ(campaign->has(run.key).error().code, Errc::invalid_argument);
+  run = run_of(key_of(1));
+  run.views[1].after.f_score = std::nan("");
+  EXPECT_EQ(campaign->add(run).error().code, Errc::invalid_argument);
+  EXPECT_TRUE(campaign->runs()->empty());
+}
+
+TEST(Campaign, ForeignFilesAreLeftAsTheyAre) {
+  const TempFolder folder;
+  const auto content = [](const fs::path& path) { return fs::is_directory(path) ? "" : *read_text_file(path); };
+  const auto refused = [&](const std::string& name, Errc code, const std::string& part) {
+    const fs::path path = folder / name;
+    const std::string before = content(path);
+    const auto campaign = Campaign::open(path);
+    ASSERT_FALSE(campaign) << name;
+    EXPECT_EQ(campaign.error().code, code) << name;
+    EXPECT_EQ(campaign.error().context, path.string());
+    EXPECT_NE(campaign.error().message.find(part), std::string::npos) << campaign.error().message;
+    EXPECT_EQ(content(path), before);
+  };
+  folder.write("short", "hello");
+  refused("short", Errc::corrupt_data, "not an SQLite file");
+  folder.write("long", std::string(20000, 'x'));
+  refused("long", Errc::corrupt_data, "not an SQLite file");
+  fs::create_directory(folder / "folder");
+  refused("folder", Errc::invalid_argument, "is a folder");
+  ASSERT_TRUE(SqliteFile::open(folder / "other", 0)->run("CREATE TABLE songs (name TEXT)"));
+  refused("other", Errc::invalid_argument, "another program");
+  ASSERT_TRUE(SqliteFile::open(folder / "tagged", 0)->run("PRAGMA application_id = 7"));
+  refused("tagged", Errc::invalid_argument, "another program");
+  ASSERT_TRUE(Campaign::open(folder / "newer"));
+  ASSERT_TRUE(SqliteFile::open(folder / "newer", 0)->run("PRAGMA user_version = 99"));
+  refused("newer", Errc::unsupported, "newer Saccade");
+  const auto nowhere = Campaign::open(folder / "no/such/folder/c");
+  ASSERT_FALSE(nowhere);
+  EXPECT_EQ(nowhere.error().code, Errc::io_failure);
+  EXPECT_NE(nowhere.error().message.find("No such file"), std::string::npos) << nowhere.error().message;
+}
+
+TEST(Campaign, DamagedFilesAreErrorsNotCrashes) {
+  const TempFolder folder;
+  const fs::path whole = folder / "whole";
+  {
+    const auto campaign = Campaign::open(whole);
+    for (std::uint64_t seed = 1; seed <= 40; ++seed) ASSERT_TRUE(*campaign->add(run_of(key_of(seed))));
+  }
+  const std::string bytes = *read_text_file(whole);
+  ASSERT_GT(bytes.size(), 20000U);
+  int errors = 0;
+  for (std::size_t cut = 1000; cut < bytes.size(); cut += 1777) {
+    folder.write("cut", bytes.substr(0, cut));
+    const auto campaign = Campaign::open(folder / "cut");
+    const auto runs = campaign ? campaign->runs() : Result<std::vector<CampaignRun>>{campaign.error()};
+    errors += runs ? 0 : 1;
+    EXPECT_TRUE(runs || runs.error().code == Errc::corrupt_data) << cut << ' ' << runs.error().to_string();
+  }
+  EXPECT_GT(errors, 5);
+}
+
+TEST(Campaign, AFullDiskIsOneErrorAndLosesNothing) {
+  const TempFolder folder;
+  const fs::path path = folder / "c";
+  const auto campaign = Campaign::open(path);
+  ASSERT_TRUE(campaign);
+  ASSERT_TRUE(*campaign->add(run_of(key_of(1))));
+  auto* handler = std::signal(SIGXFSZ, SIG_IGN);
+  rlimit before{};
+  ::getrlimit(RLIMIT_FSIZE, &before);
+  const rlimit limit{fs::file_size(path), before.rlim_max};
+  ::setrlimit(RLIMIT_FSIZE, &limit);
+  const auto stored = campaign->add(run_of(key_of(2), 500));
+  const auto created = Campaign::open(folder / "another");
+  ::setrlimit(RLIMIT_FSIZE, &before);
+  std::signal(SIGXFSZ, handler);
+  ASSERT_FALSE(stored);
+  EXPECT_EQ(stored.error().code, Errc::io_failure);
+  EXPECT_EQ(stored.error().context, path.string());
+  EXPECT_NE(stored.error().message.find("cannot be written"), std::string::npos) << stored.error().message;
+  EXPECT_TRUE(*campaign->has(key_of(1)));
+  EXPECT_FALSE(*campaign->has(key_of(2)));
+  EXPECT_TRUE(*campaign->add(run_of(key_of(2), 500)));
+  EXPECT_EQ((**campaign->find(key_of(2))).views.size(), 500U);
+}
+
+/// Adds runs with the seeds first, first + step, … until `count` or for ever; for use in a child process.
+[[noreturn]] void add_runs(const fs::path& path, std::uint64_t first, std::uint64_t step, int count) {
+  const auto campaign = Campaign::open(path);
+  for (int i = 0; campaign && (count == 0 || i < count); ++i) {
+    const auto added = campaign->add(run_of(key_of(first + step * static_cast<std::uint64_t>(i)), 30));
+    if (!added || !*added) ::_exit(2);
+  }
+  ::_exit(campaign ? 0 : 1);
+}
+
+TEST(Campaign, AKilledProcessLosesNoFinishedRunAndLeavesNoHalfOne) {
+  const TempFolder folder;
+  const fs::path path = folder / "c";
+  std::size_t stored = 0;
+  for (int round = 0; round < 5; ++round) {
+    const pid_t child = ::fork();
+    if (child == 0) add_runs(path, 1000U * static_cast<std::uint64_t>(round) + 1, 1, 0);
+    std::this_thread::sleep_for(std::chrono::milliseconds{60 + 23 * round});
+    ::kill(child, SIGKILL);
+    ::waitpid(child, nullptr, 0);
+    const auto campaign = Campaign::open(path);
+    ASSERT_TRUE(campaign) << campaign.error().to_string();
+    const auto runs = campaign->runs();
+    ASSERT_TRUE(runs) << runs.error().to_string();
+    EXPECT_GE(runs->size(), stored);
+    stored = runs->size();
+    for (const CampaignRun& run : *runs) {
+      EXPECT_EQ(run.views.size(), 30U);
+      EXPECT_TRUE(*campaign->has(run.key));
+    }
+  }
+  EXPECT_GT(stored, 0U);
+}
+
+TEST(Campaign, TwoProcessesShareAFile) {
+  const TempFolder folder;
+  const fs::path path = folder / "c";
+  constexpr int kRuns{40};
+  const pid_t odd = ::fork();
+  if (odd == 0) add_runs(path, 1, 2, kRuns);
+  const pid_t even = ::fork();
+  if (even == 0) add_runs(path, 2, 2, kRuns);
+  for (const pid_t child : {odd, even}) {
+    int status{-1};
+    ::waitpid(child, &status, 0);
+    EXPECT_EQ(status, 0);
+  }
+  const auto campaign = Campaign::open(path);
+  ASSERT_TRUE(campaign);
+  EXPECT_EQ(campaign->runs()->size(), 2U * kRuns);
+  EXPECT_EQ(SqliteFile::open(path, 0)
+                ->integer("SELECT count(*) FROM pragma_integrity_check WHERE integrity_check = 'ok'")
+                .value(),
+            1);
+  EXPECT_EQ(SqliteFile::open(path, 0)->integer("SELECT count(*) FROM curves").value(), 2 * kRuns * 31);
+}
+
+TEST(Campaign, SummariesAreMeansOverSeeds) {
+  std::vector<CampaignRun> runs;
+  for (const std::uint64_t seed : {1U, 2U, 4U}) runs.push_back(run_of(key_of(seed), 2));
+  for (const std::uint64_t seed : {1U, 4U, 9U}) runs.push_back(run_of(key_of(seed, "random"), 1));
+  const std::vector<CampaignSummary> summaries = summarize(runs);
+  ASSERT_EQ(summaries.size(), 2U);
+  EXPECT_EQ(summaries[0].strategy, "sphere");
+  EXPECT_EQ(summaries[0].coverage.n, 3U);
+  EXPECT_NEAR(summaries[0].coverage.mean, 0.6 + 0.007 / 3.0, 1e-12);
+  EXPECT_NEAR(summaries[1].coverage.mean, 0.5 + 0.014 / 3.0, 1e-12);
+  EXPECT_EQ(summaries[0].initial_coverage.half_width.value(), 0.0);
+  EXPECT_EQ(summaries[1].views.mean, 1.0);
+  EXPECT_NEAR(summaries[1].accuracy_m.mean, 0.0012, 1e-15);
+  const std::vector<MeanEstimate> curve = coverage_over_views(runs, "jug", "sphere");
+  ASSERT_EQ(curve.size(), 3U);
+  EXPECT_EQ(curve[0].mean, 0.25);
+  EXPECT_NEAR(curve[1].mean, 0.5 + 0.007 / 3.0, 1e-12);
+  EXPECT_TRUE(coverage_over_views(runs, "jug", "none").empty());
+  const MeanEstimate gap = coverage_gap(runs, "jug", "sphere", "random");
+  EXPECT_EQ(gap.n, 2U);  // seeds 1 and 4
+  EXPECT_NEAR(gap.mean, 0.1, 1e-12);
+  EXPECT_NEAR(gap.half_width.value(), 0.0, 1e-12);
+  // A run that stopped earlier counts on with what it had.
+  runs.push_back(run_of(key_of(5), 0));
+  EXPECT_NEAR(coverage_over_views(runs, "jug", "sphere")[2].mean, (3.0 * 0.6 + 0.007 + 0.25) / 4.0, 1e-12);
+}
+
+TEST(Campaign, TablesAreQuotedAndLeaveOutWhatIsNotThere) {
+  CampaignRun run = run_of(key_of(7), 1);
+  run.key.scene = "a \"jug\", large";
+  const std::string text = runs_csv({&run, 1}).text();
+  EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
+  EXPECT_NE(text.find("\n\"a \"\"jug\"\", large\",00ff00ff00ff00ff,sphere,7,1,views_used_up,1.5,0.25,1000,100,,,,"),
+            std::string::npos)
+      << text;
+  EXPECT_NE(text.find(R"("{""max_views"":3,""voxel_size_m"":0.01}")"), std::string::npos) << text;
+  const std::string views = views_csv({&run, 1}).text();
+  EXPECT_NE(views.find(",sphere,7,0,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
+  EXPECT_NE(views.find(",sphere,7,1,0,321.5,960,5,1,0.1,20.25,0,7,0.507,900,90,0.0012,0.0034,0.9\n"), std::string::npos)
+      << views;
+  run.key.scene = "jug";
+  const std::string summary = summary_csv(summarize({&run, 1})).text();
+  EXPECT_NE(summary.find("\njug,sphere,1,0.25,,,0.507,,,90,,,0.9,,,0.0012,,,1,,,1.5,,\n"), std::string::npos)
+      << summary;
+  const TempFolder folder;
+  ASSERT_TRUE(runs_csv({&run, 1}).write(folder / "runs.csv"));
+  EXPECT_EQ(*read_text_file(folder / "runs.csv"), runs_csv({&run, 1}).text());
+}
+
+}  // namespace
+}  // namespace saccade
