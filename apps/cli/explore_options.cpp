@@ -17,27 +17,7 @@ void add_explore_options(CLI::App& command, ExploreOptions& options) {
                   "sphere: best gain on the view sphere around each region; random: its poses in random order")
       ->check(CLI::IsMember(std::set<std::string>{"sphere", "random"}))
       ->capture_default_str();
-  command.add_option("--max-views", options.run.exploration.max_views, "views at most, after the initial scan")
-      ->check(CLI::Range(0, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  command.add_option("--min-gain", options.run.exploration.min_gain, "gain below which a region is done")
-      ->type_name("RAYS")
-      ->capture_default_str();
-  command
-      .add_option("--gain-width", options.run.gain_width_px,
-                  "pixels across of the virtual sensor that views are chosen with")
-      ->check(CLI::Range(1, 100000))
-      ->type_name("PIXELS")
-      ->capture_default_str();
-  command.add_option("--radius", options.radius_m, "radius of the view sphere, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command.add_option("--voxel-size", options.run.voxel_size_m, "edge of a voxel, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of a Kinect v1");
-  add_camera_options(command, options.camera, true);
+  add_run_options(command, options);
 
   command.add_option("--robot", options.robot, "what carries the camera; free: it flies")
       ->check(CLI::IsMember(std::set<std::string>{"free"}))
@@ -63,17 +43,12 @@ void add_explore_options(CLI::App& command, ExploreOptions& options) {
 void check_explore_options(ExploreOptions& options, const GlobalOptions& global) {
   if (options.out.empty()) usage_error("--out", "needs the name of a folder");
   if (options.resume && options.force) usage_error("--resume", "goes on with a run, --force starts it anew: not both");
-  require_positive(options.run.voxel_size_m, "--voxel-size");
-  require_positive(options.radius_m, "--radius");
   require_positive(options.process_timeout_s, "--process-timeout");
-  require_ok(options.run.map().validate(), "--voxel-size");
-  options.run.sphere.radii_m = {options.radius_m};
+  check_run_options(options);
   const auto strategy = strategy_kind(options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
   options.run.strategy = *strategy;
-  options.run.camera = options.camera.camera(options.run.camera);
   options.run.seed = global.seed;
-  require_ok(options.run.validate(), "the exploration");
 }
 
 }  // namespace saccade::cli

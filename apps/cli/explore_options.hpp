@@ -7,15 +7,13 @@
 #include <string>
 
 #include "command.hpp"
-#include "options.hpp"
-#include "saccade/explore/simulated_run.hpp"
+#include "run_options.hpp"
 
 namespace saccade::cli {
 
-struct ExploreOptions {
+struct ExploreOptions : RunOptions {
   std::string scene;
   std::filesystem::path out;
-  SimulatedRunConfig run;
   std::string robot{"free"};
   std::string robot_command;   ///< a program that moves a robot; empty: robot
   std::string camera_command;  ///< a program that has a camera; empty: a simulated one
@@ -24,11 +22,7 @@ struct ExploreOptions {
   bool resume{false};
   bool write_pictures{true};
   bool force{false};
-
-  // As they were given, before they are checked together.
-  std::string strategy{"sphere"};
-  double radius_m{0.8};
-  CameraOptions camera;
+  std::string strategy{"sphere"};  ///< as it was given
 };
 
 /// Adds the options to the command.

@@ -68,12 +68,12 @@ double round_step(double width, int most) {
 }
 
 /// An axis over the range; one that was not given is widened to whole steps.
-Axis axis_of(Range range, bool given, int most_steps) {
+Axis axis_of(Range range, bool given, int most_steps, double min_step) {
   if (!given && !(range.first < range.second)) {
     const double around = range.first == 0.0 ? 1.0 : 0.1 * std::abs(range.first);
     range = {range.first - around, range.first + around};
   }
-  Axis axis{range, round_step(range.second - range.first, most_steps), 0};
+  Axis axis{range, std::max(min_step, round_step(range.second - range.first, most_steps)), 0};
   if (!given) {
     axis.range.first = axis.step * std::floor(range.first / axis.step + 1e-9);
     axis.range.second = axis.step * std::ceil(range.second / axis.step - 1e-9);
@@ -118,8 +118,8 @@ class Drawing {
  public:
   explicit Drawing(const Plot& plot)
       : plot_{plot},
-        x_{axis_of(plot.x_range.value_or(range_of(plot, true)), plot.x_range.has_value(), 10)},
-        y_{axis_of(plot.y_range.value_or(range_of(plot, false)), plot.y_range.has_value(), 6)} {
+        x_{axis_of(plot.x_range.value_or(range_of(plot, true)), plot.x_range.has_value(), 10, plot.min_x_step)},
+        y_{axis_of(plot.y_range.value_or(range_of(plot, false)), plot.y_range.has_value(), 6, 0.0)} {
     std::size_t longest = 0;
     for (const double tick : y_.ticks()) longest = std::max(longest, svg_number(tick, y_.decimals).size());
     left_ = 34.0 + kDigit_px * static_cast<double>(longest);

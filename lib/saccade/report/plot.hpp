@@ -27,6 +27,7 @@ struct Plot {
   // Ends of the axes; without them, the data's, bands included.
   std::optional<std::pair<double, double>> x_range{};
   std::optional<std::pair<double, double>> y_range{};
+  double min_x_step{0.0};  ///< between ticks: 1 where x counts something
   int width_px{760};
   int height_px{440};
 };

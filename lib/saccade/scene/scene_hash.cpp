@@ -47,6 +47,7 @@ void add(Fnv1a& hash, const Cylinder& cylinder) {
 
 std::string scene_hash(const RayScene& scene) {
   Fnv1a hash;
+  for (const SceneObject& object : scene.scene().objects) hash.add(std::uint64_t{object.fixture ? 1U : 0U});
   for (const ObjectMesh& object : scene.meshes()) {
     hash.add(std::uint64_t{object.support ? 1U : 0U});
     hash.add(std::uint64_t{object.mesh.vertices.size()});

@@ -9,8 +9,8 @@
 namespace saccade {
 
 /// 16 hexadecimal digits from all that changes an exploration of the scene and its measurement: triangles, which
-/// objects are supports, workspace, regions, and the poses of the initial scan. Names, colours and textures do not. A
-/// 64-bit FNV-1a hash: against mistakes, not against forgers. O(triangles).
+/// objects are supports or fixtures, workspace, regions, and the poses of the initial scan. Names, colours and textures
+/// do not. A 64-bit FNV-1a hash: against mistakes, not against forgers. O(triangles).
 [[nodiscard]] std::string scene_hash(const RayScene& scene);
 
 }  // namespace saccade

@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "run_options.hpp"
+
+namespace saccade::cli {
+
+void add_run_options(CLI::App& command, RunOptions& options) {
+  command.add_option("--max-views", options.run.exploration.max_views, "views at most, after the initial scan")
+      ->check(CLI::Range(0, 1000))
+      ->type_name("N")
+      ->capture_default_str();
+  command.add_option("--min-gain", options.run.exploration.min_gain, "gain below which a region is done")
+      ->type_name("RAYS")
+      ->capture_default_str();
+  command
+      .add_option("--gain-width", options.run.gain_width_px,
+                  "pixels across of the virtual sensor that views are chosen with")
+      ->check(CLI::Range(1, 100000))
+      ->type_name("PIXELS")
+      ->capture_default_str();
+  command.add_option("--radius", options.radius_m, "radius of the view sphere, metres")
+      ->type_name("METRES")
+      ->capture_default_str();
+  command.add_option("--voxel-size", options.run.voxel_size_m, "edge of a voxel, metres")
+      ->type_name("METRES")
+      ->capture_default_str();
+  command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of a Kinect v1");
+  add_camera_options(command, options.camera, true);
+}
+
+void check_run_options(RunOptions& options) {
+  require_positive(options.run.voxel_size_m, "--voxel-size");
+  require_positive(options.radius_m, "--radius");
+  require_ok(options.run.map().validate(), "--voxel-size");
+  options.run.sphere.radii_m = {options.radius_m};
+  options.run.camera = options.camera.camera(options.run.camera);
+  require_ok(options.run.validate(), "the exploration");
+}
+
+}  // namespace saccade::cli
