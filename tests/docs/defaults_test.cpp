@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saccade/core/pose.hpp"
+#include "saccade/explore/simulated_run.hpp"
 #include "saccade/map/icp.hpp"
 #include "saccade/map/tsdf_grid.hpp"
 #include "saccade/view/view_gain.hpp"
@@ -49,6 +50,16 @@ TEST(Defaults, OfTheMapAreDocumented) {
   expect_documented("TsdfConfig::truncation_vox", {map.truncation_vox});
   expect_documented("TsdfConfig::max_weight", {static_cast<double>(map.max_weight)});
   expect_documented("TsdfConfig::free_weight", {static_cast<double>(map.free_weight)});
+}
+
+TEST(Defaults, OfExplorationsAreDocumented) {
+  const SimulatedRunConfig run;
+  expect_documented("SimulatedRunConfig::gain_width_px", {static_cast<double>(run.gain_width_px)});
+  expect_documented("ExplorationConfig::min_gain", {run.exploration.min_gain});
+  expect_documented("ExplorationConfig::max_views", {static_cast<double>(run.exploration.max_views)});
+  expect_documented("ExplorationConfig::oscillation_frames", {static_cast<double>(run.exploration.oscillation_frames)});
+  expect_documented("ExplorationConfig::oscillation_rad", {degrees(run.exploration.oscillation_rad)});
+  expect_documented("kCameraClearance_m", {kCameraClearance_m});
 }
 
 TEST(Defaults, OfViewsAreDocumented) {

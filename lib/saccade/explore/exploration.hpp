@@ -17,9 +17,9 @@ namespace saccade {
 struct ExplorationConfig {
   /// IncTh of Algorithm 1, in the strategy's unit: a region whose best view gains less is done.
   double min_gain{200.0};
-  int max_views{12};               ///< in all
-  double oscillation_rad{0.0873};  ///< 5°: at each view the camera is tilted from minus to plus this
-  int oscillation_frames{5};       ///< frames taken on the way; 1: none but the view itself
+  int max_views{12};                             ///< in all
+  double oscillation_rad{0.087266462599716474};  ///< 5°: at each view the camera is tilted from minus to plus this
+  int oscillation_frames{5};                     ///< frames taken on the way; 1: none but the view itself
 
   [[nodiscard]] Status validate() const;
 };

@@ -87,6 +87,7 @@ void add_room(Scene& scene) {
     part.T_world_object.translation() = at;
     part.color = {205, 205, 198};
     part.support = true;
+    part.fixture = true;
     scene.objects.push_back(std::move(part));
   };
   add("floor", {6.2, 6.2, 0.1}, {0.0, 0.0, -0.85});

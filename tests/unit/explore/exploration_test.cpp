@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "saccade/explore/metrics.hpp"
+#include "saccade/explore/simulated_run.hpp"
 #include "saccade/scene/random_clutter.hpp"
 #include "saccade/scene/simulated_camera.hpp"
 
@@ -235,6 +236,21 @@ TEST_F(Explore, PosesOutOfReachArePassedOver) {
   const ExplorationResult none = run(untouched, nowhere, sphere());
   EXPECT_TRUE(none.views.empty());
   EXPECT_EQ(none.stopped_because, StopReason::no_candidate);
+}
+
+TEST_F(Explore, TheFlyingCameraKeepsClearOfFixtures) {
+  const auto robot = flying_camera(rays());
+  ASSERT_TRUE(robot);
+  FreeRobot camera = *robot;
+  const auto reaches = [&camera](const Eigen::Vector3d& p) {
+    return camera.move_to(look_at(p, Eigen::Vector3d{0.0, 0.0, 0.1}))->has_value();
+  };
+  EXPECT_TRUE(reaches({0.5, 0.5, 0.5}));
+  EXPECT_TRUE(reaches({-2.85, 0.0, 0.5}));   // 15 cm before the wall
+  EXPECT_FALSE(reaches({-2.95, 0.0, 0.5}));  // 5 cm before it
+  EXPECT_FALSE(reaches({-3.05, 0.0, 0.5}));  // in it
+  EXPECT_FALSE(reaches({0.0, 0.0, -0.80}));  // in the floor
+  EXPECT_TRUE(reaches({0.0, 0.0, 0.01}));    // on the table, which is no fixture
 }
 
 TEST_F(Explore, RefusesNonsense) {

@@ -10,6 +10,7 @@
 #include "saccade/io/pcd_io.hpp"
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/process_messages.hpp"
+#include "saccade/io/scene_yaml.hpp"
 
 namespace saccade {
 namespace {
@@ -46,6 +47,7 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
                           return parse_intrinsics(content).ok();
                         }),
             6U);
+  EXPECT_GE(check_seeds("scene", [](const auto& content, const auto&) { return parse_scene(content).ok(); }), 3U);
   EXPECT_GE(check_seeds("process_message",
                         [](const std::string& content, const std::string& name) {
                           const std::string line = content.substr(0, content.find('\n'));
