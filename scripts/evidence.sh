@@ -60,6 +60,11 @@ else
   echo "  skipped, $map is not there"
 fi
 
+echo "Explorations: ten seeds, noise on"
+scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'import json, sys; print(",".join(s["name"] for s in json.load(sys.stdin)["result"]["scenes"]))')"
+step compare build/release/saccade --quiet compare --scenes "$scenes,clutter:1" --strategies sphere,random --seeds 1-10 --max-views 12 \
+  --out "$out/compare" --json "$out/compare.json"
+
 echo "Fuzzing"
 scripts/install_packages.sh program tests && scripts/build_fuzzers.sh >"$out/build_fuzzers.log" || failed=1
 for source in tests/fuzz/fuzz_*.cpp; do

@@ -83,6 +83,42 @@ def nbv_section(folder, lines):
     return good
 
 
+def compare_section(folder, lines):
+    path = folder / "compare.json"
+    if not path.exists():
+        return True
+    result = json.loads(path.read_text())["result"]
+    apart = {(gap["scene"], gap["b"]): gap["apart"] for gap in result["gaps"]}
+    summaries = {(s["scene"], s["strategy"]): s for s in result["summaries"]}
+    held = True
+    lines += ["## Explorations", "", f"`{command_of(folder, 'compare')}`", "",
+              "Coverage in per cent, mean and 95 % confidence interval. Held to: at most 60 after the scan, sphere at least "
+              "90 at the end, random with as many views below it with the intervals apart.", "",
+              "| scene | runs | after the scan | sphere | views | random | held |", "|---|---|---|---|---|---|---|"]
+
+    def interval(estimate):
+        mean, low = 100 * estimate["mean"], estimate["low"]
+        return f"{mean:.1f}" + ("" if low is None else f" ± {mean - 100 * low:.1f}")
+
+    for (scene, strategy), sphere in summaries.items():
+        random = summaries.get((scene, "random"))
+        if strategy != "sphere" or random is None:
+            continue
+        missed = []
+        if sphere["initial_coverage"]["mean"] > 0.6:
+            missed.append("scan")
+        if sphere["coverage"]["mean"] < 0.9:
+            missed.append("sphere")
+        if not apart[scene, "random"] or random["coverage"]["mean"] >= sphere["coverage"]["mean"]:
+            missed.append("random")
+        held = held and not missed
+        lines.append(f"| {scene} | {sphere['coverage']['n']} | {interval(sphere['initial_coverage'])} | "
+                     f"{interval(sphere['coverage'])} | {sphere['views']['mean']:.1f} | {interval(random['coverage'])} | "
+                     f"{'yes' if not missed else 'NO: ' + ', '.join(missed)} |")
+    lines.append("")
+    return held
+
+
 def fuzz_section(folder, lines):
     logs = sorted(folder.glob("fuzz_*.log"))
     if not logs:
@@ -100,6 +136,7 @@ def main():
              f"Machine: {processor()}.", ""]
     held = fuse_section(folder, lines)
     held = nbv_section(folder, lines) and held
+    held = compare_section(folder, lines) and held
     fuzz_section(folder, lines)
     document.write_text("\n".join(lines))
     if not held:

@@ -98,7 +98,13 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   SACCADE_TRY(ExploreRun run, ExploreRun::create(options, subject, devices, out, executor, progress));
   if (options.resume) SACCADE_CHECK(run.resume());
 
-  SACCADE_TRY(const StopReason reason, run.run());
+  const auto ended = run.run();
+  if (!ended) {
+    Error error = ended.error();
+    if (has_journal(out.path())) error.message += "; what was seen until then is kept, add --resume to go on";
+    return error;
+  }
+  const StopReason reason = *ended;
   SACCADE_CHECK(save_map(run.map(), out / "map.sacmap", executor));
   SACCADE_CHECK(write_mesh(out / "mesh.ply", extract_mesh(run.map(), executor)));
   const json result = result_json(options, subject, devices, run, reason);

@@ -73,7 +73,7 @@ TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
     EXPECT_TRUE(fs::exists(run() / "journal.json"));  // with the scan, and the way to go on
     EXPECT_TRUE(load_map(run() / "checkpoint-0.sacmap"));
   };
-  expect_failure(camera("sys.exit('the cable is out')"), 3, "explore", {"camera", "the cable is out"});
+  expect_failure(camera("sys.exit('the cable is out')"), 3, "explore", {"camera", "the cable is out", "--resume"});
   kept();
   expect_failure(camera("import time; time.sleep(100)"), 3, "explore", {"camera", "2 s"});
   kept();

@@ -43,7 +43,8 @@ Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Execut
     if (seen[i] != 0) data.observable_points.push_back(samples.points[i]);
   }
   if (data.observable_points.empty()) {
-    return Error{Errc::invalid_argument, "no surface of an object can be seen in the workspace", "truth"};
+    return Error{Errc::invalid_argument,
+                 "no surface of an object can be seen in the workspace; move the workspace or the objects", "truth"};
   }
   return Truth{std::make_shared<const Data>(std::move(data))};
 }
