@@ -16,10 +16,8 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kTruthSpacing_m{0.004};
-
 // To be raised whenever the same settings come to give other figures, so that old runs are not mixed with new ones.
-constexpr int kFiguresRevision{1};
+constexpr int kFiguresRevision{2};
 
 /// Everything that changes a run's figures, but for scene, strategy and seed; keys sorted, no blanks.
 std::string settings_of(const SimulatedRunConfig& config) {
@@ -58,7 +56,8 @@ CampaignRun campaign_run(CampaignKey key, const SimulatedRun& simulated, double 
   run.initial = figures_of(simulated.initial);
   for (const MeasuredView& measured : simulated.views) {
     const ExploredView& view = measured.view;
-    run.views.push_back({view.region, view.gain, view.T_world_camera, view.candidates, view.frames,
+    const auto gain = std::isnan(view.gain) ? std::nullopt : std::optional{view.gain};
+    run.views.push_back({view.region, gain, view.T_world_camera, view.candidates, view.frames,
                          figures_of(measured.after), measured.newly_known.points_at_object(), view.candidates_ms,
                          view.evaluation_ms, view.motion_ms, view.fusion_ms});
   }

@@ -13,6 +13,7 @@
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/sacmap.hpp"
+#include "saccade/io/ternary_export.hpp"
 #include "saccade/map/mesh.hpp"
 
 namespace saccade::cli {
@@ -77,6 +78,8 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"strategy", to_string(options.run.strategy)},
           {"noise", options.run.noise && options.camera_command.empty()},
           {"camera", camera_to_json(devices.camera())},
+          {"voxel_size_m", options.run.voxel_size_m},
+          {"truth_spacing_m", subject.truth ? json(subject.truth->spacing_m()) : json(nullptr)},
           {"interrupted", reason == StopReason::cancelled},
           {"initial", run.initial()},
           {"views", run.views()},
@@ -107,6 +110,11 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   const StopReason reason = *ended;
   SACCADE_CHECK(save_map(run.map(), out / "map.sacmap", executor));
   SACCADE_CHECK(write_mesh(out / "mesh.ply", extract_mesh(run.map(), executor)));
+  TernaryVolumeConfig states;
+  states.box = subject.scene.workspace;
+  if (const auto written = write_ternary_volume(run.map(), out / "ternary.npy", states); !written) {
+    return written.error();
+  }
   const json result = result_json(options, subject, devices, run, reason);
   progress.finish();
   const json document = json_envelope("explore", global, executor, {{"total", total.elapsed_ms()}}, result);

@@ -6,8 +6,6 @@
 namespace saccade::cli {
 namespace {
 
-constexpr double kTruthSpacing_m{0.004};
-
 Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const ExploreCase& subject) {
   if (!options.robot_command.empty()) {
     ExternalRobotConfig config;

@@ -45,7 +45,7 @@ std::vector<ReportPicture> pictures_of(const RunFolder& out, std::size_t number,
 ReportView view_of(const RunFolder& out, const json& view) {
   ReportView shown;
   shown.index = view.at("index").get<std::size_t>() + 1;
-  shown.gain = view.at("gain").get<double>();
+  shown.gain = optional_of<double>(view.at("gain"));
   shown.candidates = view.at("candidates").get<std::size_t>();
   shown.coverage = optional_of<double>(view.at("coverage"));
   shown.unknown_left = view.at("unknown_left").get<std::size_t>();

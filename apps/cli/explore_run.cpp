@@ -52,7 +52,7 @@ Result<std::vector<ExploredView>> views_from_json(const json& views) {
       SACCADE_TRY(const Pose pose, pose_from_json(view.at("T_world_camera")));
       ExploredView& explored = all.emplace_back();
       explored.region = view.at("region").get<std::size_t>();
-      explored.gain = view.at("gain").get<double>();
+      explored.gain = view.at("gain").is_null() ? std::nan("") : view.at("gain").get<double>();
       explored.T_world_camera = pose;
     }
   } catch (const json::exception& e) {

@@ -13,6 +13,7 @@
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/explore/metrics.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/ply_io.hpp"
@@ -30,7 +31,7 @@ constexpr std::array<std::string_view, 4> kExportFiles{"scene.json", "true_mesh.
 struct SceneOptions {
   std::string scene;
   std::filesystem::path out;
-  double spacing_m{0.003};
+  double spacing_m{kTruthSpacing_m};
   std::optional<std::pair<int, int>> image_size;
   bool force{false};
 };
@@ -215,7 +216,9 @@ void add_scene(CLI::App& program, const GlobalOptions& global, Action& action) {
 
   CLI::App* truth = command->add_subcommand("export", "the true mesh, labels and observable surface, as PLY");
   add_common(truth, "folder for the results; made if it is not there", "DIR");
-  truth->add_option("--spacing", options->spacing_m, "distance between points of the surface, metres")
+  truth
+      ->add_option("--spacing", options->spacing_m,
+                   "distance between points of the surface, metres; the default is explore's")
       ->type_name("METRES")
       ->capture_default_str();
   truth->add_flag("--force", options->force, "write into a folder that holds other files");

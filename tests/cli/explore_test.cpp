@@ -48,6 +48,10 @@ TEST(ExploreCommand, GoesFromViewToView) {
   EXPECT_GT(final.at("chamfer_m").get<double>(), 0.0);
   EXPECT_TRUE(load_map(run / "map.sacmap"));
   EXPECT_TRUE(read_mesh(run / "mesh.ply"));
+  const nlohmann::json states = nlohmann::json::parse(text_of(run / "ternary.json"));
+  EXPECT_EQ(states.at("shape"), (nlohmann::json{22, 40, 60}));  // the workspace
+  EXPECT_EQ(result.at("voxel_size_m"), states.at("voxel_size_m"));
+  EXPECT_EQ(result.at("truth_spacing_m"), 0.004);
   for (const char* picture :
        {"view-00-map.png", "view-01-map.png", "view-01-choice.png", "view-02-seen.png", "run.json", "report.html"})
     EXPECT_TRUE(fs::exists(run / picture));
@@ -169,6 +173,34 @@ TEST(ExploreCommand, StepAsksBeforeEachMove) {
   // Without anyone to answer, nothing moves.
   const Outcome silent = run_program(explore(folder / "silent", options), 0, "");
   EXPECT_EQ(silent.json().at("result").at("views").size(), 0U);
+}
+
+TEST(ExploreCommand, ScannedObjectsAreExplored) {
+  const fs::path meshes = fs::absolute(fs::path{SACCADE_SHARED_DATA} / "meshes_ycb");
+  if (!fs::exists(meshes)) GTEST_SKIP() << meshes << " is not there";
+  const auto object = [&](const std::string& name, const std::string& file, const std::string& at) {
+    return "  - {name: " + name + ", mesh: {path: \"" + (meshes / file).string() + "\"}, at: " + at + "}\n";
+  };
+  const TempFolder folder;
+  const fs::path scene =
+      folder.write("scans.yaml",
+                   "scene: scans\n"
+                   "workspace: {min: [-0.35, -0.35, -0.03], max: [0.35, 0.35, 0.3]}\n"
+                   "scan: [{from: [-0.9, 0, 0.3], look_at: [0, 0, 0.08]}]\n"
+                   "objects:\n"
+                   "  - {name: table, box: {size: [1, 1, 0.04]}, at: [0, 0, -0.04], support: true}\n" +
+                       object("sugar", "004_sugar_box.stl", "[-0.12, 0.12, 0]") +
+                       object("mug", "025_mug.stl", "[-0.05, -0.12, 0.001]") +
+                       object("mustard", "006_mustard_bottle.stl", "[0.15, 0.05, 0.003]"));
+  const Outcome outcome = run_program({"explore", scene.string(), "--out", (folder / "run").string(), "--image-size",
+                                       "160,120", "--voxel-size", "0.015", "--max-views", "12", "--min-gain", "5",
+                                       "--no-pictures", "--quiet", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json result = outcome.json().at("result");
+  EXPECT_LE(result.at("initial").at("coverage").get<double>(), 0.75);
+  EXPECT_GE(result.at("final").at("coverage").get<double>(), 0.9);
+  EXPECT_LE(result.at("views").size(), 12U);
+  EXPECT_GE(result.at("views").size(), 1U);
 }
 
 TEST(ExploreCommand, RefusesWhatItCannotDo) {

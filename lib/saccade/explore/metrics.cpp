@@ -37,7 +37,11 @@ Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Execut
   if (!supports.triangles.empty()) {
     SACCADE_TRY(data.supports, MeshDistance::build(supports));
   }
-  const SurfaceSamples samples = sample_surfaces({{"objects", objects, false}}, spacing_m, scene.scene().workspace);
+  std::vector<ObjectMesh> wanted;
+  for (const ObjectMesh& object : scene.meshes()) {
+    if (!object.support) wanted.push_back(object);
+  }
+  const SurfaceSamples samples = sample_surfaces(wanted, spacing_m, scene.scene().workspace);
   const std::vector<std::uint8_t> seen = observable(scene, samples, {}, executor);
   for (std::size_t i = 0; i < seen.size(); ++i) {
     if (seen[i] != 0) data.observable_points.push_back(samples.points[i]);

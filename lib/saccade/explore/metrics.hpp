@@ -13,6 +13,9 @@
 
 namespace saccade {
 
+/// Distance between samples of the true surfaces, unless told otherwise.
+constexpr double kTruthSpacing_m{0.004};
+
 /// What maps of a scene are held against. Cheap to copy.
 class Truth {
  public:

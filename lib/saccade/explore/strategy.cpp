@@ -10,22 +10,28 @@
 namespace saccade {
 namespace {
 
-/// The candidates with their gains, in index order.
-Result<Proposals> judged_candidates(const Situation& situation, const ViewSphereConfig& sphere,
-                                    const GainFunction& gain) {
+/// All candidates in index order, none of them judged.
+Result<Proposals> candidates_of(const Situation& situation, const ViewSphereConfig& sphere) {
   Proposals proposals;
   const Stopwatch stopwatch;
   const Box around = bounds(situation.region);
   SACCADE_TRY(const std::vector<ViewCandidate> candidates, view_sphere(0.5 * (around.min + around.max), sphere));
-  const std::vector<Pose> poses = poses_of(candidates);
+  proposals.views.reserve(candidates.size());
+  for (const ViewCandidate& candidate : candidates) proposals.views.push_back({candidate.T_world_camera, std::nan("")});
   proposals.candidates_ms = stopwatch.elapsed_ms();
+  return proposals;
+}
+
+/// Fills in the gains of the first `count` views.
+Status judge(Proposals& proposals, std::size_t count, const Situation& situation, const GainFunction& gain) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < count; ++i) poses.push_back(proposals.views[i].T_world_camera);
   SACCADE_TRY(const std::vector<double> gains, gain(situation.map, situation.region, poses, situation.executor));
-  if (gains.size() != poses.size()) {
+  if (gains.size() != count) {
     return Error{Errc::size_mismatch, "the gain function must return one value per pose", "strategy"};
   }
-  proposals.views.reserve(poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) proposals.views.push_back({poses[i], gains[i]});
-  return proposals;
+  for (std::size_t i = 0; i < count; ++i) proposals.views[i].gain = gains[i];
+  return {};
 }
 
 }  // namespace
@@ -53,7 +59,8 @@ PinholeCamera coarser(const PinholeCamera& camera, int width_px) {
 }
 
 Result<Proposals> SphereStrategy::propose(const Situation& situation) const {
-  SACCADE_TRY(Proposals proposals, judged_candidates(situation, sphere_, gain_));
+  SACCADE_TRY(Proposals proposals, candidates_of(situation, sphere_));
+  SACCADE_CHECK(judge(proposals, proposals.views.size(), situation, gain_));
   std::stable_sort(proposals.views.begin(), proposals.views.end(),
                    [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
   return proposals;
@@ -61,13 +68,17 @@ Result<Proposals> SphereStrategy::propose(const Situation& situation) const {
 
 Result<Proposals> RandomStrategy::propose(const Situation& situation) const {
   if (situation.views_of_region >= views_per_region_) return Proposals{};
-  SACCADE_TRY(Proposals proposals, judged_candidates(situation, sphere_, gain_));
+  SACCADE_TRY(Proposals proposals, candidates_of(situation, sphere_));
   proposals.by_gain = false;
   // A shuffle that is the same everywhere, other than std::shuffle's.
   std::mt19937_64 random{seed_ + situation.region_index};
   for (std::size_t i = proposals.views.size(); i > 1; --i) {
     std::swap(proposals.views[i - 1], proposals.views[random() % i]);
   }
+  // Those that were taken, and some that the robot may not reach.
+  constexpr std::size_t kSpare{16};
+  const std::size_t next = std::min(proposals.views.size(), situation.views_of_region + kSpare);
+  SACCADE_CHECK(judge(proposals, next, situation, gain_));
   return proposals;
 }
 

@@ -28,7 +28,7 @@ using GainFunction = std::function<Result<std::vector<double>>(
 /// A view to be tried.
 struct Proposal {
   Pose T_world_camera{Pose::Identity()};
-  double gain{0.0};  ///< as predicted
+  double gain{0.0};  ///< as predicted; NaN: not evaluated
 };
 
 /// Views in the order in which they are to be tried.
@@ -69,7 +69,8 @@ class SphereStrategy final : public Strategy {
 };
 
 /// The same candidates in random order, whatever they gain: what choosing is worth. A region is left after
-/// `views_per_region` views. One seed gives one order, whatever was asked before.
+/// `views_per_region` views. One seed gives one order, whatever was asked before. Gains are only told of the views
+/// that come next.
 class RandomStrategy final : public Strategy {
  public:
   RandomStrategy(ViewSphereConfig sphere, GainFunction gain, std::size_t views_per_region, std::uint64_t seed)

@@ -36,16 +36,17 @@ Result<Solids> Solids::build(const RayScene& scene, const std::function<bool(con
 }
 
 bool Solids::contain(const Eigen::Vector3d& p) const {
-  // The ray upwards leaves a closed body that p lies in once more often than it enters it.
+  // The ray upwards leaves a closed body that p lies in more often than it enters it; where two closed parts of one
+  // body run into each other, such as a handle and the wall it sits on, by more than one.
   constexpr double kStep_m{1e-6};
   const auto inside = [&p](const RayScene& body) {
-    bool odd = false;
+    int left = 0;
     Eigen::Vector3d from = p;
     for (auto hit = body.cast(from, Eigen::Vector3d::UnitZ()); hit; hit = body.cast(from, Eigen::Vector3d::UnitZ())) {
       from.z() += hit->t + kStep_m;
-      odd = !odd;
+      left += hit->normal_world.z() > 0.0 ? 1 : hit->normal_world.z() < 0.0 ? -1 : 0;
     }
-    return odd;
+    return left > 0;
   };
   return std::any_of(bodies_.begin(), bodies_.end(), inside);
 }
