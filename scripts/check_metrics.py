@@ -309,7 +309,8 @@ def check_last_view(rows, result, truth, states, before):
     """points_at_object of the last view, from the map as it was one view earlier."""
     earlier, view = load_result(before), result["views"][-1]
     same = earlier["scene"] == result["scene"] and earlier["initial"] == result["initial"]
-    same = same and [v["T_world_camera"] for v in earlier["views"]] == [v["T_world_camera"] for v in result["views"][:-1]]
+    same = same and [v["T_world_camera"] for v in [*earlier["views"], view]] == [v["T_world_camera"]
+                                                                                 for v in result["views"]]
     states_before = States(before)
     if not same or states_before.first != states.first or states_before.state.shape != states.state.shape:
         raise Mismatch(f"{before}: is not the same exploration, ended one view earlier")
@@ -353,7 +354,7 @@ def main():
     parser.add_argument("run", metavar="RUN", type=pathlib.Path)
     parser.add_argument("export", metavar="EXPORT", type=pathlib.Path)
     parser.add_argument("--before", metavar="RUN_K", type=pathlib.Path,
-                        help="the same exploration with one view less: points_at_object of RUN's last view is checked too")
+                        help="the same exploration, one view shorter: points_at_object of RUN's last view is checked too")
     options = parser.parse_args()
     try:
         good = check(options.run, options.export, options.before)

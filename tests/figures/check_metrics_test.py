@@ -34,8 +34,8 @@ class CheckMetrics(unittest.TestCase):
         cls.temporary = tempfile.TemporaryDirectory()
         cls.folder = pathlib.Path(cls.temporary.name)
         for views in range(2):
-            saccade("explore", SCENE, "--out", cls.folder / f"run-{views}", "--max-views", views, "--image-size", "128,96",
-                    "--voxel-size", 0.02, "--min-gain", 5, "--no-pictures", "--quiet")
+            saccade("explore", SCENE, "--out", cls.folder / f"run-{views}", "--max-views", views, "--min-gain", 5,
+                    "--image-size", "128,96", "--voxel-size", 0.02, "--no-pictures", "--quiet")
         saccade("scene", "export", SCENE, "--out", cls.folder / "truth", "--quiet")
 
     @classmethod
