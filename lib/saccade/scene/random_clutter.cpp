@@ -143,7 +143,7 @@ Scene random_clutter(std::uint64_t seed, int objects) {
       break;
     }
   }
-  for (const double y : {0.0, -0.2}) scene.scan.push_back(look_at({-0.95, y, 0.25}, {-0.15, 0.0, 0.08}));
+  for (const double y : {0.0, -0.2}) scene.scan.push_back(look_at({-0.95, y, 0.17}, {-0.15, 0.0, 0.08}));
   return scene;
 }
 
