@@ -7,7 +7,9 @@
 
 #include <algorithm>
 #include <cerrno>
+#include <regex>
 #include <utility>
+#include <vector>
 
 #include "saccade/io/atomic_file.hpp"
 
@@ -18,7 +20,10 @@ namespace fs = std::filesystem;
 constexpr std::size_t kProbeBytes{std::size_t{1} << 20U};
 
 /// ".NAME.PID-N.tmp": what an atomic write leaves when the program is killed.
-bool is_leftover(const std::string& name) { return name.starts_with('.') && name.ends_with(".tmp"); }
+bool is_leftover(const std::string& name) {
+  static const std::regex kPattern{R"(\..+\.[0-9]+-[0-9]+\.tmp)"};
+  return std::regex_match(name, kPattern);
+}
 
 bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_files, std::string_view marker) {
   std::error_code ignored;
@@ -29,6 +34,16 @@ bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_
     if (std::find(own_files.begin(), own_files.end(), name) == own_files.end()) return false;
   }
   return true;
+}
+
+/// Nobody else writes here: the caller holds the lock.
+void remove_leftovers(const fs::path& path) {
+  std::error_code ignored;
+  std::vector<fs::path> leftovers;
+  for (const fs::directory_entry& entry : fs::directory_iterator{path, ignored}) {
+    if (is_leftover(entry.path().filename().string())) leftovers.push_back(entry.path());
+  }
+  for (const fs::path& leftover : leftovers) fs::remove(leftover, ignored);
 }
 
 Status probe(const fs::path& path) {
@@ -62,6 +77,7 @@ Result<RunFolder> RunFolder::open(const fs::path& path, std::span<const std::str
   if (folder.lock_ >= 0 && ::flock(folder.lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
     return Error{Errc::invalid_argument, "another run is writing into this folder; choose another one", path.string()};
   }
+  remove_leftovers(path);
   if (Status writable = probe(path); !writable) {
     Error error = writable.error();
     error.context = path.string();

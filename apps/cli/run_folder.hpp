@@ -17,8 +17,8 @@ class RunFolder {
  public:
   /// Makes the folder, or takes one that is empty, holds an earlier run (nothing but `own_files`, or a JSON document
   /// `marker`) or is forced. A write of some size is tried, so that a folder that cannot be written and a full disk
-  /// show before the work. The folder is locked while this lives. invalid_argument for foreign content, or when another
-  /// run holds the lock; io_failure.
+  /// show before the work. Half-written files that a killed run left are removed. The folder is locked while this
+  /// lives. invalid_argument for foreign content, or when another run holds the lock; io_failure.
   [[nodiscard]] static Result<RunFolder> open(const std::filesystem::path& path,
                                               std::span<const std::string_view> own_files, std::string_view marker,
                                               bool force);

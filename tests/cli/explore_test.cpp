@@ -104,6 +104,7 @@ TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
     EXPECT_EQ(program.finish().status, -1);
   }
   ASSERT_TRUE(fs::exists(killed / "journal.json"));
+  std::ofstream{killed / ".mesh.ply.12345-0.tmp"} << "half";  // as when it is killed while it writes
   EXPECT_FALSE(fs::exists(killed / "run.json"));
   expect_failure(run_program(explore(killed, options)), 3, "explore", {"interrupted run", "--resume", "--force"});
   expect_failure(run_program(explore(killed, options + Arguments{"--resume", "--seed", "7"})), 3, "explore",
