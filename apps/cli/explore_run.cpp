@@ -40,6 +40,7 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
           {"noise", run.noise},
           {"seed", run.seed},
           {"voxel_size_m", run.voxel_size_m},
+          {"truncation_vox", run.truncation_vox},
           {"radii_m", run.sphere.radii_m},
           {"gain_width_px", run.gain_width_px},
           {"min_gain", run.exploration.min_gain}};

@@ -23,14 +23,18 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--voxel-size", options.run.voxel_size_m, "edge of a voxel, metres")
       ->type_name("METRES")
       ->capture_default_str();
+  command.add_option("--truncation", options.run.truncation_vox, "truncation distance, voxels")
+      ->type_name("VOXELS")
+      ->capture_default_str();
   command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of a Kinect v1");
   add_camera_options(command, options.camera, true);
 }
 
 void check_run_options(RunOptions& options) {
   require_positive(options.run.voxel_size_m, "--voxel-size");
+  require_positive(options.run.truncation_vox, "--truncation");
   require_positive(options.radius_m, "--radius");
-  require_ok(options.run.map().validate(), "--voxel-size");
+  require_ok(options.run.map().validate(), "--voxel-size, --truncation");
   options.run.sphere.radii_m = {options.radius_m};
   options.run.camera = options.camera.camera(options.run.camera);
   require_ok(options.run.validate(), "the exploration");

@@ -54,6 +54,7 @@ TEST(Defaults, OfTheMapAreDocumented) {
 
 TEST(Defaults, OfExplorationsAreDocumented) {
   const SimulatedRunConfig run;
+  expect_documented("SimulatedRunConfig::truncation_vox", {run.truncation_vox});
   expect_documented("SimulatedRunConfig::gain_width_px", {static_cast<double>(run.gain_width_px)});
   expect_documented("ExplorationConfig::min_gain", {run.exploration.min_gain});
   expect_documented("ExplorationConfig::max_views", {static_cast<double>(run.exploration.max_views)});

@@ -28,6 +28,7 @@ Status SimulatedRunConfig::validate() const {
 TsdfConfig SimulatedRunConfig::map() const {
   TsdfConfig config;
   config.voxel_size_m = voxel_size_m;
+  config.truncation_vox = truncation_vox;
   return config;
 }
 

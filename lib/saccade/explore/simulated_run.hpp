@@ -18,6 +18,7 @@ enum class StrategyKind : std::uint8_t { sphere, random };
 
 struct SimulatedRunConfig {
   double voxel_size_m{0.0058};
+  double truncation_vox{2.0};  ///< thin: within 2 m depth is better than that, and vessels have thin walls
   PinholeCamera camera{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 2.0};  ///< beyond 2 m depth is too coarse here
   bool noise{true};
   StrategyKind strategy{StrategyKind::sphere};
