@@ -69,7 +69,8 @@ TEST(CompareCommand, GoesOnWhereItStopped) {
   // Other settings are other runs.
   const Outcome listed = run_program(compare(out, {"--seeds", "1-2", "--list", "--no-noise", "--json", "-"}));
   ASSERT_EQ(listed.status, 0) << listed.err;
-  for (const nlohmann::json& run : listed.json().at("result").at("runs")) EXPECT_EQ(run.at("found"), false);
+  const nlohmann::json planned = listed.json();
+  for (const nlohmann::json& run : planned.at("result").at("runs")) EXPECT_EQ(run.at("found"), false);
 }
 
 TEST(CompareCommand, AnInterruptionKeepsWhatIsDone) {

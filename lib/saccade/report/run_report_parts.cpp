@@ -76,8 +76,8 @@ struct Column {
 };
 
 std::vector<Column> columns_of(const RunReport& report) {
-  const std::string none = "–";
-  const auto number = [&](const auto& value, const auto& format) { return value ? format(*value) : none; };
+  // The cells outlive this function: nothing is captured by reference.
+  const auto number = [](const auto& value, const auto& format) { return value ? format(*value) : std::string{"–"}; };
   std::vector<Column> columns;
   if (any_view(report, [](const ReportView& view) { return view.gain.has_value(); })) {
     columns.push_back({"gain, " + report.gain_unit, [=](const ReportView& v) { return number(v.gain, gain_text); }});
