@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "explore_journal.hpp"
 
+#include <zlib.h>
+
+#include <stdexcept>
+
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/sacmap.hpp"
 
@@ -14,6 +18,13 @@ constexpr std::string_view kFile{"journal.json"};
 constexpr std::string_view kSchema{"saccade-exploration/1"};
 
 bool is_checkpoint(const std::string& name) { return name.starts_with("checkpoint-") && name.ends_with(".sacmap"); }
+
+/// Of the text of all entries but the checksum itself, so that one that was changed is not taken for a sound one.
+std::uint64_t checksum_of(json document) {
+  document.erase("crc32");
+  const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
+  return crc32(0, reinterpret_cast<const Bytef*>(text.data()), static_cast<uInt>(text.size()));
+}
 
 /// Removes the maps of a journal but for one.
 Status remove_checkpoints(const fs::path& folder, const std::string& but) {
@@ -32,12 +43,10 @@ Status remove_checkpoints(const fs::path& folder, const std::string& but) {
 Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, const Executor& executor) const {
   const std::string checkpoint = "checkpoint-" + std::to_string(views.size()) + ".sacmap";
   SACCADE_CHECK(save_map(map, folder / checkpoint, executor));
-  SACCADE_CHECK(write_json(folder / kFile, {{"schema", kSchema},
-                                            {"settings", settings},
-                                            {"map", checkpoint},
-                                            {"frames", frames},
-                                            {"initial", initial},
-                                            {"views", views}}));
+  json document{{"schema", kSchema}, {"settings", settings}, {"map", checkpoint},
+                {"frames", frames},  {"initial", initial},   {"views", views}};
+  document["crc32"] = checksum_of(document);
+  SACCADE_CHECK(write_json(folder / kFile, document));
   return remove_checkpoints(folder, checkpoint);
 }
 
@@ -55,13 +64,10 @@ Result<SavedExploration> load_journal(const fs::path& folder, const Executor& ex
     if (document.at("schema") != kSchema) {
       return Error{Errc::unsupported, "the journal is of another version; start anew with --force", folder.string()};
     }
+    if (document.at("crc32") != checksum_of(document)) throw std::runtime_error{"its checksum is another"};
     const auto checkpoint = document.at("map").get<std::string>();
-    if (!is_checkpoint(checkpoint) || checkpoint.find('/') != std::string::npos) {
-      return Error{Errc::corrupt_data, "the journal names a strange map", (folder / kFile).string()};
-    }
     ExploreJournal journal{document.at("settings"), document.at("initial"), document.at("views"),
                            document.at("frames").get<std::size_t>()};
-    if (!journal.views.is_array()) throw std::runtime_error{"views is not a list"};
     SACCADE_TRY(TsdfSnapshot map, load_map(folder / checkpoint, executor));
     return SavedExploration{std::move(journal), std::move(map)};
   } catch (const std::exception& e) {

@@ -151,9 +151,13 @@ TEST(ExploreCommand, ADamagedJournalIsAnErrorAndNotACrash) {
   expect_failure(resumed_with(odd.dump()), 3, "explore", {"damaged"});
   odd = nlohmann::json::parse(good);
   odd["map"] = "../checkpoint-1.sacmap";
-  expect_failure(resumed_with(odd.dump()), 3, "explore", {"strange map"});
-  odd["map"] = "checkpoint-9.sacmap";
-  expect_failure(resumed_with(odd.dump()), 3, "explore", {"checkpoint-9"});
+  expect_failure(resumed_with(odd.dump()), 3, "explore", {"damaged", "--force"});
+  odd = nlohmann::json::parse(good);
+  odd["initial"] = nlohmann::json::object();
+  expect_failure(resumed_with(odd.dump()), 3, "explore", {"damaged", "--force"});
+  fs::rename(run / "checkpoint-1.sacmap", folder / "elsewhere");
+  expect_failure(resumed_with(good), 3, "explore", {"checkpoint-1"});
+  fs::rename(folder / "elsewhere", run / "checkpoint-1.sacmap");
   EXPECT_EQ(resumed_with(good).status, 0);
 }
 
