@@ -4,11 +4,14 @@
 
 # Flags of all of Saccade's own code: bit-equal results need FMA contraction off. Nobody reads errno or floating-point
 # traps here; without them loops with square roots and selections become vector code, and every value stays the same.
+# On x86-64, SSE4.2 and POPCNT are expected (processors since 2009); kernels choose wider vectors at run time.
+string(REGEX MATCH "^(x86_64|AMD64|amd64)$" SACCADE_X86_64 "${CMAKE_SYSTEM_PROCESSOR}")
 add_library(saccade_flags INTERFACE)
 target_compile_features(saccade_flags INTERFACE cxx_std_20)
 target_compile_options(saccade_flags INTERFACE
   $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -ffp-contract=off
   -fno-math-errno -fno-trapping-math
+  $<$<BOOL:${SACCADE_X86_64}>:-march=x86-64-v2>
   $<$<BOOL:${SACCADE_WARNINGS_AS_ERRORS}>:-Werror>>)
 if(SACCADE_SANITIZE)
   target_compile_options(saccade_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${SACCADE_SANITIZE}

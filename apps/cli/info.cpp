@@ -15,6 +15,7 @@
 #include "exit_status.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/simd.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/sacmap.hpp"
 #include "summary.hpp"
@@ -77,6 +78,8 @@ json program_json(const Executor& executor) {
   return {{"compiler", compiler()},
           {"processor", processor()},
           {"vector_extensions", vector_extensions()},
+          {"simd_target", simd_target()},
+          {"simd_targets", simd_targets()},
           {"cores", std::thread::hardware_concurrency()},
           {"backends", {{"sequential", true}, {"tbb", true}, {"cuda", false}}},
           {"backend", executor.backend_name()},
@@ -126,6 +129,7 @@ void print_program(const json& about) {
   for (const json& name : about["vector_extensions"]) extensions += " " + name.get<std::string>();
   summary.line("processor",
                about["processor"].get<std::string>() + " (" + about["cores"].dump() + " cores;" + extensions + ")");
+  summary.line("vector kernels", about["simd_target"].get<std::string>());
   std::string present;
   std::string absent;
   for (const auto& [name, has] : about["backends"].items()) (has.get<bool>() ? present : absent) += " " + name;

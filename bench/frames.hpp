@@ -1,0 +1,26 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// frames(): the depth frames that the benchmarks of the map run on.
+
+#include <vector>
+
+#include "saccade/core/pose.hpp"
+#include "saccade/sensor/image.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade::bench {
+
+struct Frames {
+  bool recorded{false};  ///< Kinect frames; else rendered ones
+  PinholeCamera camera;
+  std::vector<DepthImage> depth;
+  std::vector<Pose> T_world_camera;
+
+  /// A point on a surface, near the middle of the first image; world frame.
+  [[nodiscard]] Eigen::Vector3d seen_point() const;
+};
+
+/// 60 frames of 640×480: recorded ones where they are there, else of the sample scene. Loaded at the first call.
+[[nodiscard]] const Frames& frames();
+
+}  // namespace saccade::bench

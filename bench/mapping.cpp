@@ -1,0 +1,119 @@
+// SPDX-License-Identifier: Apache-2.0
+// Fusion, surface ray cast, tracking, snapshots and forgetting at 5.8 mm and 640×480, on recorded Kinect frames
+// ($SACCADE_DATA/rgbd_redkitchen, ../shared/data), else on frames of the built-in sample scene.
+#include <benchmark/benchmark.h>
+
+#include <cmath>
+
+#include "frames.hpp"
+#include "saccade/map/icp.hpp"
+#include "saccade/map/raycast.hpp"
+#include "saccade/map/reconstruction.hpp"
+#include "saccade/map/tsdf_map.hpp"
+
+namespace {
+
+using namespace saccade;
+using bench::frames;
+
+constexpr std::size_t kWarmFrames{40};  ///< fused before anything is timed
+
+Executor executor_of(const benchmark::State& state) {
+  return Executor::with_threads(static_cast<std::size_t>(state.range(0)));
+}
+
+/// The map of the first frames.
+const TsdfSnapshot& warm_map() {
+  static const TsdfSnapshot map = [] {
+    TsdfMap fused = TsdfMap::create({}).value();
+    for (std::size_t i = 0; i < kWarmFrames; ++i) {
+      const auto done = fused.integrate(frames().camera, frames().depth[i], frames().T_world_camera[i], {});
+      SACCADE_EXPECTS(done.ok());
+    }
+    return fused.snapshot();
+  }();
+  return map;
+}
+
+void integrate(benchmark::State& state) {
+  const Executor executor = executor_of(state);
+  TsdfMap map{warm_map()};
+  std::size_t i{kWarmFrames};
+  for (auto _ : state) {
+    const auto done = map.integrate(frames().camera, frames().depth[i], frames().T_world_camera[i], executor);
+    if (!done || done->bricks_updated == 0) return state.SkipWithError("nothing was fused");
+    i = i + 1 < frames().depth.size() ? i + 1 : kWarmFrames;
+  }
+}
+
+void surface_raycast(benchmark::State& state) {
+  const Executor executor = executor_of(state);
+  std::size_t i{kWarmFrames};
+  for (auto _ : state) {
+    const auto view = raycast(warm_map(), frames().camera, frames().T_world_camera[i], executor);
+    benchmark::DoNotOptimize(view->depth.data());
+    i = i + 1 < frames().depth.size() ? i + 1 : kWarmFrames;
+  }
+}
+
+void icp(benchmark::State& state) {
+  const Executor executor = executor_of(state);
+  const PinholeCamera& camera = frames().camera;
+  const auto view = raycast(warm_map(), camera, frames().T_world_camera[kWarmFrames - 1], executor);
+  PointImage model = to_points(view->depth, camera, executor);
+  model.normals = view->normals;
+  double iterations{0.0};
+  for (auto _ : state) {
+    const PointImage measured = to_points(frames().depth[kWarmFrames], camera, executor);
+    const IcpResult result = align(measured, model, camera, Pose::Identity(), executor);
+    if (!result.converged) return state.SkipWithError("the track was lost");
+    iterations = result.iterations;
+  }
+  state.counters["iterations"] = iterations;
+}
+
+void tracked_frame(benchmark::State& state) {
+  const Executor executor = executor_of(state);
+  Reconstruction reconstruction = Reconstruction::resume(warm_map(), {}).value();
+  std::size_t i{kWarmFrames};
+  reconstruction.resume(frames().T_world_camera[i]);
+  for (auto _ : state) {
+    Frame frame;
+    frame.depth = frames().depth[i];
+    const auto report = reconstruction.process(frame, frames().camera, TrackingMode::icp, std::nullopt, executor);
+    if (!report || report->status != FrameReport::Status::fused) return state.SkipWithError("the track was lost");
+    if (++i == frames().depth.size()) {
+      i = kWarmFrames;
+      reconstruction.resume(frames().T_world_camera[i]);
+    }
+  }
+}
+
+void snapshot(benchmark::State& state) {
+  const TsdfMap map{warm_map()};
+  for (auto _ : state) {
+    const TsdfSnapshot copy = map.snapshot();
+    benchmark::DoNotOptimize(copy.grid.sector_count());
+  }
+}
+
+void forget(benchmark::State& state) {
+  const Eigen::Vector3d center = frames().seen_point();
+  for (auto _ : state) {
+    state.PauseTiming();
+    TsdfMap map{warm_map()};
+    state.ResumeTiming();
+    benchmark::DoNotOptimize(map.forget(Sphere{center, 0.2}).ok());
+  }
+}
+
+BENCHMARK(integrate)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(surface_raycast)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(icp)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(tracked_frame)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(snapshot)->Unit(benchmark::kMillisecond);
+BENCHMARK(forget)->Unit(benchmark::kMillisecond);
+
+}  // namespace
+
+BENCHMARK_MAIN();
