@@ -33,7 +33,8 @@ bool load_recorded(const std::filesystem::path& folder, Frames& frames) {
 Frames load() {
   Frames frames;
   const char* data = std::getenv("SACCADE_DATA");
-  const std::filesystem::path folder = std::filesystem::path{data != nullptr ? data : "../shared/data"} / "rgbd_redkitchen";
+  const std::filesystem::path folder =
+      std::filesystem::path{data != nullptr ? data : "../shared/data"} / "rgbd_redkitchen";
   if (load_recorded(folder, frames)) return frames;
   std::fprintf(stderr, "%s: no frames there, the sample scene is used\n", folder.c_str());
   frames = {false, {640, 480, 525.0, 525.0, 319.5, 239.5, 0.3, 6.0}, {}, sample_trajectory(kFrames)};

@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "frames.hpp"
+#include "peers.hpp"
 #include "saccade/map/icp.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/reconstruction.hpp"
@@ -48,9 +49,10 @@ void integrate(benchmark::State& state) {
 
 void surface_raycast(benchmark::State& state) {
   const Executor executor = executor_of(state);
+  const TsdfSnapshot& map = warm_map();
   std::size_t i{kWarmFrames};
   for (auto _ : state) {
-    const auto view = raycast(warm_map(), frames().camera, frames().T_world_camera[i], executor);
+    const auto view = raycast(map, frames().camera, frames().T_world_camera[i], executor);
     benchmark::DoNotOptimize(view->depth.data());
     i = i + 1 < frames().depth.size() ? i + 1 : kWarmFrames;
   }
@@ -88,6 +90,53 @@ void tracked_frame(benchmark::State& state) {
     }
   }
 }
+
+#ifdef SACCADE_WITH_OPEN3D
+bench::Open3dGrid& open3d_map() {
+  static bench::Open3dGrid grid{frames().camera, TsdfConfig{}.voxel_size_m, TsdfConfig{}.truncation_vox};
+  static const bool filled = [] {
+    for (std::size_t i = 0; i < kWarmFrames; ++i) grid.integrate(frames().depth[i], frames().T_world_camera[i]);
+    return true;
+  }();
+  benchmark::DoNotOptimize(filled);
+  return grid;
+}
+
+void open3d_integrate(benchmark::State& state) {
+  bench::Open3dGrid& grid = open3d_map();
+  std::size_t i{kWarmFrames};
+  for (auto _ : state) {
+    grid.integrate(frames().depth[i], frames().T_world_camera[i]);
+    i = i + 1 < frames().depth.size() ? i + 1 : kWarmFrames;
+  }
+}
+
+void open3d_raycast(benchmark::State& state) {
+  bench::Open3dGrid& grid = open3d_map();
+  std::size_t i{kWarmFrames};
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(grid.raycast(frames().depth[i], frames().T_world_camera[i]).data());
+    i = i + 1 < frames().depth.size() ? i + 1 : kWarmFrames;
+  }
+}
+
+BENCHMARK(open3d_integrate)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(open3d_raycast)->Unit(benchmark::kMillisecond)->UseRealTime();
+#endif
+
+#ifdef SACCADE_WITH_OPENCV_RGBD
+void opencv_icp(benchmark::State& state) {
+  const auto view =
+      raycast(warm_map(), frames().camera, frames().T_world_camera[kWarmFrames - 1], Executor::with_threads(0));
+  bench::OpencvIcp peer{frames().camera};
+  peer.set_model(view->depth);
+  Pose T_model_camera;
+  for (auto _ : state) {
+    if (!peer.align(frames().depth[kWarmFrames], T_model_camera)) return state.SkipWithError("the track was lost");
+  }
+}
+BENCHMARK(opencv_icp)->Unit(benchmark::kMillisecond)->UseRealTime();
+#endif
 
 void snapshot(benchmark::State& state) {
   const TsdfMap map{warm_map()};

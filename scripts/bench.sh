@@ -4,7 +4,7 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/common.sh
-scripts/install_packages.sh program tests
+scripts/install_packages.sh program tests bench
 configure release -DSACCADE_BUILD_BENCH=ON
 compile release bench/all
 for program in build/release/bench/bench_*; do

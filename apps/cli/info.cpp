@@ -129,7 +129,7 @@ void print_program(const json& about) {
   for (const json& name : about["vector_extensions"]) extensions += " " + name.get<std::string>();
   summary.line("processor",
                about["processor"].get<std::string>() + " (" + about["cores"].dump() + " cores;" + extensions + ")");
-  summary.line("vector kernels", about["simd_target"].get<std::string>());
+  summary.line("SIMD", about["simd_target"].get<std::string>());
   std::string present;
   std::string absent;
   for (const auto& [name, has] : about["backends"].items()) (has.get<bool>() ? present : absent) += " " + name;

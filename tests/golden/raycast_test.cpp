@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saccade/core/simd.hpp"
 #include "saccade/map/cell.hpp"
 #include "saccade/map/ray_walk.hpp"
 #include "saccade/map/raycast.hpp"
@@ -16,7 +17,7 @@ namespace {
 
 constexpr double kVoxelM{0.008};
 
-PinholeCamera small_camera() { return {160, 120, 131.25, 131.25, 79.5, 59.5, 0.2, 3.0}; }
+PinholeCamera small_camera() { return {160, 120, 131.25, 131.25, 80.0, 60.0, 0.2, 3.0}; }
 
 TsdfSnapshot fused_tabletop(const PinholeCamera& camera, std::size_t views) {
   TsdfConfig config;
@@ -42,23 +43,57 @@ std::optional<Cell> cell_by_hash(const TsdfGrid& grid, const Index3& index) {
   return cell;
 }
 
-/// Depth of one ray by walking every cell from the camera to the maximum range.
-float cast_slowly(const TsdfSnapshot& map, const PinholeCamera& camera, const Pose& T_world_camera, int u, int v) {
+/// Differences of the interpolated v over two voxels; over the cell's own where a neighbour is unknown.
+Eigen::Vector3f gradient_slowly(const TsdfGrid& grid, const CellHit& hit) {
+  const Cell cell = cell_by_hash(grid, hit.cell).value();
+  const auto at = [](const Cell& c, const std::array<float, 3>& f) { return c.at(f[0], f[1], f[2]); };
+  Eigen::Vector3f gradient;
+  for (int axis = 0; axis < 3; ++axis) {
+    const Index3 step{axis == 0, axis == 1, axis == 2};
+    const auto ahead = cell_by_hash(grid, hit.cell + step);
+    const auto behind = cell_by_hash(grid, hit.cell - step);
+    std::array<float, 3> low = hit.fraction;
+    std::array<float, 3> high = hit.fraction;
+    low[static_cast<std::size_t>(axis)] = 0.0F;
+    high[static_cast<std::size_t>(axis)] = 1.0F;
+    gradient[axis] = ahead && behind ? 0.5F * (at(*ahead, hit.fraction) - at(*behind, hit.fraction))
+                                     : at(cell, high) - at(cell, low);
+  }
+  return gradient;
+}
+
+struct SlowHit {
+  float depth{0.0F};
+  Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
+};
+
+/// One ray by walking every cell from the camera to the maximum range.
+SlowHit cast_slowly(const TsdfSnapshot& map, const PinholeCamera& camera, const Pose& T_world_camera, int u, int v) {
   const double e = map.config.voxel_size_m;
   const Eigen::Vector3d origin = T_world_camera.translation() / e - Eigen::Vector3d::Constant(0.5);
-  const Eigen::Vector3f d = (T_world_camera.linear() * camera.ray(u, v) / e).cast<float>();
-  const LatticeRay ray = make_lattice_ray(lattice_point(origin.x(), origin.y(), origin.z()), d.x(), d.y(), d.z());
+  const Eigen::Matrix3d per_cell = T_world_camera.linear() / e;
+  const Eigen::Vector3d in_camera = camera.ray(u, v);
+  const auto along = [&](int axis) {
+    return static_cast<float>((per_cell(axis, 0) * in_camera.x() + per_cell(axis, 1) * in_camera.y()) +
+                              per_cell(axis, 2));
+  };
+  const LatticeRay ray =
+      make_lattice_ray(lattice_point(origin.x(), origin.y(), origin.z()), along(0), along(1), along(2));
   const RaySpan span{kRayStart, after_depth(static_cast<float>(camera.max_range_m))};
-  float depth{0.0F};
+  SlowHit result;
   walk_cells<kVoxelLevel>(ray, span, [&](const Index3& index, const RaySpan& in_cell) {
     const std::optional<Cell> cell = cell_by_hash(map.grid, index);
     if (!cell) return false;
     CellHit hit;
     const CellCrossing crossing = cross_cell(ray, index, *cell, in_cell, hit);
-    if (crossing == CellCrossing::front && hit.t >= static_cast<float>(camera.min_range_m)) depth = hit.t;
+    if (crossing == CellCrossing::front && hit.t >= static_cast<float>(camera.min_range_m)) {
+      const Eigen::Vector3f gradient = gradient_slowly(map.grid, hit);
+      const Eigen::Matrix3f R_camera_world = T_world_camera.linear().transpose().cast<float>();
+      if (gradient.norm() > 0.0F) result = {hit.t, R_camera_world * gradient / gradient.norm()};
+    }
     return crossing != CellCrossing::none;
   });
-  return depth;
+  return result;
 }
 
 TEST(Raycast, EqualsTheWalkThroughEveryCellToTheBit) {
@@ -69,19 +104,35 @@ TEST(Raycast, EqualsTheWalkThroughEveryCellToTheBit) {
   std::vector<Pose> views = sample_trajectory(3);
   views.push_back(look_at({0.1, 0.0, 0.12}, {0.0, 0.2, 0.05}));  // between the objects
   views.push_back(look_at({0.3, -0.9, -0.4}, {0.0, 0.0, 0.0}));  // from below: surfaces from behind
+  const Pose straight = [] {  // along the lattice: rays that never cross the planes of an axis
+    Pose T = Pose::Identity();
+    T.linear() << 1, 0, 0, 0, -1, 0, 0, 0, -1;
+    T.translation() << 4 * kVoxelM, 8 * kVoxelM, 100 * kVoxelM;
+    return T;
+  }();
+  views.push_back(straight);
   for (const Pose& T_world_camera : views) {
-    const auto view = raycast(map, camera, T_world_camera, Executor::with_threads(2));
-    ASSERT_TRUE(view.ok());
+    std::vector<SurfaceView> casts;
+    for (const std::string& target : simd_targets()) {
+      ASSERT_TRUE(use_simd_target(target).ok());
+      auto view = raycast(map, camera, T_world_camera, Executor::with_threads(2));
+      ASSERT_TRUE(view.ok());
+      casts.push_back(std::move(*view));
+    }
+    ASSERT_TRUE(use_simd_target("").ok());
     for (int v = 0; v < camera.height; v += 3) {
       for (int u = 0; u < camera.width; u += 3) {
-        const float expected = cast_slowly(map, camera, T_world_camera, u, v);
-        ASSERT_EQ(view->depth(u, v), expected) << "pixel " << u << ", " << v;
+        const SlowHit expected = cast_slowly(map, camera, T_world_camera, u, v);
+        for (const SurfaceView& view : casts) {
+          ASSERT_EQ(view.depth(u, v), expected.depth) << "pixel " << u << ", " << v;
+          ASSERT_EQ(view.normals(u, v), expected.normal) << "pixel " << u << ", " << v;
+        }
         ++compared;
-        hits += expected > 0.0F ? 1 : 0;
+        hits += expected.depth > 0.0F ? 1 : 0;
       }
     }
   }
-  EXPECT_EQ(compared, 5U * 40U * 54U);
+  EXPECT_EQ(compared, 6U * 40U * 54U);
   EXPECT_GT(hits, compared / 3);
 }
 

@@ -1,104 +1,196 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/map/raycast.hpp"
 
+#include <algorithm>
 #include <cmath>
+#include <memory>
+#include <mutex>
 
-#include "saccade/map/ray_walk.hpp"
-#include "saccade/map/surface_table.hpp"
-#include "saccade/map/tile_depths.hpp"
+#include "saccade/map/ray_math.hpp"
+#include "saccade/map/raycast_kernels.hpp"
+#include "saccade/map/surface_tiles.hpp"
 #include "saccade/map/voxel_reader.hpp"
 
 namespace saccade {
 namespace {
 
-/// Casts rays against the cells of one map. One per thread.
-class SurfaceCaster {
- public:
-  SurfaceCaster(const SurfaceTable& surface, const LatticePoint& origin)
-      : surface_{&surface}, reader_{surface.sectors()}, origin_{origin} {
-    const IndexBox& sectors = surface.sectors().box();
-    voxels_ = {sectors.lo * kSectorVoxelEdge, sectors.hi * kSectorVoxelEdge};
-  }
+using tile_cast::kTileRays;
+using tile_cast::SurfaceBrick;
+using tile_cast::TileHits;
+using tile_cast::TileRays;
 
-  /// First crossing between the depths t_min and t_max.
-  [[nodiscard]] std::optional<CellHit> cast(const Eigen::Vector3f& direction, float t_min, float t_max) {
-    const LatticeRay ray = make_lattice_ray(origin_, direction.x(), direction.y(), direction.z());
-    RaySpan span = clip(ray, voxels_).until(after_depth(t_max));
-    if (before(span.enter, {t_min, kBeforeCrossings})) span.enter = {t_min, kBeforeCrossings};
-    std::optional<CellHit> hit;
-    Index3 sector{};
-    const SurfaceTable::SectorSurface* surface{nullptr};
-    bool known_sector{false};
-    walk_cells<kBrickLevel>(ray, span, [&](const Index3& brick, const RaySpan& in_brick) {
-      if (!known_sector || !(parent(brick) == sector)) {
-        sector = parent(brick);
-        surface = surface_->find(sector);
-        known_sector = true;
-      }
-      const int i = child_index(brick);
-      return surface != nullptr && surface->bricks.test(i) && cast_in_brick(ray, in_brick, surface->of_brick(i), hit);
-    });
-    return hit;
-  }
+constexpr int kTilePx{SurfaceTiles::kTilePx};
+static_assert(kTilePx * kTilePx == kTileRays);
 
-  /// ∇v at a hit, from the differences over two voxels; the cell's own gradient where a neighbour is unknown.
-  [[nodiscard]] Eigen::Vector3f gradient(const CellHit& hit, const Cell& cell) {
-    Eigen::Vector3f result;
-    const auto value_at = [&](const Index3& base) -> std::optional<float> {
-      const std::optional<Cell> neighbour = reader_.cell(base);
-      if (!neighbour) return std::nullopt;
-      return neighbour->at(hit.fraction[0], hit.fraction[1], hit.fraction[2]);
-    };
-    constexpr Index3 kSteps[3]{{1, 0, 0}, {0, 1, 0}, {0, 0, 1}};
-    for (int axis = 0; axis < 3; ++axis) {
-      const auto ahead = value_at(hit.cell + kSteps[axis]);
-      const auto behind = value_at(hit.cell - kSteps[axis]);
-      if (ahead && behind) {
-        result[axis] = 0.5F * (*ahead - *behind);
-      } else {
-        std::array<float, 3> low = hit.fraction;
-        std::array<float, 3> high = hit.fraction;
-        low[static_cast<std::size_t>(axis)] = 0.0F;
-        high[static_cast<std::size_t>(axis)] = 1.0F;
-        result[axis] = cell.at(high[0], high[1], high[2]) - cell.at(low[0], low[1], low[2]);
-      }
-    }
-    return result;
-  }
+/// The pixel of a tile that a ray belongs to: blocks of 4×4, so that rays that are cast together meet the same bricks.
+struct TilePixel {
+  int u;
+  int v;
+};
+constexpr TilePixel pixel_of_ray(int i) { return {(i & 3) | ((i >> 2) & 4), ((i >> 2) & 3) | ((i >> 3) & 4)}; }
 
-  [[nodiscard]] VoxelReader& reader() { return reader_; }
-
- private:
-  /// Stops at the first crossing; a surface seen from behind stops the ray without a hit.
-  bool cast_in_brick(const LatticeRay& ray, const RaySpan& span, const Mask512& cells, std::optional<CellHit>& hit) {
-    return walk_cells<kVoxelLevel>(ray, span, [&](const Index3& index, const RaySpan& in_cell) {
-      if (!cells.test(child_index(index))) return false;
-      const std::optional<Cell> cell = reader_.cell(index);
-      if (!cell) return false;
-      CellHit found;
-      const CellCrossing crossing = cross_cell(ray, index, *cell, in_cell, found);
-      if (crossing == CellCrossing::front) hit = found;
-      return crossing != CellCrossing::none;
-    });
-  }
-
-  static constexpr int kBeforeCrossings{-1};
-  const SurfaceTable* surface_;
-  VoxelReader reader_;
-  LatticePoint origin_;
-  IndexBox voxels_;
+/// What all tiles of one cast share.
+struct Cast {
+  const PinholeCamera& camera;
+  const SectorTable& sectors;
+  const SurfaceTiles& tiles;
+  LatticePoint origin;        ///< of the rays, in the lattice of the cells
+  Eigen::Matrix3d per_cell;   ///< camera directions to cells
+  std::vector<double> ray_x;  ///< of PinholeCamera::ray, by column, up to the border of the last tile
+  std::vector<double> ray_y;  ///< by row
+  Eigen::Matrix3f R_camera_world;
+  bool colors;
 };
 
-Rgb8 color_at(VoxelReader& reader, const CellHit& hit) {
-  const Index3 nearest{hit.cell.x + (hit.fraction[0] > 0.5F ? 1 : 0), hit.cell.y + (hit.fraction[1] > 0.5F ? 1 : 0),
-                       hit.cell.z + (hit.fraction[2] > 0.5F ? 1 : 0)};
-  if (const auto color = reader.color(nearest)) return *color;
-  for (int i = 0; i < 8; ++i) {
-    if (const auto color = reader.color(hit.cell + Index3{i & 1, (i >> 1) & 1, (i >> 2) & 1})) return *color;
+/// Unpacked bricks, the last few hundred that were asked for. One thread.
+class SurfaceBricks {
+ public:
+  explicit SurfaceBricks(const Cast& cast) : cast_{&cast}, slot_of_(cast.tiles.bricks().size(), 0), slots_(kSlots) {}
+
+  [[nodiscard]] const SurfaceBrick& get(std::uint32_t brick) {
+    Slot& known = slots_[slot_of_[brick]];
+    if (known.brick == brick) return known.surface;
+    slot_of_[brick] = next_;
+    Slot& slot = slots_[next_];
+    next_ = static_cast<std::uint16_t>((next_ + 1) % kSlots);
+    slot.brick = brick;
+    const SurfaceTiles::Brick& known_cells = cast_->tiles.bricks()[brick];
+    slot.surface.cells = known_cells.cells;
+    slot.surface.box = known_cells.box;
+    slot.surface.voxels.load(cast_->sectors, known_cells.index, 1);
+    return slot.surface;
   }
-  constexpr std::uint8_t kGrey{128};
-  return {kGrey, kGrey, kGrey};
+
+ private:
+  static constexpr std::uint16_t kSlots{512};
+  struct Slot {
+    std::uint32_t brick{~std::uint32_t{0}};
+    SurfaceBrick surface;
+  };
+  const Cast* cast_;
+  std::vector<std::uint16_t> slot_of_;
+  std::vector<Slot> slots_;
+  std::uint16_t next_{0};
+};
+
+/// Casts tiles. One per thread.
+class TileCaster {
+ public:
+  explicit TileCaster(const Cast& cast) : cast_{&cast}, bricks_{cast}, reader_{cast.sectors} {
+    rays_.o = {cast.origin.fraction[0], cast.origin.fraction[1], cast.origin.fraction[2]};
+    rays_.farthest_m = static_cast<float>(cast.camera.max_range_m);
+  }
+
+  void cast_tile(int tile_u, int tile_v, SurfaceView& view) {
+    const auto entries = cast_->tiles.entries(tile_u, tile_v);
+    if (entries.empty()) return;
+    by_depth_.assign(entries.begin(), entries.end());
+    std::sort(by_depth_.begin(), by_depth_.end(),
+              [](const auto& a, const auto& b) { return a.nearest_m < b.nearest_m; });
+    aim(tile_u * kTilePx, tile_v * kTilePx);
+    hits_.clear();
+    float farthest_end = HUGE_VALF;
+    for (const SurfaceTiles::Entry& entry : by_depth_) {
+      if (entry.nearest_m > farthest_end) break;  // every ray ended nearer
+      const SurfaceBrick& surface = bricks_.get(entry.brick);
+      const Index3 lo = cast_->tiles.bricks()[entry.brick].index * kBrickEdge - cast_->origin.voxel;
+      farthest_end = tile_cast::cast_in_brick(rays_, lo, surface, entry.brick, hits_);
+    }
+    write(tile_u * kTilePx, tile_v * kTilePx, view);
+  }
+
+ private:
+  /// Rays of pixels beyond the image's border are cast as well, and not written.
+  void aim(int u0, int v0) {
+    const double* x = cast_->ray_x.data() + u0;
+    const double* y = cast_->ray_y.data() + v0;
+    for (int axis = 0; axis < 3; ++axis) {
+      float* d = rays_.d[static_cast<std::size_t>(axis)].data();
+      const double mx = cast_->per_cell(axis, 0);
+      const double my = cast_->per_cell(axis, 1);
+      const double mz = cast_->per_cell(axis, 2);
+      for (int i = 0; i < kTileRays; ++i) {
+        const auto [u, v] = pixel_of_ray(i);
+        d[i] = static_cast<float>((mx * x[u] + my * y[v]) + mz);
+      }
+    }
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      for (std::size_t i = 0; i < kTileRays; ++i) {
+        const float d = rays_.d[axis][i];
+        const bool parallel = std::fabs(d) < kParallel;
+        rays_.d[axis][i] = parallel ? 0.0F : d;
+        rays_.inv[axis][i] = parallel ? HUGE_VALF : 1.0F / d;
+      }
+    }
+  }
+
+  void write(int u0, int v0, SurfaceView& view) {
+    const auto min_range_m = static_cast<float>(cast_->camera.min_range_m);
+    for (std::size_t i = 0; i < kTileRays; ++i) {
+      if (!(hits_.t[i] > 0.0F) || hits_.t[i] < min_range_m) continue;
+      const auto [du, dv] = pixel_of_ray(static_cast<int>(i));
+      const int u = u0 + du;
+      const int v = v0 + dv;
+      if (u >= view.depth.width() || v >= view.depth.height()) continue;
+      const Eigen::Vector3f gradient{hits_.gradient[0][i], hits_.gradient[1][i], hits_.gradient[2][i]};
+      const float norm = gradient.norm();
+      if (!(norm > 0.0F)) continue;
+      view.depth(u, v) = hits_.t[i];
+      view.normals(u, v) = cast_->R_camera_world * gradient / norm;
+      if (cast_->colors) view.colors(u, v) = color(i);
+    }
+  }
+
+  /// Of the voxel nearest to the hit, or of any of the cell that has one.
+  [[nodiscard]] Rgb8 color(std::size_t i) {
+    const Index3 cell = cast_->tiles.bricks()[hits_.brick[i]].index * kBrickEdge + child_offset(hits_.cell[i]);
+    const Index3 nearest{hits_.fraction[0][i] > 0.5F ? 1 : 0, hits_.fraction[1][i] > 0.5F ? 1 : 0,
+                         hits_.fraction[2][i] > 0.5F ? 1 : 0};
+    if (const auto found = reader_.color(cell + nearest)) return *found;
+    for (int corner = 0; corner < 8; ++corner) {
+      if (const auto found = reader_.color(cell + Index3{corner & 1, (corner >> 1) & 1, (corner >> 2) & 1}))
+        return *found;
+    }
+    constexpr std::uint8_t kGrey{128};
+    return {kGrey, kGrey, kGrey};
+  }
+
+  const Cast* cast_;
+  SurfaceBricks bricks_;
+  VoxelReader reader_;
+  std::vector<SurfaceTiles::Entry> by_depth_;
+  TileRays rays_;
+  TileHits hits_;
+};
+
+template <class At>
+std::vector<double> ray_coordinates(int count, const At& at) {
+  std::vector<double> coordinates;
+  for (int i = 0; i < count; ++i) coordinates.push_back(at(i));
+  return coordinates;
 }
+
+/// Lends casters to chunks of work, so that there is one per thread, not one per chunk.
+class CasterPool {
+ public:
+  explicit CasterPool(const Cast& cast) : cast_{&cast} {}
+  [[nodiscard]] std::unique_ptr<TileCaster> take() {
+    const std::scoped_lock lock{mutex_};
+    if (idle_.empty()) return std::make_unique<TileCaster>(*cast_);
+    std::unique_ptr<TileCaster> caster = std::move(idle_.back());
+    idle_.pop_back();
+    return caster;
+  }
+  void give_back(std::unique_ptr<TileCaster> caster) {
+    const std::scoped_lock lock{mutex_};
+    idle_.push_back(std::move(caster));
+  }
+
+ private:
+  const Cast* cast_;
+  std::mutex mutex_;
+  std::vector<std::unique_ptr<TileCaster>> idle_;
+};
 
 }  // namespace
 
@@ -113,33 +205,25 @@ Result<SurfaceView> raycast(const TsdfSnapshot& map, const PinholeCamera& camera
   if (map.grid.empty()) return view;
 
   const double e = map.config.voxel_size_m;
-  const Eigen::Vector3d origin_cells = T_world_camera.translation() / e - Eigen::Vector3d::Constant(0.5);
-  const LatticePoint origin = lattice_point(origin_cells.x(), origin_cells.y(), origin_cells.z());
-  const Eigen::Matrix3d R_world_camera = T_world_camera.linear();
-  const Eigen::Matrix3f R_camera_world = R_world_camera.transpose().cast<float>();
-  const SurfaceTable surface{map.grid, executor};
-  const TileDepths tiles{surface, camera, T_world_camera, e};
-  const auto max_range_m = static_cast<float>(camera.max_range_m);
-  executor.parallel_for(static_cast<std::size_t>(camera.height), 8, [&](std::size_t begin, std::size_t end) {
-    SurfaceCaster caster{surface, origin};
+  const Eigen::Vector3d origin = T_world_camera.translation() / e - Eigen::Vector3d::Constant(0.5);
+  const SectorTable sectors{map.grid};
+  const SurfaceTiles tiles{map.grid, sectors, camera, T_world_camera, e, executor};
+  const Cast cast{camera,
+                  sectors,
+                  tiles,
+                  lattice_point(origin.x(), origin.y(), origin.z()),
+                  T_world_camera.linear() / e,
+                  ray_coordinates(tiles.width() * kTilePx, [&](int u) { return camera.ray(u, 0.0).x(); }),
+                  ray_coordinates(tiles.height() * kTilePx, [&](int v) { return camera.ray(0.0, v).y(); }),
+                  T_world_camera.linear().transpose().cast<float>(),
+                  config.colors};
+  CasterPool casters{cast};
+  executor.parallel_for(static_cast<std::size_t>(tiles.height()), 4, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<TileCaster> caster = casters.take();
     for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < camera.width; ++u) {
-        const TileDepths::Interval& depths = tiles.at_pixel(u, v);
-        if (depths.farthest_m < depths.nearest_m) continue;
-        const Eigen::Vector3f direction = (R_world_camera * camera.ray(u, v) / e).cast<float>();
-        const std::optional<CellHit> hit =
-            caster.cast(direction, depths.nearest_m, std::min(depths.farthest_m, max_range_m));
-        if (!hit || hit->t < static_cast<float>(camera.min_range_m)) continue;
-        const std::optional<Cell> cell = caster.reader().cell(hit->cell);
-        if (!cell) continue;
-        const Eigen::Vector3f gradient = caster.gradient(*hit, *cell);
-        const float norm = gradient.norm();
-        if (!(norm > 0.0F)) continue;
-        view.depth(u, v) = hit->t;
-        view.normals(u, v) = R_camera_world * gradient / norm;
-        if (config.colors) view.colors(u, v) = color_at(caster.reader(), *hit);
-      }
+      for (int u = 0; u < tiles.width(); ++u) caster->cast_tile(u, v, view);
     }
+    casters.give_back(std::move(caster));
   });
   return view;
 }

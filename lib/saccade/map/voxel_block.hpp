@@ -16,6 +16,7 @@ class VoxelBlock {
  public:
   static constexpr int kFirst{-1};
   static constexpr int kEdge{kBrickEdge + 3};
+  static constexpr std::int16_t kUnknown{-32768};  ///< v itself stays within ±32767
 
   /// Reads the block around `brick`; voxels observed less than min_weight (≥ 1) times count as unknown.
   void load(const SectorTable& table, const Index3& brick, std::uint16_t min_weight) {
@@ -36,6 +37,9 @@ class VoxelBlock {
   /// Only where known.
   [[nodiscard]] std::int16_t v(const Index3& i) const { return values_[at(i.x, i.y, i.z)]; }
   [[nodiscard]] bool known(const Index3& i) const { return v(i) != kUnknown; }
+
+  /// Row by row, x fastest, kEdge voxels each; kUnknown where unknown.
+  [[nodiscard]] const std::int16_t* data() const { return values_.data(); }
 
   /// Bit c set: corner c of the cell whose lower corner is (x, y, z) is inside. -1 when a corner is unknown.
   [[nodiscard]] int cell_signs(int x, int y, int z) const {
@@ -66,36 +70,68 @@ class VoxelBlock {
   }
 
  private:
-  static constexpr std::int16_t kUnknown{-32768};  // v itself stays within ±32767
-
   static constexpr std::size_t at(int x, int y, int z) {
     return static_cast<std::size_t>(((z - kFirst) * kEdge + (y - kFirst)) * kEdge + (x - kFirst));
   }
 
+  /// The voxels of a slice whose weight is at least so much.
+  static std::uint64_t weight_at_least(const FreeBrick& free, std::size_t slice, std::uint16_t least) {
+    std::uint64_t greater{0};
+    std::uint64_t equal{~std::uint64_t{0}};
+    for (std::size_t bit = 3; bit-- > 0;) {
+      const std::uint64_t plane = free.weight_bits[bit].words[slice];
+      const bool set = ((least >> bit) & 1U) != 0;
+      greater |= set ? 0 : equal & plane;
+      equal &= set ? plane : ~plane;
+    }
+    return least > 7 ? 0 : greater | equal;
+  }
+
+  template <std::size_t kCount>
+  static void copy_row(const std::int16_t* __restrict v, const std::uint16_t* __restrict w, std::uint16_t min_weight,
+                       std::int16_t* __restrict row) {
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const auto missing = static_cast<std::int16_t>(w[i] >= min_weight ? 0 : -1);
+      row[i] = static_cast<std::int16_t>((v[i] & ~missing) | (kUnknown & missing));
+    }
+  }
+
   void copy(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight) {
+    switch (origin.x) {  // along x a brick gives the last of its voxels, all, or the first two
+      case -kBrickEdge: return copy_rows<1>(brick, origin, min_weight);
+      case 0: return copy_rows<kBrickEdge>(brick, origin, min_weight);
+      default: return copy_rows<2>(brick, origin, min_weight);
+    }
+  }
+
+  template <std::size_t kCount>
+  void copy_rows(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight) {
     const auto range = [](int start) {
       return std::pair{std::max(start, kFirst), std::min(start + kBrickEdge, kFirst + kEdge)};
     };
-    const auto [x0, x1] = range(origin.x);
+    const int x0 = std::max(origin.x, kFirst);
     const auto [y0, y1] = range(origin.y);
     const auto [z0, z1] = range(origin.z);
     const DenseBrick* dense = brick.dense();
-    const FreeBrick* free = brick.free();
-    const bool constant_known = brick.kind() == BrickKind::constant_free && brick.constant_weight() >= min_weight;
+    const FreeBrick* free = dense == nullptr ? brick.free() : nullptr;
+    const bool constant_known = dense == nullptr && free == nullptr && brick.constant_weight() >= min_weight;
     for (int z = z0; z < z1; ++z) {
-      for (int y = y0; y < y1; ++y) {
-        std::int16_t* row = &values_[at(x0, y, z)];
-        for (int x = x0; x < x1; ++x, ++row) {
-          const int i = child_index({x, y, z});
-          const auto k = static_cast<std::size_t>(i);
-          if (dense != nullptr) {
-            *row = dense->w[k] >= min_weight ? dense->v[k] : kUnknown;
-          } else if (free != nullptr) {
-            *row = free->weight(i) >= min_weight ? kTsdfOne : kUnknown;
-          } else {
-            *row = constant_known ? kTsdfOne : kUnknown;
-          }
+      std::int16_t* row = &values_[at(x0, y0, z)];
+      const int first = child_index({x0, y0, z});
+      if (dense != nullptr) {
+        const std::int16_t* v = dense->v.data() + first;
+        const std::uint16_t* w = dense->w.data() + first;
+        for (int y = y0; y < y1; ++y, row += kEdge, v += kBrickEdge, w += kBrickEdge) {
+          copy_row<kCount>(v, w, min_weight, row);
         }
+      } else if (free != nullptr) {
+        const std::uint64_t known = weight_at_least(*free, static_cast<std::size_t>(first >> 6), min_weight);
+        for (int y = y0; y < y1; ++y, row += kEdge) {
+          const auto bits = static_cast<int>((known >> ((first & 63) + (y - y0) * kBrickEdge)) & 0xFF);
+          for (std::size_t i = 0; i < kCount; ++i) row[i] = (bits & (1 << i)) != 0 ? kTsdfOne : kUnknown;
+        }
+      } else {
+        for (int y = y0; y < y1; ++y, row += kEdge) std::fill(row, row + kCount, constant_known ? kTsdfOne : kUnknown);
       }
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/map/surface_table.hpp"
+#include "saccade/map/surface_cells.hpp"
 
-#include <algorithm>
+#include <array>
 
 namespace saccade {
 namespace {
@@ -42,8 +42,9 @@ Index3 corner(std::size_t i) {
           static_cast<std::int32_t>((i >> 2) & 1)};
 }
 
-/// Bricks of the sector that have an occupied voxel among the corners of their cells.
-Mask512 candidate_bricks(const SectorTable& sectors, const Index3& key) {
+}  // namespace
+
+Mask512 bricks_with_occupied_corner(const SectorTable& sectors, const Index3& key) {
   std::array<Mask512, 8> occupied;
   for (std::size_t i = 0; i < 8; ++i) {
     const Sector* sector = sectors.find(key + corner(i));
@@ -71,41 +72,23 @@ Mask512 crossed_cells(const SectorTable& sectors, const Index3& brick) {
   return any_corner(occupied) & any_corner(empty) & ~any_corner(unknown);
 }
 
-}  // namespace
-
-SurfaceTable::SurfaceTable(const TsdfGrid& grid, const Executor& executor)
-    : sectors_{grid}, keys_{grid.sorted_sectors()}, surfaces_(keys_.size()), cells_(keys_.size()) {
-  executor.parallel_for(keys_.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const Mask512 candidates = candidate_bricks(sectors_, keys_[s]);
-      if (candidates.none()) continue;
-      for (int i = 0; i < kSectorBricks; ++i) {
-        if (i % 64 == 0)
-          surfaces_[s].rank[static_cast<std::size_t>(i / 64)] = static_cast<std::uint16_t>(cells_[s].size());
-        if (!candidates.test(i)) continue;
-        const Mask512 cells = crossed_cells(sectors_, keys_[s] * kSectorEdge + child_offset(i));
-        if (cells.none()) continue;
-        surfaces_[s].bricks.set(i);
-        cells_[s].push_back(cells);
-      }
-      surfaces_[s].cells = cells_[s].data();
-    }
-  });
-  if (!sectors_.is_flat() || keys_.empty()) return;
-  const IndexBox& box = sectors_.box();
-  flat_.resize(sectors_.flat_index(box.hi - Index3{1, 1, 1}) + 1);
-  for (std::size_t s = 0; s < keys_.size(); ++s) {
-    if (surfaces_[s].bricks.any()) flat_[sectors_.flat_index(keys_[s])] = &surfaces_[s];
+IndexBox bounds_of(const Mask512& mask) {
+  std::uint64_t slices{0};  // bit z: something in slice z
+  std::uint64_t all{0};
+  for (std::size_t z = 0; z < 8; ++z) {
+    slices |= std::uint64_t{mask.words[z] != 0} << z;
+    all |= mask.words[z];
   }
-}
-
-const SurfaceTable::SectorSurface* SurfaceTable::find(const Index3& sector) const {
-  if (!sectors_.box().contains(sector)) return nullptr;
-  if (sectors_.is_flat()) return flat_[sectors_.flat_index(sector)];
-  const auto it = std::lower_bound(keys_.begin(), keys_.end(), sector, zyx_less);
-  if (it == keys_.end() || !(*it == sector)) return nullptr;
-  const SectorSurface& found = surfaces_[static_cast<std::size_t>(it - keys_.begin())];
-  return found.bricks.any() ? &found : nullptr;
+  std::uint64_t rows{0};
+  std::uint64_t columns{0};
+  for (int y = 0; y < 8; ++y) {
+    const std::uint64_t row = (all >> (8 * y)) & 0xFF;
+    rows |= std::uint64_t{row != 0} << y;
+    columns |= row;
+  }
+  const auto first = [](std::uint64_t bits) { return std::countr_zero(bits); };
+  const auto end = [](std::uint64_t bits) { return 64 - std::countl_zero(bits); };
+  return {{first(columns), first(rows), first(slices)}, {end(columns), end(rows), end(slices)}};
 }
 
 }  // namespace saccade

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+// No include guard of the usual kind: included once per instruction set, by files with vector kernels.
+#if defined(SACCADE_MAP_CELL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
+#ifdef SACCADE_MAP_CELL_LANES_INL
+#undef SACCADE_MAP_CELL_LANES_INL
+#else
+#define SACCADE_MAP_CELL_LANES_INL
+#endif
+
+#include <hwy/highway.h>
+
+#include <array>
+#include <cstdint>
+
+#include "saccade/map/voxel_block.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace saccade::tile_cast::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+
+using F = hn::CappedTag<float, 16>;
+using I = hn::RebindToSigned<F>;
+using VF = hn::Vec<F>;
+using VI = hn::Vec<I>;
+using M = hn::Mask<F>;
+
+HWY_INLINE bool any(M mask) { return !hn::AllFalse(F{}, mask); }
+
+/// Between two depths along the rays v changes its sign.
+struct SignChange {
+  VF t0, t1;
+  VF v0, v1;
+};
+
+/// What rays, one per lane, find in cells of one brick; each the like of the function of cell.hpp that it names.
+class CellLanes {
+ public:
+  std::array<VF, 3> o, d;         ///< the rays, as LatticeRay has them
+  std::array<float, 3> brick_lo;  ///< the brick's first voxel, relative to the rays' origin
+  const std::int16_t* values;     ///< of its VoxelBlock
+
+  /// v of two neighbours along x.
+  struct Pair {
+    VF low;
+    VF high;
+  };
+
+  /// The cell's corners, and where the rays are in it.
+  struct CellOfLanes {
+    Pair v00, v10, v01, v11;
+    std::array<VF, 3> from;  ///< origin of the rays, relative to the cell's lowest corner
+  };
+  [[nodiscard]] HWY_INLINE CellOfLanes load_cell(VI index) const {
+    const VI bytes = bytes_of(index);
+    const VI seven = hn::Set(i_, 7);
+    const std::array<VI, 3> at{hn::And(index, seven), hn::And(hn::ShiftRight<3>(index), seven),
+                               hn::ShiftRight<6>(index)};
+    CellOfLanes cell{
+        pair_at(bytes, 0, 0, 0), pair_at(bytes, 0, 1, 0), pair_at(bytes, 0, 0, 1), pair_at(bytes, 0, 1, 1), {}};
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const VF p = hn::Add(hn::Set(f_, brick_lo[axis]), hn::ConvertTo(f_, at[axis]));
+      cell.from[axis] = hn::Sub(o[axis], p);
+    }
+    return cell;
+  }
+  /// fraction_at.
+  HWY_INLINE void fraction_at(const CellOfLanes& cell, VF t, std::array<VF, 3>& fraction) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      const VF at = hn::Add(cell.from[axis], hn::Mul(t, d[axis]));
+      fraction[axis] = hn::Min(hn::Max(at, hn::Zero(f_)), hn::Set(f_, 1.0F));
+    }
+  }
+  [[nodiscard]] HWY_INLINE VF value_at(const CellOfLanes& cell, VF t) const {
+    std::array<VF, 3> f;
+    fraction_at(cell, t, f);
+    return interpolate(cell.v00, cell.v10, cell.v01, cell.v11, f[0], f[1], f[2]);
+  }
+
+  /// Second half of cross_cell: the zero between entering and leaving, by regula falsi.
+  [[nodiscard]] HWY_INLINE VF find_zero(const CellOfLanes& cell, SignChange between) const {
+    auto& [t0, t1, v0, v1] = between;
+    constexpr int kRootSteps{3};
+    for (int i = 1;; ++i) {
+      const VF t = hn::Add(t0, hn::Mul(hn::Sub(t1, t0), hn::Div(v0, hn::Sub(v0, v1))));
+      if (i == kRootSteps) return t;
+      const VF v = value_at(cell, t);
+      const M outside = hn::Gt(v, hn::Zero(f_));
+      t0 = hn::IfThenElse(outside, t, t0);
+      v0 = hn::IfThenElse(outside, v, v0);
+      t1 = hn::IfThenElse(outside, t1, t);
+      v1 = hn::IfThenElse(outside, v1, v);
+    }
+  }
+
+  /// ∇v in the cells: differences over two voxels; over the cell's own where a neighbour is unknown.
+  HWY_INLINE void find_gradient(VI index, const CellOfLanes& cell, const std::array<VF, 3>& fraction,
+                                std::array<VF, 3>& gradient) const {
+    const VI bytes = bytes_of(index);
+    const auto& [x, y, z] = fraction;
+    const auto& [v00, v10, v01, v11, from] = cell;
+    const VF zero = hn::Zero(f_);
+    const VF one = hn::Set(f_, 1.0F);
+    {
+      const Pair l00 = pair_at(bytes, -1, 0, 0), l10 = pair_at(bytes, -1, 1, 0);
+      const Pair l01 = pair_at(bytes, -1, 0, 1), l11 = pair_at(bytes, -1, 1, 1);
+      const Pair h00 = pair_at(bytes, 1, 0, 0), h10 = pair_at(bytes, 1, 1, 0);
+      const Pair h01 = pair_at(bytes, 1, 0, 1), h11 = pair_at(bytes, 1, 1, 1);
+      const M known = hn::And(
+          hn::And(hn::And(is_known(l00.low), is_known(l10.low)), hn::And(is_known(l01.low), is_known(l11.low))),
+          hn::And(hn::And(is_known(h00.high), is_known(h10.high)), hn::And(is_known(h01.high), is_known(h11.high))));
+      gradient[0] =
+          difference(known, interpolate(h00, h10, h01, h11, x, y, z), interpolate(l00, l10, l01, l11, x, y, z),
+                     interpolate(v00, v10, v01, v11, one, y, z), interpolate(v00, v10, v01, v11, zero, y, z));
+    }
+    {
+      const Pair l0 = pair_at(bytes, 0, -1, 0), l1 = pair_at(bytes, 0, -1, 1);
+      const Pair h0 = pair_at(bytes, 0, 2, 0), h1 = pair_at(bytes, 0, 2, 1);
+      gradient[1] = difference(all_known(l0, l1, h0, h1), interpolate(v10, h0, v11, h1, x, y, z),
+                               interpolate(l0, v00, l1, v01, x, y, z), interpolate(v00, v10, v01, v11, x, one, z),
+                               interpolate(v00, v10, v01, v11, x, zero, z));
+    }
+    {
+      const Pair l0 = pair_at(bytes, 0, 0, -1), l1 = pair_at(bytes, 0, 1, -1);
+      const Pair h0 = pair_at(bytes, 0, 0, 2), h1 = pair_at(bytes, 0, 1, 2);
+      gradient[2] = difference(all_known(l0, l1, h0, h1), interpolate(v01, v11, h0, h1, x, y, z),
+                               interpolate(l0, l1, v00, v10, x, y, z), interpolate(v00, v10, v01, v11, x, y, one),
+                               interpolate(v00, v10, v01, v11, x, y, zero));
+    }
+  }
+
+ private:
+  /// At an offset from the lanes' voxels.
+  [[nodiscard]] HWY_INLINE Pair pair_at(VI bytes, int x, int y, int z) const {
+    const int offset = ((z * VoxelBlock::kEdge + y) * VoxelBlock::kEdge + x) * 2;
+    const VI both =
+        hn::GatherOffset(i_, reinterpret_cast<const std::int32_t*>(values), hn::Add(bytes, hn::Set(i_, offset)));
+    return {hn::ConvertTo(f_, hn::ShiftRight<16>(hn::ShiftLeft<16>(both))),
+            hn::ConvertTo(f_, hn::ShiftRight<16>(both))};
+  }
+  /// Offset of a cell's lowest corner in the block, bytes.
+  [[nodiscard]] HWY_INLINE VI bytes_of(VI index) const {
+    const VI seven = hn::Set(i_, 7);
+    const VI x = hn::And(index, seven);
+    const VI y = hn::And(hn::ShiftRight<3>(index), seven);
+    const VI z = hn::ShiftRight<6>(index);
+    const VI row =
+        hn::Add(hn::Mul(hn::Add(z, hn::Set(i_, 1)), hn::Set(i_, VoxelBlock::kEdge)), hn::Add(y, hn::Set(i_, 1)));
+    return hn::ShiftLeft<1>(hn::Add(hn::Mul(row, hn::Set(i_, VoxelBlock::kEdge)), hn::Add(x, hn::Set(i_, 1))));
+  }
+
+  static HWY_INLINE VF mix(VF a, VF b, VF share) { return hn::Add(a, hn::Mul(hn::Sub(b, a), share)); }
+  /// Cell::at.
+  static HWY_INLINE VF interpolate(const Pair& v00, const Pair& v10, const Pair& v01, const Pair& v11, VF x, VF y,
+                                   VF z) {
+    const VF a = mix(mix(v00.low, v00.high, x), mix(v10.low, v10.high, x), y);
+    const VF b = mix(mix(v01.low, v01.high, x), mix(v11.low, v11.high, x), y);
+    return mix(a, b, z);
+  }
+
+  [[nodiscard]] HWY_INLINE M is_known(VF v) const { return hn::Ne(v, hn::Set(f_, VoxelBlock::kUnknown)); }
+  [[nodiscard]] HWY_INLINE M all_known(const Pair& p0, const Pair& p1, const Pair& p2, const Pair& p3) const {
+    const auto both = [&](const Pair& p) HWY_ATTR { return hn::And(is_known(p.low), is_known(p.high)); };
+    return hn::And(hn::And(both(p0), both(p1)), hn::And(both(p2), both(p3)));
+  }
+  [[nodiscard]] HWY_INLINE VF difference(M known, VF ahead, VF behind, VF high, VF low) const {
+    return hn::IfThenElse(known, hn::Mul(hn::Set(f_, 0.5F), hn::Sub(ahead, behind)), hn::Sub(high, low));
+  }
+
+  static constexpr F f_{};
+  static constexpr I i_{};
+};
+
+}  // namespace
+}  // namespace saccade::tile_cast::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#endif  // per target

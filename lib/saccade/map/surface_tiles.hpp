@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SurfaceTiles: which bricks of the mapped surface each tile of an image can see.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/pose.hpp"
+#include "saccade/map/tsdf_grid.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade {
+
+/// Per tile of 8×8 pixels, the bricks that may hold a surface cell crossed by a ray of the tile: all of those, and some
+/// more. A cell lies between eight voxel centres and is named by its lowest corner, in bricks like that voxel.
+/// O(bricks with occupied voxels + entries).
+class SurfaceTiles {
+ public:
+  static constexpr int kTilePx{8};
+
+  /// A brick in the list of a tile.
+  struct Entry {
+    float nearest_m{0.0F};   ///< its cells lie no nearer, along the camera's z
+    std::uint32_t brick{0};  ///< index into bricks()
+  };
+
+  /// `sectors` covers the grid.
+  SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, const PinholeCamera& camera,
+               const Pose& T_world_camera, double voxel_size_m, const Executor& executor);
+
+  [[nodiscard]] int width() const { return width_; }    ///< tiles
+  [[nodiscard]] int height() const { return height_; }  ///< tiles
+  /// A brick with surface cells that may be in the image.
+  struct Brick {
+    Index3 index;
+    Mask512 cells;  ///< crossed_cells
+    IndexBox box;   ///< around them, voxels within the brick
+  };
+  [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
+  /// In no particular order.
+  [[nodiscard]] std::span<const Entry> entries(int tile_u, int tile_v) const {
+    const auto tile =
+        static_cast<std::size_t>(tile_v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(tile_u);
+    return {entries_.data() + first_entry_[tile], entries_.data() + first_entry_[tile + 1]};
+  }
+
+ private:
+  int width_;
+  int height_;
+  std::vector<Brick> bricks_;
+  std::vector<std::size_t> first_entry_;  // per tile, and the end
+  std::vector<Entry> entries_;
+};
+
+}  // namespace saccade
