@@ -62,8 +62,7 @@ void icp(benchmark::State& state) {
   const Executor executor = executor_of(state);
   const PinholeCamera& camera = frames().camera;
   const auto view = raycast(warm_map(), camera, frames().T_world_camera[kWarmFrames - 1], executor);
-  PointImage model = to_points(view->depth, camera, executor);
-  model.normals = view->normals;
+  const PointImage model = to_points(*view, executor);
   double iterations{0.0};
   for (auto _ : state) {
     const PointImage measured = to_points(frames().depth[kWarmFrames], camera, executor);

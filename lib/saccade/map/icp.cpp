@@ -3,8 +3,11 @@
 
 #include <Eigen/Cholesky>
 #include <Eigen/Eigenvalues>
+#include <algorithm>
 #include <cmath>
 #include <vector>
+
+#include "saccade/map/icp_kernels.hpp"
 
 namespace saccade {
 namespace {
@@ -25,92 +28,104 @@ struct NormalEquations {
     Jtr += other.Jtr;
     squared_residuals += other.squared_residuals;
     pairs += other.pairs;
-    measured += other.measured;
     return *this;
   }
 };
 
-/// Standard deviation of a structured-light depth at z: constant near, growing with z².
-float depth_sigma_m(float z) {
-  constexpr float kNearest{0.0012F};
-  constexpr float kGrowth{0.0019F};
-  constexpr float kFrom{0.4F};
-  const float beyond = z > kFrom ? z - kFrom : 0.0F;
-  return kNearest + kGrowth * beyond * beyond;
+/// Adds up the lanes of one chunk, in order.
+NormalEquations total(const PairSums& sums) {
+  const auto over_lanes = [](const std::array<float, kPairLanes>& lanes) {
+    double sum{0.0};
+    for (const float lane : lanes) sum += static_cast<double>(lane);
+    return sum;
+  };
+  NormalEquations equations;
+  std::size_t product{0};
+  for (int i = 0; i < 6; ++i) {
+    for (int j = i; j < 6; ++j) equations.JtJ(j, i) = over_lanes(sums.products[product++]);
+    equations.Jtr(i) = over_lanes(sums.products[product++]);
+  }
+  equations.squared_residuals = over_lanes(sums.squared_residuals);
+  equations.pairs = sums.pairs;
+  return equations;
 }
 
-class Alignment {
- public:
-  Alignment(const PointImage& measured, const PointImage& model, const PinholeCamera& camera, const IcpConfig& config,
-            const Executor& executor)
-      : measured_{measured}, model_{model}, camera_{camera}, config_{config}, executor_{executor} {}
+LevelPoints all_points(const PointImage& image) {
+  return {image.z.data(), image.nx.data(), image.ny.data(), image.nz.data(), image.z.width(), image.z.height(), 1};
+}
 
-  [[nodiscard]] NormalEquations linearize(const Pose& T_model_camera, int stride) const {
-    const auto rows = static_cast<std::size_t>((camera_.height + stride - 1) / stride);
-    constexpr std::size_t kRowsPerChunk{8};
-    std::vector<NormalEquations> chunks((rows + kRowsPerChunk - 1) / kRowsPerChunk);
-    executor_.parallel_for(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-      NormalEquations& sums = chunks[begin / kRowsPerChunk];
-      for (std::size_t row = begin; row < end; ++row)
-        add_row(T_model_camera, static_cast<int>(row) * stride, stride, sums);
-    });
-    NormalEquations total;
-    for (const NormalEquations& chunk : chunks) total += chunk;
-    return total;
+/// Every stride-th point of every stride-th row, side by side.
+class Level {
+ public:
+  Level(const PointImage& image, int stride) : points_{all_points(image)} {
+    if (stride == 1) return;
+    points_.stride = stride;
+    points_.width = (image.z.width() + stride - 1) / stride;
+    points_.height = (image.z.height() + stride - 1) / stride;
+    points_.z = (z_ = every(image.z)).data();
+    points_.nx = (nx_ = every(image.nx)).data();
+    points_.ny = (ny_ = every(image.ny)).data();
+    points_.nz = (nz_ = every(image.nz)).data();
+  }
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+
+  [[nodiscard]] const LevelPoints& points() const { return points_; }
+  [[nodiscard]] std::size_t measured() const {
+    const auto count = static_cast<std::ptrdiff_t>(points_.width) * points_.height;
+    return static_cast<std::size_t>(std::count_if(points_.z, points_.z + count, [](float z) { return z > 0.0F; }));
   }
 
  private:
-  void add_row(const Pose& T_model_camera, int v, int stride, NormalEquations& sums) const {
-    const Eigen::Matrix3f R = T_model_camera.linear().cast<float>();
-    const Eigen::Vector3f t = T_model_camera.translation().cast<float>();
-    const auto fx = static_cast<float>(camera_.fx);
-    const auto fy = static_cast<float>(camera_.fy);
-    const auto cx = static_cast<float>(camera_.cx);
-    const auto cy = static_cast<float>(camera_.cy);
-    const auto max_distance = static_cast<float>(config_.max_distance_m);
-    const auto min_cosine = static_cast<float>(std::cos(config_.max_normal_angle_rad));
-    for (int u = 0; u < camera_.width; u += stride) {
-      const Eigen::Vector3f& p_camera = measured_.points(u, v);
-      if (!(p_camera.z() > 0.0F)) continue;
-      ++sums.measured;
-      const Eigen::Vector3f p = R * p_camera + t;
-      if (!(p.z() > 1e-3F)) continue;
-      const float model_u = fx * p.x() / p.z() + cx + 0.5F;
-      const float model_v = fy * p.y() / p.z() + cy + 0.5F;
-      if (!(model_u >= 0.0F && model_v >= 0.0F && model_u < static_cast<float>(camera_.width) &&
-            model_v < static_cast<float>(camera_.height))) {
-        continue;
-      }
-      const Eigen::Vector3f& q = model_.points(static_cast<int>(model_u), static_cast<int>(model_v));
-      if (!(q.z() > 0.0F)) continue;
-      const Eigen::Vector3f& n = model_.normals(static_cast<int>(model_u), static_cast<int>(model_v));
-      const Eigen::Vector3f difference = p - q;
-      if (difference.squaredNorm() > max_distance * max_distance) continue;
-      const Eigen::Vector3f n_measured = R * measured_.normals(u, v);
-      if (!(n.dot(n_measured) > min_cosine)) continue;
-      add_pair(p, n, n.dot(difference), p_camera.z(), sums);
+  [[nodiscard]] Image<float> every(const Image<float>& from) const {
+    Image<float> to{points_.width, points_.height};
+    for (int v = 0; v < points_.height; ++v) {
+      const float* row = from.row(v * points_.stride);
+      float* out = to.row(v);
+      for (int u = 0; u < points_.width; ++u) out[u] = row[u * points_.stride];
     }
+    return to;
   }
 
-  static void add_pair(const Eigen::Vector3f& p, const Eigen::Vector3f& n, float residual, float depth,
-                       NormalEquations& sums) {
-    const float sigma = depth_sigma_m(depth);
-    constexpr float kHuber{1.5F};
-    const float scaled = std::fabs(residual) / sigma;
-    constexpr float kReference{1e-3F};  // so that the sums are of the order of the number of pairs
-    const float weight = (kReference * kReference) / (sigma * sigma) * (scaled > kHuber ? kHuber / scaled : 1.0F);
-    Vector6d J;
-    J << p.cross(n).cast<double>(), n.cast<double>();
-    sums.JtJ.selfadjointView<Eigen::Lower>().rankUpdate(J, weight);
-    sums.Jtr += static_cast<double>(weight) * residual * J;
-    sums.squared_residuals += static_cast<double>(residual) * residual;
-    ++sums.pairs;
+  LevelPoints points_;
+  Image<float> z_, nx_, ny_, nz_;
+};
+
+class Alignment {
+ public:
+  Alignment(const PointImage& model, const PinholeCamera& camera, const IcpConfig& config, const Executor& executor)
+      : executor_{executor} {
+    task_.model = all_points(model);
+    task_.fx = static_cast<float>(camera.fx);
+    task_.fy = static_cast<float>(camera.fy);
+    task_.cx = static_cast<float>(camera.cx);
+    task_.cy = static_cast<float>(camera.cy);
+    task_.inverse_fx = static_cast<float>(1.0 / camera.fx);
+    task_.inverse_fy = static_cast<float>(1.0 / camera.fy);
+    task_.max_squared_distance_m2 = static_cast<float>(config.max_distance_m * config.max_distance_m);
+    task_.min_normal_cosine = static_cast<float>(std::cos(config.max_normal_angle_rad));
   }
 
-  const PointImage& measured_;
-  const PointImage& model_;
-  const PinholeCamera& camera_;
-  const IcpConfig& config_;
+  [[nodiscard]] NormalEquations linearize(const Pose& T_model_camera, const Level& level) const {
+    PairingTask task = task_;
+    task.measured = level.points();
+    Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>{task.R.data()} = T_model_camera.linear().cast<float>();
+    Eigen::Map<Eigen::Vector3f>{task.t.data()} = T_model_camera.translation().cast<float>();
+    const auto rows = static_cast<std::size_t>(task.measured.height);
+    constexpr std::size_t kRowsPerChunk{8};
+    std::vector<NormalEquations> chunks((rows + kRowsPerChunk - 1) / kRowsPerChunk);
+    executor_.parallel_for(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+      PairSums sums;
+      linearize_rows(task, static_cast<int>(begin), static_cast<int>(end), sums);
+      chunks[begin / kRowsPerChunk] = total(sums);
+    });
+    NormalEquations equations;
+    for (const NormalEquations& chunk : chunks) equations += chunk;
+    return equations;
+  }
+
+ private:
+  PairingTask task_;
   const Executor& executor_;
 };
 
@@ -159,72 +174,32 @@ Status IcpConfig::validate() const {
   return {};
 }
 
-PointImage to_points(const DepthImage& depth, const PinholeCamera& camera, const Executor& executor) {
-  SACCADE_EXPECTS(depth.width() == camera.width && depth.height() == camera.height);
-  PointImage image{Image<Eigen::Vector3f>{camera.width, camera.height, Eigen::Vector3f::Zero()},
-                   Image<Eigen::Vector3f>{camera.width, camera.height, Eigen::Vector3f::Zero()}};
-  const auto rows = static_cast<std::size_t>(camera.height);
-  executor.parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      for (int u = 0; u < camera.width; ++u) {
-        const float d = depth(u, v);
-        if (!(d >= static_cast<float>(camera.min_range_m) && d <= static_cast<float>(camera.max_range_m))) continue;
-        image.points(u, v) = camera.ray(u, v).cast<float>() * d;
-      }
-    }
-  });
-  // The baseline spans a few pixels: depth is quantised, and neighbouring pixels alone give steps for normals.
-  constexpr int kHalfBaseline{3};
-  constexpr float kLargestStep{0.03F};  // relative to depth
-  const auto difference = [&](int u0, int v0, int u1, int v1, const Eigen::Vector3f& p) -> Eigen::Vector3f {
-    const Eigen::Vector3f& a = image.points(u0, v0);
-    const Eigen::Vector3f& b = image.points(u1, v1);
-    const float limit = kLargestStep * p.z();
-    const bool a_near = a.z() > 0.0F && std::fabs(a.z() - p.z()) < limit;
-    const bool b_near = b.z() > 0.0F && std::fabs(b.z() - p.z()) < limit;
-    if (a_near && b_near) return b - a;
-    if (a_near) return p - a;
-    if (b_near) return b - p;
-    return Eigen::Vector3f::Zero();
-  };
-  executor.parallel_for(rows, 16, [&](std::size_t begin, std::size_t end) {
-    for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      const int v0 = std::max(0, v - kHalfBaseline);
-      const int v1 = std::min(camera.height - 1, v + kHalfBaseline);
-      for (int u = 0; u < camera.width; ++u) {
-        const Eigen::Vector3f& p = image.points(u, v);
-        if (!(p.z() > 0.0F)) continue;
-        const int u0 = std::max(0, u - kHalfBaseline);
-        const int u1 = std::min(camera.width - 1, u + kHalfBaseline);
-        const Eigen::Vector3f n = difference(u, v0, u, v1, p).cross(difference(u0, v, u1, v, p));  // towards −z
-        const float norm = n.norm();
-        if (norm > 0.0F) image.normals(u, v) = n / norm;
-      }
-    }
-  });
-  return image;
-}
-
 IcpResult align(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,
                 const Pose& T_model_camera_start, const Executor& executor, const IcpConfig& config) {
-  SACCADE_EXPECTS(measured.points.width() == camera.width && measured.points.height() == camera.height);
-  SACCADE_EXPECTS(model.points.width() == camera.width && model.points.height() == camera.height);
-  const Alignment alignment{measured, model, camera, config, executor};
+  SACCADE_EXPECTS(measured.z.width() == camera.width && measured.z.height() == camera.height);
+  SACCADE_EXPECTS(model.z.width() == camera.width && model.z.height() == camera.height);
+  const Alignment alignment{model, camera, config, executor};
   IcpResult result;
   result.T_model_camera = T_model_camera_start;
-  for (std::size_t level = 0; level < config.strides.size(); ++level) {
-    for (int i = 0; i < config.iterations[level]; ++i) {
-      const NormalEquations sums = alignment.linearize(result.T_model_camera, config.strides[level]);
+  NormalEquations sums;
+  for (std::size_t stage = 0; stage < config.strides.size(); ++stage) {
+    const Level level{measured, config.strides[stage]};
+    const bool finest = stage + 1 == config.strides.size();
+    bool converged{false};
+    for (int i = 0; i < config.iterations[stage] && !converged; ++i) {
+      sums = alignment.linearize(result.T_model_camera, level);
       if (sums.pairs < 6) break;
       const Eigen::LDLT<Matrix6d> factorised{sums.JtJ.selfadjointView<Eigen::Lower>()};
       const Vector6d step = factorised.solve(-sums.Jtr);
       if (factorised.info() != Eigen::Success || !step.allFinite()) break;
       result.T_model_camera = exponential(step) * result.T_model_camera;
       ++result.iterations;
-      if (step.norm() < config.converged_m) break;
+      converged = step.norm() < config.converged_m;
     }
+    if (!finest) continue;
+    if (!converged) sums = alignment.linearize(result.T_model_camera, level);  // else: the last step changed nothing
+    sums.measured = level.measured();
   }
-  const NormalEquations sums = alignment.linearize(result.T_model_camera, config.strides.back());
   if (sums.measured > 0) result.inlier_share = static_cast<double>(sums.pairs) / static_cast<double>(sums.measured);
   if (sums.pairs > 0) result.rmse_m = std::sqrt(sums.squared_residuals / static_cast<double>(sums.pairs));
   result.why = judge(sums, result, T_model_camera_start, config);

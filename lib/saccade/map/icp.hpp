@@ -8,7 +8,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/pose.hpp"
-#include "saccade/map/raycast.hpp"
+#include "saccade/map/point_image.hpp"
 
 namespace saccade {
 
@@ -36,22 +36,13 @@ struct IcpResult {
   double rmse_m{0.0};        ///< of the point-to-plane distances
 };
 
-/// A depth image as points with normals, camera frame.
-struct PointImage {
-  Image<Eigen::Vector3f> points;   ///< zero where there is no return
-  Image<Eigen::Vector3f> normals;  ///< unit, towards the camera; zero where unknown
-};
-
-/// Points and normals (from differences across a few pixels, none across depth steps) of a depth image. Returns
-/// outside the camera's range are dropped. O(pixels).
-[[nodiscard]] PointImage to_points(const DepthImage& depth, const PinholeCamera& camera, const Executor& executor);
-
 /// Aligns measured points to a surface seen by the same camera from a known pose. Thesis §2.2.1 "Camera tracking".
 /// Pairs by projection into the model; minimises point-to-plane distances, weighted by the depth noise (growing with
 /// z²) and a Huber loss, with Gauss–Newton steps on SE(3).
 /// @param T_model_camera_start first guess.
 /// A failed alignment is a result (converged = false), not an error.
-/// O(pixels · iterations). Sums run in fixed chunks: the thread count never changes a bit of the result.
+/// O(pixels · iterations). Sums run in fixed lanes and chunks: neither threads nor simd_target() change a bit of the
+/// result.
 [[nodiscard]] IcpResult align(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,
                               const Pose& T_model_camera_start, const Executor& executor, const IcpConfig& config = {});
 

@@ -57,10 +57,9 @@ Status Reconstruction::track(const Frame& frame, const PinholeCamera& camera, co
     return Error{Errc::size_mismatch, "the depth image and the camera differ in size", frame.name};
   }
   Stopwatch stopwatch;
-  SACCADE_TRY(SurfaceView view, raycast(map_.content(), camera, T_world_start, executor));
+  SACCADE_TRY(const SurfaceView view, raycast(map_.content(), camera, T_world_start, executor));
   report.raycast_ms = stopwatch.lap_ms();
-  PointImage model = to_points(view.depth, camera, executor);
-  model.normals = std::move(view.normals);
+  const PointImage model = to_points(view, executor);
   const PointImage measured = to_points(frame.depth, camera, executor);
   report.icp = align(measured, model, camera, Pose::Identity(), executor, icp_);
   report.track_ms = stopwatch.lap_ms();
