@@ -185,6 +185,7 @@ IcpResult align(const PointImage& measured, const PointImage& model, const Pinho
   for (std::size_t stage = 0; stage < config.strides.size(); ++stage) {
     const Level level{measured, config.strides[stage]};
     const bool finest = stage + 1 == config.strides.size();
+    const double settled = config.converged_m * config.strides[stage];  // finer levels correct what is left
     bool converged{false};
     for (int i = 0; i < config.iterations[stage] && !converged; ++i) {
       sums = alignment.linearize(result.T_model_camera, level);
@@ -194,7 +195,7 @@ IcpResult align(const PointImage& measured, const PointImage& model, const Pinho
       if (factorised.info() != Eigen::Success || !step.allFinite()) break;
       result.T_model_camera = exponential(step) * result.T_model_camera;
       ++result.iterations;
-      converged = step.norm() < config.converged_m;
+      converged = step.norm() < settled;
     }
     if (!finest) continue;
     if (!converged) sums = alignment.linearize(result.T_model_camera, level);  // else: the last step changed nothing

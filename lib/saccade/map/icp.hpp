@@ -17,12 +17,12 @@ struct IcpConfig {
   std::array<int, 3> iterations{10, 6, 4};  ///< at most, per level
   double max_distance_m{0.10};              ///< farther pairs are no pairs
   double max_normal_angle_rad{0.6};         ///< pairs whose normals differ more are no pairs
-  double converged_m{2e-5};                 ///< a level ends when a step moves and turns (in rad) less than this
-  double min_inlier_share{0.25};            ///< lost: fewer of the measured pixels found a partner
-  double max_rmse_m{0.03};                  ///< lost: the weighted residual stays above
-  double max_translation_m{0.20};           ///< lost: farther from the start than a camera moves between frames
-  double max_rotation_rad{0.35};            ///< lost: turned farther than that
-  double min_constraint{1e-5};              ///< lost: smallest to largest eigenvalue of the normal equations
+  double converged_m{2e-5};        ///< a level ends when a step moves and turns (in rad) less than this · stride
+  double min_inlier_share{0.25};   ///< lost: fewer of the measured pixels found a partner
+  double max_rmse_m{0.03};         ///< lost: the weighted residual stays above
+  double max_translation_m{0.20};  ///< lost: farther from the start than a camera moves between frames
+  double max_rotation_rad{0.35};   ///< lost: turned farther than that
+  double min_constraint{1e-5};     ///< lost: smallest to largest eigenvalue of the normal equations
 
   [[nodiscard]] Status validate() const;
 };
