@@ -49,7 +49,8 @@ HWY_INLINE void add_products(float* sums, V factor, Vs... others) {
   ((add_to(sums, hn::Mul(factor, others)), sums += kPairLanes), ...);
 }
 
-/// Adds the pairs of one vector of pixels: those from `lane` on in the block, of which the first has coordinate u.
+/// Adds the pairs of one vector of pixels, those from `lane` on in the block, with rays (ray_x, ray_y, 1); tells how
+/// many they are.
 HWY_INLINE std::size_t add_vector(const PairingTask& task, const Block& block, int lane, V ray_x, V ray_y,
                                   PairSums& sums) {
   const Tag d;

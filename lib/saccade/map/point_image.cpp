@@ -18,8 +18,9 @@ namespace {
 constexpr int kMaxLanes{16};
 /// Normals span a few pixels: depth is quantised, and neighbouring pixels alone give steps for normals.
 constexpr int kHalfBaseline{3};
-constexpr int kRowMargin{16};  ///< pixels of no return before and after a row; at least kHalfBaseline and kMaxLanes
+constexpr int kRowMargin{32};         ///< pixels of no return before and after a row, for vectors that begin in it
 constexpr float kLargestStep{0.03F};  ///< relative to depth
+static_assert(kRowMargin >= kMaxLanes + kHalfBaseline);
 
 /// Three rows of depths, kHalfBaseline apart, and where the middle one's normals go. The rows are readable kRowMargin
 /// pixels before and after their ends, and are zero there and where there is no return.
@@ -47,7 +48,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, kMaxLanes>;
 using V = hn::Vec<Tag>;
 
-/// Drops depths outside the range. `out` has room for kMaxLanes more.
+/// Drops depths outside the range.
 void keep_range(const float* depth, int width, float nearest, float farthest, float* out) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
