@@ -39,6 +39,15 @@ using Region = std::variant<Sphere, Box, Cylinder>;
 /// Smallest axis-aligned box around the region.
 [[nodiscard]] Box bounds(const Region& region);
 
+/// How much of a box of points a region contains, judged without looking at the points.
+enum class Overlap {
+  none,     ///< no point of the closed box
+  partial,  ///< not known: some, or in rare cases all or none
+  whole,    ///< every point of the closed box
+};
+/// Never wrong about a point for which contains() decides, whatever its rounding. O(1).
+[[nodiscard]] Overlap overlap(const Region& region, const Box& closed_box);
+
 /// invalid_argument when a number is not finite or a size is zero or negative.
 [[nodiscard]] Status validate(const Region& region);
 

@@ -118,6 +118,12 @@ void free_voxels(BrickRef& brick, const Mask512& inside, std::uint16_t free_weig
 }  // namespace
 
 Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_m) {
+  const Index3 last = lo + Index3{kBrickEdge - 1, kBrickEdge - 1, kBrickEdge - 1};
+  switch (overlap(region, {voxel_center(lo, voxel_size_m), voxel_center(last, voxel_size_m)})) {
+    case Overlap::none: return {};
+    case Overlap::whole: return Mask512::all_set();
+    case Overlap::partial: break;
+  }
   Mask512 inside;
   for (int i = 0; i < kBrickVoxels; ++i) {
     if (contains(region, voxel_center(lo + child_offset(i), voxel_size_m))) inside.set(i);

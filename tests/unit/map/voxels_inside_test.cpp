@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <gtest/gtest.h>
+
+#include <array>
+#include <random>
+
+#include "saccade/core/region.hpp"
+#include "saccade/map/tsdf_map.hpp"
+
+namespace saccade {
+namespace {
+
+TEST(VoxelsInside, AgreesWithContainsForEveryVoxel) {
+  constexpr double kVoxelM{0.01};
+  std::mt19937 random{7};
+  std::uniform_real_distribution<double> place{-0.3, 0.3};
+  std::uniform_real_distribution<double> size{0.02, 0.3};
+  std::uniform_int_distribution<int> brick{-4, 3};
+  const auto point = [&] { return Eigen::Vector3d{place(random), place(random), place(random)}; };
+  const auto on_lattice = [&] { return Eigen::Vector3d{(point() / kVoxelM).array().round() * kVoxelM}; };
+  std::array<int, 3> met{};  // by Overlap
+  for (int i = 0; i < 3000; ++i) {
+    Region region;
+    switch (i % 4) {
+      case 0: region = Sphere{point(), size(random)}; break;
+      case 1: region = Cylinder{point(), point(), size(random)}; break;
+      case 2: region = Cylinder{{0.0, 0.0, 0.005}, {0.0, 0.0, 0.005 + 16 * kVoxelM}, size(random)}; break;
+      default: {
+        const Eigen::Vector3d low = on_lattice() + Eigen::Vector3d::Constant(0.5 * kVoxelM);
+        region = Box{low, low + Eigen::Vector3d{size(random), 0.16, size(random)}};
+      }
+    }
+    const Index3 lo = Index3{brick(random), brick(random), brick(random)} * kBrickEdge;
+    const Mask512 inside = voxels_inside(region, lo, kVoxelM);
+    for (int k = 0; k < kBrickVoxels; ++k) {
+      ASSERT_EQ(inside.test(k), contains(region, voxel_center(lo + child_offset(k), kVoxelM))) << "region " << i;
+    }
+    const Index3 last = lo + Index3{7, 7, 7};
+    const Overlap judged = overlap(region, {voxel_center(lo, kVoxelM), voxel_center(last, kVoxelM)});
+    ++met[static_cast<std::size_t>(judged)];
+  }
+  for (const int count : met) EXPECT_GT(count, 50);
+}
+
+}  // namespace
+}  // namespace saccade
