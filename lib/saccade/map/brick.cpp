@@ -58,6 +58,24 @@ void DenseBrick::update_masks() {
   }
 }
 
+namespace {
+
+/// No surface is near: every voxel is unknown or has v = 1 with a weight up to the limit.
+bool is_free(const DenseBrick& brick, std::uint16_t weight_limit) {
+  if (brick.occupied.any()) return false;
+  for (std::size_t slice = 0; slice < kBrickVoxels; slice += 64) {  // whole slices: vector code
+    std::uint16_t other{0};
+    for (std::size_t i = slice; i < slice + 64; ++i) {
+      const bool differs = (brick.v[i] != kTsdfOne) | (brick.w[i] > weight_limit);
+      other |= static_cast<std::uint16_t>((brick.w[i] != 0) & differs);
+    }
+    if (other != 0) return false;
+  }
+  return true;
+}
+
+}  // namespace
+
 struct BrickRef::Block {
   explicit Block(BrickKind block_kind) : kind{block_kind} {}
   std::atomic<std::uint32_t> references{1};
@@ -151,13 +169,9 @@ std::uint64_t BrickRef::nonempty_word(int z) const {
 
 void BrickRef::canonicalize(std::uint16_t free_weight_limit) {
   if (const DenseBrick* d = dense()) {
+    if (!is_free(*d, free_weight_limit)) return;
     FreeBrick weights;
-    for (int i = 0; i < kBrickVoxels; ++i) {
-      const auto k = static_cast<std::size_t>(i);
-      if (d->w[k] == 0) continue;
-      if (d->v[k] != kTsdfOne || d->w[k] > free_weight_limit) return;  // a surface is near
-      weights.set_weight(i, d->w[k]);
-    }
+    for (int i = 0; i < kBrickVoxels; ++i) weights.set_weight(i, d->w[static_cast<std::size_t>(i)]);
     *this = make(weights);
   }
   if (const FreeBrick* f = free()) {
@@ -170,12 +184,11 @@ DenseBrick& BrickRef::densify() {
   if (dense() != nullptr) return writable_dense();
   BrickRef ref = make_dense();
   DenseBrick& d = ref.writable_dense();
-  for (int i = 0; i < kBrickVoxels; ++i) {
-    const Voxel voxel_i = voxel(i);
-    d.v[static_cast<std::size_t>(i)] = voxel_i.v;
-    d.w[static_cast<std::size_t>(i)] = voxel_i.w;
-  }
   d.unknown = unknown_mask();
+  (~d.unknown).for_each([&](std::size_t i) {
+    d.v[i] = kTsdfOne;
+    d.w[i] = voxel(static_cast<int>(i)).w;
+  });
   *this = std::move(ref);
   return writable_dense();
 }

@@ -43,6 +43,15 @@ struct Mask512 {
     for (const std::uint64_t word : words) n += std::popcount(word);
     return n;
   }
+  /// Calls body(i) for the bits that are set, in order.
+  template <class Body>
+  void for_each(const Body& body) const {
+    for (std::size_t z = 0; z < 8; ++z) {
+      for (std::uint64_t rest = words[z]; rest != 0; rest &= rest - 1) {
+        body(z * 64 + static_cast<std::size_t>(std::countr_zero(rest)));
+      }
+    }
+  }
   [[nodiscard]] constexpr Mask512 operator~() const {
     Mask512 m;
     for (std::size_t i = 0; i < 8; ++i) m.words[i] = ~words[i];

@@ -182,9 +182,9 @@ void FrameFuser::observe_free(const Cube& cube, Sector& sector, Counts& counts) 
         ref.canonicalize(config_.free_weight);
         break;
       case BrickKind::dense: {
-        std::array<std::int32_t, kBrickVoxels> samples;
+        alignas(fusion::kVectorBytes) std::array<std::int16_t, kBrickVoxels> samples;
         samples.fill(tsdf::kSampleOne);
-        update_dense(samples.data(), ref.writable_dense());
+        fusion::update_brick(samples, config_.max_weight, config_.free_weight, ref.writable_dense());
         ref.canonicalize(config_.free_weight);
         break;
       }
@@ -200,96 +200,32 @@ tsdf::BrickFrame FrameFuser::brick_frame(const Index3& brick) const {
           to_float3(step.col(1)), to_float3(step.col(2))};
 }
 
-/// Observations of a brick's voxels by one frame.
-struct FrameFuser::BrickSamples {
-  std::array<std::int32_t, kBrickVoxels> samples;  ///< tsdf::kNotSeen where there is none
-  std::array<std::int32_t, kBrickVoxels> pixels;   ///< index into the image, where there is a sample
-  Mask512 seen;
-  bool surface{false};  ///< some sample is not 1
-};
-
-void FrameFuser::sample_brick(const Index3& brick, BrickSamples& out) const {
-  // Rows of eight voxels, in loops without branches: the compiler makes vector code of all but the look-up.
-  constexpr int kRow{kBrickEdge};
-  const tsdf::FusionCamera camera = ranges_.camera();
-  const tsdf::BrickFrame frame = brick_frame(brick);
-  const float* ranges = ranges_.ranges();
-  bool surface{false};
-  for (int row = 0; row < kBrickVoxels / kRow; ++row) {
-    std::array<float, kRow> px;
-    std::array<float, kRow> py;
-    std::array<float, kRow> pz;
-    std::array<std::int32_t, kRow> pixel;
-    std::array<std::int32_t, kRow> inside;
-    std::array<float, kRow> range;
-    for (int x = 0; x < kRow; ++x) {
-      const auto i = static_cast<std::size_t>(x);
-      const tsdf::Float3 p = tsdf::voxel_in_camera(frame, x, row & 7, row >> 3);
-      px[i] = p.x;
-      py[i] = p.y;
-      pz[i] = p.z;
-      const tsdf::Pixel at = tsdf::pixel_of(camera, p);
-      pixel[i] = at.v * camera.width + at.u;
-      inside[i] = at.inside ? 1 : 0;
-    }
-    for (std::size_t i = 0; i < kRow; ++i) range[i] = ranges[pixel[i]];
-    const std::size_t first = static_cast<std::size_t>(row) * kRow;
-    for (std::size_t i = 0; i < kRow; ++i) {
-      const int sample = tsdf::sample_voxel(camera, {px[i], py[i], pz[i]}, range[i]);
-      out.samples[first + i] = inside[i] != 0 ? sample : tsdf::kNotSeen;
-      out.pixels[first + i] = pixel[i];
-    }
-    std::uint64_t seen_bits{0};
-    for (std::size_t i = 0; i < kRow; ++i) {
-      const std::int32_t sample = out.samples[first + i];
-      const bool seen = sample != tsdf::kNotSeen;
-      seen_bits |= std::uint64_t{seen} << i;
-      surface |= seen & (sample != tsdf::kSampleOne);
-    }
-    out.seen.words[first >> 6] |= seen_bits << (first & 63);
-  }
-  out.surface = surface;
-}
-
 bool FrameFuser::fuse_brick(const Index3& brick, BrickRef& ref) const {
-  BrickSamples samples;
-  sample_brick(brick, samples);
-  if (samples.seen.none()) return false;
-  if (!samples.surface && ref.kind() != BrickKind::dense) {
-    ref.expand_to_free().observe(samples.seen, config_.free_weight);
+  fusion::BrickSamples observed;
+  fusion::sample_brick(ranges_.camera(), brick_frame(brick), ranges_.ranges(), observed);
+  if (observed.seen.none()) return false;
+  if (observed.surface.none() && ref.kind() != BrickKind::dense) {
+    ref.expand_to_free().observe(observed.seen, config_.free_weight);
   } else {
     DenseBrick& dense = ref.densify();
-    if (color_ != nullptr && config_.color) update_colors(samples, dense);
-    update_dense(samples.samples.data(), dense);
+    if (color_ != nullptr && config_.color) update_colors(observed, dense);
+    fusion::update_brick(observed.samples, config_.max_weight, config_.free_weight, dense);
   }
   ref.canonicalize(config_.free_weight);
   return true;
 }
 
-void FrameFuser::update_dense(const std::int32_t* samples, DenseBrick& dense) const {
-  const std::uint16_t max_weight = config_.max_weight;
-  const std::uint16_t free_weight = config_.free_weight;
-  for (std::size_t i = 0; i < kBrickVoxels; ++i) {
-    const bool seen = samples[i] != tsdf::kNotSeen;
-    const std::int16_t v = tsdf::average_v(dense.v[i], dense.w[i], samples[i]);
-    const std::uint16_t w = tsdf::next_w(v, dense.w[i], max_weight, free_weight);
-    dense.v[i] = seen ? v : dense.v[i];
-    dense.w[i] = seen ? w : dense.w[i];
-  }
-  dense.update_masks();
-}
-
-/// Colours of the voxels within the truncation band; before update_dense, since they average over the old weights.
-void FrameFuser::update_colors(const BrickSamples& samples, DenseBrick& dense) const {
+/// Colours of the voxels within the truncation band; before the weights change, since they average over the old ones.
+void FrameFuser::update_colors(const fusion::BrickSamples& observed, DenseBrick& dense) const {
   if (dense.colors == nullptr) dense.colors = std::make_unique<BrickColors>();
-  for (std::size_t i = 0; i < kBrickVoxels; ++i) {
-    if (samples.samples[i] >= tsdf::kSampleOne || samples.samples[i] <= -tsdf::kSampleOne) continue;
-    const Rgb8& seen = color_->pixels()[static_cast<std::size_t>(samples.pixels[i])];
+  observed.surface.for_each([&](std::size_t i) {
+    if (observed.samples[i] <= -tsdf::kSampleOne) return;
+    const Rgb8& seen = color_->pixels()[static_cast<std::size_t>(observed.pixels[i])];
     Rgb8& color = (*dense.colors)[i];
     const std::uint16_t w = color == Rgb8{} ? std::uint16_t{0} : dense.w[i];  // black: no colour yet
     for (std::size_t c = 0; c < 3; ++c) color[c] = tsdf::average_color(color[c], w, seen[c]);
     if (color == Rgb8{}) color = {1, 1, 1};
-  }
+  });
 }
 
 }  // namespace saccade

@@ -6,6 +6,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/pose.hpp"
+#include "saccade/map/fusion_kernels.hpp"
 #include "saccade/map/range_image.hpp"
 #include "saccade/map/tsdf_map.hpp"
 
@@ -42,12 +43,9 @@ class FrameFuser {
   [[nodiscard]] tsdf::BrickFrame brick_frame(const Index3& brick) const;
   void fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const;
   void observe_free(const Cube& cube, Sector& sector, Counts& counts) const;
-  struct BrickSamples;
-  void sample_brick(const Index3& brick, BrickSamples& out) const;
   /// False when no voxel of the brick was seen.
   bool fuse_brick(const Index3& brick, BrickRef& ref) const;
-  void update_dense(const std::int32_t* samples, DenseBrick& dense) const;
-  void update_colors(const BrickSamples& samples, DenseBrick& dense) const;
+  void update_colors(const fusion::BrickSamples& observed, DenseBrick& dense) const;
 
   const TsdfConfig& config_;
   const RangeImage& ranges_;

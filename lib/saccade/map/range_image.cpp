@@ -3,29 +3,24 @@
 
 #include <algorithm>
 #include <atomic>
-#include <cmath>
 #include <limits>
+
+#include "saccade/map/fusion_kernels.hpp"
 
 namespace saccade {
 namespace {
 
+/// The finest level: cells of 4×4 pixels.
 constexpr int kFirstShift{2};
+constexpr int kFirstCell{1 << kFirstShift};
 
-/// The depth that fusion believes: 0 for none, negative for "free up to".
-float trusted_depth(float depth_m, float min_range_m, float max_range_m) {
-  if (depth_m >= min_range_m && depth_m <= max_range_m) return depth_m;
-  if (depth_m < 0.0F) return std::max(depth_m, -max_range_m);  // −∞ included
-  return 0.0F;                                                 // 0, NaN, out of range
-}
-
-BeamBounds bounds_of_range(float range_m, float truncation_m) {
-  if (range_m > 0.0F) return {std::max(0.0F, range_m - truncation_m), range_m + truncation_m};
-  return {-range_m, -range_m};
-}
+constexpr BeamBounds kNoBeam{std::numeric_limits<float>::infinity(), 0.0F};
 
 BeamBounds merged(const BeamBounds& a, const BeamBounds& b) {
   return {std::min(a.clear_m, b.clear_m), std::max(a.reach_m, b.reach_m)};
 }
+
+std::size_t row_offset(int row, int width) { return static_cast<std::size_t>(row) * static_cast<std::size_t>(width); }
 
 }  // namespace
 
@@ -40,52 +35,54 @@ RangeImage::RangeImage(const PinholeCamera& camera, const DepthImage& depth, dou
               static_cast<float>(truncation_m),
               static_cast<float>(1.0 / truncation_m)},
       ranges_(depth.size()) {
-  const auto min_range_m = static_cast<float>(std::max(camera.min_range_m, 1e-6));
-  const auto max_range_m = static_cast<float>(camera.max_range_m);
+  std::vector<float> dx_squared(static_cast<std::size_t>(camera_.width));
+  for (int u = 0; u < camera_.width; ++u) {
+    dx_squared[static_cast<std::size_t>(u)] = tsdf::squared_slope(u, camera_.cx, camera_.fx);
+  }
+  const fusion::RayLengths rays{dx_squared.data(), camera_.width,
+                                static_cast<float>(std::max(camera.min_range_m, 1e-6)),
+                                static_cast<float>(camera.max_range_m), camera_.truncation_m};
+  Level cells = level(kFirstShift, camera_.width, camera_.height);
   std::atomic<std::size_t> valid{0};
-  executor.parallel_for(static_cast<std::size_t>(depth.height()), 16, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(static_cast<std::size_t>(cells.height), 4, [&](std::size_t begin, std::size_t end) {
+    std::vector<float> clear_m(dx_squared.size());
+    std::vector<float> reach_m(dx_squared.size());
     std::size_t count{0};
-    for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      const float* depth_row = depth.row(v);
-      float* range_row = ranges_.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(camera_.width);
-      for (int u = 0; u < camera_.width; ++u) {
-        const float d = trusted_depth(depth_row[u], min_range_m, max_range_m);
-        range_row[u] = d == 0.0F ? 0.0F : tsdf::range_of_depth(camera_, u, v, d);
-        count += d > 0.0F ? 1U : 0U;
+    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+      std::fill(clear_m.begin(), clear_m.end(), kNoBeam.clear_m);
+      std::fill(reach_m.begin(), reach_m.end(), kNoBeam.reach_m);
+      for (int v = row * kFirstCell; v < std::min((row + 1) * kFirstCell, camera_.height); ++v) {
+        count += fusion::ranges_of_row(rays, tsdf::squared_slope(v, camera_.cy, camera_.fy), depth.row(v),
+                                       ranges_.data() + row_offset(v, camera_.width), clear_m.data(), reach_m.data());
+      }
+      BeamBounds* out = cells.cells.data() + row_offset(row, cells.width);
+      for (std::size_t u = 0; u < clear_m.size(); ++u) {
+        BeamBounds& cell = out[u >> kFirstShift];
+        cell = merged(cell, {clear_m[u], reach_m[u]});
       }
     }
     valid += count;
   });
   valid_pixels_ = valid;
+  levels_.push_back(std::move(cells));
   build_pyramid();
 }
 
+RangeImage::Level RangeImage::level(int shift, int fine_width, int fine_height) {
+  const int cell = shift == kFirstShift ? kFirstCell : 2;
+  Level result{shift, (fine_width + cell - 1) / cell, (fine_height + cell - 1) / cell, {}};
+  result.cells.resize(row_offset(result.height, result.width), kNoBeam);
+  return result;
+}
+
 void RangeImage::build_pyramid() {
-  Level base{kFirstShift, (camera_.width + 3) >> kFirstShift, (camera_.height + 3) >> kFirstShift, {}};
-  base.cells.resize(static_cast<std::size_t>(base.width) * static_cast<std::size_t>(base.height),
-                    {std::numeric_limits<float>::infinity(), 0.0F});
-  for (int v = 0; v < camera_.height; ++v) {
-    const float* row = ranges_.data() + static_cast<std::size_t>(v) * static_cast<std::size_t>(camera_.width);
-    BeamBounds* cells =
-        base.cells.data() + static_cast<std::size_t>(v >> kFirstShift) * static_cast<std::size_t>(base.width);
-    for (int u = 0; u < camera_.width; ++u) {
-      BeamBounds& cell = cells[u >> kFirstShift];
-      cell = merged(cell, bounds_of_range(row[u], camera_.truncation_m));
-    }
-  }
-  levels_.push_back(std::move(base));
   while (levels_.back().width > 1 || levels_.back().height > 1) {
     const Level& fine = levels_.back();
-    Level coarse{fine.shift + 1, (fine.width + 1) / 2, (fine.height + 1) / 2, {}};
-    coarse.cells.resize(static_cast<std::size_t>(coarse.width) * static_cast<std::size_t>(coarse.height),
-                        {std::numeric_limits<float>::infinity(), 0.0F});
+    Level coarse = level(fine.shift + 1, fine.width, fine.height);
     for (int y = 0; y < fine.height; ++y) {
-      for (int x = 0; x < fine.width; ++x) {
-        BeamBounds& cell = coarse.cells[static_cast<std::size_t>(y / 2) * static_cast<std::size_t>(coarse.width) +
-                                        static_cast<std::size_t>(x / 2)];
-        cell = merged(cell, fine.cells[static_cast<std::size_t>(y) * static_cast<std::size_t>(fine.width) +
-                                       static_cast<std::size_t>(x)]);
-      }
+      const BeamBounds* in = fine.cells.data() + row_offset(y, fine.width);
+      BeamBounds* out = coarse.cells.data() + row_offset(y / 2, coarse.width);
+      for (int x = 0; x < fine.width; ++x) out[x / 2] = merged(out[x / 2], in[x]);
     }
     levels_.push_back(std::move(coarse));
   }

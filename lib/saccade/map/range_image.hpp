@@ -47,6 +47,8 @@ class RangeImage {
     int height;
     std::vector<BeamBounds> cells;
   };
+  /// An empty level of cells of 2^shift pixels; the sizes are those of the level below it, or of the image.
+  [[nodiscard]] static Level level(int shift, int fine_width, int fine_height);
   void build_pyramid();
 
   tsdf::FusionCamera camera_;

@@ -52,11 +52,17 @@ SACCADE_HD inline float round_to_even(float x) {
   return (x + kMagic) - kMagic;
 }
 
+/// ((u − c_x) / f_x)² of a column u, or the like of a row.
+SACCADE_HD inline float squared_slope(int pixel, float center, float focal_length) {
+  const float slope = (static_cast<float>(pixel) - center) / focal_length;
+  return slope * slope;
+}
+
 /// ‖p − o‖ of eq. 2.1 for a depth d at pixel (u, v); the sign of d is kept (d < 0: free up to |d|).
 SACCADE_HD inline float range_of_depth(const FusionCamera& camera, int u, int v, float depth_m) {
-  const float dx = (static_cast<float>(u) - camera.cx) / camera.fx;
-  const float dy = (static_cast<float>(v) - camera.cy) / camera.fy;
-  return depth_m * std::sqrt((dx * dx + dy * dy) + 1.0F);
+  const float dx_squared = squared_slope(u, camera.cx, camera.fx);
+  const float dy_squared = squared_slope(v, camera.cy, camera.fy);
+  return depth_m * std::sqrt((dx_squared + dy_squared) + 1.0F);
 }
 
 SACCADE_HD inline Float3 voxel_in_camera(const BrickFrame& frame, int x, int y, int z) {
