@@ -7,6 +7,7 @@
 #include <limits>
 #include <random>
 
+#include "saccade/core/simd.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "support/dense_reference.hpp"
 #include "support/effort.hpp"
@@ -225,6 +226,51 @@ TEST(FusionProperty, ThreadsAndBackendsNeverChangeABit) {
     EXPECT_GT(first->usage().bricks(), 0U);
   }
   EXPECT_EQ(compared, 18U);
+}
+
+/// Puts the default instruction set back.
+struct SimdTargetGuard {
+  SimdTargetGuard() = default;
+  SimdTargetGuard(const SimdTargetGuard&) = delete;
+  SimdTargetGuard& operator=(const SimdTargetGuard&) = delete;
+  ~SimdTargetGuard() { static_cast<void>(use_simd_target("")); }
+};
+
+TEST(FusionProperty, InstructionSetsNeverChangeABit) {
+  const SimdTargetGuard guard;
+  std::size_t compared{0};
+  const std::vector<std::string> targets = simd_targets();
+  for (std::uint32_t seed = 300; seed < 300 + kRuns / 4; ++seed) {
+    std::optional<TsdfGrid> first;
+    Comparison total;
+    for (const std::string& target : targets) {
+      SCOPED_TRACE("seed " + std::to_string(seed) + ", " + target);
+      ASSERT_TRUE(use_simd_target(target).ok());
+      ASSERT_EQ(simd_target(), target);
+      RandomRun run{seed};
+      auto map = TsdfMap::create(run.config());
+      ASSERT_TRUE(map.ok());
+      std::optional<test::DenseReference> reference;
+      if (!first) reference.emplace(run.config(), kHalfEdge);
+      for (int step = 0; step < kStepsPerRun; ++step) {
+        const DepthImage depth = run.depth();
+        const ColorImage color = run.color();
+        const Pose T_world_camera = run.pose();
+        ASSERT_TRUE(map->integrate(run.camera(), depth, T_world_camera, {}, &color).ok());
+        if (reference) reference->integrate(run.camera(), depth, T_world_camera, &color);
+      }
+      const TsdfGrid& grid = map->content().grid;
+      if (reference) {
+        ASSERT_NO_FATAL_FAILURE(compare(*reference, grid, total));
+        EXPECT_GT(total.known, 0U);
+        first = grid;
+      }
+      EXPECT_TRUE(*first == grid);
+      ++compared;
+    }
+  }
+  EXPECT_EQ(compared, targets.size() * static_cast<std::size_t>(kRuns / 4));
+  std::printf("compared %zu maps on %zu instruction sets\n", compared, targets.size());
 }
 
 TEST(FusionProperty, SnapshotsStayAsTheyWere) {

@@ -10,13 +10,25 @@ namespace {
 
 /// Slack of the conservative tests: far above the rounding of the per-voxel floats, far below a voxel.
 constexpr double kSlackM{1e-4};
-constexpr double kSlackPx{0.6};  // rounding to the nearest pixel, and a little
+constexpr float kSlackPx{0.6F};  // rounding to the nearest pixel, and a little
 
 constexpr int kOctants{8};
 
 Index3 octant(const Index3& lo, int half, int i) {
   return {lo.x + ((i & 1) != 0 ? half : 0), lo.y + ((i & 2) != 0 ? half : 0), lo.z + ((i & 4) != 0 ? half : 0)};
 }
+
+/// Signs of the eight corners of a box.
+using Corners = Eigen::Array<float, kOctants, 1>;
+const struct {
+  Corners x{-1, 1, -1, 1, -1, 1, -1, 1};
+  Corners y{-1, -1, 1, 1, -1, -1, 1, 1};
+  Corners z{-1, -1, -1, -1, 1, 1, 1, 1};
+  /// Coordinate i of the corners of the box with that centre and, as columns, half edges.
+  [[nodiscard]] Corners coordinate(const Eigen::Vector3f& center, const Eigen::Matrix3f& half, int i) const {
+    return center[i] + half(i, 0) * x + half(i, 1) * y + half(i, 2) * z;
+  }
+} kCorners;
 
 tsdf::Float3 to_float3(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
@@ -82,8 +94,9 @@ std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) cons
 }
 
 bool FrameFuser::leaves_unchanged(const Index3& sector_key, const Sector& sector) const {
-  return sector.saturated.all() &&
-         visibility({sector_key * kSectorVoxelEdge, kSectorVoxelEdge}) == Visibility::all_free;
+  if (!sector.saturated.all()) return false;
+  const Visibility seen = visibility({sector_key * kSectorVoxelEdge, kSectorVoxelEdge});
+  return seen == Visibility::all_free || seen == Visibility::free_or_unseen;
 }
 
 FrameFuser::Counts FrameFuser::fuse(const Index3& sector_key, Sector& sector) const {
@@ -93,62 +106,48 @@ FrameFuser::Counts FrameFuser::fuse(const Index3& sector_key, Sector& sector) co
 }
 
 FrameFuser::Visibility FrameFuser::visibility(const Cube& cube) const {
-  // Box of the voxel centres, in camera coordinates: centre and half edges.
+  // Box of the voxel centres: centre and half edge; in camera coordinates, half edges.
   const double e = config_.voxel_size_m;
   const double half_m = 0.5 * (cube.edge - 1) * e;
-  const Eigen::Vector3d center_world{(cube.lo.x + 0.5 * cube.edge) * e, (cube.lo.y + 0.5 * cube.edge) * e,
-                                     (cube.lo.z + 0.5 * cube.edge) * e};
-  const Eigen::Vector3d center = T_camera_world_ * center_world;
-  const Eigen::Matrix3d half = T_camera_world_.linear() * half_m;
-  const double half_z = half.row(2).cwiseAbs().sum();
-  if (center.z() + half_z < 0.0) return Visibility::hidden;
+  const Eigen::Vector3d center_world =
+      e * Eigen::Vector3d{cube.lo.x + 0.5 * cube.edge, cube.lo.y + 0.5 * cube.edge, cube.lo.z + 0.5 * cube.edge};
+  const Eigen::Vector3f center = (T_camera_world_ * center_world).cast<float>();
+  const Eigen::Matrix3f half = (T_camera_world_.linear() * half_m).cast<float>();
+  const float half_z = half.row(2).cwiseAbs().sum();
+  if (center.z() + half_z < 0.0F) return Visibility::hidden;
 
-  const double nearest_m = std::max(0.0, (center_world - camera_world_).norm() - half_m * std::sqrt(3.0)) - kSlackM;
+  const Eigen::Array3d offset = (center_world - camera_world_).array().abs();
+  const double nearest_m = (offset - half_m).max(0.0).matrix().norm() - kSlackM;
   if (nearest_m > ranges_.max_reach_m()) return Visibility::hidden;
-  constexpr double kNearestProjected{0.02};
+  constexpr float kNearestProjected{0.02F};
   if (center.z() - half_z < kNearestProjected) return Visibility::mixed;
 
   const tsdf::FusionCamera& camera = ranges_.camera();
-  double u_min{1e30};
-  double u_max{-1e30};
-  double v_min{1e30};
-  double v_max{-1e30};
-  double farthest_squared{0.0};
-  for (int i = 0; i < kOctants; ++i) {
-    const Eigen::Vector3d sign{(i & 1) != 0 ? 1.0 : -1.0, (i & 2) != 0 ? 1.0 : -1.0, (i & 4) != 0 ? 1.0 : -1.0};
-    const Eigen::Vector3d corner = center + half * sign;
-    const double inv_z = 1.0 / corner.z();
-    const double u = camera.fx * corner.x() * inv_z + camera.cx;
-    const double v = camera.fy * corner.y() * inv_z + camera.cy;
-    u_min = std::min(u_min, u);
-    u_max = std::max(u_max, u);
-    v_min = std::min(v_min, v);
-    v_max = std::max(v_max, v);
-    farthest_squared = std::max(farthest_squared, corner.squaredNorm());
-  }
-  u_min -= kSlackPx;
-  v_min -= kSlackPx;
-  u_max += kSlackPx;
-  v_max += kSlackPx;
-  const double last_u = camera.width - 1;
-  const double last_v = camera.height - 1;
-  if (u_max < 0.0 || v_max < 0.0 || u_min > last_u || v_min > last_v) return Visibility::hidden;
-  const bool inside = u_min >= 0.0 && v_min >= 0.0 && u_max <= last_u && v_max <= last_v;
-  const PixelRect rect{static_cast<int>(std::max(u_min, 0.0)), static_cast<int>(std::max(v_min, 0.0)),
+  const Corners inv_z = kCorners.coordinate(center, half, 2).inverse();
+  const Corners u = camera.fx * kCorners.coordinate(center, half, 0) * inv_z + camera.cx;
+  const Corners v = camera.fy * kCorners.coordinate(center, half, 1) * inv_z + camera.cy;
+  const float u_min = u.minCoeff() - kSlackPx;
+  const float v_min = v.minCoeff() - kSlackPx;
+  const float u_max = u.maxCoeff() + kSlackPx;
+  const float v_max = v.maxCoeff() + kSlackPx;
+  const auto last_u = static_cast<float>(camera.width - 1);
+  const auto last_v = static_cast<float>(camera.height - 1);
+  if (u_max < 0.0F || v_max < 0.0F || u_min > last_u || v_min > last_v) return Visibility::hidden;
+  const bool inside = u_min >= 0.0F && v_min >= 0.0F && u_max <= last_u && v_max <= last_v;
+  const PixelRect rect{static_cast<int>(std::max(u_min, 0.0F)), static_cast<int>(std::max(v_min, 0.0F)),
                        static_cast<int>(std::ceil(std::min(u_max, last_u))),
                        static_cast<int>(std::ceil(std::min(v_max, last_v)))};
   const BeamBounds seen = ranges_.bounds(rect);
   if (nearest_m > seen.reach_m) return Visibility::hidden;
-  const double farthest_m = std::sqrt(farthest_squared) + kSlackM;
-  return inside && farthest_m < seen.clear_m ? Visibility::all_free : Visibility::mixed;
+  const double farthest_m = (offset + half_m).matrix().norm() + kSlackM;
+  if (farthest_m >= seen.clear_m) return Visibility::mixed;
+  return inside && seen.nearest_m > 0.0F ? Visibility::all_free : Visibility::free_or_unseen;
 }
 
 void FrameFuser::fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const {
-  switch (visibility(cube)) {
-    case Visibility::hidden: return;
-    case Visibility::all_free: observe_free(cube, sector, counts); return;
-    case Visibility::mixed: break;
-  }
+  const Visibility seen = visibility(cube);
+  if (seen == Visibility::hidden) return;
+  if (seen == Visibility::all_free) return observe_free(cube, sector, counts);
   if (cube.edge > kBrickEdge) {
     for (int i = 0; i < kOctants; ++i) {
       fuse_cube({octant(cube.lo, cube.edge / 2, i), cube.edge / 2}, sector, counts);
@@ -157,7 +156,10 @@ void FrameFuser::fuse_cube(const Cube& cube, Sector& sector, Counts& counts) con
   }
   const Index3 brick = parent(cube.lo);
   const int i = child_index(brick);
-  if (fuse_brick(brick, sector.bricks[static_cast<std::size_t>(i)])) {
+  if (seen == Visibility::free_or_unseen && sector.saturated.test(i)) {
+    ++counts.bricks_free;
+    ++counts.bricks_saturated;
+  } else if (fuse_brick(brick, sector.bricks[static_cast<std::size_t>(i)])) {
     sector.update_summary(i, config_.free_weight);
     ++counts.bricks_updated;
   }

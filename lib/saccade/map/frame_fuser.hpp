@@ -33,7 +33,12 @@ class FrameFuser {
   [[nodiscard]] Counts fuse(const Index3& sector_key, Sector& sector) const;
 
  private:
-  enum class Visibility { hidden, all_free, mixed };
+  enum class Visibility {
+    hidden,          ///< no voxel is observed
+    all_free,        ///< every voxel is observed as free
+    free_or_unseen,  ///< no voxel is observed but as free: beams without return, parts outside the image
+    mixed,
+  };
   /// Cube of `edge` voxels (a power of two) from voxel `lo`.
   struct Cube {
     Index3 lo;

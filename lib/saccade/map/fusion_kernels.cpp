@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/map/fusion_kernels.hpp"
 
+#include <bit>
+#include <limits>
+
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "saccade/map/fusion_kernels.cpp"
 #include "saccade/core/simd_kernels.hpp"
@@ -21,6 +24,7 @@ using FloatVec = hn::Vec<Floats>;
 using IntVec = hn::Vec<Ints>;
 using FloatMask = hn::Mask<Floats>;
 
+constexpr float kInfinity{std::numeric_limits<float>::infinity()};
 constexpr std::size_t kSlice{kBrickEdge * kBrickEdge};
 
 /// Lane i at bit i.
@@ -28,8 +32,7 @@ template <class D>
 HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> mask) {
   std::array<std::uint8_t, 8> bytes{};
   hn::StoreMaskBits(d, mask, bytes.data());
-  const std::uint64_t bits = bytes[0] | (std::uint64_t{bytes[1]} << 8);
-  return bits & ((std::uint64_t{1} << hn::Lanes(d)) - 1);
+  return std::bit_cast<std::uint64_t>(bytes) & ((std::uint64_t{1} << hn::Lanes(d)) - 1);
 }
 
 struct Float3Vec {
@@ -37,6 +40,11 @@ struct Float3Vec {
   FloatVec y;
   FloatVec z;
 };
+
+HWY_INLINE Float3Vec scaled(const tsdf::Float3& a, FloatVec factor) {
+  const Floats d;
+  return {hn::Mul(hn::Set(d, a.x), factor), hn::Mul(hn::Set(d, a.y), factor), hn::Mul(hn::Set(d, a.z), factor)};
+}
 
 /// x and y of the 64 voxels of a slice.
 struct SliceOffsets {
@@ -52,12 +60,12 @@ constexpr SliceOffsets kSliceOffsets = [] {
   return offsets;
 }();
 
-/// One coordinate of tsdf::voxel_in_camera, of the voxels from `first` on in a slice.
-HWY_INLINE FloatVec coordinate(float slice_origin, float step_y, float step_x, std::size_t first) {
+/// The sum of tsdf::voxel_in_camera, in its order.
+HWY_INLINE Float3Vec voxels_in_camera(const tsdf::Float3& slice_origin, const Float3Vec& y, const Float3Vec& x) {
   const Floats d;
-  const FloatVec y = hn::Load(d, kSliceOffsets.y.data() + first);
-  const FloatVec x = hn::Load(d, kSliceOffsets.x.data() + first);
-  return hn::Add(hn::Add(hn::Set(d, slice_origin), hn::Mul(hn::Set(d, step_y), y)), hn::Mul(hn::Set(d, step_x), x));
+  return {hn::Add(hn::Add(hn::Set(d, slice_origin.x), y.x), x.x),
+          hn::Add(hn::Add(hn::Set(d, slice_origin.y), y.y), x.y),
+          hn::Add(hn::Add(hn::Set(d, slice_origin.z), y.z), x.z)};
 }
 
 /// round_to_even of tsdf_math.hpp, as an integer: the sum's last bits are it.
@@ -68,6 +76,9 @@ HWY_INLINE IntVec round_to_even(FloatVec x) {
   return hn::Sub(hn::BitCast(di, hn::Add(x, magic)), hn::BitCast(di, magic));
 }
 
+/// Whole part of 0 ≤ x < 2²². (ConvertTo would spend instructions on numbers that do not fit.)
+HWY_INLINE IntVec whole_part(FloatVec x) { return round_to_even(hn::Floor(x)); }
+
 /// tsdf::pixel_of, as an index into the image; 0 where not `inside`.
 HWY_INLINE IntVec pixel_of(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatMask& inside) {
   const Floats d;
@@ -75,65 +86,68 @@ HWY_INLINE IntVec pixel_of(const tsdf::FusionCamera& camera, const Float3Vec& p,
   const FloatVec zero = hn::Zero(d);
   const FloatVec half = hn::Set(d, 0.5F);
   const FloatVec inv_z = hn::Div(hn::Set(d, 1.0F), p.z);
-  const FloatVec u =
-      hn::Add(hn::Add(hn::Mul(hn::Set(d, camera.fx), hn::Mul(p.x, inv_z)), hn::Set(d, camera.cx)), half);
-  const FloatVec v =
-      hn::Add(hn::Add(hn::Mul(hn::Set(d, camera.fy), hn::Mul(p.y, inv_z)), hn::Set(d, camera.cy)), half);
-  const FloatMask right_below = hn::And(hn::Ge(u, zero), hn::Ge(v, zero));
-  const FloatMask left_above = hn::And(hn::Lt(u, hn::Set(d, static_cast<float>(camera.width))),
-                                       hn::Lt(v, hn::Set(d, static_cast<float>(camera.height))));
-  inside = hn::And(hn::Gt(p.z, hn::Set(d, tsdf::kNearestZ)), hn::And(right_below, left_above));
-  const IntVec column = hn::ConvertTo(di, hn::IfThenElseZero(inside, u));
-  const IntVec row = hn::ConvertTo(di, hn::IfThenElseZero(inside, v));
+  const FloatVec u = hn::Add(hn::Add(hn::Mul(hn::Set(d, camera.fx), hn::Mul(p.x, inv_z)), hn::Set(d, camera.cx)), half);
+  const FloatVec v = hn::Add(hn::Add(hn::Mul(hn::Set(d, camera.fy), hn::Mul(p.y, inv_z)), hn::Set(d, camera.cy)), half);
+  const FloatMask u_inside = hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(camera.width))));
+  const FloatMask v_inside = hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, static_cast<float>(camera.height))));
+  inside = hn::And(hn::Gt(p.z, hn::Set(d, tsdf::kNearestZ)), hn::And(u_inside, v_inside));
+  const IntVec column = whole_part(hn::IfThenElseZero(inside, u));
+  const IntVec row = whole_part(hn::IfThenElseZero(inside, v));
   return hn::Add(hn::Mul(row, hn::Set(di, camera.width)), column);
 }
 
-/// tsdf::sample_voxel where `inside`, else kNotSeen.
-HWY_INLINE IntVec sample_voxels(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatVec range,
-                                FloatMask inside) {
+/// tsdf::sample_voxel where `inside`, else kNotSeen; and the masks of BrickSamples.
+struct Samples {
+  IntVec values;
+  FloatMask seen;
+  FloatMask surface;
+};
+HWY_INLINE Samples sample_voxels(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatVec range,
+                                 FloatMask inside) {
   const Floats d;
   const Ints di;
   const FloatVec one = hn::Set(d, 1.0F);
   const FloatVec zero = hn::Zero(d);
-  const FloatVec distance =
-      hn::Sqrt(hn::Add(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), hn::Mul(p.z, p.z)));
+  const IntVec sample_one = hn::Set(di, tsdf::kSampleOne);
+  const FloatVec distance = hn::Sqrt(hn::Add(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), hn::Mul(p.z, p.z)));
   const FloatVec sdf = hn::Sub(range, distance);  // eq. 2.1
-  const FloatVec scaled = hn::Mul(sdf, hn::Set(d, camera.inv_truncation));
-  const FloatVec clamped = hn::Max(hn::Min(scaled, one), hn::Neg(one));
+  const FloatVec clamped = hn::Max(hn::Min(hn::Mul(sdf, hn::Set(d, camera.inv_truncation)), one), hn::Neg(one));
   const IntVec sample = round_to_even(hn::Mul(clamped, hn::Set(d, 32767.0F)));
-  const FloatMask hit = hn::And(hn::Gt(range, zero), hn::Ge(sdf, hn::Set(d, -camera.truncation_m)));
-  const FloatMask seen_free = hn::And(hn::Lt(range, zero), hn::Le(distance, hn::Neg(range)));
-  const IntVec not_hit = hn::IfThenElse(hn::RebindMask(di, hn::And(inside, seen_free)),
-                                        hn::Set(di, tsdf::kSampleOne), hn::Set(di, tsdf::kNotSeen));
-  return hn::IfThenElse(hn::RebindMask(di, hn::And(inside, hit)), sample, not_hit);
+  const FloatMask hit = hn::And(inside, hn::And(hn::Gt(range, zero), hn::Ge(sdf, hn::Set(d, -camera.truncation_m))));
+  const FloatMask seen_free = hn::And(inside, hn::And(hn::Lt(range, zero), hn::Le(distance, hn::Neg(range))));
+  const IntVec not_hit = hn::IfThenElse(hn::RebindMask(di, seen_free), sample_one, hn::Set(di, tsdf::kNotSeen));
+  return {hn::IfThenElse(hn::RebindMask(di, hit), sample, not_hit), hn::Or(hit, seen_free),
+          hn::And(hit, hn::RebindMask(d, hn::Ne(sample, sample_one)))};
 }
 
-void sample_brick_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges,
+void sample_brick_kernel(const tsdf::FusionCamera& camera_in, const tsdf::BrickFrame& frame, const float* ranges,
                          BrickSamples& out) {
   const Floats d;
   const Ints di;
   const Shorts d16;
+  const tsdf::FusionCamera camera = camera_in;  // a copy stays in registers whatever is stored
+  std::array<tsdf::Float3, kBrickEdge> slice_origins;
   for (std::size_t z = 0; z < kBrickEdge; ++z) {
     const auto fz = static_cast<float>(z);
-    const tsdf::Float3 origin{frame.origin.x + frame.step_z.x * fz, frame.origin.y + frame.step_z.y * fz,
-                              frame.origin.z + frame.step_z.z * fz};
-    std::uint64_t seen{0};
-    std::uint64_t surface{0};
-    for (std::size_t first = 0; first < kSlice; first += hn::Lanes(d)) {
-      const Float3Vec p{coordinate(origin.x, frame.step_y.x, frame.step_x.x, first),
-                        coordinate(origin.y, frame.step_y.y, frame.step_x.y, first),
-                        coordinate(origin.z, frame.step_y.z, frame.step_x.z, first)};
+    slice_origins[z] = {frame.origin.x + frame.step_z.x * fz, frame.origin.y + frame.step_z.y * fz,
+                        frame.origin.z + frame.step_z.z * fz};
+  }
+  out.seen = {};
+  out.surface = {};
+  for (std::size_t first = 0; first < kSlice; first += hn::Lanes(d)) {
+    const Float3Vec y = scaled(frame.step_y, hn::Load(d, kSliceOffsets.y.data() + first));
+    const Float3Vec x = scaled(frame.step_x, hn::Load(d, kSliceOffsets.x.data() + first));
+    for (std::size_t z = 0; z < kBrickEdge; ++z) {
+      const Float3Vec p = voxels_in_camera(slice_origins[z], y, x);
       FloatMask inside;
       const IntVec pixel = pixel_of(camera, p, inside);
-      const IntVec sample = sample_voxels(camera, p, hn::GatherIndex(d, ranges, pixel), inside);
-      hn::Store(pixel, di, out.pixels.data() + z * kSlice + first);
-      hn::Store(hn::DemoteTo(d16, sample), d16, out.samples.data() + z * kSlice + first);
-      const auto is_seen = hn::Ne(sample, hn::Set(di, tsdf::kNotSeen));
-      seen |= bits_of(di, is_seen) << first;
-      surface |= bits_of(di, hn::And(is_seen, hn::Ne(sample, hn::Set(di, tsdf::kSampleOne)))) << first;
+      const Samples samples = sample_voxels(camera, p, hn::GatherIndex(d, ranges, pixel), inside);
+      const std::size_t i = z * kSlice + first;
+      hn::Store(pixel, di, out.pixels.data() + i);
+      hn::Store(hn::DemoteTo(d16, samples.values), d16, out.samples.data() + i);
+      out.seen.words[z] |= bits_of(d, samples.seen) << first;
+      out.surface.words[z] |= bits_of(d, samples.surface) << first;
     }
-    out.seen.words[z] = seen;
-    out.surface.words[z] = surface;
   }
 }
 
@@ -174,7 +188,7 @@ void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, 
 /// Columns [first, end) of ranges_of_row, in whole vectors; returns where it stopped.
 template <class D>
 HWY_INLINE int ranges_of_columns(D d, int first, const RayLengths& rays, float dy_squared, const float* depths_m,
-                                 float* ranges_m, float* clear_m, float* reach_m, std::size_t& returns) {
+                                 float* ranges_m, const ColumnBounds& bounds, std::size_t& returns) {
   const auto zero = hn::Zero(d);
   const auto min_range = hn::Set(d, rays.min_range_m);
   const auto max_range = hn::Set(d, rays.max_range_m);
@@ -191,20 +205,21 @@ HWY_INLINE int ranges_of_columns(D d, int first, const RayLengths& rays, float d
     hn::StoreU(range, d, ranges_m + first);
     returns += hn::CountTrue(d, returned);
     const auto hit = hn::Gt(range, zero);
-    const auto clear = hn::IfThenElse(hit, hn::Max(zero, hn::Sub(range, truncation)), hn::Neg(range));
+    const auto clear_of_free = hn::IfThenElse(hn::Lt(range, zero), hn::Neg(range), hn::Set(d, kInfinity));
+    const auto clear = hn::IfThenElse(hit, hn::Max(zero, hn::Sub(range, truncation)), clear_of_free);
     const auto reach = hn::IfThenElse(hit, hn::Add(range, truncation), hn::Neg(range));
-    hn::StoreU(hn::Min(hn::LoadU(d, clear_m + first), clear), d, clear_m + first);
-    hn::StoreU(hn::Max(hn::LoadU(d, reach_m + first), reach), d, reach_m + first);
+    hn::StoreU(hn::Min(hn::LoadU(d, bounds.clear_m + first), clear), d, bounds.clear_m + first);
+    hn::StoreU(hn::Max(hn::LoadU(d, bounds.reach_m + first), reach), d, bounds.reach_m + first);
+    hn::StoreU(hn::Min(hn::LoadU(d, bounds.nearest_m + first), hn::Abs(range)), d, bounds.nearest_m + first);
   }
   return first;
 }
 
 std::size_t ranges_of_row_kernel(const RayLengths& rays, float dy_squared, const float* depths_m, float* ranges_m,
-                                 float* clear_m, float* reach_m) {
+                                 const ColumnBounds& bounds) {
   std::size_t returns{0};
-  const int rest =
-      ranges_of_columns(Floats{}, 0, rays, dy_squared, depths_m, ranges_m, clear_m, reach_m, returns);
-  ranges_of_columns(hn::CappedTag<float, 1>{}, rest, rays, dy_squared, depths_m, ranges_m, clear_m, reach_m, returns);
+  const int rest = ranges_of_columns(Floats{}, 0, rays, dy_squared, depths_m, ranges_m, bounds, returns);
+  ranges_of_columns(hn::CappedTag<float, 1>{}, rest, rays, dy_squared, depths_m, ranges_m, bounds, returns);
   return returns;
 }
 
@@ -233,8 +248,8 @@ void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, std::ui
 }
 
 std::size_t ranges_of_row(const RayLengths& rays, float dy_squared, const float* depths_m, float* ranges_m,
-                          float* clear_m, float* reach_m) {
-  return HWY_DYNAMIC_DISPATCH(ranges_of_row_kernel)(rays, dy_squared, depths_m, ranges_m, clear_m, reach_m);
+                          const ColumnBounds& bounds) {
+  return HWY_DYNAMIC_DISPATCH(ranges_of_row_kernel)(rays, dy_squared, depths_m, ranges_m, bounds);
 }
 
 }  // namespace saccade::fusion

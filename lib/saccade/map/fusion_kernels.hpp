@@ -41,10 +41,17 @@ struct RayLengths {
   float truncation_m;
 };
 
-/// One row of depths (0, NaN, out of range: none; negative: free up to) turned into ranges. clear_m and reach_m of every
-/// column are lowered and raised to the bounds of its beam (range_image.hpp). Returns the number of returns.
+/// Bounds of the beams of every column, as BeamBounds of range_image.hpp.
+struct ColumnBounds {
+  float* clear_m;
+  float* reach_m;
+  float* nearest_m;
+};
+
+/// One row of depths (0, NaN, out of range: none; negative: free up to) turned into ranges, and `bounds` widened by its
+/// beams. Returns the number of returns.
 /// @param dy_squared  ((v − cy) / fy)² of the row.
 std::size_t ranges_of_row(const RayLengths& rays, float dy_squared, const float* depths_m, float* ranges_m,
-                          float* clear_m, float* reach_m);
+                          const ColumnBounds& bounds);
 
 }  // namespace saccade::fusion

@@ -14,10 +14,11 @@ namespace {
 constexpr int kFirstShift{2};
 constexpr int kFirstCell{1 << kFirstShift};
 
-constexpr BeamBounds kNoBeam{std::numeric_limits<float>::infinity(), 0.0F};
+constexpr float kInfinity{std::numeric_limits<float>::infinity()};
+constexpr BeamBounds kNoBeam{kInfinity, 0.0F, kInfinity};
 
 BeamBounds merged(const BeamBounds& a, const BeamBounds& b) {
-  return {std::min(a.clear_m, b.clear_m), std::max(a.reach_m, b.reach_m)};
+  return {std::min(a.clear_m, b.clear_m), std::max(a.reach_m, b.reach_m), std::min(a.nearest_m, b.nearest_m)};
 }
 
 std::size_t row_offset(int row, int width) { return static_cast<std::size_t>(row) * static_cast<std::size_t>(width); }
@@ -47,18 +48,21 @@ RangeImage::RangeImage(const PinholeCamera& camera, const DepthImage& depth, dou
   executor.parallel_for(static_cast<std::size_t>(cells.height), 4, [&](std::size_t begin, std::size_t end) {
     std::vector<float> clear_m(dx_squared.size());
     std::vector<float> reach_m(dx_squared.size());
+    std::vector<float> nearest_m(dx_squared.size());
     std::size_t count{0};
     for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
       std::fill(clear_m.begin(), clear_m.end(), kNoBeam.clear_m);
       std::fill(reach_m.begin(), reach_m.end(), kNoBeam.reach_m);
+      std::fill(nearest_m.begin(), nearest_m.end(), kNoBeam.nearest_m);
       for (int v = row * kFirstCell; v < std::min((row + 1) * kFirstCell, camera_.height); ++v) {
         count += fusion::ranges_of_row(rays, tsdf::squared_slope(v, camera_.cy, camera_.fy), depth.row(v),
-                                       ranges_.data() + row_offset(v, camera_.width), clear_m.data(), reach_m.data());
+                                       ranges_.data() + row_offset(v, camera_.width),
+                                       {clear_m.data(), reach_m.data(), nearest_m.data()});
       }
       BeamBounds* out = cells.cells.data() + row_offset(row, cells.width);
       for (std::size_t u = 0; u < clear_m.size(); ++u) {
         BeamBounds& cell = out[u >> kFirstShift];
-        cell = merged(cell, {clear_m[u], reach_m[u]});
+        cell = merged(cell, {clear_m[u], reach_m[u], nearest_m[u]});
       }
     }
     valid += count;
@@ -93,9 +97,9 @@ float RangeImage::max_reach_m() const { return levels_.back().cells.front().reac
 BeamBounds RangeImage::bounds(const PixelRect& rect) const {
   const int extent = std::max(rect.u1 - rect.u0, rect.v1 - rect.v0);
   std::size_t level{0};
-  while (level + 1 < levels_.size() && (extent >> levels_[level].shift) > 3) ++level;
+  while (level + 1 < levels_.size() && (extent >> levels_[level].shift) > 5) ++level;
   const Level& cells = levels_[level];
-  BeamBounds result{std::numeric_limits<float>::infinity(), 0.0F};
+  BeamBounds result = kNoBeam;
   for (int y = rect.v0 >> cells.shift; y <= rect.v1 >> cells.shift; ++y) {
     const BeamBounds* row = cells.cells.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.width);
     for (int x = rect.u0 >> cells.shift; x <= rect.u1 >> cells.shift; ++x) result = merged(result, row[x]);

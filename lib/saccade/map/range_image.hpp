@@ -11,11 +11,12 @@
 
 namespace saccade {
 
-/// How far a rectangle of beams is seen. A voxel nearer than `clear_m` is seen free (sample 1) in every beam of it; one
-/// farther than `reach_m` is seen in none. clear_m is 0 when a beam has no return.
+/// How far a rectangle of beams is seen. A voxel nearer than `clear_m` is seen free (sample 1) in every beam of it that
+/// saw something; one farther than `reach_m` is seen in none.
 struct BeamBounds {
   float clear_m{0.0F};
   float reach_m{0.0F};
+  float nearest_m{0.0F};  ///< least range; 0: some beam saw nothing
 };
 
 /// Rectangle of pixels, inclusive.
@@ -27,7 +28,7 @@ struct PixelRect {
 };
 
 /// Depths turned into ranges ‖p − o‖ (eq. 2.1), 0 where there is no valid return, negative for "free up to", with a
-/// min/max pyramid over blocks of 4×4, 8×8, … pixels. Building is O(pixels), a query looks at ≤ 25 cells.
+/// min/max pyramid over blocks of 4×4, 8×8, … pixels. Building is O(pixels), a query looks at ≤ 49 cells.
 class RangeImage {
  public:
   RangeImage(const PinholeCamera& camera, const DepthImage& depth, double truncation_m, const Executor& executor);
