@@ -140,7 +140,7 @@ FrameFuser::Visibility FrameFuser::visibility(const Cube& cube) const {
   const BeamBounds seen = ranges_.bounds(rect);
   if (nearest_m > seen.reach_m) return Visibility::hidden;
   const double farthest_m = (offset + half_m).matrix().norm() + kSlackM;
-  if (farthest_m >= seen.clear_m) return Visibility::mixed;
+  if (farthest_m >= seen.clear_m) return inside ? Visibility::mixed_inside : Visibility::mixed;
   return inside && seen.nearest_m > 0.0F ? Visibility::all_free : Visibility::free_or_unseen;
 }
 
@@ -159,7 +159,7 @@ void FrameFuser::fuse_cube(const Cube& cube, Sector& sector, Counts& counts) con
   if (seen == Visibility::free_or_unseen && sector.saturated.test(i)) {
     ++counts.bricks_free;
     ++counts.bricks_saturated;
-  } else if (fuse_brick(brick, sector.bricks[static_cast<std::size_t>(i)])) {
+  } else if (fuse_brick(brick, seen == Visibility::mixed_inside, sector.bricks[static_cast<std::size_t>(i)])) {
     sector.update_summary(i, config_.free_weight);
     ++counts.bricks_updated;
   }
@@ -186,7 +186,7 @@ void FrameFuser::observe_free(const Cube& cube, Sector& sector, Counts& counts) 
       case BrickKind::dense: {
         alignas(fusion::kVectorBytes) std::array<std::int16_t, kBrickVoxels> samples;
         samples.fill(tsdf::kSampleOne);
-        fusion::update_brick(samples, config_.max_weight, config_.free_weight, ref.writable_dense());
+        fusion::update_brick(samples, Mask512::all_set(), config_.max_weight, config_.free_weight, ref.writable_dense());
         ref.canonicalize(config_.free_weight);
         break;
       }
@@ -202,16 +202,16 @@ tsdf::BrickFrame FrameFuser::brick_frame(const Index3& brick) const {
           to_float3(step.col(1)), to_float3(step.col(2))};
 }
 
-bool FrameFuser::fuse_brick(const Index3& brick, BrickRef& ref) const {
+bool FrameFuser::fuse_brick(const Index3& brick, bool inside, BrickRef& ref) const {
   fusion::BrickSamples observed;
-  fusion::sample_brick(ranges_.camera(), brick_frame(brick), ranges_.ranges(), observed);
+  fusion::sample_brick(ranges_.camera(), brick_frame(brick), ranges_.ranges(), inside, observed);
   if (observed.seen.none()) return false;
   if (observed.surface.none() && ref.kind() != BrickKind::dense) {
     ref.expand_to_free().observe(observed.seen, config_.free_weight);
   } else {
     DenseBrick& dense = ref.densify();
     if (color_ != nullptr && config_.color) update_colors(observed, dense);
-    fusion::update_brick(observed.samples, config_.max_weight, config_.free_weight, dense);
+    fusion::update_brick(observed.samples, observed.seen, config_.max_weight, config_.free_weight, dense);
   }
   ref.canonicalize(config_.free_weight);
   return true;

@@ -37,6 +37,7 @@ class FrameFuser {
     hidden,          ///< no voxel is observed
     all_free,        ///< every voxel is observed as free
     free_or_unseen,  ///< no voxel is observed but as free: beams without return, parts outside the image
+    mixed_inside,    ///< every voxel lies in the image
     mixed,
   };
   /// Cube of `edge` voxels (a power of two) from voxel `lo`.
@@ -49,7 +50,7 @@ class FrameFuser {
   void fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const;
   void observe_free(const Cube& cube, Sector& sector, Counts& counts) const;
   /// False when no voxel of the brick was seen.
-  bool fuse_brick(const Index3& brick, BrickRef& ref) const;
+  bool fuse_brick(const Index3& brick, bool inside, BrickRef& ref) const;
   void update_colors(const fusion::BrickSamples& observed, DenseBrick& dense) const;
 
   const TsdfConfig& config_;

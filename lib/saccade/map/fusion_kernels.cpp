@@ -79,7 +79,8 @@ HWY_INLINE IntVec round_to_even(FloatVec x) {
 /// Whole part of 0 ≤ x < 2²². (ConvertTo would spend instructions on numbers that do not fit.)
 HWY_INLINE IntVec whole_part(FloatVec x) { return round_to_even(hn::Floor(x)); }
 
-/// tsdf::pixel_of, as an index into the image; 0 where not `inside`.
+/// tsdf::pixel_of, as an index into the image; 0 where not `inside`, which is not tested where it is known to hold.
+template <bool kInside>
 HWY_INLINE IntVec pixel_of(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatMask& inside) {
   const Floats d;
   const Ints di;
@@ -88,12 +89,17 @@ HWY_INLINE IntVec pixel_of(const tsdf::FusionCamera& camera, const Float3Vec& p,
   const FloatVec inv_z = hn::Div(hn::Set(d, 1.0F), p.z);
   const FloatVec u = hn::Add(hn::Add(hn::Mul(hn::Set(d, camera.fx), hn::Mul(p.x, inv_z)), hn::Set(d, camera.cx)), half);
   const FloatVec v = hn::Add(hn::Add(hn::Mul(hn::Set(d, camera.fy), hn::Mul(p.y, inv_z)), hn::Set(d, camera.cy)), half);
+  const auto index = [&](FloatVec column, FloatVec row) HWY_ATTR {
+    return hn::Add(hn::Mul(whole_part(row), hn::Set(di, camera.width)), whole_part(column));
+  };
+  if constexpr (kInside) {
+    inside = hn::Eq(zero, zero);
+    return index(u, v);
+  }
   const FloatMask u_inside = hn::And(hn::Ge(u, zero), hn::Lt(u, hn::Set(d, static_cast<float>(camera.width))));
   const FloatMask v_inside = hn::And(hn::Ge(v, zero), hn::Lt(v, hn::Set(d, static_cast<float>(camera.height))));
   inside = hn::And(hn::Gt(p.z, hn::Set(d, tsdf::kNearestZ)), hn::And(u_inside, v_inside));
-  const IntVec column = whole_part(hn::IfThenElseZero(inside, u));
-  const IntVec row = whole_part(hn::IfThenElseZero(inside, v));
-  return hn::Add(hn::Mul(row, hn::Set(di, camera.width)), column);
+  return index(hn::IfThenElseZero(inside, u), hn::IfThenElseZero(inside, v));
 }
 
 /// tsdf::sample_voxel where `inside`, else kNotSeen; and the masks of BrickSamples.
@@ -120,7 +126,8 @@ HWY_INLINE Samples sample_voxels(const tsdf::FusionCamera& camera, const Float3V
           hn::And(hit, hn::RebindMask(d, hn::Ne(sample, sample_one)))};
 }
 
-void sample_brick_kernel(const tsdf::FusionCamera& camera_in, const tsdf::BrickFrame& frame, const float* ranges,
+template <bool kInside>
+HWY_INLINE void sample_voxels_of_brick(const tsdf::FusionCamera& camera_in, const tsdf::BrickFrame& frame, const float* ranges,
                          BrickSamples& out) {
   const Floats d;
   const Ints di;
@@ -140,7 +147,7 @@ void sample_brick_kernel(const tsdf::FusionCamera& camera_in, const tsdf::BrickF
     for (std::size_t z = 0; z < kBrickEdge; ++z) {
       const Float3Vec p = voxels_in_camera(slice_origins[z], y, x);
       FloatMask inside;
-      const IntVec pixel = pixel_of(camera, p, inside);
+      const IntVec pixel = pixel_of<kInside>(camera, p, inside);
       const Samples samples = sample_voxels(camera, p, hn::GatherIndex(d, ranges, pixel), inside);
       const std::size_t i = z * kSlice + first;
       hn::Store(pixel, di, out.pixels.data() + i);
@@ -151,18 +158,27 @@ void sample_brick_kernel(const tsdf::FusionCamera& camera_in, const tsdf::BrickF
   }
 }
 
-void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, std::uint16_t max_weight,
-                         std::uint16_t free_weight, DenseBrick& brick) {
+void sample_brick_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges,
+                         bool inside, BrickSamples& out) {
+  inside ? sample_voxels_of_brick<true>(camera, frame, ranges, out)
+         : sample_voxels_of_brick<false>(camera, frame, ranges, out);
+}
+
+void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen,
+                         std::uint16_t max_weight, std::uint16_t free_weight, DenseBrick& brick) {
   const Floats d;
   const Ints di;
   const Shorts d16;
   const Words dw;
   const IntVec one = hn::Set(di, 1);
   const IntVec zero = hn::Zero(di);
+  const std::uint64_t all_lanes = (std::uint64_t{1} << hn::Lanes(d)) - 1;
   for (std::size_t z = 0; z < kBrickEdge; ++z) {
-    std::uint64_t unknown{0};
-    std::uint64_t positive{0};
+    std::uint64_t unknown = brick.unknown.words[z];
+    std::uint64_t occupied = brick.occupied.words[z];
     for (std::size_t first = 0; first < kSlice; first += hn::Lanes(d)) {
+      const std::uint64_t lanes = all_lanes << first;
+      if ((seen.words[z] & lanes) == 0) continue;
       const std::size_t i = z * kSlice + first;
       const IntVec sample = hn::PromoteTo(di, hn::Load(d16, samples.data() + i));
       const IntVec old_v = hn::PromoteTo(di, hn::LoadU(d16, brick.v.data() + i));
@@ -172,16 +188,17 @@ void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, 
       const IntVec average = round_to_even(hn::Div(hn::ConvertTo(d, numerator), hn::ConvertTo(d, counted)));
       const IntVec limit = hn::IfThenElse(hn::Eq(average, hn::Set(di, tsdf::kSampleOne)), hn::Set(di, free_weight),
                                           hn::Set(di, max_weight));
-      const auto seen = hn::Ne(sample, hn::Set(di, tsdf::kNotSeen));
-      const IntVec v = hn::IfThenElse(seen, average, old_v);
-      const IntVec w = hn::IfThenElse(seen, hn::Min(counted, limit), old_w);  // eq. 2.3
+      const auto is_seen = hn::Ne(sample, hn::Set(di, tsdf::kNotSeen));
+      const IntVec v = hn::IfThenElse(is_seen, average, old_v);
+      const IntVec w = hn::IfThenElse(is_seen, hn::Min(counted, limit), old_w);  // eq. 2.3
       hn::StoreU(hn::DemoteTo(d16, v), d16, brick.v.data() + i);
       hn::StoreU(hn::DemoteTo(dw, w), dw, brick.w.data() + i);
-      unknown |= bits_of(di, hn::Eq(w, zero)) << first;
-      positive |= bits_of(di, hn::Gt(v, zero)) << first;
+      const auto known = hn::Gt(w, zero);
+      unknown = (unknown & ~lanes) | (lanes & ~(bits_of(di, known) << first));
+      occupied = (occupied & ~lanes) | (bits_of(di, hn::AndNot(hn::Gt(v, zero), known)) << first);
     }
     brick.unknown.words[z] = unknown;
-    brick.occupied.words[z] = ~(unknown | positive);
+    brick.occupied.words[z] = occupied;
   }
 }
 
@@ -237,14 +254,14 @@ HWY_EXPORT(ranges_of_row_kernel);
 
 }  // namespace
 
-void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges,
+void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges, bool inside,
                   BrickSamples& out) {
-  HWY_DYNAMIC_DISPATCH(sample_brick_kernel)(camera, frame, ranges, out);
+  HWY_DYNAMIC_DISPATCH(sample_brick_kernel)(camera, frame, ranges, inside, out);
 }
 
-void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, std::uint16_t max_weight,
+void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen, std::uint16_t max_weight,
                   std::uint16_t free_weight, DenseBrick& brick) {
-  HWY_DYNAMIC_DISPATCH(update_brick_kernel)(samples, max_weight, free_weight, brick);
+  HWY_DYNAMIC_DISPATCH(update_brick_kernel)(samples, seen, max_weight, free_weight, brick);
 }
 
 std::size_t ranges_of_row(const RayLengths& rays, float dy_squared, const float* depths_m, float* ranges_m,

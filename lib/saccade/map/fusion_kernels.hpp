@@ -25,11 +25,13 @@ struct BrickSamples {
 
 /// tsdf::pixel_of and tsdf::sample_voxel (eq. 2.1 and the clamp of 2.2) of the 512 voxels. `ranges` is the row-major
 /// range image of the camera.
-void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges,
+/// @param inside  every voxel lies in the image; then that is not tested.
+void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges, bool inside,
                   BrickSamples& out);
 
-/// tsdf::average_v and tsdf::next_w (eq. 2.2 and 2.3) of the voxels that were seen; brings both masks up to date.
-void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, std::uint16_t max_weight,
+/// tsdf::average_v and tsdf::next_w (eq. 2.2 and 2.3) of the voxels in `seen`; keeps both masks up to date.
+/// `samples` is aligned to kVectorBytes.
+void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen, std::uint16_t max_weight,
                   std::uint16_t free_weight, DenseBrick& brick);
 
 /// Parts of tsdf::range_of_depth that a whole image shares, and the depths that fusion believes.
