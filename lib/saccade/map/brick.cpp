@@ -64,12 +64,14 @@ namespace {
 bool is_free(const DenseBrick& brick, std::uint16_t weight_limit) {
   if (brick.occupied.any()) return false;
   for (std::size_t slice = 0; slice < kBrickVoxels; slice += 64) {  // whole slices: vector code
-    std::uint16_t other{0};
+    unsigned others{0};
     for (std::size_t i = slice; i < slice + 64; ++i) {
-      const bool differs = (brick.v[i] != kTsdfOne) | (brick.w[i] > weight_limit);
-      other |= static_cast<std::uint16_t>((brick.w[i] != 0) & differs);
+      const unsigned not_one = brick.v[i] != kTsdfOne ? 1 : 0;
+      const unsigned heavy = brick.w[i] > weight_limit ? 1 : 0;
+      const unsigned known = brick.w[i] != 0 ? 1 : 0;
+      others |= known & (not_one | heavy);
     }
-    if (other != 0) return false;
+    if (others != 0) return false;
   }
   return true;
 }

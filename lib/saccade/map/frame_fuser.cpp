@@ -186,7 +186,8 @@ void FrameFuser::observe_free(const Cube& cube, Sector& sector, Counts& counts) 
       case BrickKind::dense: {
         alignas(fusion::kVectorBytes) std::array<std::int16_t, kBrickVoxels> samples;
         samples.fill(tsdf::kSampleOne);
-        fusion::update_brick(samples, Mask512::all_set(), config_.max_weight, config_.free_weight, ref.writable_dense());
+        fusion::update_brick(samples, Mask512::all_set(), config_.max_weight, config_.free_weight,
+                             ref.writable_dense());
         ref.canonicalize(config_.free_weight);
         break;
       }

@@ -54,8 +54,9 @@ struct SliceOffsets {
 constexpr SliceOffsets kSliceOffsets = [] {
   SliceOffsets offsets{};
   for (std::size_t i = 0; i < kSlice; ++i) {
+    const std::size_t y = i / kBrickEdge;
     offsets.x[i] = static_cast<float>(i % kBrickEdge);
-    offsets.y[i] = static_cast<float>(i / kBrickEdge);
+    offsets.y[i] = static_cast<float>(y);
   }
   return offsets;
 }();
@@ -127,8 +128,8 @@ HWY_INLINE Samples sample_voxels(const tsdf::FusionCamera& camera, const Float3V
 }
 
 template <bool kInside>
-HWY_INLINE void sample_voxels_of_brick(const tsdf::FusionCamera& camera_in, const tsdf::BrickFrame& frame, const float* ranges,
-                         BrickSamples& out) {
+HWY_INLINE void sample_voxels_of_brick(const tsdf::FusionCamera& camera_in, const tsdf::BrickFrame& frame,
+                                       const float* ranges, BrickSamples& out) {
   const Floats d;
   const Ints di;
   const Shorts d16;
