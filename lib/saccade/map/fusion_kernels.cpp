@@ -103,28 +103,41 @@ HWY_INLINE IntVec pixel_of(const tsdf::FusionCamera& camera, const Float3Vec& p,
   return index(hn::IfThenElseZero(inside, u), hn::IfThenElseZero(inside, v));
 }
 
-/// tsdf::sample_voxel where `inside`, else kNotSeen; and the masks of BrickSamples.
-struct Samples {
-  IntVec values;
-  FloatMask seen;
-  FloatMask surface;
-};
-HWY_INLINE Samples sample_voxels(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatVec range,
-                                 FloatMask inside) {
+/// tsdf::sample_voxel where `inside`, else kNotSeen.
+HWY_INLINE IntVec sample_voxels(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatVec range,
+                                FloatMask inside) {
   const Floats d;
   const Ints di;
   const FloatVec one = hn::Set(d, 1.0F);
   const FloatVec zero = hn::Zero(d);
-  const IntVec sample_one = hn::Set(di, tsdf::kSampleOne);
   const FloatVec distance = hn::Sqrt(hn::Add(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), hn::Mul(p.z, p.z)));
   const FloatVec sdf = hn::Sub(range, distance);  // eq. 2.1
   const FloatVec clamped = hn::Max(hn::Min(hn::Mul(sdf, hn::Set(d, camera.inv_truncation)), one), hn::Neg(one));
   const IntVec sample = round_to_even(hn::Mul(clamped, hn::Set(d, 32767.0F)));
   const FloatMask hit = hn::And(inside, hn::And(hn::Gt(range, zero), hn::Ge(sdf, hn::Set(d, -camera.truncation_m))));
   const FloatMask seen_free = hn::And(inside, hn::And(hn::Lt(range, zero), hn::Le(distance, hn::Neg(range))));
-  const IntVec not_hit = hn::IfThenElse(hn::RebindMask(di, seen_free), sample_one, hn::Set(di, tsdf::kNotSeen));
-  return {hn::IfThenElse(hn::RebindMask(di, hit), sample, not_hit), hn::Or(hit, seen_free),
-          hn::And(hit, hn::RebindMask(d, hn::Ne(sample, sample_one)))};
+  const IntVec not_hit =
+      hn::IfThenElse(hn::RebindMask(di, seen_free), hn::Set(di, tsdf::kSampleOne), hn::Set(di, tsdf::kNotSeen));
+  return hn::IfThenElse(hn::RebindMask(di, hit), sample, not_hit);
+}
+
+/// The masks of the samples.
+HWY_INLINE void mark_samples(BrickSamples& out) {
+  const hn::CappedTag<std::int16_t, 32> d;
+  const auto not_seen = hn::Set(d, tsdf::kNotSeen);
+  const auto one = hn::Set(d, tsdf::kSampleOne);
+  for (std::size_t z = 0; z < kBrickEdge; ++z) {
+    std::uint64_t seen{0};
+    std::uint64_t surface{0};
+    for (std::size_t first = 0; first < kSlice; first += hn::Lanes(d)) {
+      const auto sample = hn::Load(d, out.samples.data() + z * kSlice + first);
+      const auto is_seen = hn::Ne(sample, not_seen);
+      seen |= bits_of(d, is_seen) << first;
+      surface |= bits_of(d, hn::AndNot(hn::Eq(sample, one), is_seen)) << first;
+    }
+    out.seen.words[z] = seen;
+    out.surface.words[z] = surface;
+  }
 }
 
 template <bool kInside>
@@ -140,8 +153,6 @@ HWY_INLINE void sample_voxels_of_brick(const tsdf::FusionCamera& camera_in, cons
     slice_origins[z] = {frame.origin.x + frame.step_z.x * fz, frame.origin.y + frame.step_z.y * fz,
                         frame.origin.z + frame.step_z.z * fz};
   }
-  out.seen = {};
-  out.surface = {};
   for (std::size_t first = 0; first < kSlice; first += hn::Lanes(d)) {
     const Float3Vec y = scaled(frame.step_y, hn::Load(d, kSliceOffsets.y.data() + first));
     const Float3Vec x = scaled(frame.step_x, hn::Load(d, kSliceOffsets.x.data() + first));
@@ -149,12 +160,10 @@ HWY_INLINE void sample_voxels_of_brick(const tsdf::FusionCamera& camera_in, cons
       const Float3Vec p = voxels_in_camera(slice_origins[z], y, x);
       FloatMask inside;
       const IntVec pixel = pixel_of<kInside>(camera, p, inside);
-      const Samples samples = sample_voxels(camera, p, hn::GatherIndex(d, ranges, pixel), inside);
+      const IntVec sample = sample_voxels(camera, p, hn::GatherIndex(d, ranges, pixel), inside);
       const std::size_t i = z * kSlice + first;
       hn::Store(pixel, di, out.pixels.data() + i);
-      hn::Store(hn::DemoteTo(d16, samples.values), d16, out.samples.data() + i);
-      out.seen.words[z] |= bits_of(d, samples.seen) << first;
-      out.surface.words[z] |= bits_of(d, samples.surface) << first;
+      hn::Store(hn::DemoteTo(d16, sample), d16, out.samples.data() + i);
     }
   }
 }
@@ -163,6 +172,7 @@ void sample_brick_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFram
                          bool inside, BrickSamples& out) {
   inside ? sample_voxels_of_brick<true>(camera, frame, ranges, out)
          : sample_voxels_of_brick<false>(camera, frame, ranges, out);
+  mark_samples(out);
 }
 
 void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen,
