@@ -34,45 +34,7 @@ Status check(const Cylinder& c) {
 /// Above the rounding of contains(), below any voxel; metres.
 constexpr double kSlackM{1e-9};
 
-Overlap overlap_of(const Sphere& sphere, const Box& box) {
-  const Eigen::Vector3d below = box.min - sphere.center;
-  const Eigen::Vector3d above = sphere.center - box.max;
-  const double nearest_m = below.cwiseMax(above).cwiseMax(0.0).norm();
-  const double farthest_m = below.cwiseAbs().cwiseMax(above.cwiseAbs()).norm();
-  if (nearest_m > sphere.radius_m + kSlackM) return Overlap::none;
-  return farthest_m < sphere.radius_m - kSlackM ? Overlap::whole : Overlap::partial;
-}
-
-Overlap overlap_of(const Box& region, const Box& box) {
-  if ((box.max.array() < region.min.array()).any() || (box.min.array() >= region.max.array()).any()) {
-    return Overlap::none;
-  }
-  return contains(region, box.min) && contains(region, box.max) ? Overlap::whole : Overlap::partial;
-}
-
-/// By the ball around the box.
-Overlap overlap_of(const Cylinder& cylinder, const Box& box) {
-  const Eigen::Vector3d axis = cylinder.top - cylinder.base;
-  const double length_m = axis.norm();
-  const double radius_m = 0.5 * (box.max - box.min).norm() + kSlackM;
-  const Eigen::Vector3d q = 0.5 * (box.min + box.max) - cylinder.base;
-  const double along_m = q.dot(axis) / length_m;
-  const double from_axis_m = (q - along_m / length_m * axis).norm();
-  if (along_m < -radius_m || along_m > length_m + radius_m || from_axis_m > cylinder.radius_m + radius_m) {
-    return Overlap::none;
-  }
-  const bool whole =
-      along_m > radius_m && along_m < length_m - radius_m && from_axis_m < cylinder.radius_m - radius_m;
-  return whole ? Overlap::whole : Overlap::partial;
-}
-
 }  // namespace
-
-bool contains(const Sphere& sphere, const Eigen::Vector3d& p) { return (sphere.center - p).norm() < sphere.radius_m; }
-
-bool contains(const Box& box, const Eigen::Vector3d& p) {
-  return (p.array() >= box.min.array()).all() && (p.array() < box.max.array()).all();
-}
 
 bool contains(const Cylinder& cylinder, const Eigen::Vector3d& p) {
   const Eigen::Vector3d axis = cylinder.top - cylinder.base;
@@ -89,8 +51,39 @@ Box bounds(const Region& region) {
   return std::visit([](const auto& shape) { return bounds_of(shape); }, region);
 }
 
+Overlap overlap(const Sphere& sphere, const Box& box) {
+  const Eigen::Vector3d below = box.min - sphere.center;
+  const Eigen::Vector3d above = sphere.center - box.max;
+  const double nearest_m = below.cwiseMax(above).cwiseMax(0.0).norm();
+  const double farthest_m = below.cwiseAbs().cwiseMax(above.cwiseAbs()).norm();
+  if (nearest_m > sphere.radius_m + kSlackM) return Overlap::none;
+  return farthest_m < sphere.radius_m - kSlackM ? Overlap::whole : Overlap::partial;
+}
+
+Overlap overlap(const Box& region, const Box& box) {
+  if ((box.max.array() < region.min.array()).any() || (box.min.array() >= region.max.array()).any()) {
+    return Overlap::none;
+  }
+  return contains(region, box.min) && contains(region, box.max) ? Overlap::whole : Overlap::partial;
+}
+
+/// By the ball around the box.
+Overlap overlap(const Cylinder& cylinder, const Box& box) {
+  const Eigen::Vector3d axis = cylinder.top - cylinder.base;
+  const double length_m = axis.norm();
+  const double radius_m = 0.5 * (box.max - box.min).norm() + kSlackM;
+  const Eigen::Vector3d q = 0.5 * (box.min + box.max) - cylinder.base;
+  const double along_m = q.dot(axis) / length_m;
+  const double from_axis_m = (q - along_m / length_m * axis).norm();
+  if (along_m < -radius_m || along_m > length_m + radius_m || from_axis_m > cylinder.radius_m + radius_m) {
+    return Overlap::none;
+  }
+  const bool whole = along_m > radius_m && along_m < length_m - radius_m && from_axis_m < cylinder.radius_m - radius_m;
+  return whole ? Overlap::whole : Overlap::partial;
+}
+
 Overlap overlap(const Region& region, const Box& closed_box) {
-  return std::visit([&](const auto& shape) { return overlap_of(shape, closed_box); }, region);
+  return std::visit([&](const auto& shape) { return overlap(shape, closed_box); }, region);
 }
 
 Status validate(const Region& region) {

@@ -31,8 +31,12 @@ struct Cylinder {
 
 using Region = std::variant<Sphere, Box, Cylinder>;
 
-[[nodiscard]] bool contains(const Sphere& sphere, const Eigen::Vector3d& p);
-[[nodiscard]] bool contains(const Box& box, const Eigen::Vector3d& p);
+[[nodiscard]] inline bool contains(const Sphere& sphere, const Eigen::Vector3d& p) {
+  return (sphere.center - p).norm() < sphere.radius_m;
+}
+[[nodiscard]] inline bool contains(const Box& box, const Eigen::Vector3d& p) {
+  return (p.array() >= box.min.array()).all() && (p.array() < box.max.array()).all();
+}
 [[nodiscard]] bool contains(const Cylinder& cylinder, const Eigen::Vector3d& p);
 [[nodiscard]] bool contains(const Region& region, const Eigen::Vector3d& p);
 
@@ -46,6 +50,9 @@ enum class Overlap {
   whole,    ///< every point of the closed box
 };
 /// Never wrong about a point for which contains() decides, whatever its rounding. O(1).
+[[nodiscard]] Overlap overlap(const Sphere& sphere, const Box& closed_box);
+[[nodiscard]] Overlap overlap(const Box& box, const Box& closed_box);
+[[nodiscard]] Overlap overlap(const Cylinder& cylinder, const Box& closed_box);
 [[nodiscard]] Overlap overlap(const Region& region, const Box& closed_box);
 
 /// invalid_argument when a number is not finite or a size is zero or negative.

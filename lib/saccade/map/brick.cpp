@@ -78,24 +78,6 @@ bool is_free(const DenseBrick& brick, std::uint16_t weight_limit) {
 
 }  // namespace
 
-struct BrickRef::Block {
-  explicit Block(BrickKind block_kind) : kind{block_kind} {}
-  std::atomic<std::uint32_t> references{1};
-  BrickKind kind;
-};
-struct BrickRef::FreeBlock : Block {
-  explicit FreeBlock(const FreeBrick& b) : Block{BrickKind::free}, brick{b} {}
-  FreeBrick brick;
-};
-struct BrickRef::DenseBlock : Block {
-  DenseBlock() : Block{BrickKind::dense} {}
-  explicit DenseBlock(const DenseBrick& b) : Block{BrickKind::dense}, brick{b} {}
-  DenseBrick brick;
-};
-
-BrickRef::BrickRef(Block* block) : bits_{reinterpret_cast<std::uintptr_t>(block)} {}
-BrickRef::Block* BrickRef::block() const { return reinterpret_cast<Block*>(bits_); }
-
 BrickRef BrickRef::constant_free(std::uint16_t w) {
   SACCADE_EXPECTS(w >= 1 && w <= kMaxTag);
   BrickRef ref;
@@ -105,31 +87,13 @@ BrickRef BrickRef::constant_free(std::uint16_t w) {
 BrickRef BrickRef::make(const FreeBrick& brick) { return BrickRef{new FreeBlock{brick}}; }
 BrickRef BrickRef::make_dense() { return BrickRef{new DenseBlock}; }
 
-BrickRef::BrickRef(const BrickRef& other) noexcept : bits_{other.bits_} {
-  if (is_block()) block()->references.fetch_add(1, std::memory_order_relaxed);
-}
-BrickRef::~BrickRef() { release(); }
-
 void BrickRef::release() noexcept {
-  if (!is_block()) return;
   if (block()->references.fetch_sub(1, std::memory_order_acq_rel) != 1) return;
   if (block()->kind == BrickKind::free) {
     delete static_cast<FreeBlock*>(block());
   } else {
     delete static_cast<DenseBlock*>(block());
   }
-}
-
-BrickKind BrickRef::kind() const {
-  if (is_block()) return block()->kind;
-  return bits_ == 0 ? BrickKind::unknown : BrickKind::constant_free;
-}
-
-const FreeBrick* BrickRef::free() const {
-  return is_block() && block()->kind == BrickKind::free ? &static_cast<FreeBlock*>(block())->brick : nullptr;
-}
-const DenseBrick* BrickRef::dense() const {
-  return is_block() && block()->kind == BrickKind::dense ? &static_cast<DenseBlock*>(block())->brick : nullptr;
 }
 
 FreeBrick& BrickRef::writable_free() {

@@ -190,6 +190,42 @@ class BrickRef {
   std::uintptr_t bits_{0};
 };
 
+struct BrickRef::Block {
+  explicit Block(BrickKind block_kind) : kind{block_kind} {}
+  std::atomic<std::uint32_t> references{1};
+  BrickKind kind;
+};
+struct BrickRef::FreeBlock : Block {
+  explicit FreeBlock(const FreeBrick& b) : Block{BrickKind::free}, brick{b} {}
+  FreeBrick brick;
+};
+struct BrickRef::DenseBlock : Block {
+  DenseBlock() : Block{BrickKind::dense} {}
+  explicit DenseBlock(const DenseBrick& b) : Block{BrickKind::dense}, brick{b} {}
+  DenseBrick brick;
+};
+
+inline BrickRef::BrickRef(Block* block) : bits_{reinterpret_cast<std::uintptr_t>(block)} {}
+inline BrickRef::Block* BrickRef::block() const { return reinterpret_cast<Block*>(bits_); }
+
+inline BrickRef::BrickRef(const BrickRef& other) noexcept : bits_{other.bits_} {
+  if (is_block()) block()->references.fetch_add(1, std::memory_order_relaxed);
+}
+inline BrickRef::~BrickRef() {
+  if (is_block()) release();
+}
+inline BrickKind BrickRef::kind() const {
+  if (is_block()) return block()->kind;
+  return bits_ == 0 ? BrickKind::unknown : BrickKind::constant_free;
+}
+
+inline const FreeBrick* BrickRef::free() const {
+  return is_block() && block()->kind == BrickKind::free ? &static_cast<FreeBlock*>(block())->brick : nullptr;
+}
+inline const DenseBrick* BrickRef::dense() const {
+  return is_block() && block()->kind == BrickKind::dense ? &static_cast<DenseBlock*>(block())->brick : nullptr;
+}
+
 /// 8³ bricks and, per brick, the summaries that let rays and fusion pass over it.
 struct Sector {
   std::array<BrickRef, kSectorBricks> bricks;

@@ -34,6 +34,39 @@ Status check_frame(const PinholeCamera& camera, const DepthImage& depth, const P
   return {};
 }
 
+/// Marks the voxels of a cube in a brick whose centre the shape contains: all or none at once, or by its octants.
+template <class Shape>
+void mark_inside(const Shape& shape, const Index3& brick_lo, const Index3& cube, int edge, double voxel_size_m,
+                 Mask512& inside) {
+  constexpr int kSmallestCube{2};
+  const Index3 first = brick_lo + cube;
+  const Index3 last = first + Index3{edge - 1, edge - 1, edge - 1};
+  const Overlap known = overlap(shape, {voxel_center(first, voxel_size_m), voxel_center(last, voxel_size_m)});
+  if (known == Overlap::none) return;
+  if (known == Overlap::whole && edge == kBrickEdge) {
+    inside = Mask512::all_set();
+    return;
+  }
+  if (known == Overlap::partial && edge > kSmallestCube) {
+    const int half = edge / 2;
+    for (int i = 0; i < 8; ++i) {
+      const Index3 octant = cube + Index3{i & 1, (i >> 1) & 1, (i >> 2) & 1} * half;
+      mark_inside(shape, brick_lo, octant, half, voxel_size_m, inside);
+    }
+    return;
+  }
+  for (int z = 0; z < edge; ++z) {
+    for (int y = 0; y < edge; ++y) {
+      for (int x = 0; x < edge; ++x) {
+        const Index3 voxel = cube + Index3{x, y, z};
+        if (known == Overlap::whole || contains(shape, voxel_center(brick_lo + voxel, voxel_size_m))) {
+          inside.set(child_index(voxel));
+        }
+      }
+    }
+  }
+}
+
 /// Applies `edit` to every stored or storable brick of the region: wholly inside, or voxel by voxel through a mask of
 /// the voxels whose centre it contains.
 template <class Edit>
@@ -118,16 +151,8 @@ void free_voxels(BrickRef& brick, const Mask512& inside, std::uint16_t free_weig
 }  // namespace
 
 Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_m) {
-  const Index3 last = lo + Index3{kBrickEdge - 1, kBrickEdge - 1, kBrickEdge - 1};
-  switch (overlap(region, {voxel_center(lo, voxel_size_m), voxel_center(last, voxel_size_m)})) {
-    case Overlap::none: return {};
-    case Overlap::whole: return Mask512::all_set();
-    case Overlap::partial: break;
-  }
   Mask512 inside;
-  for (int i = 0; i < kBrickVoxels; ++i) {
-    if (contains(region, voxel_center(lo + child_offset(i), voxel_size_m))) inside.set(i);
-  }
+  std::visit([&](const auto& shape) { mark_inside(shape, lo, {0, 0, 0}, kBrickEdge, voxel_size_m, inside); }, region);
   return inside;
 }
 

@@ -35,7 +35,7 @@ Status check_object(const SceneObject& object) {
   return {};
 }
 
-bool overlap(const Box& a, const Box& b) {
+bool boxes_meet(const Box& a, const Box& b) {
   return (a.min.array() < b.max.array()).all() && (b.min.array() < a.max.array()).all();
 }
 
@@ -86,7 +86,7 @@ Status Scene::validate() const {
   for (const Region& region : regions) {
     if (const Status good = saccade::validate(region); !good.ok())
       return bad(good.error().message, where + ", regions");
-    if (!overlap(bounds(region), workspace)) return bad("a region lies outside the workspace", where);
+    if (!boxes_meet(bounds(region), workspace)) return bad("a region lies outside the workspace", where);
   }
   for (const Pose& T_world_camera : scan) {
     if (!is_rigid(T_world_camera)) {
