@@ -16,7 +16,7 @@ namespace saccade {
 /// What one depth image changed.
 struct FusionStats {
   std::size_t bricks_updated{0};    ///< bricks whose voxels were gone through one by one
-  std::size_t bricks_free{0};       ///< bricks found wholly in front of the surface
+  std::size_t bricks_free{0};       ///< bricks found wholly in front of the surface, or saturated and unseen elsewhere
   std::size_t bricks_saturated{0};  ///< of those, bricks that needed no work at all
   std::size_t valid_pixels{0};
   double ms{0.0};
