@@ -67,8 +67,8 @@ class Packet {
 
   /// Walks through the cells until every ray has met the surface or left the box.
   HWY_INLINE void walk() {
-    first_enter_ = enter_;
     start();
+    entered_t_ = enter_.t;
     stopped_ = front_ = hn::Lt(hn::Zero(f_), hn::Zero(f_));
     cell_ = hn::Zero(i_);
     change_ = {hn::Zero(f_), hn::Zero(f_), hn::Zero(f_), hn::Zero(f_)};
@@ -77,18 +77,15 @@ class Packet {
       // steps.
       M walking = active_;
       M waiting = hn::Lt(hn::Zero(f_), hn::Zero(f_));
-      VI index = cell_index();
       for (;;) {
-        const M found = hn::And(walking, has_surface(index));
+        const M found = hn::And(walking, has_surface());
         waiting = hn::Or(waiting, found);
         walking = step(hn::AndNot(found, walking));
         if (!any(walking)) break;
-        index = cell_index();
       }
       active_ = waiting;
       if (!any(active_)) return;
-      const Event leave = next();
-      cross(active_, cell_index(), enter_.t, hn::IfThenElse(before(leave, exit_), leave.t, exit_.t));
+      cross(active_);
       active_ = step(hn::AndNot(stopped_, active_));
     }
   }
@@ -98,8 +95,8 @@ class Packet {
     const auto keep = [&](M mask, VF value, float* to) HWY_ATTR { hn::BlendedStore(value, mask, f_, to + first); };
     const auto keep_int = [&](M mask, VI value, std::int32_t* to)
                               HWY_ATTR { hn::BlendedStore(value, hn::RebindMask(i_, mask), i_, to + first); };
-    keep(stopped_, first_enter_.t, hits.brick_t.data());
-    keep_int(stopped_, first_enter_.axis, hits.brick_axis.data());
+    keep(stopped_, enter_.t, hits.brick_t.data());
+    keep_int(stopped_, enter_.axis, hits.brick_axis.data());
     if (!any(front_)) return keep(stopped_, hn::Zero(f_), hits.t.data());
     const auto cell = in_cells_.load_cell(cell_);
     const VF t = in_cells_.find_zero(cell, change_);
@@ -124,6 +121,7 @@ class Packet {
 
   /// The cells in which the rays are once every crossing up to and including enter_ has happened: position_at.
   HWY_INLINE void start() {
+    index_ = hn::Zero(i_);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VF zero = hn::Zero(f_);
       const VF one = hn::Set(f_, 1.0F);
@@ -149,70 +147,71 @@ class Packet {
         const M up = select_mask(forward_[axis], too_near, too_far);
         p = hn::IfThenElse(wrong, hn::IfThenElse(up, hn::Add(p, one), hn::Sub(p, one)), p);
       }
-      p_[axis] = p;
-      step_[axis] = hn::IfThenElse(forward_[axis], one, hn::Set(f_, -1.0F));
-      next_t_[axis] = crossing(axis, next_plane(axis));
+      plane_[axis] = hn::Add(p, hn::IfThenElseZero(forward_[axis], one));
+      next_t_[axis] = crossing(axis, plane_[axis]);
+      const VI in_brick = hn::ConvertTo(i_, hn::Sub(p, hn::Set(f_, in_cells_.brick_lo[axis])));
+      index_ = hn::Add(index_, hn::Mul(in_brick, hn::Set(i_, kStride[axis])));
     }
-  }
-  [[nodiscard]] HWY_INLINE VF next_plane(std::size_t axis) const {
-    return hn::Add(p_[axis], hn::IfThenElseZero(forward_[axis], hn::Set(f_, 1.0F)));
+    index_ = hn::And(index_, hn::Set(i_, kBrickVoxels - 1));  // of rays that are not in the box: anything
   }
 
-  /// The crossings by which the rays leave their cells.
-  [[nodiscard]] HWY_INLINE Event next() const {
-    Event leave{next_t_[0], hn::Zero(i_)};
-    leave = select(hn::Lt(next_t_[1], leave.t), {next_t_[1], hn::Set(i_, 1)}, leave);
-    return select(hn::Lt(next_t_[2], leave.t), {next_t_[2], hn::Set(i_, 2)}, leave);
-  }
-  /// Takes rays to their next cells; returns those that have one.
+  /// Takes rays to their next cells, across the plane that they cross first; returns those that have one.
   HWY_INLINE M step(M rays) {
-    const Event leave = next();
+    const M y_first = hn::Lt(next_t_[1], next_t_[0]);
+    const VF earlier = hn::IfThenElse(y_first, next_t_[1], next_t_[0]);
+    const M z_first = hn::Lt(next_t_[2], earlier);
+    const VI axis_xy = hn::IfThenElseZero(hn::RebindMask(i_, y_first), hn::Set(i_, 1));
+    const Event leave{hn::IfThenElse(z_first, next_t_[2], earlier),
+                      hn::IfThenElse(hn::RebindMask(i_, z_first), hn::Set(i_, 2), axis_xy)};
     const M moved = hn::And(rays, before(leave, exit_));
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const M on_axis = hn::RebindMask(f_, hn::Eq(leave.axis, hn::Set(i_, static_cast<int>(axis))));
-      const M here = hn::And(moved, on_axis);
-      p_[axis] = hn::IfThenElse(here, hn::Add(p_[axis], step_[axis]), p_[axis]);
-      next_t_[axis] = hn::IfThenElse(here, crossing(axis, next_plane(axis)), next_t_[axis]);
-    }
-    enter_ = select(moved, leave, enter_);
+    advance<0>(hn::AndNot(hn::Or(y_first, z_first), moved));
+    advance<1>(hn::AndNot(z_first, hn::And(y_first, moved)));
+    advance<2>(hn::And(z_first, moved));
+    entered_t_ = hn::IfThenElse(moved, leave.t, entered_t_);
     return moved;
   }
-
-  /// child_index of the cells.
-  [[nodiscard]] HWY_INLINE VI cell_index() const {
-    const VI x = hn::ConvertTo(i_, hn::Sub(p_[0], hn::Set(f_, in_cells_.brick_lo[0])));
-    const VI y = hn::ConvertTo(i_, hn::Sub(p_[1], hn::Set(f_, in_cells_.brick_lo[1])));
-    const VI z = hn::ConvertTo(i_, hn::Sub(p_[2], hn::Set(f_, in_cells_.brick_lo[2])));
-    const VI index = hn::Or(hn::Or(hn::ShiftLeft<6>(z), hn::ShiftLeft<3>(y)), x);
-    return hn::And(index, hn::Set(i_, kBrickVoxels - 1));  // rays that left are looked up somewhere
+  template <std::size_t kAxis>
+  HWY_INLINE void advance(M rays) {
+    const VF one = hn::Set(f_, 1.0F);
+    const VF plane = hn::IfThenElse(forward_[kAxis], hn::Add(plane_[kAxis], one), hn::Sub(plane_[kAxis], one));
+    const VI stride = hn::Set(i_, kStride[kAxis]);
+    const M forward = forward_[kAxis];
+    const VI index = hn::IfThenElse(hn::RebindMask(i_, forward), hn::Add(index_, stride), hn::Sub(index_, stride));
+    plane_[kAxis] = hn::IfThenElse(rays, plane, plane_[kAxis]);
+    next_t_[kAxis] = hn::IfThenElse(rays, crossing(kAxis, plane), next_t_[kAxis]);
+    index_ = hn::IfThenElse(hn::RebindMask(i_, rays), index, index_);
   }
-  [[nodiscard]] HWY_INLINE M has_surface(VI index) const {
+
+  [[nodiscard]] HWY_INLINE M has_surface() const {
     const auto* words = reinterpret_cast<const std::int32_t*>(cells_);
     VI word;
     if constexpr (hn::MaxLanes(I{}) == 16) {
-      word = hn::TableLookupLanes(hn::LoadU(i_, words), hn::IndicesFromVec(i_, hn::ShiftRight<5>(index)));
+      word = hn::TableLookupLanes(hn::LoadU(i_, words), hn::IndicesFromVec(i_, hn::ShiftRight<5>(index_)));
     } else {
-      word = hn::GatherIndex(i_, words, hn::ShiftRight<5>(index));
+      word = hn::GatherIndex(i_, words, hn::ShiftRight<5>(index_));
     }
-    const VI bit = hn::And(index, hn::Set(i_, 31));
+    const VI bit = hn::And(index_, hn::Set(i_, 31));
     const VI shifted = hn::BitCast(i_, hn::Shr(hn::BitCast(u_, word), hn::BitCast(u_, bit)));
     return hn::RebindMask(f_, hn::Ne(hn::And(shifted, hn::Set(i_, 1)), hn::Zero(i_)));
   }
 
   /// First half of cross_cell, for the lanes of a mask: whether the sign of v changes between entering and leaving.
-  HWY_INLINE void cross(M lanes, VI index, VF t0, VF t1) {
-    const auto cell = in_cells_.load_cell(index);
+  HWY_INLINE void cross(M lanes) {
+    const VF t0 = entered_t_;
+    const VF t1 = hn::Min(hn::Min(next_t_[0], next_t_[1]), hn::Min(next_t_[2], exit_.t));
+    const auto cell = in_cells_.load_cell(index_);
     const VF v0 = in_cells_.value_at(cell, t0);
     const VF v1 = in_cells_.value_at(cell, t1);
     const M enters_outside = hn::Gt(v0, hn::Zero(f_));
     const M stops = hn::And(lanes, hn::Xor(enters_outside, hn::Gt(v1, hn::Zero(f_))));
     stopped_ = hn::Or(stopped_, stops);
     front_ = hn::Or(front_, hn::And(stops, enters_outside));
-    cell_ = hn::IfThenElse(hn::RebindMask(i_, stops), index, cell_);
+    cell_ = hn::IfThenElse(hn::RebindMask(i_, stops), index_, cell_);
     change_ = {hn::IfThenElse(stops, t0, change_.t0), hn::IfThenElse(stops, t1, change_.t1),
                hn::IfThenElse(stops, v0, change_.v0), hn::IfThenElse(stops, v1, change_.v1)};
   }
 
+  static constexpr std::array<int, 3> kStride{1, kBrickEdge, kBrickEdge* kBrickEdge};
   static constexpr F f_{};
   static constexpr I i_{};
   static constexpr hn::RebindToUnsigned<F> u_{};
@@ -222,13 +221,14 @@ class Packet {
   CellLanes in_cells_;
   std::array<VF, 3> inv_;
   std::array<M, 3> forward_;
-  Event enter_, exit_, first_enter_;
+  Event enter_, exit_;  ///< of the box
   M active_, stopped_, front_;
-  std::array<VF, 3> p_;     ///< cells, relative to the origin's voxel
-  std::array<VF, 3> step_;  ///< ±1
-  std::array<VF, 3> next_t_;
-  VI cell_;            ///< in which the ray stopped, …
-  SignChange change_;  ///< … and how v changed in it
+  VI index_;                  ///< child_index of the rays' cells
+  VF entered_t_;              ///< when they entered them
+  std::array<VF, 3> plane_;   ///< the planes that they cross next, relative to the origin's voxel …
+  std::array<VF, 3> next_t_;  ///< … and when
+  VI cell_;                   ///< in which the ray stopped, …
+  SignChange change_;         ///< … and how v changed in it
 };
 
 float cast_in_brick_simd(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface, std::uint32_t brick,

@@ -87,13 +87,11 @@ class VoxelBlock {
     return least > 7 ? 0 : greater | equal;
   }
 
-  template <std::size_t kCount>
-  static void copy_row(const std::int16_t* __restrict v, const std::uint16_t* __restrict w, std::uint16_t min_weight,
-                       std::int16_t* __restrict row) {
-    for (std::size_t i = 0; i < kCount; ++i) {
-      const auto missing = static_cast<std::int16_t>(w[i] >= min_weight ? 0 : -1);
-      row[i] = static_cast<std::int16_t>((v[i] & ~missing) | (kUnknown & missing));
-    }
+  static std::uint64_t weight_at_least(const DenseBrick& dense, std::size_t slice, std::uint16_t least) {
+    if (least <= 1) return ~dense.unknown.words[slice];
+    std::uint64_t known{0};
+    for (std::size_t i = 0; i < 64; ++i) known |= std::uint64_t{dense.w[slice * 64 + i] >= least} << i;
+    return known;
   }
 
   void copy(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight) {
@@ -115,23 +113,22 @@ class VoxelBlock {
     const DenseBrick* dense = brick.dense();
     const FreeBrick* free = dense == nullptr ? brick.free() : nullptr;
     const bool constant_known = dense == nullptr && free == nullptr && brick.constant_weight() >= min_weight;
+    constexpr int kAllKnown{(1 << kCount) - 1};
+    std::array<std::int16_t, kCount> values;
+    values.fill(kTsdfOne);
     for (int z = z0; z < z1; ++z) {
       std::int16_t* row = &values_[at(x0, y0, z)];
-      const int first = child_index({x0, y0, z});
-      if (dense != nullptr) {
-        const std::int16_t* v = dense->v.data() + first;
-        const std::uint16_t* w = dense->w.data() + first;
-        for (int y = y0; y < y1; ++y, row += kEdge, v += kBrickEdge, w += kBrickEdge) {
-          copy_row<kCount>(v, w, min_weight, row);
-        }
-      } else if (free != nullptr) {
-        const std::uint64_t known = weight_at_least(*free, static_cast<std::size_t>(first >> 6), min_weight);
-        for (int y = y0; y < y1; ++y, row += kEdge) {
-          const auto bits = static_cast<int>((known >> ((first & 63) + (y - y0) * kBrickEdge)) & 0xFF);
-          for (std::size_t i = 0; i < kCount; ++i) row[i] = (bits & (1 << i)) != 0 ? kTsdfOne : kUnknown;
-        }
-      } else {
-        for (int y = y0; y < y1; ++y, row += kEdge) std::fill(row, row + kCount, constant_known ? kTsdfOne : kUnknown);
+      const auto slice = static_cast<std::size_t>(z & 7);
+      std::uint64_t known = constant_known ? ~std::uint64_t{0} : 0;
+      if (dense != nullptr) known = weight_at_least(*dense, slice, min_weight);
+      if (free != nullptr) known = weight_at_least(*free, slice, min_weight);
+      int first = child_index({x0, y0, z});
+      for (int y = y0; y < y1; ++y, row += kEdge, first += kBrickEdge) {
+        if (dense != nullptr) std::copy_n(dense->v.data() + first, kCount, values.data());
+        std::copy_n(values.data(), kCount, row);
+        const auto bits = static_cast<int>((known >> (first & 63)) & kAllKnown);
+        if (bits == kAllKnown) continue;
+        for (std::size_t i = 0; i < kCount; ++i) row[i] = (bits & (1 << i)) != 0 ? values[i] : kUnknown;
       }
     }
   }
