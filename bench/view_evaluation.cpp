@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/view/best_views.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -103,6 +104,23 @@ void run(benchmark::State& state, const GainConfig& config, std::size_t every, s
 }
 
 void all_savings(benchmark::State& state) { run(state, {}, 1, static_cast<std::size_t>(state.range(0))); }
+void best_only(benchmark::State& state) {
+  const auto candidates = view_sphere(kPoi);
+  std::vector<Pose> poses;
+  for (const auto& candidate : *candidates) poses.push_back(candidate.T_world_camera);
+  const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(0)));
+  const auto all = evaluate_views(scene(), kRegion, poses, {}, executor);
+  const RankedView expected = order_views(all->gains, poses).front();
+  double evaluated{0.0};
+  for (auto _ : state) {
+    const auto best = best_views(scene(), kRegion, poses, 1, {}, executor);
+    if (!best || best->views.front().index != expected.index || best->views.front().gain != expected.gain) {
+      return state.SkipWithError("the best view differs from that of all gains");
+    }
+    evaluated = static_cast<double>(best->poses_evaluated);
+  }
+  state.counters["poses_evaluated"] = evaluated;
+}
 void distinct_voxels(benchmark::State& state) {
   GainConfig config;
   config.count = GainCount::distinct_voxels;
@@ -126,6 +144,7 @@ void rays_one_by_one(benchmark::State& state) {
 }
 
 BENCHMARK(all_savings)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
+BENCHMARK(best_only)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(distinct_voxels)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(without_shared_lattice)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(without_tiles)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();

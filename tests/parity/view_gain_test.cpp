@@ -6,7 +6,9 @@
 #include <iostream>
 #include <random>
 
+#include "saccade/view/best_views.hpp"
 #include "saccade/view/view_gain.hpp"
+#include "saccade/view/view_order.hpp"
 #include "saccade/view/view_sphere.hpp"
 #include "support/brute_force_gain.hpp"
 #include "support/effort.hpp"
@@ -197,6 +199,36 @@ TEST(ViewGainParity, EqualsBruteForceToTheRay) {
   EXPECT_LT(cast_with_tiles * 2, cast_without) << "the savings save nothing";
   std::cout << compared << " gains compared, " << nonzero << " of " << kMaps * 13 << " not zero, rays cast "
             << cast_with_tiles << " of " << cast_without << '\n';
+}
+
+TEST(ViewGainParity, TheBestViewsAreTheFirstOfAllWithoutEvaluatingAll) {
+  constexpr int kMaps{test::scaled_cases(60)};
+  std::size_t evaluated{0};
+  std::size_t poses{0};
+  for (int i = 0; i < kMaps; ++i) {
+    const RandomCase test{kSeed + 1000 + static_cast<std::uint32_t>(i)};
+    const auto all = evaluate_views(test.map, test.region, test.poses, test.config, Executor{});
+    ASSERT_TRUE(all.ok());
+    const std::vector<RankedView> expected = order_views(all->gains, test.poses);
+    for (const std::size_t count : {std::size_t{1}, std::size_t{3}, test.poses.size() + 5}) {
+      const auto best = best_views(test.map, test.region, test.poses, count, test.config, Executor{});
+      const auto again = best_views(test.map, test.region, test.poses, count, test.config, Executor::with_threads(7));
+      ASSERT_TRUE(best.ok() && again.ok());
+      ASSERT_EQ(best->views.size(), std::min(count, expected.size()));
+      for (std::size_t k = 0; k < best->views.size(); ++k) {
+        ASSERT_EQ(best->views[k].index, expected[k].index) << "map " << i << ", place " << k;
+        ASSERT_EQ(best->views[k].gain, expected[k].gain);
+        ASSERT_EQ(again->views[k].index, expected[k].index);
+      }
+      EXPECT_EQ(best->poses_evaluated, again->poses_evaluated);
+      if (count == 1 && test.config.count == GainCount::rays) {
+        evaluated += best->poses_evaluated;
+        poses += test.poses.size();
+      }
+    }
+  }
+  EXPECT_LT(evaluated * 10, poses * 9) << "of " << poses;
+  EXPECT_FALSE(best_views({}, Sphere{{0.0, 0.0, 0.0}, 0.1}, {}, 0, {}, Executor{}).ok());
 }
 
 /// Free space with one forgotten ball and a wall behind it: here tiles decide nearly all rays.

@@ -107,6 +107,28 @@ void GainCaster::cast_rows(int begin, int end) {
   }
 }
 
+void GainCaster::look_over_rows(int begin, int end, int tile_px) {
+  leave_open_px_ = tile_px;
+  cast_rows(begin, end);
+  leave_open_px_ = 0;
+}
+
+std::uint64_t GainCaster::open_rays() const {
+  std::uint64_t rays{0};
+  for (const Tile& tile : open_tiles_) {
+    for (int j = tile.row_begin; j < tile.row_end; ++j) {
+      const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
+      const int columns = std::min(range.end, tile.column_end) - std::max(range.begin, tile.column_begin);
+      rays += static_cast<std::uint64_t>(std::max(columns, 0));
+    }
+  }
+  return rays;
+}
+
+void GainCaster::cast_open_tiles() {
+  for (const Tile& tile : std::exchange(open_tiles_, {})) decide(tile);
+}
+
 bool GainCaster::to_be_cast(const Tile& tile) const {
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
     const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
@@ -136,10 +158,19 @@ void GainCaster::cast_tile(const Tile& tile) {
   }
   Tile rest{tile};
   rest.slab = sight.clear_until();
-  if (std::max(tile.columns(), tile.rows()) > kRayTile) {
-    split(rest);
+  if (std::max(tile.columns(), tile.rows()) <= leave_open_px_) {
+    open_tiles_.push_back(rest);
   } else {
-    cast_rays(rest);
+    decide(rest);
+  }
+}
+
+/// A tile whose rays do not share their fate.
+void GainCaster::decide(const Tile& tile) {
+  if (std::max(tile.columns(), tile.rows()) > kRayTile) {
+    split(tile);
+  } else {
+    cast_rays(tile);
   }
 }
 

@@ -40,6 +40,14 @@ class GainCaster {
   /// Casts rows [begin, end) of the window.
   void cast_rows(int begin, int end);
 
+  /// Like cast_rows, but tiles of at most so many pixels that are still undecided are left in open_tiles().
+  void look_over_rows(int begin, int end, int tile_px);
+  [[nodiscard]] const std::vector<Tile>& open_tiles() const { return open_tiles_; }
+  /// The rays of the open tiles that may still score.
+  [[nodiscard]] std::uint64_t open_rays() const;
+  /// Decides what look_over_rows left open.
+  void cast_open_tiles();
+
   [[nodiscard]] std::uint64_t scored() const { return scored_; }
   [[nodiscard]] std::uint64_t rays_cast() const { return rays_cast_; }
 
@@ -50,6 +58,7 @@ class GainCaster {
   void look_by_bricks(const RayBeam& beam, int last, Sight& sight) const;
   void look_by_voxels(const RayBeam& beam, int last, Sight& sight) const;
   bool look_closer(const RayBeam& beam, int n, int end, Sight& sight) const;
+  void decide(const Tile& tile);
   void split(const Tile& tile);
   void cast_rays(const Tile& tile);
   void cast_ray(float a, float b, int major, int slab);
@@ -64,6 +73,8 @@ class GainCaster {
   const CastWindow& window_;
   const CastLimits& limits_;
   VoxelSet* seen_;
+  int leave_open_px_{0};
+  std::vector<Tile> open_tiles_;
   std::uint64_t scored_{0};
   std::uint64_t rays_cast_{0};
 };

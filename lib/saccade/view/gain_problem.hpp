@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// GainProblem: poses, region and map turned into the rays to cast and what they meet.
+
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saccade/view/cast_window.hpp"
+#include "saccade/view/gain_caster.hpp"
+#include "saccade/view/stop_grid.hpp"
+#include "saccade/view/view_gain.hpp"
+
+namespace saccade {
+
+/// Rays to cast, and the poses whose gain they are.
+struct GainJob {
+  CastWindow window;
+  std::vector<std::size_t> poses;
+};
+
+/// Poses that are in no job gain nothing.
+struct GainProblem {
+  StopGrid grid;
+  std::vector<GainJob> jobs;
+  CastLimits limits;
+  std::uint64_t rays_total{0};  ///< pixels of all poses
+  double prepare_ms{0.0};
+
+  /// Errors of evaluate_views.
+  [[nodiscard]] static Result<GainProblem> prepare(const TsdfSnapshot& map, const Region& region,
+                                                   std::span<const Pose> T_world_camera, const GainConfig& config,
+                                                   const Executor& executor);
+};
+
+}  // namespace saccade
