@@ -12,21 +12,14 @@
 #include <array>
 #include <cstdint>
 
+#include "saccade/map/ray_lanes-inl.hpp"
 #include "saccade/map/voxel_block.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace saccade::tile_cast::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-
-using F = hn::CappedTag<float, 16>;
-using I = hn::RebindToSigned<F>;
-using VF = hn::Vec<F>;
-using VI = hn::Vec<I>;
-using M = hn::Mask<F>;
-
-HWY_INLINE bool any(M mask) { return !hn::AllFalse(F{}, mask); }
+using namespace lanes::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary of these kernels
 
 /// Between two depths along the rays v changes its sign.
 struct SignChange {
@@ -37,7 +30,7 @@ struct SignChange {
 /// What rays, one per lane, find in cells of one brick; each the like of the function of cell.hpp that it names.
 class CellLanes {
  public:
-  std::array<VF, 3> o, d;         ///< the rays, as LatticeRay has them
+  RayLanes rays;
   std::array<float, 3> brick_lo;  ///< the brick's first voxel, relative to the rays' origin
   const std::int16_t* values;     ///< of its VoxelBlock
 
@@ -61,14 +54,14 @@ class CellLanes {
         pair_at(bytes, 0, 0, 0), pair_at(bytes, 0, 1, 0), pair_at(bytes, 0, 0, 1), pair_at(bytes, 0, 1, 1), {}};
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VF p = hn::Add(hn::Set(f_, brick_lo[axis]), hn::ConvertTo(f_, at[axis]));
-      cell.from[axis] = hn::Sub(o[axis], p);
+      cell.from[axis] = hn::Sub(rays.o[axis], p);
     }
     return cell;
   }
   /// fraction_at.
   HWY_INLINE void fraction_at(const CellOfLanes& cell, VF t, std::array<VF, 3>& fraction) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const VF at = hn::Add(cell.from[axis], hn::Mul(t, d[axis]));
+      const VF at = hn::Add(cell.from[axis], hn::Mul(t, rays.d[axis]));
       fraction[axis] = hn::Min(hn::Max(at, hn::Zero(f_)), hn::Set(f_, 1.0F));
     }
   }

@@ -10,18 +10,6 @@ HWY_BEFORE_NAMESPACE();
 namespace saccade::tile_cast::HWY_NAMESPACE {
 namespace {
 
-/// Crossings of lattice planes, ordered by t, then by axis.
-struct Event {
-  VF t;
-  VI axis;
-};
-HWY_INLINE M before(const Event& a, const Event& b) {
-  return hn::Or(hn::Lt(a.t, b.t), hn::And(hn::Eq(a.t, b.t), hn::RebindMask(F{}, hn::Lt(a.axis, b.axis))));
-}
-HWY_INLINE Event select(M mask, const Event& yes, const Event& no) {
-  return {hn::IfThenElse(mask, yes.t, no.t), hn::IfThenElse(hn::RebindMask(I{}, mask), yes.axis, no.axis)};
-}
-
 /// Some rays of the tile within one brick.
 class Packet {
  public:
@@ -30,10 +18,10 @@ class Packet {
     in_cells_.values = surface.voxels.data();
     in_cells_.brick_lo = {static_cast<float>(lo.x), static_cast<float>(lo.y), static_cast<float>(lo.z)};
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      in_cells_.o[axis] = hn::Set(f_, rays.o[axis]);
-      in_cells_.d[axis] = hn::Load(f_, rays.d[axis].data() + first);
-      inv_[axis] = hn::Load(f_, rays.inv[axis].data() + first);
-      forward_[axis] = hn::Gt(inv_[axis], hn::Zero(f_));
+      in_cells_.rays.o[axis] = hn::Set(f_, rays.o[axis]);
+      in_cells_.rays.d[axis] = hn::Load(f_, rays.d[axis].data() + first);
+      in_cells_.rays.inv[axis] = hn::Load(f_, rays.inv[axis].data() + first);
+      in_cells_.rays.forward[axis] = hn::Gt(in_cells_.rays.inv[axis], hn::Zero(f_));
     }
     const IndexBox& box = surface.box;
     box_lo_ = {static_cast<float>(lo.x + box.lo.x), static_cast<float>(lo.y + box.lo.y),
@@ -44,24 +32,10 @@ class Packet {
 
   /// The rays' part within the box; false when no ray that did not end earlier enters it.
   HWY_INLINE bool enter(float farthest_m, const Event& ended) {
-    const VF infinity = hn::Set(f_, HUGE_VALF);
-    enter_ = {hn::Zero(f_), hn::Set(i_, -1)};
-    exit_ = {infinity, hn::Set(i_, 3)};
-    M inside = hn::Eq(infinity, infinity);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      const VF lo = hn::Set(f_, box_lo_[axis]);
-      const VF hi = hn::Set(f_, box_hi_[axis]);
-      const M ahead = select_mask(forward_[axis], hn::Gt(hi, hn::Zero(f_)), hn::Le(lo, hn::Zero(f_)));
-      const M starts_before = select_mask(forward_[axis], hn::Gt(lo, hn::Zero(f_)), hn::Le(hi, hn::Zero(f_)));
-      inside = hn::And(inside, ahead);
-      const Event in{crossing(axis, hn::IfThenElse(forward_[axis], lo, hi)), hn::Set(i_, static_cast<int>(axis))};
-      const Event out{crossing(axis, hn::IfThenElse(forward_[axis], hi, lo)), in.axis};
-      enter_ = select(hn::And(starts_before, before(enter_, in)), in, enter_);
-      exit_ = select(before(out, exit_), out, exit_);
-    }
-    const Event limit{hn::Set(f_, farthest_m), hn::Set(i_, 3)};
-    exit_ = select(before(limit, exit_), limit, exit_);
-    active_ = hn::And(hn::And(inside, before(enter_, exit_)), before(enter_, ended));
+    const RayLanes::Span span = in_cells_.rays.clip(box_lo_, box_hi_);
+    enter_ = span.enter;
+    exit_ = earlier(span.exit, after_depth(farthest_m));
+    active_ = hn::And(hn::And(span.inside, before(enter_, exit_)), before(enter_, ended));
     return any(active_);
   }
 
@@ -69,14 +43,14 @@ class Packet {
   HWY_INLINE void walk() {
     start();
     entered_t_ = enter_.t;
-    stopped_ = front_ = hn::Lt(hn::Zero(f_), hn::Zero(f_));
+    stopped_ = front_ = none();
     cell_ = hn::Zero(i_);
     change_ = {hn::Zero(f_), hn::Zero(f_), hn::Zero(f_), hn::Zero(f_)};
     while (any(active_)) {
       // On to the next cell with a surface; rays that are at one wait for the others, since looking costs more than
       // steps.
       M walking = active_;
-      M waiting = hn::Lt(hn::Zero(f_), hn::Zero(f_));
+      M waiting = none();
       for (;;) {
         const M found = hn::And(walking, has_surface());
         waiting = hn::Or(waiting, found);
@@ -114,72 +88,29 @@ class Packet {
   }
 
  private:
-  static HWY_INLINE M select_mask(M mask, M yes, M no) { return hn::Or(hn::And(mask, yes), hn::AndNot(mask, no)); }
-  [[nodiscard]] HWY_INLINE VF crossing(std::size_t axis, VF plane) const {
-    return hn::Mul(hn::Sub(plane, in_cells_.o[axis]), inv_[axis]);
-  }
-
-  /// The cells in which the rays are once every crossing up to and including enter_ has happened: position_at.
+  /// The cells that the rays enter first.
   HWY_INLINE void start() {
     index_ = hn::Zero(i_);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const VF zero = hn::Zero(f_);
-      const VF one = hn::Set(f_, 1.0F);
-      const VI this_axis = hn::Set(i_, static_cast<int>(axis));
-      // A ray that starts between the box's planes of an axis comes no further back than its origin's voxel.
-      const VF lo = hn::Set(f_, box_lo_[axis]);
-      const VF last = hn::Set(f_, box_hi_[axis] - 1.0F);
-      const VF lowest = hn::IfThenElse(forward_[axis], hn::Max(lo, zero), lo);
-      const VF highest = hn::IfThenElse(forward_[axis], last, hn::Min(last, zero));
-      VF p = hn::Floor(hn::Add(in_cells_.o[axis], hn::Mul(enter_.t, in_cells_.d[axis])));
-      p = hn::Min(hn::Max(p, lowest), highest);
-      for (;;) {
-        // The planes before and behind the cell along the ray: the first was crossed, the second was not.
-        const VF behind = hn::IfThenElse(forward_[axis], p, hn::Add(p, one));
-        const VF ahead = hn::IfThenElse(forward_[axis], hn::Add(p, one), p);
-        const M is_first = hn::Eq(p, hn::IfThenElse(forward_[axis], lowest, highest));
-        const M is_last = hn::Eq(p, hn::IfThenElse(forward_[axis], highest, lowest));
-        const M too_far = hn::AndNot(is_first, before(enter_, {crossing(axis, behind), this_axis}));
-        const M too_near =
-            hn::AndNot(hn::Or(is_last, before(enter_, {crossing(axis, ahead), this_axis})), hn::Eq(one, one));
-        const M wrong = hn::And(active_, hn::Or(too_far, too_near));
-        if (!any(wrong)) break;
-        const M up = select_mask(forward_[axis], too_near, too_far);
-        p = hn::IfThenElse(wrong, hn::IfThenElse(up, hn::Add(p, one), hn::Sub(p, one)), p);
-      }
-      plane_[axis] = hn::Add(p, hn::IfThenElseZero(forward_[axis], one));
-      next_t_[axis] = crossing(axis, plane_[axis]);
+      const VF p =
+          in_cells_.rays.position(axis, enter_, hn::Set(f_, box_lo_[axis]), hn::Set(f_, box_hi_[axis] - 1.0F), active_);
+      next_.plane[axis] = in_cells_.rays.plane_ahead(axis, p);
+      next_.t[axis] = in_cells_.rays.crossing(axis, next_.plane[axis]);
       const VI in_brick = hn::ConvertTo(i_, hn::Sub(p, hn::Set(f_, in_cells_.brick_lo[axis])));
       index_ = hn::Add(index_, hn::Mul(in_brick, hn::Set(i_, kStride[axis])));
     }
     index_ = hn::And(index_, hn::Set(i_, kBrickVoxels - 1));  // of rays that are not in the box: anything
   }
 
-  /// Takes rays to their next cells, across the plane that they cross first; returns those that have one.
+  /// Takes rays to their next cells; returns those that have one.
   HWY_INLINE M step(M rays) {
-    const M y_first = hn::Lt(next_t_[1], next_t_[0]);
-    const VF earlier = hn::IfThenElse(y_first, next_t_[1], next_t_[0]);
-    const M z_first = hn::Lt(next_t_[2], earlier);
-    const VI axis_xy = hn::IfThenElseZero(hn::RebindMask(i_, y_first), hn::Set(i_, 1));
-    const Event leave{hn::IfThenElse(z_first, next_t_[2], earlier),
-                      hn::IfThenElse(hn::RebindMask(i_, z_first), hn::Set(i_, 2), axis_xy)};
-    const M moved = hn::And(rays, before(leave, exit_));
-    advance<0>(hn::AndNot(hn::Or(y_first, z_first), moved));
-    advance<1>(hn::AndNot(z_first, hn::And(y_first, moved)));
-    advance<2>(hn::And(z_first, moved));
-    entered_t_ = hn::IfThenElse(moved, leave.t, entered_t_);
+    const NextPlanes::First leave = next_.first();
+    const M moved = hn::And(rays, before(leave.event, exit_));
+    next_.advance(in_cells_.rays, 0, hn::AndNot(hn::Or(leave.y, leave.z), moved), kStride[0], index_);
+    next_.advance(in_cells_.rays, 1, hn::AndNot(leave.z, hn::And(leave.y, moved)), kStride[1], index_);
+    next_.advance(in_cells_.rays, 2, hn::And(leave.z, moved), kStride[2], index_);
+    entered_t_ = hn::IfThenElse(moved, leave.event.t, entered_t_);
     return moved;
-  }
-  template <std::size_t kAxis>
-  HWY_INLINE void advance(M rays) {
-    const VF one = hn::Set(f_, 1.0F);
-    const VF plane = hn::IfThenElse(forward_[kAxis], hn::Add(plane_[kAxis], one), hn::Sub(plane_[kAxis], one));
-    const VI stride = hn::Set(i_, kStride[kAxis]);
-    const M forward = forward_[kAxis];
-    const VI index = hn::IfThenElse(hn::RebindMask(i_, forward), hn::Add(index_, stride), hn::Sub(index_, stride));
-    plane_[kAxis] = hn::IfThenElse(rays, plane, plane_[kAxis]);
-    next_t_[kAxis] = hn::IfThenElse(rays, crossing(kAxis, plane), next_t_[kAxis]);
-    index_ = hn::IfThenElse(hn::RebindMask(i_, rays), index, index_);
   }
 
   [[nodiscard]] HWY_INLINE M has_surface() const {
@@ -198,7 +129,7 @@ class Packet {
   /// First half of cross_cell, for the lanes of a mask: whether the sign of v changes between entering and leaving.
   HWY_INLINE void cross(M lanes) {
     const VF t0 = entered_t_;
-    const VF t1 = hn::Min(hn::Min(next_t_[0], next_t_[1]), hn::Min(next_t_[2], exit_.t));
+    const VF t1 = hn::Min(next_.first().event.t, exit_.t);
     const auto cell = in_cells_.load_cell(index_);
     const VF v0 = in_cells_.value_at(cell, t0);
     const VF v1 = in_cells_.value_at(cell, t1);
@@ -219,16 +150,13 @@ class Packet {
   std::array<float, 3> box_lo_;  ///< planes of the box around the cells
   std::array<float, 3> box_hi_;
   CellLanes in_cells_;
-  std::array<VF, 3> inv_;
-  std::array<M, 3> forward_;
   Event enter_, exit_;  ///< of the box
   M active_, stopped_, front_;
-  VI index_;                  ///< child_index of the rays' cells
-  VF entered_t_;              ///< when they entered them
-  std::array<VF, 3> plane_;   ///< the planes that they cross next, relative to the origin's voxel …
-  std::array<VF, 3> next_t_;  ///< … and when
-  VI cell_;                   ///< in which the ray stopped, …
-  SignChange change_;         ///< … and how v changed in it
+  VI index_;      ///< child_index of the rays' cells
+  VF entered_t_;  ///< when they entered them
+  NextPlanes next_;
+  VI cell_;            ///< in which the ray stopped, …
+  SignChange change_;  ///< … and how v changed in it
 };
 
 float cast_in_brick_simd(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface, std::uint32_t brick,
