@@ -45,7 +45,7 @@ HWY_INLINE Event select(M mask, const Event& yes, const Event& no) {
 HWY_INLINE Event earlier(const Event& a, const Event& b) { return select(before(b, a), b, a); }
 /// kRayStart, after_depth.
 HWY_INLINE Event ray_start() { return {hn::Zero(F{}), hn::Set(I{}, -1)}; }
-HWY_INLINE Event after_depth(float t) { return {hn::Set(F{}, t), hn::Set(I{}, 3)}; }
+HWY_INLINE Event past_depth(float t) { return {hn::Set(F{}, t), hn::Set(I{}, 3)}; }
 
 /// Rays from one origin; o, d, inv as LatticeRay has them. Planes are relative to the origin's voxel.
 struct RayLanes {

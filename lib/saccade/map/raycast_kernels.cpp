@@ -34,7 +34,7 @@ class Packet {
   HWY_INLINE bool enter(float farthest_m, const Event& ended) {
     const RayLanes::Span span = in_cells_.rays.clip(box_lo_, box_hi_);
     enter_ = span.enter;
-    exit_ = earlier(span.exit, after_depth(farthest_m));
+    exit_ = earlier(span.exit, past_depth(farthest_m));
     active_ = hn::And(hn::And(span.inside, before(enter_, exit_)), before(enter_, ended));
     return any(active_);
   }

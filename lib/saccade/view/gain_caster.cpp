@@ -90,7 +90,12 @@ class GainCaster::Sight {
 };
 
 GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const CastLimits& limits, VoxelSet* seen)
-    : grid_{grid}, window_{window}, limits_{limits}, seen_{seen} {}
+    : grid_{grid},
+      window_{window},
+      limits_{limits},
+      seen_{seen},
+      use_packets_{limits.savings.packets && limits.savings.region_rays && limits.savings.region_exit &&
+                   limits.savings.empty_bricks && limits.savings.tiles && seen == nullptr && !grid.flat().empty()} {}
 
 void GainCaster::cast_rows(int begin, int end) {
   const auto width = static_cast<int>(window_.a.size());
@@ -146,7 +151,8 @@ void GainCaster::cast_tile(const Tile& tile) {
   if (!to_be_cast(tile)) return;
   const RayBeam beam{window_, tile};
   Sight sight{beam, limits_, seen_ == nullptr, tile.slab};
-  if (std::max(tile.columns(), tile.rows()) > kFineTile) {
+  const int size = std::max(tile.columns(), tile.rows());
+  if (size > kFineTile) {
     look_by_bricks(beam, last_slab(beam), sight);
   } else {
     look_by_voxels(beam, last_slab(beam), sight);
@@ -167,7 +173,10 @@ void GainCaster::cast_tile(const Tile& tile) {
 
 /// A tile whose rays do not share their fate.
 void GainCaster::decide(const Tile& tile) {
-  if (std::max(tile.columns(), tile.rows()) > kRayTile) {
+  const int size = std::max(tile.columns(), tile.rows());
+  if (use_packets_ && size <= kFineTile) {
+    cast_packet(tile);
+  } else if (size > kRayTile) {
     split(tile);
   } else {
     cast_rays(tile);
@@ -229,6 +238,28 @@ void GainCaster::cast_rays(const Tile& tile) {
       cast_ray(window_.a[static_cast<std::size_t>(i)], b, tile.major, tile.slab);
     }
   }
+}
+
+void GainCaster::cast_packet(const Tile& tile) {
+  const SensorRays& rays = window_.rays;
+  RayPacket packet;
+  packet.origin = rays.origin;
+  packet.major = tile.major;
+  packet.slab = tile.slab;
+  for (int j = tile.row_begin; j < tile.row_end; ++j) {
+    const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
+    const float b = window_.b[static_cast<std::size_t>(j)];
+    const int end = std::min(range.end, tile.column_end);
+    for (int i = std::max(range.begin, tile.column_begin); i < end; ++i, ++packet.count) {
+      const float a = window_.a[static_cast<std::size_t>(i)];
+      for (std::size_t axis = 0; axis < 3; ++axis) {
+        packet.d[axis][packet.count] = rays.x[axis] * a + (rays.y[axis] * b + rays.z[axis]);
+      }
+    }
+  }
+  const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
+  scored_ += tally.scored;
+  rays_cast_ += tally.cast;
 }
 
 void GainCaster::cast_ray(float a, float b, int major, int slab) {

@@ -61,6 +61,7 @@ class GainCaster {
   void decide(const Tile& tile);
   void split(const Tile& tile);
   void cast_rays(const Tile& tile);
+  void cast_packet(const Tile& tile);
   void cast_ray(float a, float b, int major, int slab);
   void walk_bricks(const LatticeRay& ray, const RaySpan& span);
   void walk_voxels(const LatticeRay& ray, const RaySpan& span);
@@ -73,6 +74,7 @@ class GainCaster {
   const CastWindow& window_;
   const CastLimits& limits_;
   VoxelSet* seen_;
+  bool use_packets_;
   int leave_open_px_{0};
   std::vector<Tile> open_tiles_;
   std::uint64_t scored_{0};

@@ -195,7 +195,59 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
     grid.table_[detailed[k].first] = grid.views_[k].get();
     grid.scoring_voxels_ = hull(grid.scoring_voxels_, grid.views_[k]->scoring);
   }
+  grid.flatten(executor);
   return grid;
+}
+
+void StopGrid::flatten(const Executor& executor) {
+  constexpr std::size_t kMostFlat{1 << 15};  // sectors: 64 MiB of slots
+  if (scoring_voxels_.empty() || table_.size() > kMostFlat) return;
+  flat_.scoring_voxels = scoring_voxels_;
+  flat_.bricks = {sectors_.lo * kSectorEdge, sectors_.hi * kSectorEdge};
+  std::vector<std::size_t> first_slot;  // of the sectors of the table that have masks
+  std::size_t slots{FlatStops::kAllScore + 1};
+  for (const SectorView* sector : table_) {
+    first_slot.push_back(slots);
+    slots += sector->masks.size();
+  }
+  flat_.slots.resize(table_.size() * kSectorBricks);
+  flat_.stop.resize(slots * FlatStops::kWords);
+  flat_.score.resize(slots * FlatStops::kWords);
+  const auto fill = [](std::vector<std::uint32_t>& words, std::int32_t slot) {
+    std::fill_n(words.begin() + static_cast<std::ptrdiff_t>(slot) * FlatStops::kWords, FlatStops::kWords,
+                ~std::uint32_t{0});
+  };
+  fill(flat_.stop, FlatStops::kAllBlock);
+  fill(flat_.stop, FlatStops::kAllScore);
+  fill(flat_.score, FlatStops::kAllScore);
+  const auto copy = [](const Mask512& mask, std::vector<std::uint32_t>& words, std::size_t slot) {
+    for (std::size_t i = 0; i < FlatStops::kWords; ++i) {
+      words[slot * FlatStops::kWords + i] = static_cast<std::uint32_t>(mask.words[i / 2] >> (i % 2 * 32));
+    }
+  };
+  const std::size_t row = std::size_t{size_x_} * kSectorEdge;
+  const std::size_t slice = std::size_t{size_y_} * kSectorEdge * row;
+  executor.parallel_for(table_.size(), 4, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t s = begin; s < end; ++s) {
+      const SectorView& sector = *table_[s];
+      const std::size_t x0 = s % size_x_ * kSectorEdge;
+      const std::size_t y0 = s / size_x_ % size_y_ * kSectorEdge;
+      const std::size_t z0 = s / size_x_ / size_y_ * kSectorEdge;
+      for (std::size_t i = 0; i < kSectorBricks; ++i) {
+        const unsigned flags = sector.codes[i] & stop_flags::kMask;
+        const std::size_t place = sector.codes[i] >> stop_flags::kShift;
+        auto slot = static_cast<std::int32_t>(first_slot[s] + place);
+        if (flags == stop_flags::kClear) slot = FlatStops::kClear;
+        if (flags == stop_flags::kAllBlock) slot = FlatStops::kAllBlock;
+        if (flags == stop_flags::kAllScore) slot = FlatStops::kAllScore;
+        flat_.slots[(z0 + i / 64) * slice + (y0 + i / 8 % 8) * row + x0 + i % 8] = slot;
+      }
+      for (std::size_t place = 0; place < sector.masks.size(); ++place) {
+        copy(sector.masks[place].stop, flat_.stop, first_slot[s] + place);
+        copy(sector.masks[place].score, flat_.score, first_slot[s] + place);
+      }
+    }
+  });
 }
 
 unsigned StopGrid::flags_of_bricks(const Index3& lo, const Index3& hi) const {

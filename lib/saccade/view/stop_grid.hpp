@@ -9,6 +9,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/view/ray_packets.hpp"
 #include "saccade/view/view_gain.hpp"
 
 namespace saccade {
@@ -60,6 +61,8 @@ class StopGrid {
   [[nodiscard]] unsigned flags_of_bricks(const Index3& lo, const Index3& hi) const;
   [[nodiscard]] unsigned flags_of_voxels(const Index3& lo, const Index3& hi) const;
   [[nodiscard]] bool stops(const Index3& voxel) const;
+  /// For rays in packets; empty where the domain holds too many bricks.
+  [[nodiscard]] const FlatStops& flat() const { return flat_; }
 
  private:
   struct SectorView {
@@ -68,6 +71,7 @@ class StopGrid {
     IndexBox scoring;
   };
   class Builder;
+  void flatten(const Executor& executor);
 
   [[nodiscard]] static unsigned flags_within(const Brick& brick, const Index3& lo, const Index3& hi);
 
@@ -90,6 +94,7 @@ class StopGrid {
   std::vector<std::unique_ptr<const SectorView>> views_;
   std::vector<const SectorView*> table_;
   IndexBox scoring_voxels_;
+  FlatStops flat_;
 };
 
 /// The voxels of a region, at most: all whose centre can lie inside.
