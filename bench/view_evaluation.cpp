@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
-// Gain of the 960 view poses of thesis §2.2.3 around a forgotten sphere of 0.2 m on a table: 640×480 rays, 5.8 mm.
+// Gain of the 960 view poses of thesis §2.2.3 around a forgotten sphere of 0.2 m on a table: 640×480 rays, 5.8 mm; also
+// after the best views were fused. The peer is Embree, where it is installed.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
 
+#include "embree_views.hpp"
+#include "saccade/core/clock.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/view/best_views.hpp"
+#include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -15,23 +18,37 @@ namespace {
 using namespace saccade;
 
 constexpr double kReach_m{1.2};
+constexpr int kMostViews{3};
 const Eigen::Vector3d kPoi{0.0, 0.0, 0.1};
 const Region kRegion{Sphere{kPoi, 0.2}};
 
-double box_distance(const Eigen::Vector3d& p, const Eigen::Vector3d& center, const Eigen::Vector3d& half_m) {
-  const Eigen::Vector3d q = (p - center).cwiseAbs() - half_m;
-  return q.cwiseMax(0.0).norm() + std::min(q.maxCoeff(), 0.0);
+/// A table; on it, in the region, a bin, a shelf and round things that hide each other, and large boxes around.
+const AnalyticScene& table() {
+  static const AnalyticScene scene = [] {
+    const auto box = [](const Eigen::Vector3d& center, const Eigen::Vector3d& half_m) {
+      return Box{center - half_m, center + half_m};
+    };
+    AnalyticScene made;
+    made.objects = {{"table", HalfSpace{}},
+                    {"bin, left", box({-0.135, -0.04, 0.05}, {0.007, 0.06, 0.05})},
+                    {"bin, right", box({-0.015, -0.04, 0.05}, {0.007, 0.06, 0.05})},
+                    {"bin, front", box({-0.075, -0.1, 0.05}, {0.06, 0.007, 0.05})},
+                    {"bin, back", box({-0.075, 0.02, 0.05}, {0.06, 0.007, 0.05})},
+                    {"shelf, left", box({0.03, 0.06, 0.06}, {0.007, 0.05, 0.06})},
+                    {"shelf, right", box({0.13, 0.06, 0.06}, {0.007, 0.05, 0.06})},
+                    {"shelf, middle", box({0.08, 0.06, 0.06}, {0.05, 0.05, 0.007})},
+                    {"shelf, top", box({0.08, 0.06, 0.12}, {0.057, 0.05, 0.007})},
+                    {"ball", Sphere{{0.06, -0.08, 0.035}, 0.035}},
+                    {"can", Cylinder{{-0.06, 0.1, 0.0}, {-0.06, 0.1, 0.11}, 0.03}},
+                    {"tall", box({0.35, 0.1, 0.12}, {0.05, 0.08, 0.12})},
+                    {"low", box({-0.2, -0.3, 0.08}, {0.1, 0.05, 0.08})},
+                    {"wide", box({0.05, 0.45, 0.2}, {0.2, 0.05, 0.2})}};
+    return made;
+  }();
+  return scene;
 }
 
-/// A table with boxes on it, metres to the nearest surface.
-double distance_m(const Eigen::Vector3d& p) {
-  const double on_table = std::min(
-      {box_distance(p, {0.0, 0.0, 0.05}, {0.06, 0.04, 0.05}), box_distance(p, {0.35, 0.1, 0.12}, {0.05, 0.08, 0.12}),
-       box_distance(p, {-0.2, -0.3, 0.08}, {0.1, 0.05, 0.08}), box_distance(p, {0.05, 0.45, 0.2}, {0.2, 0.05, 0.2})});
-  return std::min(p.z(), on_table);
-}
-
-/// The scene fully seen from outside, then the region forgotten; beyond the truncation behind surfaces all is unknown.
+/// The table fully seen from outside, then the region forgotten; beyond the truncation behind surfaces all is unknown.
 TsdfSnapshot make_map() {
   TsdfSnapshot map;
   const TsdfConfig& config = map.config;
@@ -41,14 +58,14 @@ TsdfSnapshot make_map() {
   for (int i = 0; i < 8 * n * n * n; ++i) {
     const Index3 brick{i % (2 * n) - n, i / (2 * n) % (2 * n) - n, i / (4 * n * n) - n};
     const Eigen::Vector3d center = voxel_center(brick, brick_m);
-    const double distance = distance_m(center);
+    const double distance = table().signed_distance_m(center);
     if (distance < -config.truncation_m() - half_diagonal_m) continue;
     BrickRef ref = BrickRef::constant_free(config.free_weight);
     if (distance < config.truncation_m() + half_diagonal_m) {
       DenseBrick& dense = ref.densify();
       for (int k = 0; k < kBrickVoxels; ++k) {
         const Index3 voxel = brick * kBrickEdge + child_offset(k);
-        const double v = distance_m(voxel_center(voxel, config.voxel_size_m)) / config.truncation_m();
+        const double v = table().signed_distance_m(voxel_center(voxel, config.voxel_size_m)) / config.truncation_m();
         const auto at = static_cast<std::size_t>(k);
         dense.w[at] = v < -1.0 ? std::uint16_t{0} : std::uint16_t{5};
         dense.v[at] = static_cast<std::int16_t>(v < -1.0 ? 0.0 : std::round(std::min(v, 1.0) * kTsdfOne));
@@ -65,17 +82,41 @@ TsdfSnapshot make_map() {
   return forgetting.snapshot();
 }
 
-const TsdfSnapshot& scene() {
-  static const TsdfSnapshot map = make_map();
-  return map;
+const std::vector<Pose>& all_poses() {
+  static const std::vector<Pose> poses = poses_of(view_sphere(kPoi).value());
+  return poses;
+}
+std::vector<Pose> every_nth_pose(std::size_t n) {
+  std::vector<Pose> poses;
+  for (std::size_t i = 0; i < all_poses().size(); i += n) poses.push_back(all_poses()[i]);
+  return poses;
 }
 
-void run(benchmark::State& state, const GainConfig& config, std::size_t every, std::size_t threads) {
-  const auto candidates = view_sphere(kPoi);
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < candidates->size(); i += every) poses.push_back((*candidates)[i].T_world_camera);
-  const Executor executor = Executor::with_threads(threads);
-  const TsdfSnapshot& map = scene();
+/// The map after the best views of the region were fused one after the other: clutter around, unknown in front.
+const TsdfSnapshot& map_after(std::int64_t views) {
+  static const std::vector<TsdfSnapshot> maps = [] {
+    const Executor executor = Executor::with_threads(0);
+    const GainConfig config;
+    std::vector<TsdfSnapshot> made{make_map()};
+    TsdfMap map{made.back()};
+    for (int view = 0; view < kMostViews; ++view) {
+      const auto gains = evaluate_views(made.back(), kRegion, all_poses(), config, executor).value().gains;
+      const Pose& best =
+          all_poses()[static_cast<std::size_t>(std::max_element(gains.begin(), gains.end()) - gains.begin())];
+      const RenderedFrame seen = render(table(), config.sensor, best, executor).value();
+      SACCADE_EXPECTS(map.integrate(config.sensor, seen.depth, best, executor).ok());
+      made.push_back(map.snapshot());
+    }
+    return made;
+  }();
+  return maps[static_cast<std::size_t>(views)];
+}
+
+/// Arguments of a benchmark: best views fused, threads.
+void run(benchmark::State& state, const GainConfig& config, std::size_t every) {
+  const std::vector<Pose> poses = every_nth_pose(every);
+  const TsdfSnapshot& map = map_after(state.range(0));
+  const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(1)));
   GainConfig few_savings = config;
   few_savings.savings = GainSavings::none();
   few_savings.savings.region_rays = few_savings.savings.region_exit = few_savings.savings.empty_bricks = true;
@@ -103,52 +144,94 @@ void run(benchmark::State& state, const GainConfig& config, std::size_t every, s
   state.counters["rays_cast"] = cast;
 }
 
-void all_savings(benchmark::State& state) { run(state, {}, 1, static_cast<std::size_t>(state.range(0))); }
-void best_only(benchmark::State& state) {
-  const auto candidates = view_sphere(kPoi);
-  std::vector<Pose> poses;
-  for (const auto& candidate : *candidates) poses.push_back(candidate.T_world_camera);
-  const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(0)));
-  const auto all = evaluate_views(scene(), kRegion, poses, {}, executor);
-  const RankedView expected = order_views(all->gains, poses).front();
-  double evaluated{0.0};
-  for (auto _ : state) {
-    const auto best = best_views(scene(), kRegion, poses, 1, {}, executor);
-    if (!best || best->views.front().index != expected.index || best->views.front().gain != expected.gain) {
-      return state.SkipWithError("the best view differs from that of all gains");
-    }
-    evaluated = static_cast<double>(best->poses_evaluated);
-  }
-  state.counters["poses_evaluated"] = evaluated;
-}
+void all_savings(benchmark::State& state) { run(state, {}, 1); }
 void distinct_voxels(benchmark::State& state) {
   GainConfig config;
   config.count = GainCount::distinct_voxels;
-  run(state, config, 1, static_cast<std::size_t>(state.range(0)));
+  run(state, config, 1);
 }
 void without_shared_lattice(benchmark::State& state) {
   GainConfig config;
   config.savings.shared_lattice = false;
-  run(state, config, 1, static_cast<std::size_t>(state.range(0)));
+  run(state, config, 1);
 }
 void without_tiles(benchmark::State& state) {
   GainConfig config;
   config.savings.tiles = false;
-  run(state, config, 1, static_cast<std::size_t>(state.range(0)));
+  run(state, config, 1);
 }
 /// Baseline: every ray of the region walked by itself, on every eighth pose.
 void rays_one_by_one(benchmark::State& state) {
   GainConfig config;
   config.savings.tiles = config.savings.shared_lattice = false;
-  run(state, config, 8, static_cast<std::size_t>(state.range(0)));
+  run(state, config, 8);
 }
 
-BENCHMARK(all_savings)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(best_only)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(distinct_voxels)->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(without_shared_lattice)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(without_tiles)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
-BENCHMARK(rays_one_by_one)->Arg(1)->Unit(benchmark::kMillisecond)->UseRealTime();
+#ifdef SACCADE_WITH_EMBREE
+constexpr double kMostDifference{1e-3};
+
+/// The share of rays that end elsewhere, as far as gains show it: differences pose by pose, of all that scores.
+double difference(const std::vector<std::uint64_t>& gains, const std::vector<std::uint64_t>& expected) {
+  double differ{0.0};
+  double total{0.0};
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    differ += std::fabs(static_cast<double>(gains[i]) - static_cast<double>(expected[i]));
+    total += static_cast<double>(expected[i]);
+  }
+  return total > 0.0 ? differ / total : 1.0;
+}
+
+/// Embree's evaluation on two threads, timed without its preparation; `speedup` is how much longer it took than ours
+/// with preparation, just before and just after. Arguments: best views fused; every how many poses.
+void embree(benchmark::State& state) {
+  const std::vector<Pose> poses = every_nth_pose(static_cast<std::size_t>(state.range(1)));
+  const TsdfSnapshot& map = map_after(state.range(0));
+  const GainConfig config;
+  const Executor executor = Executor::with_threads(2);
+  const auto evaluate = [&] { return evaluate_views(map, kRegion, poses, config, executor).value(); };
+  GainResult expected = evaluate();
+  Stopwatch stopwatch;
+  const bench::EmbreeViews peer = bench::EmbreeViews::prepare(map, kRegion, poses, executor).value();
+  state.counters["prepare_ms"] = stopwatch.lap_ms();
+  double ours_ms{0.0};
+  double embree_ms{0.0};
+  double differing{0.0};
+  for (auto _ : state) {
+    stopwatch.lap_ms();
+    const std::vector<std::uint64_t> gains = peer.gains(poses, config.sensor, executor);
+    const double ms = stopwatch.lap_ms();
+    state.SetIterationTime(1e-3 * ms);
+    embree_ms += ms;
+    const GainResult after = evaluate();
+    ours_ms += 0.5 * (expected.prepare_ms + expected.evaluate_ms + after.prepare_ms + after.evaluate_ms);
+    expected = after;
+    differing = difference(gains, expected.gains);
+    if (differing > kMostDifference) return state.SkipWithError("the gains differ from ours");
+  }
+  state.counters["poses"] = static_cast<double>(poses.size());
+  state.counters["faces"] = static_cast<double>(peer.faces());
+  state.counters["differing"] = differing;
+  state.counters["ours_ms"] = ours_ms / static_cast<double>(state.iterations());
+  state.counters["speedup"] = embree_ms / ours_ms;
+}
+
+// 17 has no factor in common with the numbers of rolls, longitudes and latitudes.
+BENCHMARK(embree)
+    ->ArgNames({"views", "every"})
+    ->ArgsProduct({{0, 1, kMostViews}, {17, 1}})
+    ->Unit(benchmark::kMillisecond)
+    ->UseManualTime();
+#endif
+
+/// One row per choice of views fused and threads.
+void arguments(benchmark::internal::Benchmark* benchmark) {
+  benchmark->ArgNames({"views", "threads"})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
+}
+BENCHMARK(all_savings)->Apply(arguments)->Args({0, 1})->Args({0, 2})->Args({1, 2})->Args({kMostViews, 2});
+BENCHMARK(distinct_voxels)->Apply(arguments)->Args({0, 1})->Args({0, 2});
+BENCHMARK(without_shared_lattice)->Apply(arguments)->Args({0, 2});
+BENCHMARK(without_tiles)->Apply(arguments)->Args({0, 2});
+BENCHMARK(rays_one_by_one)->Apply(arguments)->Args({0, 1});
 
 }  // namespace
 
