@@ -252,7 +252,6 @@ Result<EmbreeViews> EmbreeViews::prepare(const TsdfSnapshot& map, const Region& 
   if (!impl->device) return embree_failed(nullptr);
   impl->scene.reset(rtcNewScene(impl->device.get()));
   if (!impl->scene) return embree_failed(impl->device.get());
-  rtcSetSceneFlags(impl->scene.get(), RTC_SCENE_FLAG_ROBUST);
   rtcSetSceneBuildQuality(impl->scene.get(), RTC_BUILD_QUALITY_HIGH);
   if (!attach_quads(impl->device.get(), impl->scene.get(), faces)) return embree_failed(impl->device.get());
   rtcCommitScene(impl->scene.get());
