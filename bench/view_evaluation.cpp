@@ -12,6 +12,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
+#include "saccade/view/best_views.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -147,6 +148,22 @@ void run(benchmark::State& state, const GainConfig& config, std::size_t every) {
 }
 
 void all_savings(benchmark::State& state) { run(state, {}, 1); }
+/// Only the best pose, which is that of all gains.
+void best_only(benchmark::State& state) {
+  const TsdfSnapshot& map = map_after(state.range(0));
+  const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(1)));
+  const auto all = evaluate_views(map, kRegion, all_poses(), {}, executor);
+  const RankedView expected = order_views(all->gains, all_poses()).front();
+  double evaluated{0.0};
+  for (auto _ : state) {
+    const auto best = best_views(map, kRegion, all_poses(), 1, {}, executor);
+    if (!best || best->views.front().index != expected.index || best->views.front().gain != expected.gain) {
+      return state.SkipWithError("the best view differs from that of all gains");
+    }
+    evaluated = static_cast<double>(best->poses_evaluated);
+  }
+  state.counters["poses_evaluated"] = evaluated;
+}
 void distinct_voxels(benchmark::State& state) {
   GainConfig config;
   config.count = GainCount::distinct_voxels;
@@ -248,6 +265,7 @@ void arguments(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"views", "threads"})->Unit(benchmark::kMillisecond)->MeasureProcessCPUTime()->UseRealTime();
 }
 BENCHMARK(all_savings)->Apply(arguments)->Args({0, 1})->Args({0, 2})->Args({1, 2})->Args({kMostViews, 2});
+BENCHMARK(best_only)->Apply(arguments)->Args({0, 2})->Args({1, 2})->Args({kMostViews, 2});
 BENCHMARK(distinct_voxels)->Apply(arguments)->Args({0, 1})->Args({0, 2});
 BENCHMARK(without_shared_lattice)->Apply(arguments)->Args({0, 2});
 BENCHMARK(without_tiles)->Apply(arguments)->Args({0, 2});
