@@ -95,7 +95,8 @@ GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const Cas
       limits_{limits},
       seen_{seen},
       use_packets_{limits.savings.packets && limits.savings.region_rays && limits.savings.region_exit &&
-                   limits.savings.empty_bricks && limits.savings.tiles && seen == nullptr && !grid.flat().empty()} {}
+                   limits.savings.empty_bricks && limits.savings.tiles && seen == nullptr && !grid.flat().empty()},
+      finest_slabs_{use_packets_ ? 2 : 1} {}
 
 void GainCaster::cast_rows(int begin, int end) {
   const auto width = static_cast<int>(window_.a.size());
@@ -208,11 +209,11 @@ void GainCaster::look_by_voxels(const RayBeam& beam, int last, Sight& sight) con
   sight.finish();
 }
 
-/// Halves the slabs until they are the same throughout.
+/// Halves the slabs until they are the same throughout, or so thin that looking costs more than walking rays.
 bool GainCaster::look_closer(const RayBeam& beam, int n, int end, Sight& sight) const {
   const RayBeam::Voxels voxels = beam.voxels(n, end);
   const unsigned flags = grid_.flags_of_voxels(voxels.lo, voxels.hi);
-  if (end - n == 1 || flags == stop_flags::kClear || (flags & stop_flags::kSolid) != 0) {
+  if (end - n <= finest_slabs_ || flags == stop_flags::kClear || (flags & stop_flags::kSolid) != 0) {
     return sight.add(flags, n, end, beam.near(n), beam.far(end - 1));
   }
   const int middle = (n + end) / 2;

@@ -75,6 +75,7 @@ class GainCaster {
   const CastLimits& limits_;
   VoxelSet* seen_;
   bool use_packets_;
+  int finest_slabs_;  ///< of voxels, that tiles look at
   int leave_open_px_{0};
   std::vector<Tile> open_tiles_;
   std::uint64_t scored_{0};

@@ -53,6 +53,7 @@ class Walkers {
       next_.t[axis] = rays_.crossing(axis, next_.plane[axis]);
       voxel_[axis] = hn::Add(hn::ConvertTo(i_, p), hn::Set(i_, from_lo[axis]));
     }
+    find_slots();
     return cast;
   }
 
@@ -82,32 +83,30 @@ class Walkers {
   HWY_INLINE void step() {
     const NextPlanes::First leave = next_.first();
     active_ = hn::And(active_, before(leave.event, exit_));
+    const std::array<VI, 3> was = voxel_;
     next_.advance(rays_, 0, hn::AndNot(hn::Or(leave.y, leave.z), active_), 1, voxel_[0]);
     next_.advance(rays_, 1, hn::AndNot(leave.z, hn::And(leave.y, active_)), 1, voxel_[1]);
     next_.advance(rays_, 2, hn::And(leave.z, active_), 1, voxel_[2]);
     entered_ = select(active_, leave.event, entered_);
+    const VI changed =
+        hn::Or(hn::Or(hn::Xor(was[0], voxel_[0]), hn::Xor(was[1], voxel_[1])), hn::Xor(was[2], voxel_[2]));
+    if (any(hn::RebindMask(f_, hn::Gt(changed, hn::Set(i_, kBrickEdge - 1))))) find_slots();
   }
 
-  /// Of the rays' voxels, in the tables of words.
-  [[nodiscard]] HWY_INLINE VI word_index() const {
+  /// Of the rays' bricks. They lie in the tables: these hold all cameras and the box that rays end in, so all between.
+  HWY_INLINE void find_slots() {
     const IndexBox& box = stops_.bricks;
-    const std::array<int, 3> size{box.hi.x - box.lo.x, box.hi.y - box.lo.y, box.hi.z - box.lo.z};
-    std::array<VI, 3> brick;
-    M within = active_;
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      brick[axis] = hn::ShiftRight<3>(voxel_[axis]);
-      const M fits = hn::RebindMask(
-          f_, hn::And(hn::Gt(brick[axis], hn::Set(i_, -1)), hn::Lt(brick[axis], hn::Set(i_, size[axis]))));
-      within = hn::And(within, fits);
-    }
-    const VI row = hn::Add(hn::Mul(brick[2], hn::Set(i_, size[1])), brick[1]);
-    const VI index = hn::Add(hn::Mul(row, hn::Set(i_, size[0])), brick[0]);
-    const VI safe = hn::IfThenElseZero(hn::RebindMask(i_, within), index);
-    const VI slot = hn::IfThenElseZero(hn::RebindMask(i_, within), hn::GatherIndex(i_, stops_.slots.data(), safe));
-    // child_index / 32: two words per slice, the rows 4 … 7 in the second.
+    const VI row =
+        hn::Add(hn::Mul(hn::ShiftRight<3>(voxel_[2]), hn::Set(i_, box.hi.y - box.lo.y)), hn::ShiftRight<3>(voxel_[1]));
+    const VI index = hn::Add(hn::Mul(row, hn::Set(i_, box.hi.x - box.lo.x)), hn::ShiftRight<3>(voxel_[0]));
+    const VI safe = hn::IfThenElseZero(hn::RebindMask(i_, active_), index);
+    slot_words_ = hn::ShiftLeft<4>(hn::GatherIndex(i_, stops_.slots.data(), safe));
+  }
+  /// Of the rays' voxels, in the tables of words: two words per slice, the rows 4 … 7 in the second.
+  [[nodiscard]] HWY_INLINE VI word_index() const {
     const VI slice = hn::And(voxel_[2], hn::Set(i_, 7));
     const VI half = hn::And(hn::ShiftRight<2>(voxel_[1]), hn::Set(i_, 1));
-    return hn::Add(hn::ShiftLeft<4>(slot), hn::Or(hn::ShiftLeft<1>(slice), half));
+    return hn::Add(slot_words_, hn::Or(hn::ShiftLeft<1>(slice), half));
   }
   [[nodiscard]] HWY_INLINE M has_bit(const std::vector<std::uint32_t>& words, VI word) const {
     const VI bits = hn::GatherIndex(i_, reinterpret_cast<const std::int32_t*>(words.data()), word);
@@ -127,6 +126,7 @@ class Walkers {
   Event exit_;
   NextPlanes next_;
   std::array<VI, 3> voxel_;  ///< relative to the first voxel of the tables
+  VI slot_words_;            ///< first words of their bricks
 };
 
 PacketTally cast_packets_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {

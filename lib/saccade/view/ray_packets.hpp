@@ -18,7 +18,7 @@ struct FlatStops {
   static constexpr std::int32_t kAllScore{2};
   static constexpr std::size_t kWords{16};  ///< per slot
 
-  IndexBox bricks;                  ///< outside all is clear
+  IndexBox bricks;                  ///< holds the rays' origins and scoring_voxels
   std::vector<std::int32_t> slots;  ///< x fastest
   std::vector<std::uint32_t> stop;
   std::vector<std::uint32_t> score;

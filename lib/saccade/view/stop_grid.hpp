@@ -2,6 +2,7 @@
 #pragma once
 // StopGrid: what view rays meet in each brick of a box of space: which voxels stop them, and which of those score.
 
+#include <algorithm>
 #include <cstdint>
 #include <memory>
 #include <vector>
@@ -96,6 +97,68 @@ class StopGrid {
   IndexBox scoring_voxels_;
   FlatStops flat_;
 };
+
+/// Flags of the voxels of one brick from lo to hi, relative to its corner, cut to the brick.
+inline unsigned StopGrid::flags_within(const Brick& brick, const Index3& lo, const Index3& hi) {
+  if (brick.flags == stop_flags::kClear || brick.flags == stop_flags::kAllScore ||
+      brick.flags == stop_flags::kAllBlock) {
+    return brick.flags;
+  }
+  const int x0 = std::max(lo.x, 0);
+  const int x1 = std::min(hi.x, kBrickEdge - 1);
+  const int y0 = std::max(lo.y, 0);
+  const int y1 = std::min(hi.y, kBrickEdge - 1);
+  const std::uint64_t row = (0xFFU >> (kBrickEdge - 1 - x1)) & (0xFFU << x0) & 0xFFU;
+  const std::uint64_t rows = (~std::uint64_t{0} >> (8 * (kBrickEdge - 1 - y1))) & (~std::uint64_t{0} << (8 * y0));
+  const std::uint64_t rectangle = (row * 0x0101010101010101ULL) & rows;
+  std::uint64_t score{0};
+  std::uint64_t block{0};
+  std::uint64_t missing{0};
+  for (int z = std::max(lo.z, 0); z <= std::min(hi.z, kBrickEdge - 1); ++z) {
+    const std::uint64_t stops = brick.masks->stop.words[static_cast<std::size_t>(z)] & rectangle;
+    const std::uint64_t scores = brick.masks->score.words[static_cast<std::size_t>(z)] & rectangle;
+    score |= scores;
+    block |= stops & ~scores;
+    missing |= rectangle & ~stops;
+  }
+  return (score != 0 ? stop_flags::kScores : 0U) | (block != 0 ? stop_flags::kBlocks : 0U) |
+         (missing == 0 ? stop_flags::kSolid : 0U);
+}
+
+inline unsigned StopGrid::flags_of_bricks(const Index3& lo, const Index3& hi) const {
+  unsigned any{0};
+  unsigned all{stop_flags::kSolid};
+  for (std::int32_t z = lo.z; z <= hi.z; ++z) {
+    for (std::int32_t y = lo.y; y <= hi.y; ++y) {
+      for (std::int32_t x = lo.x; x <= hi.x; ++x) {
+        const unsigned flags = brick_flags({x, y, z});
+        any |= flags;
+        all &= flags;
+      }
+    }
+  }
+  return (any & ~stop_flags::kSolid) | all;
+}
+
+inline unsigned StopGrid::flags_of_voxels(const Index3& lo, const Index3& hi) const {
+  unsigned any{0};
+  unsigned all{stop_flags::kSolid};
+  const Index3 brick_lo = parent(lo);
+  const Index3 brick_hi = parent(hi);
+  if (brick_lo == brick_hi)
+    return flags_within(brick(brick_lo), lo - brick_lo * kBrickEdge, hi - brick_lo * kBrickEdge);
+  for (std::int32_t z = brick_lo.z; z <= brick_hi.z; ++z) {
+    for (std::int32_t y = brick_lo.y; y <= brick_hi.y; ++y) {
+      for (std::int32_t x = brick_lo.x; x <= brick_hi.x; ++x) {
+        const Index3 corner{x * kBrickEdge, y * kBrickEdge, z * kBrickEdge};
+        const unsigned flags = flags_within(brick({x, y, z}), lo - corner, hi - corner);
+        any |= flags;
+        all &= flags;
+      }
+    }
+  }
+  return (any & ~stop_flags::kSolid) | all;
+}
 
 /// The voxels of a region, at most: all whose centre can lie inside.
 [[nodiscard]] IndexBox voxels_around(const Region& region, double voxel_size_m);
