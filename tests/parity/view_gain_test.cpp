@@ -6,6 +6,7 @@
 #include <iostream>
 #include <random>
 
+#include "saccade/core/simd.hpp"
 #include "saccade/view/best_views.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_order.hpp"
@@ -167,6 +168,7 @@ TEST(ViewGainParity, EqualsBruteForceToTheRay) {
   constexpr int kMaps{test::scaled_cases(24)};
   const std::vector<GainSavings> savings = all_savings();
   const Executor executors[]{Executor::with_threads(1), Executor::with_threads(2), Executor::with_threads(7)};
+  const std::vector<std::string> targets = simd_targets();
   std::size_t compared{0};
   std::uint64_t total_gain{0};
   std::uint64_t cast_with_tiles{0};
@@ -180,6 +182,7 @@ TEST(ViewGainParity, EqualsBruteForceToTheRay) {
     for (std::size_t s = 0; s < savings.size(); ++s) {
       test.config.savings = savings[s];
       const Executor& executor = executors[(static_cast<std::size_t>(i) + s) % std::size(executors)];
+      ASSERT_TRUE(use_simd_target(targets[(static_cast<std::size_t>(i) + s) % targets.size()]).ok());
       const auto result = evaluate_views(test.map, test.region, test.poses, test.config, executor);
       ASSERT_TRUE(result.ok()) << result.error().to_string();
       EXPECT_EQ(result->backend, executor.backend_name());
@@ -193,6 +196,7 @@ TEST(ViewGainParity, EqualsBruteForceToTheRay) {
       nonzero += gain > 0 ? 1 : 0;
     }
   }
+  ASSERT_TRUE(use_simd_target("").ok());
   EXPECT_EQ(compared, std::size_t{kMaps} * savings.size() * 13);
   EXPECT_GT(nonzero, kMaps * 13 / 4);
   EXPECT_GT(total_gain, static_cast<std::uint64_t>(kMaps) * 800U);

@@ -214,7 +214,7 @@ void StopGrid::flatten(const Executor& executor) {
   flat_.stop.resize(slots * FlatStops::kWords);
   flat_.score.resize(slots * FlatStops::kWords);
   const auto fill = [](std::vector<std::uint32_t>& words, std::int32_t slot) {
-    std::fill_n(words.begin() + static_cast<std::ptrdiff_t>(slot) * FlatStops::kWords, FlatStops::kWords,
+    std::fill_n(words.data() + static_cast<std::size_t>(slot) * FlatStops::kWords, FlatStops::kWords,
                 ~std::uint32_t{0});
   };
   fill(flat_.stop, FlatStops::kAllBlock);
