@@ -8,27 +8,11 @@
 namespace saccade {
 namespace {
 
-/// Slack of the conservative tests: far above the rounding of the per-voxel floats, far below a voxel.
-constexpr double kSlackM{1e-4};
-constexpr float kSlackPx{0.6F};  // rounding to the nearest pixel, and a little
-
-constexpr int kOctants{8};
+constexpr double kSlackM{1e-4};  // far above the rounding, far below a voxel
 
 Index3 octant(const Index3& lo, int half, int i) {
   return {lo.x + ((i & 1) != 0 ? half : 0), lo.y + ((i & 2) != 0 ? half : 0), lo.z + ((i & 4) != 0 ? half : 0)};
 }
-
-/// Signs of the eight corners of a box.
-using Corners = Eigen::Array<float, kOctants, 1>;
-const struct {
-  Corners x{-1, 1, -1, 1, -1, 1, -1, 1};
-  Corners y{-1, -1, 1, 1, -1, -1, 1, 1};
-  Corners z{-1, -1, -1, -1, 1, 1, 1, 1};
-  /// Coordinate i of the corners of the box with that centre and, as columns, half edges.
-  [[nodiscard]] Corners coordinate(const Eigen::Vector3f& center, const Eigen::Matrix3f& half, int i) const {
-    return center[i] + half(i, 0) * x + half(i, 1) * y + half(i, 2) * z;
-  }
-} kCorners;
 
 tsdf::Float3 to_float3(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
@@ -45,6 +29,9 @@ void for_each_brick(const Index3& first_brick, int edge_bricks, const Body& body
 }
 
 }  // namespace
+
+bool FrameFuser::is_hidden(Visibility seen) { return seen == Visibility::hidden; }
+bool FrameFuser::is_mixed(Visibility seen) { return seen == Visibility::mixed_inside || seen == Visibility::mixed; }
 
 FrameFuser::FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const Pose& T_world_camera,
                        const ColorImage* color)
@@ -82,7 +69,8 @@ std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) cons
   std::vector<std::uint8_t> visible(keys.size());
   executor.parallel_for(keys.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      visible[i] = visibility({keys[i] * kSectorVoxelEdge, kSectorVoxelEdge}) != Visibility::hidden ? 1 : 0;
+      const OctantVisibility octants = visibility({keys[i] * kSectorVoxelEdge, kSectorVoxelEdge});
+      visible[i] = std::ranges::all_of(octants, is_hidden) ? 0 : 1;
     }
   });
   std::size_t kept{0};
@@ -95,8 +83,7 @@ std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) cons
 
 bool FrameFuser::leaves_unchanged(const Index3& sector_key, const Sector& sector) const {
   if (!sector.saturated.all()) return false;
-  const Visibility seen = visibility({sector_key * kSectorVoxelEdge, kSectorVoxelEdge});
-  return seen == Visibility::all_free || seen == Visibility::free_or_unseen;
+  return std::ranges::none_of(visibility({sector_key * kSectorVoxelEdge, kSectorVoxelEdge}), is_mixed);
 }
 
 FrameFuser::Counts FrameFuser::fuse(const Index3& sector_key, Sector& sector) const {
@@ -105,61 +92,67 @@ FrameFuser::Counts FrameFuser::fuse(const Index3& sector_key, Sector& sector) co
   return counts;
 }
 
-FrameFuser::Visibility FrameFuser::visibility(const Cube& cube) const {
-  // Box of the voxel centres: centre and half edge; in camera coordinates, half edges.
-  const double e = config_.voxel_size_m;
-  const double half_m = 0.5 * (cube.edge - 1) * e;
-  const Eigen::Vector3d center_world =
-      e * Eigen::Vector3d{cube.lo.x + 0.5 * cube.edge, cube.lo.y + 0.5 * cube.edge, cube.lo.z + 0.5 * cube.edge};
-  const Eigen::Vector3f center = (T_camera_world_ * center_world).cast<float>();
-  const Eigen::Matrix3f half = (T_camera_world_.linear() * half_m).cast<float>();
-  const float half_z = half.row(2).cwiseAbs().sum();
-  if (center.z() + half_z < 0.0F) return Visibility::hidden;
-
-  const Eigen::Array3d offset = (center_world - camera_world_).array().abs();
-  const double nearest_m = (offset - half_m).max(0.0).matrix().norm() - kSlackM;
-  if (nearest_m > ranges_.max_reach_m()) return Visibility::hidden;
-  constexpr float kNearestProjected{0.02F};
-  if (center.z() - half_z < kNearestProjected) return Visibility::mixed;
-
-  const tsdf::FusionCamera& camera = ranges_.camera();
-  const Corners inv_z = kCorners.coordinate(center, half, 2).inverse();
-  const Corners u = camera.fx * kCorners.coordinate(center, half, 0) * inv_z + camera.cx;
-  const Corners v = camera.fy * kCorners.coordinate(center, half, 1) * inv_z + camera.cy;
-  const float u_min = u.minCoeff() - kSlackPx;
-  const float v_min = v.minCoeff() - kSlackPx;
-  const float u_max = u.maxCoeff() + kSlackPx;
-  const float v_max = v.maxCoeff() + kSlackPx;
-  const auto last_u = static_cast<float>(camera.width - 1);
-  const auto last_v = static_cast<float>(camera.height - 1);
-  if (u_max < 0.0F || v_max < 0.0F || u_min > last_u || v_min > last_v) return Visibility::hidden;
-  const bool inside = u_min >= 0.0F && v_min >= 0.0F && u_max <= last_u && v_max <= last_v;
-  const PixelRect rect{static_cast<int>(std::max(u_min, 0.0F)), static_cast<int>(std::max(v_min, 0.0F)),
-                       static_cast<int>(std::ceil(std::min(u_max, last_u))),
-                       static_cast<int>(std::ceil(std::min(v_max, last_v)))};
-  const BeamBounds seen = ranges_.bounds(rect);
-  if (nearest_m > seen.reach_m) return Visibility::hidden;
-  const double farthest_m = (offset + half_m).matrix().norm() + kSlackM;
-  if (farthest_m >= seen.clear_m) return inside ? Visibility::mixed_inside : Visibility::mixed;
-  return inside && seen.nearest_m > 0.0F ? Visibility::all_free : Visibility::free_or_unseen;
+FrameFuser::OctantVisibility FrameFuser::visibility(const Cube& cube) const {
+  fusion::OctantViews views;
+  fusion::view_octants(ranges_.camera(), frame_at(cube.lo), cube.edge, views);
+  OctantVisibility result;
+  for (std::size_t i = 0; i < result.size(); ++i) {
+    const auto has = [i](fusion::OctantMask mask) { return ((mask >> i) & 1U) != 0; };
+    const float nearest_m = views.nearest_m[i];
+    result[i] = Visibility::hidden;
+    if (has(views.hidden) || nearest_m > ranges_.max_reach_m()) continue;
+    result[i] = Visibility::mixed;
+    if (has(views.near)) continue;
+    const bool inside = has(views.inside);
+    const BeamBounds seen = ranges_.bounds({views.u0[i], views.v0[i], views.u1[i], views.v1[i]});
+    if (nearest_m > seen.reach_m) {
+      result[i] = Visibility::hidden;
+    } else if (views.farthest_m[i] >= seen.clear_m) {
+      result[i] = inside ? Visibility::mixed_inside : Visibility::mixed;
+    } else {
+      result[i] = inside && seen.nearest_m > 0.0F ? Visibility::all_free : Visibility::free_or_unseen;
+    }
+  }
+  return result;
 }
 
 void FrameFuser::fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const {
-  const Visibility seen = visibility(cube);
-  if (seen == Visibility::hidden) return;
-  if (seen == Visibility::all_free) return observe_free(cube, sector, counts);
-  if (cube.edge > kBrickEdge) {
-    for (int i = 0; i < kOctants; ++i) {
-      fuse_cube({octant(cube.lo, cube.edge / 2, i), cube.edge / 2}, sector, counts);
+  const int edge = cube.edge / 2;
+  const OctantVisibility octants = visibility(cube);
+  for (int i = 0; i < fusion::kOctants; ++i) {
+    const Cube part{octant(cube.lo, edge, i), edge};
+    const Visibility seen = octants[static_cast<std::size_t>(i)];
+    if (seen == Visibility::hidden) continue;
+    if (seen == Visibility::all_free) {
+      observe_free(part, sector, counts);
+    } else if (edge > kBrickEdge) {
+      fuse_cube(part, sector, counts);
+    } else if (seen == Visibility::free_or_unseen && sector.saturated.test(child_index(parent(part.lo)))) {
+      ++counts.bricks_free;
+      ++counts.bricks_saturated;
+    } else {
+      fuse_brick(parent(part.lo), seen == Visibility::mixed_inside, sector, counts);
     }
-    return;
   }
-  const Index3 brick = parent(cube.lo);
+}
+
+void FrameFuser::fuse_brick(const Index3& brick, bool inside, Sector& sector, Counts& counts) const {
+  const Cube cube{brick * kBrickEdge, kBrickEdge};
+  const OctantVisibility octants = visibility(cube);
+  fusion::KnownOctants known;
+  for (std::size_t i = 0; i < octants.size(); ++i) {
+    const auto bit = static_cast<fusion::OctantMask>(1U << i);
+    if (octants[i] == Visibility::hidden) known.hidden |= bit;
+    if (octants[i] == Visibility::all_free) known.free |= bit;
+    if (octants[i] == Visibility::free_or_unseen) known.free_or_unseen |= bit;
+  }
+  constexpr fusion::OctantMask kAll{0xFF};
+  if (known.hidden == kAll) return;
+  if (known.free == kAll) return observe_free(cube, sector, counts);
   const int i = child_index(brick);
-  if (seen == Visibility::free_or_unseen && sector.saturated.test(i)) {
-    ++counts.bricks_free;
-    ++counts.bricks_saturated;
-  } else if (fuse_brick(brick, seen == Visibility::mixed_inside, sector.bricks[static_cast<std::size_t>(i)])) {
+  fusion::BrickSamples observed;
+  fusion::sample_brick(ranges_.camera(), frame_at(cube.lo), ranges_.ranges(), inside, known, observed);
+  if (observe(observed, sector.bricks[static_cast<std::size_t>(i)])) {
     sector.update_summary(i, config_.free_weight);
     ++counts.bricks_updated;
   }
@@ -196,16 +189,14 @@ void FrameFuser::observe_free(const Cube& cube, Sector& sector, Counts& counts) 
   });
 }
 
-tsdf::BrickFrame FrameFuser::brick_frame(const Index3& brick) const {
+tsdf::BrickFrame FrameFuser::frame_at(const Index3& voxel) const {
   const double e = config_.voxel_size_m;
   const Eigen::Matrix3d step = T_camera_world_.linear() * e;
-  return {to_float3(T_camera_world_ * voxel_center(brick * kBrickEdge, e)), to_float3(step.col(0)),
-          to_float3(step.col(1)), to_float3(step.col(2))};
+  return {to_float3(T_camera_world_ * voxel_center(voxel, e)), to_float3(step.col(0)), to_float3(step.col(1)),
+          to_float3(step.col(2))};
 }
 
-bool FrameFuser::fuse_brick(const Index3& brick, bool inside, BrickRef& ref) const {
-  fusion::BrickSamples observed;
-  fusion::sample_brick(ranges_.camera(), brick_frame(brick), ranges_.ranges(), inside, observed);
+bool FrameFuser::observe(const fusion::BrickSamples& observed, BrickRef& ref) const {
   if (observed.seen.none()) return false;
   if (observed.surface.none() && ref.kind() != BrickKind::dense) {
     ref.expand_to_free().observe(observed.seen, config_.free_weight);

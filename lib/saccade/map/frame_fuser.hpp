@@ -2,6 +2,7 @@
 #pragma once
 // FrameFuser: fuses one range image into the bricks of one sector after another. Used by TsdfMap::integrate.
 
+#include <array>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
@@ -40,17 +41,21 @@ class FrameFuser {
     mixed_inside,    ///< every voxel lies in the image
     mixed,
   };
+  [[nodiscard]] static bool is_hidden(Visibility seen);
+  [[nodiscard]] static bool is_mixed(Visibility seen);
   /// Cube of `edge` voxels (a power of two) from voxel `lo`.
   struct Cube {
     Index3 lo;
     int edge;
   };
-  [[nodiscard]] Visibility visibility(const Cube& cube) const;
-  [[nodiscard]] tsdf::BrickFrame brick_frame(const Index3& brick) const;
+  using OctantVisibility = std::array<Visibility, fusion::kOctants>;
+  [[nodiscard]] OctantVisibility visibility(const Cube& cube) const;
+  [[nodiscard]] tsdf::BrickFrame frame_at(const Index3& voxel) const;
   void fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const;
+  /// False when no voxel was seen.
+  bool observe(const fusion::BrickSamples& observed, BrickRef& ref) const;
   void observe_free(const Cube& cube, Sector& sector, Counts& counts) const;
-  /// False when no voxel of the brick was seen.
-  bool fuse_brick(const Index3& brick, bool inside, BrickRef& ref) const;
+  void fuse_brick(const Index3& brick, bool inside, Sector& sector, Counts& counts) const;
   void update_colors(const fusion::BrickSamples& observed, DenseBrick& dense) const;
 
   const TsdfConfig& config_;

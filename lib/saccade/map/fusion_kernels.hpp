@@ -18,16 +18,46 @@ constexpr std::size_t kVectorBytes{64};
 /// Observations of a brick's voxels by one frame.
 struct BrickSamples {
   alignas(kVectorBytes) std::array<std::int16_t, kBrickVoxels> samples;  ///< tsdf::kNotSeen where there is none
-  alignas(kVectorBytes) std::array<std::int32_t, kBrickVoxels> pixels;   ///< index into the image; 0 outside of it
+  alignas(kVectorBytes) std::array<std::int32_t, kBrickVoxels> pixels;   ///< index into the image, where surface
   Mask512 seen;
   Mask512 surface;  ///< seen, and the sample is not 1
+};
+
+constexpr int kOctants{8};
+
+/// Octants of a cube of voxels, bit i: octant (i & 1, i >> 1 & 1, i >> 2).
+using OctantMask = std::uint8_t;
+
+/// Where the voxel centres of the octants of a cube lie: pixels whose beams may hold them, ranges between which they are.
+/// Rounded outwards.
+struct OctantViews {
+  std::array<std::int32_t, kOctants> u0;  ///< pixels, clamped to the image; only where neither hidden nor near
+  std::array<std::int32_t, kOctants> v0;
+  std::array<std::int32_t, kOctants> u1;
+  std::array<std::int32_t, kOctants> v1;
+  std::array<float, kOctants> nearest_m;
+  std::array<float, kOctants> farthest_m;
+  OctantMask hidden;  ///< behind the camera or wholly outside the image
+  OctantMask near;    ///< reaching too near to the camera's plane to be projected
+  OctantMask inside;  ///< wholly in the image
+};
+
+/// @param frame  of the cube's first voxel.
+/// @param edge   of the cube in voxels, a power of two ≥ 4.
+void view_octants(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, int edge, OctantViews& out);
+
+/// What is known of the octants of a brick without looking at their voxels.
+struct KnownOctants {
+  OctantMask hidden{0};          ///< no voxel is seen
+  OctantMask free{0};            ///< every sample is 1
+  OctantMask free_or_unseen{0};  ///< every sample is 1 or there is none
 };
 
 /// tsdf::pixel_of and tsdf::sample_voxel (eq. 2.1 and the clamp of 2.2) of the 512 voxels. `ranges` is the row-major
 /// range image of the camera.
 /// @param inside  every voxel lies in the image; then that is not tested.
 void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges, bool inside,
-                  BrickSamples& out);
+                  KnownOctants known, BrickSamples& out);
 
 /// tsdf::average_v and tsdf::next_w (eq. 2.2 and 2.3) of the voxels in `seen`; keeps both masks up to date.
 /// `samples` is aligned to kVectorBytes.

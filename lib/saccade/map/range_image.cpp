@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <limits>
 
 #include "saccade/map/fusion_kernels.hpp"
@@ -10,16 +11,14 @@
 namespace saccade {
 namespace {
 
-/// The finest level: cells of 4×4 pixels.
-constexpr int kFirstShift{2};
-constexpr int kFirstCell{1 << kFirstShift};
+constexpr int kCellShift{2};
+constexpr int kCellPx{1 << kCellShift};
+constexpr std::size_t kLevels{5};
 
 constexpr float kInfinity{std::numeric_limits<float>::infinity()};
 constexpr BeamBounds kNoBeam{kInfinity, 0.0F, kInfinity};
 
-BeamBounds merged(const BeamBounds& a, const BeamBounds& b) {
-  return {std::min(a.clear_m, b.clear_m), std::max(a.reach_m, b.reach_m), std::min(a.nearest_m, b.nearest_m)};
-}
+int cells_over(int pixels) { return (pixels + kCellPx - 1) / kCellPx; }
 
 std::size_t row_offset(int row, int width) { return static_cast<std::size_t>(row) * static_cast<std::size_t>(width); }
 
@@ -35,7 +34,11 @@ RangeImage::RangeImage(const PinholeCamera& camera, const DepthImage& depth, dou
               camera.height,
               static_cast<float>(truncation_m),
               static_cast<float>(1.0 / truncation_m)},
-      ranges_(depth.size()) {
+      ranges_(depth.size()),
+      width_cells_{cells_over(camera.width)},
+      height_cells_{cells_over(camera.height)},
+      level_size_{row_offset(height_cells_, width_cells_)},
+      least_(kLevels * level_size_, Least{kInfinity, 0.0F, kInfinity, 0.0F}) {
   std::vector<float> dx_squared(static_cast<std::size_t>(camera_.width));
   for (int u = 0; u < camera_.width; ++u) {
     dx_squared[static_cast<std::size_t>(u)] = tsdf::squared_slope(u, camera_.cx, camera_.fx);
@@ -43,9 +46,8 @@ RangeImage::RangeImage(const PinholeCamera& camera, const DepthImage& depth, dou
   const fusion::RayLengths rays{dx_squared.data(), camera_.width,
                                 static_cast<float>(std::max(camera.min_range_m, 1e-6)),
                                 static_cast<float>(camera.max_range_m), camera_.truncation_m};
-  Level cells = level(kFirstShift, camera_.width, camera_.height);
   std::atomic<std::size_t> valid{0};
-  executor.parallel_for(static_cast<std::size_t>(cells.height), 4, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(static_cast<std::size_t>(height_cells_), 4, [&](std::size_t begin, std::size_t end) {
     std::vector<float> clear_m(dx_squared.size());
     std::vector<float> reach_m(dx_squared.size());
     std::vector<float> nearest_m(dx_squared.size());
@@ -54,57 +56,61 @@ RangeImage::RangeImage(const PinholeCamera& camera, const DepthImage& depth, dou
       std::fill(clear_m.begin(), clear_m.end(), kNoBeam.clear_m);
       std::fill(reach_m.begin(), reach_m.end(), kNoBeam.reach_m);
       std::fill(nearest_m.begin(), nearest_m.end(), kNoBeam.nearest_m);
-      for (int v = row * kFirstCell; v < std::min((row + 1) * kFirstCell, camera_.height); ++v) {
+      for (int v = row * kCellPx; v < std::min((row + 1) * kCellPx, camera_.height); ++v) {
         count += fusion::ranges_of_row(rays, tsdf::squared_slope(v, camera_.cy, camera_.fy), depth.row(v),
                                        ranges_.data() + row_offset(v, camera_.width),
                                        {clear_m.data(), reach_m.data(), nearest_m.data()});
       }
-      BeamBounds* out = cells.cells.data() + row_offset(row, cells.width);
+      Least* out = level(0) + row_offset(row, width_cells_);
       for (std::size_t u = 0; u < clear_m.size(); ++u) {
-        BeamBounds& cell = out[u >> kFirstShift];
-        cell = merged(cell, {clear_m[u], reach_m[u], nearest_m[u]});
+        Least& cell = out[u >> kCellShift];
+        cell = cell.min(Least{clear_m[u], -reach_m[u], nearest_m[u], 0.0F});
       }
     }
     valid += count;
   });
   valid_pixels_ = valid;
-  levels_.push_back(std::move(cells));
-  build_pyramid();
+  bound_squares();
+  max_reach_m_ = bounds({0, 0, camera_.width - 1, camera_.height - 1}).reach_m;
 }
 
-RangeImage::Level RangeImage::level(int shift, int fine_width, int fine_height) {
-  const int cell = shift == kFirstShift ? kFirstCell : 2;
-  Level result{shift, (fine_width + cell - 1) / cell, (fine_height + cell - 1) / cell, {}};
-  result.cells.resize(row_offset(result.height, result.width), kNoBeam);
-  return result;
-}
-
-void RangeImage::build_pyramid() {
-  while (levels_.back().width > 1 || levels_.back().height > 1) {
-    const Level& fine = levels_.back();
-    Level coarse = level(fine.shift + 1, fine.width, fine.height);
-    for (int y = 0; y < fine.height; ++y) {
-      const BeamBounds* in = fine.cells.data() + row_offset(y, fine.width);
-      BeamBounds* out = coarse.cells.data() + row_offset(y / 2, coarse.width);
-      for (int x = 0; x < fine.width; ++x) out[x / 2] = merged(out[x / 2], in[x]);
+void RangeImage::bound_squares() {
+  for (std::size_t k = 1; k < kLevels; ++k) {
+    const int half = 1 << (k - 1);
+    for (int y = 0; y < height_cells_; ++y) {
+      const Least* upper = level(k - 1) + row_offset(y, width_cells_);
+      const Least* lower = level(k - 1) + row_offset(std::min(y + half, height_cells_ - 1), width_cells_);
+      Least* out = level(k) + row_offset(y, width_cells_);
+      for (int x = 0; x < width_cells_; ++x) {
+        const int right = std::min(x + half, width_cells_ - 1);
+        out[x] = upper[x].min(upper[right]).min(lower[x].min(lower[right]));
+      }
     }
-    levels_.push_back(std::move(coarse));
   }
 }
-
-float RangeImage::max_reach_m() const { return levels_.back().cells.front().reach_m; }
 
 BeamBounds RangeImage::bounds(const PixelRect& rect) const {
-  const int extent = std::max(rect.u1 - rect.u0, rect.v1 - rect.v0);
-  std::size_t level{0};
-  while (level + 1 < levels_.size() && (extent >> levels_[level].shift) > 5) ++level;
-  const Level& cells = levels_[level];
-  BeamBounds result = kNoBeam;
-  for (int y = rect.v0 >> cells.shift; y <= rect.v1 >> cells.shift; ++y) {
-    const BeamBounds* row = cells.cells.data() + static_cast<std::size_t>(y) * static_cast<std::size_t>(cells.width);
-    for (int x = rect.u0 >> cells.shift; x <= rect.u1 >> cells.shift; ++x) result = merged(result, row[x]);
+  const int x0 = rect.u0 >> kCellShift;
+  const int y0 = rect.v0 >> kCellShift;
+  const int x1 = (rect.u1 >> kCellShift) + 1;
+  const int y1 = (rect.v1 >> kCellShift) + 1;
+  // The largest square that fits, repeated; the last of a row or column ends where the rectangle does.
+  const auto edge_cells = static_cast<unsigned>(std::min(x1 - x0, y1 - y0));
+  const std::size_t k = std::min(static_cast<std::size_t>(std::bit_width(edge_cells)) - 1, kLevels - 1);
+  const int square = 1 << k;
+  const Least* squares = level(k);
+  Least least{kInfinity, 0.0F, kInfinity, 0.0F};
+  if (std::max(x1 - x0, y1 - y0) <= 2 * square) {  // the same as below, for one to four squares
+    const Least* upper = squares + row_offset(y0, width_cells_);
+    const Least* lower = squares + row_offset(y1 - square, width_cells_);
+    least = upper[x0].min(upper[x1 - square]).min(lower[x0].min(lower[x1 - square]));
+    return {least[0], -least[1], least[2]};
   }
-  return result;
+  for (int y = y0; y < y1; y += square) {
+    const Least* row = squares + row_offset(std::min(y, y1 - square), width_cells_);
+    for (int x = x0; x < x1; x += square) least = least.min(row[std::min(x, x1 - square)]);
+  }
+  return {least[0], -least[1], least[2]};
 }
 
 }  // namespace saccade

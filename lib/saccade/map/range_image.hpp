@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RangeImage: distances along the rays of one depth image, and the pyramid that bounds them over rectangles.
+// RangeImage: distances along the rays of one depth image, and their bounds over rectangles.
 
+#include <Eigen/Core>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
@@ -27,8 +28,9 @@ struct PixelRect {
   int v1{-1};
 };
 
-/// Depths turned into ranges ‖p − o‖ (eq. 2.1), 0 where there is no valid return, negative for "free up to", with a
-/// min/max pyramid over blocks of 4×4, 8×8, … pixels. Building is O(pixels), a query looks at ≤ 49 cells.
+/// Depths turned into ranges ‖p − o‖ (eq. 2.1), 0 where there is no valid return, negative for "free up to". The bounds of
+/// cells of 4×4 pixels are kept, and of squares of 2, 4, … 16 cells from every cell: a small rectangle is covered by four
+/// overlapping squares. Building is O(pixels), a query O(1) up to 128 pixels and cheap beyond.
 class RangeImage {
  public:
   RangeImage(const PinholeCamera& camera, const DepthImage& depth, double truncation_m, const Executor& executor);
@@ -37,25 +39,25 @@ class RangeImage {
   [[nodiscard]] const float* ranges() const { return ranges_.data(); }
   [[nodiscard]] std::size_t valid_pixels() const { return valid_pixels_; }
   /// Upper bound of the reach over the whole image.
-  [[nodiscard]] float max_reach_m() const;
+  [[nodiscard]] float max_reach_m() const { return max_reach_m_; }
   /// Conservative bounds over all pixels of `rect`, which must lie within the image.
   [[nodiscard]] BeamBounds bounds(const PixelRect& rect) const;
 
  private:
-  struct Level {
-    int shift;  ///< a cell covers 2^shift pixels
-    int width;
-    int height;
-    std::vector<BeamBounds> cells;
-  };
-  /// An empty level of cells of 2^shift pixels; the sizes are those of the level below it, or of the image.
-  [[nodiscard]] static Level level(int shift, int fine_width, int fine_height);
-  void build_pyramid();
+  /// Componentwise least: clear_m, −reach_m, nearest_m.
+  using Least = Eigen::Array4f;
+  [[nodiscard]] Least* level(std::size_t i) { return least_.data() + i * level_size_; }
+  [[nodiscard]] const Least* level(std::size_t i) const { return least_.data() + i * level_size_; }
+  void bound_squares();
 
   tsdf::FusionCamera camera_;
   std::vector<float> ranges_;
   std::size_t valid_pixels_{0};
-  std::vector<Level> levels_;
+  int width_cells_;
+  int height_cells_;
+  std::size_t level_size_;
+  std::vector<Least> least_;  ///< level k: the square of 2^k × 2^k cells from each cell
+  float max_reach_m_{0.0F};
 };
 
 }  // namespace saccade
