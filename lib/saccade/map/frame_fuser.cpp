@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
 
 namespace saccade {
@@ -29,9 +30,6 @@ void for_each_brick(const Index3& first_brick, int edge_bricks, const Body& body
 }
 
 }  // namespace
-
-bool FrameFuser::is_hidden(Visibility seen) { return seen == Visibility::hidden; }
-bool FrameFuser::is_mixed(Visibility seen) { return seen == Visibility::mixed_inside || seen == Visibility::mixed; }
 
 FrameFuser::FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const Pose& T_world_camera,
                        const ColorImage* color)
@@ -69,8 +67,7 @@ std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) cons
   std::vector<std::uint8_t> visible(keys.size());
   executor.parallel_for(keys.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const OctantVisibility octants = visibility({keys[i] * kSectorVoxelEdge, kSectorVoxelEdge});
-      visible[i] = std::ranges::all_of(octants, is_hidden) ? 0 : 1;
+      visible[i] = known_octants({keys[i] * kSectorVoxelEdge, kSectorVoxelEdge}).hidden != fusion::kAllOctants ? 1 : 0;
     }
   });
   std::size_t kept{0};
@@ -83,7 +80,8 @@ std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) cons
 
 bool FrameFuser::leaves_unchanged(const Index3& sector_key, const Sector& sector) const {
   if (!sector.saturated.all()) return false;
-  return std::ranges::none_of(visibility({sector_key * kSectorVoxelEdge, kSectorVoxelEdge}), is_mixed);
+  const fusion::KnownOctants known = known_octants({sector_key * kSectorVoxelEdge, kSectorVoxelEdge});
+  return (known.hidden | known.free_or_unseen) == fusion::kAllOctants;
 }
 
 FrameFuser::Counts FrameFuser::fuse(const Index3& sector_key, Sector& sector) const {
@@ -92,63 +90,54 @@ FrameFuser::Counts FrameFuser::fuse(const Index3& sector_key, Sector& sector) co
   return counts;
 }
 
-FrameFuser::OctantVisibility FrameFuser::visibility(const Cube& cube) const {
+fusion::KnownOctants FrameFuser::known_octants(const Cube& cube) const {
   fusion::OctantViews views;
   fusion::view_octants(ranges_.camera(), frame_at(cube.lo), cube.edge, views);
-  OctantVisibility result;
-  for (std::size_t i = 0; i < result.size(); ++i) {
-    const auto has = [i](fusion::OctantMask mask) { return ((mask >> i) & 1U) != 0; };
-    const float nearest_m = views.nearest_m[i];
-    result[i] = Visibility::hidden;
-    if (has(views.hidden) || nearest_m > ranges_.max_reach_m()) continue;
-    result[i] = Visibility::mixed;
-    if (has(views.near)) continue;
-    const bool inside = has(views.inside);
+  // Masks rather than branches, which could not be predicted.
+  unsigned beyond{0};        // farther than anything seen in its beams
+  unsigned beyond_image{0};  // farther than anything seen at all
+  unsigned in_front{0};      // nearer than any surface in its beams
+  unsigned all_returned{0};
+  for (unsigned i = 0; i < fusion::kOctants; ++i) {
     const BeamBounds seen = ranges_.bounds({views.u0[i], views.v0[i], views.u1[i], views.v1[i]});
-    if (nearest_m > seen.reach_m) {
-      result[i] = Visibility::hidden;
-    } else if (views.farthest_m[i] >= seen.clear_m) {
-      result[i] = inside ? Visibility::mixed_inside : Visibility::mixed;
-    } else {
-      result[i] = inside && seen.nearest_m > 0.0F ? Visibility::all_free : Visibility::free_or_unseen;
-    }
+    beyond |= static_cast<unsigned>(views.nearest_m[i] > seen.reach_m) << i;
+    beyond_image |= static_cast<unsigned>(views.nearest_m[i] > ranges_.max_reach_m()) << i;
+    in_front |= static_cast<unsigned>(views.farthest_m[i] < seen.clear_m) << i;
+    all_returned |= static_cast<unsigned>(seen.nearest_m > 0.0F) << i;
   }
-  return result;
+  const unsigned projected = ~unsigned{views.near};
+  const unsigned hidden = views.hidden | beyond_image | (beyond & projected);
+  const unsigned free_or_unseen = in_front & projected & ~hidden;
+  const unsigned free = free_or_unseen & views.inside & all_returned;
+  return {static_cast<fusion::OctantMask>(hidden), static_cast<fusion::OctantMask>(free),
+          static_cast<fusion::OctantMask>(free_or_unseen), views.inside};
 }
 
 void FrameFuser::fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const {
   const int edge = cube.edge / 2;
-  const OctantVisibility octants = visibility(cube);
-  for (int i = 0; i < fusion::kOctants; ++i) {
+  const fusion::KnownOctants known = known_octants(cube);
+  for (unsigned rest = ~unsigned{known.hidden} & fusion::kAllOctants; rest != 0; rest &= rest - 1) {
+    const int i = std::countr_zero(rest);
+    const auto is = [i](fusion::OctantMask mask) { return ((mask >> i) & 1) != 0; };
     const Cube part{octant(cube.lo, edge, i), edge};
-    const Visibility seen = octants[static_cast<std::size_t>(i)];
-    if (seen == Visibility::hidden) continue;
-    if (seen == Visibility::all_free) {
+    if (is(known.free)) {
       observe_free(part, sector, counts);
     } else if (edge > kBrickEdge) {
       fuse_cube(part, sector, counts);
-    } else if (seen == Visibility::free_or_unseen && sector.saturated.test(child_index(parent(part.lo)))) {
+    } else if (is(known.free_or_unseen) && sector.saturated.test(child_index(parent(part.lo)))) {
       ++counts.bricks_free;
       ++counts.bricks_saturated;
     } else {
-      fuse_brick(parent(part.lo), seen == Visibility::mixed_inside, sector, counts);
+      fuse_brick(parent(part.lo), is(known.inside), sector, counts);
     }
   }
 }
 
 void FrameFuser::fuse_brick(const Index3& brick, bool inside, Sector& sector, Counts& counts) const {
   const Cube cube{brick * kBrickEdge, kBrickEdge};
-  const OctantVisibility octants = visibility(cube);
-  fusion::KnownOctants known;
-  for (std::size_t i = 0; i < octants.size(); ++i) {
-    const auto bit = static_cast<fusion::OctantMask>(1U << i);
-    if (octants[i] == Visibility::hidden) known.hidden |= bit;
-    if (octants[i] == Visibility::all_free) known.free |= bit;
-    if (octants[i] == Visibility::free_or_unseen) known.free_or_unseen |= bit;
-  }
-  constexpr fusion::OctantMask kAll{0xFF};
-  if (known.hidden == kAll) return;
-  if (known.free == kAll) return observe_free(cube, sector, counts);
+  const fusion::KnownOctants known = known_octants(cube);
+  if (known.hidden == fusion::kAllOctants) return;
+  if (known.free == fusion::kAllOctants) return observe_free(cube, sector, counts);
   const int i = child_index(brick);
   fusion::BrickSamples observed;
   fusion::sample_brick(ranges_.camera(), frame_at(cube.lo), ranges_.ranges(), inside, known, observed);

@@ -34,22 +34,12 @@ class FrameFuser {
   [[nodiscard]] Counts fuse(const Index3& sector_key, Sector& sector) const;
 
  private:
-  enum class Visibility {
-    hidden,          ///< no voxel is observed
-    all_free,        ///< every voxel is observed as free
-    free_or_unseen,  ///< no voxel is observed but as free: beams without return, parts outside the image
-    mixed_inside,    ///< every voxel lies in the image
-    mixed,
-  };
-  [[nodiscard]] static bool is_hidden(Visibility seen);
-  [[nodiscard]] static bool is_mixed(Visibility seen);
   /// Cube of `edge` voxels (a power of two) from voxel `lo`.
   struct Cube {
     Index3 lo;
     int edge;
   };
-  using OctantVisibility = std::array<Visibility, fusion::kOctants>;
-  [[nodiscard]] OctantVisibility visibility(const Cube& cube) const;
+  [[nodiscard]] fusion::KnownOctants known_octants(const Cube& cube) const;
   [[nodiscard]] tsdf::BrickFrame frame_at(const Index3& voxel) const;
   void fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const;
   /// False when no voxel was seen.

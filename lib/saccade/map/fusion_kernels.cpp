@@ -114,8 +114,9 @@ HWY_INLINE IntVec sample_voxels(const tsdf::FusionCamera& camera, const Float3Ve
   const FloatVec zero = hn::Zero(d);
   const FloatVec distance = hn::Sqrt(hn::Add(hn::Add(hn::Mul(p.x, p.x), hn::Mul(p.y, p.y)), hn::Mul(p.z, p.z)));
   const FloatVec sdf = hn::Sub(range, distance);  // eq. 2.1
-  const FloatVec clamped = hn::Max(hn::Min(hn::Mul(sdf, hn::Set(d, camera.inv_truncation)), one), hn::Neg(one));
-  const IntVec sample = round_to_even(hn::Mul(clamped, hn::Set(d, 32767.0F)));
+  // Below −1 there is no hit, and rounding takes −1 and a few ulp to −32767.
+  const FloatVec below_one = hn::Min(hn::Mul(sdf, hn::Set(d, camera.inv_truncation)), one);
+  const IntVec sample = round_to_even(hn::Mul(below_one, hn::Set(d, 32767.0F)));
   const FloatMask hit = hn::And(inside, hn::And(hn::Gt(range, zero), hn::Ge(sdf, hn::Set(d, -camera.truncation_m))));
   const FloatMask seen_free = hn::And(inside, hn::And(hn::Lt(range, zero), hn::Le(distance, hn::Neg(range))));
   const IntVec not_hit =
@@ -214,12 +215,6 @@ void view_octants_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFram
     const Vec u_max = hn::Add(u, u_radius);
     const Vec v_max = hn::Add(v, v_radius);
     const auto pixel = [&](Vec p) HWY_ATTR { return hn::ConvertTo(di, p); };
-    const auto clamped = [&](Vec p, Vec last) HWY_ATTR { return hn::Min(hn::Max(p, zero), last); };
-    hn::StoreU(pixel(clamped(u_min, last_u)), di, out.u0.data() + first);
-    hn::StoreU(pixel(clamped(v_min, last_v)), di, out.v0.data() + first);
-    hn::StoreU(pixel(hn::Ceil(clamped(u_max, last_u))), di, out.u1.data() + first);
-    hn::StoreU(pixel(hn::Ceil(clamped(v_max, last_v))), di, out.v1.data() + first);
-
     const auto is_near = hn::Lt(nearest_z, set(kNearestProjected));
     auto outside = hn::Lt(hn::Add(z, set(half_z)), zero);
     for (std::size_t i = 0; i < sides.size(); ++i) {
@@ -227,6 +222,14 @@ void view_octants_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFram
                                  hn::Mul(z, set(sides[i].z)));
       outside = hn::Or(outside, hn::Lt(across, set(-side_spread[i])));
     }
+    const auto clamped = [&](Vec p, Vec last) HWY_ATTR { 
+      return hn::IfThenZeroElse(hn::Or(is_near, outside), hn::Min(hn::Max(p, zero), last));
+    };
+    hn::StoreU(pixel(clamped(u_min, last_u)), di, out.u0.data() + first);
+    hn::StoreU(pixel(clamped(v_min, last_v)), di, out.v0.data() + first);
+    hn::StoreU(pixel(hn::Ceil(clamped(u_max, last_u))), di, out.u1.data() + first);
+    hn::StoreU(pixel(hn::Ceil(clamped(v_max, last_v))), di, out.v1.data() + first);
+
     const auto whole = hn::And(hn::And(hn::Ge(u_min, zero), hn::Le(u_max, last_u)),
                                hn::And(hn::Ge(v_min, zero), hn::Le(v_max, last_v)));
     hidden |= bits_of(d, outside) << first;

@@ -31,7 +31,7 @@ using OctantMask = std::uint8_t;
 /// Where the voxel centres of the octants of a cube lie: pixels whose beams may hold them, ranges between which they are.
 /// Rounded outwards.
 struct OctantViews {
-  std::array<std::int32_t, kOctants> u0;  ///< pixels, clamped to the image; only where neither hidden nor near
+  std::array<std::int32_t, kOctants> u0;  ///< pixels, clamped to the image; 0 where hidden or near
   std::array<std::int32_t, kOctants> v0;
   std::array<std::int32_t, kOctants> u1;
   std::array<std::int32_t, kOctants> v1;
@@ -46,12 +46,14 @@ struct OctantViews {
 /// @param edge   of the cube in voxels, a power of two ≥ 4.
 void view_octants(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, int edge, OctantViews& out);
 
-/// What is known of the octants of a brick without looking at their voxels.
+/// What is known of the octants of a cube without looking at their voxels.
 struct KnownOctants {
-  OctantMask hidden{0};          ///< no voxel is seen
-  OctantMask free{0};            ///< every sample is 1
-  OctantMask free_or_unseen{0};  ///< every sample is 1 or there is none
+  OctantMask hidden;          ///< no voxel is seen
+  OctantMask free;            ///< every sample is 1
+  OctantMask free_or_unseen;  ///< every sample is 1, or there is none; holds for those of `free` as well
+  OctantMask inside;          ///< every voxel lies in the image
 };
+constexpr OctantMask kAllOctants{0xFF};
 
 /// tsdf::pixel_of and tsdf::sample_voxel (eq. 2.1 and the clamp of 2.2) of the 512 voxels. `ranges` is the row-major
 /// range image of the camera.

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <atomic>
-#include <bit>
 #include <limits>
 
 #include "saccade/map/fusion_kernels.hpp"
@@ -11,16 +10,11 @@
 namespace saccade {
 namespace {
 
-constexpr int kCellShift{2};
-constexpr int kCellPx{1 << kCellShift};
-constexpr std::size_t kLevels{5};
 
 constexpr float kInfinity{std::numeric_limits<float>::infinity()};
 constexpr BeamBounds kNoBeam{kInfinity, 0.0F, kInfinity};
 
-int cells_over(int pixels) { return (pixels + kCellPx - 1) / kCellPx; }
-
-std::size_t row_offset(int row, int width) { return static_cast<std::size_t>(row) * static_cast<std::size_t>(width); }
+int cells_over(int pixels) { return (pixels + RangeImage::kCellPx - 1) / RangeImage::kCellPx; }
 
 }  // namespace
 
@@ -87,30 +81,6 @@ void RangeImage::bound_squares() {
       }
     }
   }
-}
-
-BeamBounds RangeImage::bounds(const PixelRect& rect) const {
-  const int x0 = rect.u0 >> kCellShift;
-  const int y0 = rect.v0 >> kCellShift;
-  const int x1 = (rect.u1 >> kCellShift) + 1;
-  const int y1 = (rect.v1 >> kCellShift) + 1;
-  // The largest square that fits, repeated; the last of a row or column ends where the rectangle does.
-  const auto edge_cells = static_cast<unsigned>(std::min(x1 - x0, y1 - y0));
-  const std::size_t k = std::min(static_cast<std::size_t>(std::bit_width(edge_cells)) - 1, kLevels - 1);
-  const int square = 1 << k;
-  const Least* squares = level(k);
-  Least least{kInfinity, 0.0F, kInfinity, 0.0F};
-  if (std::max(x1 - x0, y1 - y0) <= 2 * square) {  // the same as below, for one to four squares
-    const Least* upper = squares + row_offset(y0, width_cells_);
-    const Least* lower = squares + row_offset(y1 - square, width_cells_);
-    least = upper[x0].min(upper[x1 - square]).min(lower[x0].min(lower[x1 - square]));
-    return {least[0], -least[1], least[2]};
-  }
-  for (int y = y0; y < y1; y += square) {
-    const Least* row = squares + row_offset(std::min(y, y1 - square), width_cells_);
-    for (int x = x0; x < x1; x += square) least = least.min(row[std::min(x, x1 - square)]);
-  }
-  return {least[0], -least[1], least[2]};
 }
 
 }  // namespace saccade

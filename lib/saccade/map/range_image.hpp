@@ -3,6 +3,9 @@
 // RangeImage: distances along the rays of one depth image, and their bounds over rectangles.
 
 #include <Eigen/Core>
+#include <algorithm>
+#include <bit>
+#include <cstddef>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
@@ -33,6 +36,10 @@ struct PixelRect {
 /// overlapping squares. Building is O(pixels), a query O(1) up to 128 pixels and cheap beyond.
 class RangeImage {
  public:
+  static constexpr int kCellShift{2};
+  static constexpr int kCellPx{1 << kCellShift};
+  static constexpr std::size_t kLevels{5};
+
   RangeImage(const PinholeCamera& camera, const DepthImage& depth, double truncation_m, const Executor& executor);
 
   [[nodiscard]] const tsdf::FusionCamera& camera() const { return camera_; }
@@ -49,6 +56,9 @@ class RangeImage {
   [[nodiscard]] Least* level(std::size_t i) { return least_.data() + i * level_size_; }
   [[nodiscard]] const Least* level(std::size_t i) const { return least_.data() + i * level_size_; }
   void bound_squares();
+  [[nodiscard]] static std::size_t row_offset(int row, int width) {
+    return static_cast<std::size_t>(row) * static_cast<std::size_t>(width);
+  }
 
   tsdf::FusionCamera camera_;
   std::vector<float> ranges_;
@@ -59,5 +69,29 @@ class RangeImage {
   std::vector<Least> least_;  ///< level k: the square of 2^k × 2^k cells from each cell
   float max_reach_m_{0.0F};
 };
+
+inline BeamBounds RangeImage::bounds(const PixelRect& rect) const {
+  const int x0 = rect.u0 >> kCellShift;
+  const int y0 = rect.v0 >> kCellShift;
+  const int x1 = (rect.u1 >> kCellShift) + 1;
+  const int y1 = (rect.v1 >> kCellShift) + 1;
+  // The largest square that fits, repeated; the last of a row or column ends where the rectangle does.
+  const auto edge_cells = static_cast<unsigned>(std::min(x1 - x0, y1 - y0));
+  const std::size_t k = std::min(static_cast<std::size_t>(std::bit_width(edge_cells)) - 1, kLevels - 1);
+  const int square = 1 << k;
+  const Least* squares = level(k);
+  Least least = squares[row_offset(y0, width_cells_) + static_cast<std::size_t>(x0)];
+  if (std::max(x1 - x0, y1 - y0) <= 2 * square) {  // the same as below, for one to four squares
+    const Least* upper = squares + row_offset(y0, width_cells_);
+    const Least* lower = squares + row_offset(y1 - square, width_cells_);
+    least = upper[x0].min(upper[x1 - square]).min(lower[x0].min(lower[x1 - square]));
+    return {least[0], -least[1], least[2]};
+  }
+  for (int y = y0; y < y1; y += square) {
+    const Least* row = squares + row_offset(std::min(y, y1 - square), width_cells_);
+    for (int x = x0; x < x1; x += square) least = least.min(row[std::min(x, x1 - square)]);
+  }
+  return {least[0], -least[1], least[2]};
+}
 
 }  // namespace saccade
