@@ -37,7 +37,11 @@ FrameFuser::FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const
       ranges_{ranges},
       color_{color},
       T_camera_world_{T_world_camera.inverse()},
-      camera_world_{T_world_camera.translation()} {}
+      camera_world_{T_world_camera.translation()} {
+  for (int axis = 0; axis < 3; ++axis) {
+    steps_[static_cast<std::size_t>(axis)] = to_float3(T_camera_world_.linear().col(axis) * config.voxel_size_m);
+  }
+}
 
 std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) const {
   const double reach_m = ranges_.max_reach_m();
@@ -179,10 +183,7 @@ void FrameFuser::observe_free(const Cube& cube, Sector& sector, Counts& counts) 
 }
 
 tsdf::BrickFrame FrameFuser::frame_at(const Index3& voxel) const {
-  const double e = config_.voxel_size_m;
-  const Eigen::Matrix3d step = T_camera_world_.linear() * e;
-  return {to_float3(T_camera_world_ * voxel_center(voxel, e)), to_float3(step.col(0)), to_float3(step.col(1)),
-          to_float3(step.col(2))};
+  return {to_float3(T_camera_world_ * voxel_center(voxel, config_.voxel_size_m)), steps_[0], steps_[1], steps_[2]};
 }
 
 bool FrameFuser::observe(const fusion::BrickSamples& observed, BrickRef& ref) const {

@@ -40,6 +40,7 @@ class FrameFuser {
     int edge;
   };
   [[nodiscard]] fusion::KnownOctants known_octants(const Cube& cube) const;
+  /// Of the cube or brick whose first voxel that is.
   [[nodiscard]] tsdf::BrickFrame frame_at(const Index3& voxel) const;
   void fuse_cube(const Cube& cube, Sector& sector, Counts& counts) const;
   /// False when no voxel was seen.
@@ -53,6 +54,7 @@ class FrameFuser {
   const ColorImage* color_;
   Pose T_camera_world_;
   Eigen::Vector3d camera_world_;
+  std::array<tsdf::Float3, 3> steps_;  ///< from voxel to voxel, in camera coordinates
 };
 
 }  // namespace saccade

@@ -10,7 +10,6 @@
 namespace saccade {
 namespace {
 
-
 constexpr float kInfinity{std::numeric_limits<float>::infinity()};
 constexpr BeamBounds kNoBeam{kInfinity, 0.0F, kInfinity};
 

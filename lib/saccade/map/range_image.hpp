@@ -31,11 +31,12 @@ struct PixelRect {
   int v1{-1};
 };
 
-/// Depths turned into ranges ‖p − o‖ (eq. 2.1), 0 where there is no valid return, negative for "free up to". The bounds of
-/// cells of 4×4 pixels are kept, and of squares of 2, 4, … 16 cells from every cell: a small rectangle is covered by four
-/// overlapping squares. Building is O(pixels), a query O(1) up to 128 pixels and cheap beyond.
+/// Depths turned into ranges ‖p − o‖ (eq. 2.1), 0 where there is no valid return, negative for "free up to". The bounds
+/// of cells of 4×4 pixels are kept, and of squares of 2, 4, … 16 cells from every cell: a small rectangle is covered by
+/// four overlapping squares. Building is O(pixels), a query O(1) up to 128 pixels and cheap beyond.
 class RangeImage {
  public:
+  /// A cell has 4×4 pixels.
   static constexpr int kCellShift{2};
   static constexpr int kCellPx{1 << kCellShift};
   static constexpr std::size_t kLevels{5};
@@ -80,13 +81,13 @@ inline BeamBounds RangeImage::bounds(const PixelRect& rect) const {
   const std::size_t k = std::min(static_cast<std::size_t>(std::bit_width(edge_cells)) - 1, kLevels - 1);
   const int square = 1 << k;
   const Least* squares = level(k);
-  Least least = squares[row_offset(y0, width_cells_) + static_cast<std::size_t>(x0)];
-  if (std::max(x1 - x0, y1 - y0) <= 2 * square) {  // the same as below, for one to four squares
+  if (std::max(x1 - x0, y1 - y0) <= 2 * square) {  // one to four squares: the loop below without branches
     const Least* upper = squares + row_offset(y0, width_cells_);
     const Least* lower = squares + row_offset(y1 - square, width_cells_);
-    least = upper[x0].min(upper[x1 - square]).min(lower[x0].min(lower[x1 - square]));
+    const Least least = upper[x0].min(upper[x1 - square]).min(lower[x0].min(lower[x1 - square]));
     return {least[0], -least[1], least[2]};
   }
+  Least least = squares[row_offset(y0, width_cells_) + static_cast<std::size_t>(x0)];
   for (int y = y0; y < y1; y += square) {
     const Least* row = squares + row_offset(std::min(y, y1 - square), width_cells_);
     for (int x = x0; x < x1; x += square) least = least.min(row[std::min(x, x1 - square)]);
