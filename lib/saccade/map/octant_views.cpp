@@ -36,7 +36,7 @@ void view_octants_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFram
   const auto set = [&](float x) HWY_ATTR { return hn::Set(d, x); };
   alignas(32) constexpr std::array<std::array<float, kOctants>, 3> kUpper{
       {{0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}};
-  const auto octant_edge = static_cast<float>(edge / 2);
+  const float octant_edge = 0.5F * static_cast<float>(edge);
   const float half_vox = 0.5F * (octant_edge - 1.0F);  // of the box of voxel centres
   const std::array<tsdf::Float3, 3> steps{frame.step_x, frame.step_y, frame.step_z};
   const float voxel_m = std::sqrt(dot(frame.step_x, frame.step_x));
