@@ -13,10 +13,10 @@
 
 namespace saccade {
 
-/// One frame on its way into the grid. Space is gone through top-down, eight octants at a time: of a sector, of its cubes,
-/// of a brick. A cube of voxels that lies wholly in front of everything seen in its beams is observed as free without
-/// touching its voxels, one behind everything is passed over; the bounds are conservative, so the outcome is that of
-/// updating voxel by voxel.
+/// One frame on its way into the grid. Space is gone through top-down, eight octants at a time: of a sector, of its
+/// cubes, of a brick. A cube of voxels that lies wholly in front of everything seen in its beams is observed as free
+/// without touching its voxels, one behind everything is passed over; the bounds are conservative, so the outcome is
+/// that of updating voxel by voxel.
 class FrameFuser {
  public:
   FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const Pose& T_world_camera, const ColorImage* color);
