@@ -82,7 +82,9 @@ def main(results, document):
                        .stdout)["result"]
     lines = ["# Performance", "",
              "Written by `make bench`: medians in milliseconds of seven repetitions, with the fastest and slowest; ours and",
-             "the peers run in one process, on the same data, warm, in random order.", ""]
+             "the peers run in one process, on the same data, warm, in random order. Frames are those of the 7-Scenes kitchen",
+             "(`bench/frames.cpp`); views look at a table with clutter (`bench/view_evaluation.cpp`). Results are compared",
+             "before or while they are timed.", ""]
     held_all, context = True, {}
     table = ["| work | ours, ms | peer | peer, ms | ratio | held |", "|---|---|---|---|---|---|"]
     others = []
