@@ -10,8 +10,8 @@
 namespace saccade {
 namespace {
 
-constexpr int kLookOverPx{8};         // tiles of the first look
-constexpr std::size_t kBatch{8};      // jobs evaluated before the bounds are compared again; fixed: see best_views
+constexpr int kLookOverPx{16};        // tiles of the first look
+constexpr std::size_t kBatch{4};      // jobs before bounds are compared with a new best; fixed: see best_views
 constexpr std::size_t kLookGrain{4};  // jobs
 
 bool better(const RankedView& a, const RankedView& b) { return a.gain != b.gain ? a.gain > b.gain : a.index < b.index; }
@@ -26,8 +26,10 @@ class Podium {
     views_.insert(std::upper_bound(views_.begin(), views_.end(), view, better), view);
     if (views_.size() > places_) views_.pop_back();
   }
-  /// Whether a pose that gains at most so much may still belong on it. At equal gains the index decides.
-  [[nodiscard]] bool open_to(std::uint64_t gain) const { return views_.size() < places_ || gain >= views_.back().gain; }
+  /// What a pose must gain at least to get on it. At equal gains the index decides.
+  [[nodiscard]] std::uint64_t entry(std::size_t pose) const {
+    return views_.size() < places_ ? 0 : views_.back().gain + (pose > views_.back().index ? 1 : 0);
+  }
   [[nodiscard]] std::vector<RankedView> take() { return std::move(views_); }
 
  private:
@@ -67,16 +69,15 @@ Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std:
   casters.reserve(jobs);
   for (const GainJob& job : problem.jobs) casters.emplace_back(problem.grid, job.window, problem.limits, nullptr);
 
-  std::vector<std::uint64_t> bounds(jobs);
   executor.parallel_for(jobs, kLookGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      casters[i].look_over_rows(0, static_cast<int>(problem.jobs[i].window.b.size()), kLookOverPx);
-      bounds[i] = casters[i].scored() + casters[i].open_rays();
+      casters[i].look_over(kLookOverPx);
     }
   });
   std::vector<std::size_t> order(jobs);
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bounds[a] > bounds[b]; });
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return casters[a].about() > casters[b].about(); });
 
   Podium podium{count, T_world_camera};
   std::vector<bool> in_a_job(T_world_camera.size());
@@ -86,15 +87,19 @@ Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std:
   for (std::size_t pose = 0; pose < T_world_camera.size(); ++pose) {
     if (!in_a_job[pose]) podium.add(pose, 0);
   }
-  for (std::size_t first = 0; first < jobs && podium.open_to(bounds[order[first]]); first += kBatch) {
-    const std::size_t batch = std::min(kBatch, jobs - first);
+  for (std::size_t first = 0; first < jobs;) {
+    const std::size_t batch = std::min(std::max(kBatch, first), jobs - first);
     executor.parallel_for(batch, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) casters[order[first + i]].cast_open_tiles();
+      for (std::size_t i = first + begin; i < first + end; ++i) {
+        casters[order[i]].refine(podium.entry(problem.jobs[order[i]].poses.front()));
+      }
     });
     for (std::size_t i = first; i < first + batch; ++i) {
+      if (!casters[order[i]].decided()) continue;
       for (const std::size_t pose : problem.jobs[order[i]].poses) podium.add(pose, casters[order[i]].scored());
       best.poses_evaluated += problem.jobs[order[i]].poses.size();
     }
+    first += batch;
   }
   for (const GainCaster& caster : casters) best.rays_cast += caster.rays_cast();
   best.views = podium.take();

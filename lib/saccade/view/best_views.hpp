@@ -18,10 +18,11 @@ struct BestViews {
 };
 
 /// The first `count` of order_views(evaluate_views(…)), exactly. All poses are looked over in tiles of rays, which
-/// bounds their gains from above; from the largest bound downwards they are then evaluated, until no bound that is left
-/// reaches the last of the best. Errors of evaluate_views; invalid_argument for a count of 0. The same result, and the
-/// same poses evaluated, for every thread count. Where distinct voxels are counted, or tiles are switched off, all
-/// poses are evaluated.
+/// bounds their gains from above, and a few rays of the undecided tiles tell about how much they gain. The most
+/// promising poses are evaluated first; of the others tile after tile is decided, those first that seem to score least,
+/// until the bound falls short of the best. Errors of evaluate_views; invalid_argument for a count of 0. The same
+/// result, and the same poses evaluated, for every thread count. Where distinct voxels are counted, or tiles are
+/// switched off, all poses are evaluated.
 [[nodiscard]] Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region,
                                            std::span<const Pose> T_world_camera, std::size_t count,
                                            const GainConfig& config, const Executor& executor);

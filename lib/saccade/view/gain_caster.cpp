@@ -2,6 +2,7 @@
 #include "saccade/view/gain_caster.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <utility>
 
 #include "saccade/map/ray_walk.hpp"
@@ -12,6 +13,8 @@ namespace {
 constexpr int kRootTile{32};  // pixels; tiles start at this size,
 constexpr int kFineTile{8};   // from this size on they go by voxels,
 constexpr int kRayTile{2};    // and at this size the rays go by themselves
+constexpr int kSamplePx{8};   // rays that judge an open tile are so far apart
+static_assert(kRootTile / kSamplePx * (kRootTile / kSamplePx) < RayPacket::kMost);
 
 /// The event by which a ray enters slab n of voxels along an axis.
 RayEvent slab_entry(const LatticeRay& ray, int major, int n) {
@@ -100,7 +103,8 @@ GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const Cas
 
 void GainCaster::cast_rows(int begin, int end) {
   const auto width = static_cast<int>(window_.a.size());
-  if (!limits_.savings.tiles || !limits_.savings.empty_bricks) {
+  const bool blocked = grid_.stops(window_.rays.origin.voxel);  // tiles look at what rays come to, not start in
+  if (!limits_.savings.tiles || !limits_.savings.empty_bricks || blocked) {
     cast_rays({0, width, begin, end, 0, 0});
     return;
   }
@@ -113,34 +117,80 @@ void GainCaster::cast_rows(int begin, int end) {
   }
 }
 
-void GainCaster::look_over_rows(int begin, int end, int tile_px) {
+void GainCaster::look_over(int tile_px) {
   leave_open_px_ = tile_px;
-  cast_rows(begin, end);
+  cast_rows(0, static_cast<int>(window_.b.size()));
   leave_open_px_ = 0;
-}
-
-std::uint64_t GainCaster::open_rays() const {
-  std::uint64_t rays{0};
-  for (const Tile& tile : open_tiles_) {
-    for (int j = tile.row_begin; j < tile.row_end; ++j) {
-      const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
-      const int columns = std::min(range.end, tile.column_end) - std::max(range.begin, tile.column_begin);
-      rays += static_cast<std::uint64_t>(std::max(columns, 0));
-    }
+  for (OpenTile& open : open_tiles_) {
+    open.rays = rays_in(open.tile);
+    open_rays_ += open.rays;
   }
-  return rays;
+  const auto same_root = [](const OpenTile& a, const OpenTile& b) {
+    return a.tile.row_begin / kRootTile == b.tile.row_begin / kRootTile &&
+           a.tile.column_begin / kRootTile == b.tile.column_begin / kRootTile;
+  };
+  for (auto first = open_tiles_.begin(); first != open_tiles_.end();) {
+    const auto last = std::find_if(first, open_tiles_.end(), [&](const OpenTile& o) { return !same_root(*first, o); });
+    judge({first, last});
+    first = last;
+  }
+  std::stable_sort(open_tiles_.begin(), open_tiles_.end(), [](const OpenTile& a, const OpenTile& b) {
+    return static_cast<double>(a.rays) - a.scoring < static_cast<double>(b.rays) - b.scoring;
+  });
 }
 
-void GainCaster::cast_open_tiles() {
-  for (const Tile& tile : std::exchange(open_tiles_, {})) decide(tile);
+/// Casts a few rays of tiles that were split from one, to tell about how many of theirs score.
+void GainCaster::judge(std::span<OpenTile> tiles) {
+  for (OpenTile& open : tiles) open.scoring = 0.5 * static_cast<double>(open.rays);
+  if (!use_packets_) return;
+  int slab = tiles.front().tile.slab;
+  for (const OpenTile& open : tiles) slab = std::min(slab, open.tile.slab);
+  RayPacket packet = no_rays(tiles.front().tile.major, slab);
+  std::vector<std::size_t> ends;  // of the tiles' rays in the packet
+  for (const OpenTile& open : tiles) {
+    const Tile& tile = open.tile;
+    for (int j = tile.row_begin + kSamplePx / 2; j < tile.row_end; j += kSamplePx) {
+      const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
+      for (int i = tile.column_begin + kSamplePx / 2; i < tile.column_end; i += kSamplePx) {
+        if (i >= range.begin && i < range.end) add_ray(i, j, packet);
+      }
+    }
+    ends.push_back(packet.count);
+  }
+  const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
+  rays_cast_ += tally.cast;
+  std::size_t begin{0};
+  for (std::size_t k = 0; k < tiles.size(); begin = ends[k++]) {
+    const std::size_t rays = ends[k] - begin;
+    if (rays == 0) continue;
+    const std::uint64_t scored = tally.scored >> begin & ((std::uint64_t{1} << rays) - 1);
+    tiles[k].scoring = static_cast<double>(tiles[k].rays) * std::popcount(scored) / static_cast<double>(rays);
+  }
 }
 
-bool GainCaster::to_be_cast(const Tile& tile) const {
+void GainCaster::refine(std::uint64_t enough) {
+  while (!open_tiles_.empty() && at_most() >= enough) {
+    const OpenTile open = open_tiles_.back();
+    open_tiles_.pop_back();
+    open_rays_ -= open.rays;
+    decide(open.tile);
+  }
+}
+
+double GainCaster::about() const {
+  auto gain = static_cast<double>(scored_);
+  for (const OpenTile& open : open_tiles_) gain += open.scoring;
+  return gain;
+}
+
+std::uint64_t GainCaster::rays_in(const Tile& tile) const {
+  std::uint64_t rays{0};
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
     const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
-    if (range.begin < tile.column_end && range.end > tile.column_begin) return true;
+    const int columns = std::min(range.end, tile.column_end) - std::max(range.begin, tile.column_begin);
+    rays += static_cast<std::uint64_t>(std::max(columns, 0));
   }
-  return false;
+  return rays;
 }
 
 int GainCaster::last_slab(const RayBeam& beam) const {
@@ -149,7 +199,7 @@ int GainCaster::last_slab(const RayBeam& beam) const {
 }
 
 void GainCaster::cast_tile(const Tile& tile) {
-  if (!to_be_cast(tile)) return;
+  if (rays_in(tile) == 0) return;
   const RayBeam beam{window_, tile};
   Sight sight{beam, limits_, seen_ == nullptr, tile.slab};
   const int size = std::max(tile.columns(), tile.rows());
@@ -166,7 +216,7 @@ void GainCaster::cast_tile(const Tile& tile) {
   Tile rest{tile};
   rest.slab = sight.clear_until();
   if (std::max(tile.columns(), tile.rows()) <= leave_open_px_) {
-    open_tiles_.push_back(rest);
+    open_tiles_.push_back({rest, 0, 0.0});
   } else {
     decide(rest);
   }
@@ -200,7 +250,7 @@ void GainCaster::look_by_voxels(const RayBeam& beam, int last, Sight& sight) con
     const int end = beam.first_voxel_slab(beam.brick_slab(n) + 1);
     const RayBeam::Voxels voxels = beam.voxels(n, end);
     const unsigned flags = grid_.flags_of_bricks(parent(voxels.lo), parent(voxels.hi));
-    const bool decided = flags == stop_flags::kClear || flags == stop_flags::kAllBlock;
+    const bool decided = stop_flags::uniform(flags) && flags != stop_flags::kAllScore;
     if (!(decided ? sight.add(flags, n, end, beam.near(n), beam.far(end - 1)) : look_closer(beam, n, end, sight))) {
       return;
     }
@@ -242,25 +292,33 @@ void GainCaster::cast_rays(const Tile& tile) {
 }
 
 void GainCaster::cast_packet(const Tile& tile) {
-  const SensorRays& rays = window_.rays;
-  RayPacket packet;
-  packet.origin = rays.origin;
-  packet.major = tile.major;
-  packet.slab = tile.slab;
+  RayPacket packet = no_rays(tile.major, tile.slab);
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
     const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
-    const float b = window_.b[static_cast<std::size_t>(j)];
     const int end = std::min(range.end, tile.column_end);
-    for (int i = std::max(range.begin, tile.column_begin); i < end; ++i, ++packet.count) {
-      const float a = window_.a[static_cast<std::size_t>(i)];
-      for (std::size_t axis = 0; axis < 3; ++axis) {
-        packet.d[axis][packet.count] = rays.x[axis] * a + (rays.y[axis] * b + rays.z[axis]);
-      }
-    }
+    for (int i = std::max(range.begin, tile.column_begin); i < end; ++i) add_ray(i, j, packet);
   }
   const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
-  scored_ += tally.scored;
+  scored_ += static_cast<std::uint64_t>(std::popcount(tally.scored));
   rays_cast_ += tally.cast;
+}
+
+RayPacket GainCaster::no_rays(int major, int slab) const {
+  RayPacket packet;
+  packet.origin = window_.rays.origin;
+  packet.major = major;
+  packet.slab = slab;
+  return packet;
+}
+
+void GainCaster::add_ray(int column, int row, RayPacket& packet) const {
+  const SensorRays& rays = window_.rays;
+  const float a = window_.a[static_cast<std::size_t>(column)];
+  const float b = window_.b[static_cast<std::size_t>(row)];
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    packet.d[axis][packet.count] = rays.x[axis] * a + (rays.y[axis] * b + rays.z[axis]);
+  }
+  ++packet.count;
 }
 
 void GainCaster::cast_ray(float a, float b, int major, int slab) {
@@ -287,7 +345,7 @@ void GainCaster::walk_bricks(const LatticeRay& ray, const RaySpan& span) {
     const bool starts_here = std::exchange(in_first, false);
     const StopGrid::Brick brick = grid_.brick(index);
     if (brick.flags == stop_flags::kClear) return false;
-    if (brick.flags == stop_flags::kAllBlock) return true;
+    if (brick.flags == stop_flags::kAllBlock || brick.flags == stop_flags::kBuried) return true;
     const Index3 start = starts_here ? first : voxel_at_event(ray, in_brick.enter);
     if (brick.flags == stop_flags::kAllScore) {
       score(start, in_brick.enter);
@@ -303,7 +361,7 @@ void GainCaster::walk_voxels(const LatticeRay& ray, const RaySpan& span) {
   walk_cells<kVoxelLevel>(ray, span, [&](const Index3& voxel, const RaySpan& in_voxel) {
     const StopGrid::Brick brick = grid_.brick(parent(voxel));
     if (brick.flags == stop_flags::kClear) return false;
-    if (brick.flags == stop_flags::kAllBlock) return true;
+    if (brick.flags == stop_flags::kAllBlock || brick.flags == stop_flags::kBuried) return true;
     if (brick.flags != stop_flags::kAllScore) return ends_in(brick, voxel, in_voxel.enter);
     score(voxel, in_voxel.enter);
     return true;

@@ -3,6 +3,7 @@
 // VoxelSet, CastLimits, and GainCaster, which counts the rays of a window that score.
 
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "saccade/view/ray_beam.hpp"
@@ -40,19 +41,25 @@ class GainCaster {
   /// Casts rows [begin, end) of the window.
   void cast_rows(int begin, int end);
 
-  /// Like cast_rows, but tiles of at most so many pixels that are still undecided are left in open_tiles().
-  void look_over_rows(int begin, int end, int tile_px);
-  [[nodiscard]] const std::vector<Tile>& open_tiles() const { return open_tiles_; }
-  /// The rays of the open tiles that may still score.
-  [[nodiscard]] std::uint64_t open_rays() const;
-  /// Decides what look_over_rows left open.
-  void cast_open_tiles();
+  /// Like cast_rows for the whole window, but tiles of at most so many pixels that are still undecided are left open.
+  void look_over(int tile_px);
+  /// Decides open tiles, those first that probably score least of their rays, until none is left or at_most() < enough.
+  void refine(std::uint64_t enough);
+  [[nodiscard]] bool decided() const { return open_tiles_.empty(); }
+  /// What the window scores at most, and about, judging the open tiles by some of their rays.
+  [[nodiscard]] std::uint64_t at_most() const { return scored_ + open_rays_; }
+  [[nodiscard]] double about() const;
 
   [[nodiscard]] std::uint64_t scored() const { return scored_; }
   [[nodiscard]] std::uint64_t rays_cast() const { return rays_cast_; }
 
  private:
   class Sight;
+  struct OpenTile {
+    Tile tile;
+    std::uint64_t rays;
+    double scoring;  ///< about how many of them
+  };
 
   void cast_tile(const Tile& tile);
   void look_by_bricks(const RayBeam& beam, int last, Sight& sight) const;
@@ -62,11 +69,14 @@ class GainCaster {
   void split(const Tile& tile);
   void cast_rays(const Tile& tile);
   void cast_packet(const Tile& tile);
+  void judge(std::span<OpenTile> tiles);
+  [[nodiscard]] RayPacket no_rays(int major, int slab) const;
+  void add_ray(int column, int row, RayPacket& packet) const;
   void cast_ray(float a, float b, int major, int slab);
   void walk_bricks(const LatticeRay& ray, const RaySpan& span);
   void walk_voxels(const LatticeRay& ray, const RaySpan& span);
   [[nodiscard]] bool ends_in(const StopGrid::Brick& brick, const Index3& voxel, const RayEvent& entered);
-  [[nodiscard]] bool to_be_cast(const Tile& tile) const;
+  [[nodiscard]] std::uint64_t rays_in(const Tile& tile) const;
   [[nodiscard]] int last_slab(const RayBeam& beam) const;
   void score(const Index3& voxel, const RayEvent& entered);
 
@@ -77,7 +87,8 @@ class GainCaster {
   bool use_packets_;
   int finest_slabs_;  ///< of voxels, that tiles look at
   int leave_open_px_{0};
-  std::vector<Tile> open_tiles_;
+  std::vector<OpenTile> open_tiles_;
+  std::uint64_t open_rays_{0};
   std::uint64_t scored_{0};
   std::uint64_t rays_cast_{0};
 };

@@ -163,7 +163,8 @@ Result<GainProblem> GainProblem::prepare(const TsdfSnapshot& map, const Region& 
   if (region_voxels.empty()) return problem;
   const Views views = views_within_reach(T_world_camera, region_voxels, reach, voxel_size_m);
   if (views.poses.empty()) return problem;
-  SACCADE_TRY(problem.grid, StopGrid::build(map, region, config.unknown_outside, views.domain, executor));
+  SACCADE_TRY(problem.grid, StopGrid::build(map, region, config.unknown_outside, views.domain,
+                                            config.savings.exposed_voxels, executor));
   if (!problem.grid.scoring_voxels().empty()) {
     problem.jobs = make_jobs(views, problem.grid, sensor, region, voxel_size_m, config.savings);
   }

@@ -3,6 +3,8 @@
 #define HWY_TARGET_INCLUDE "saccade/view/ray_packets.cpp"
 #include "saccade/core/simd_kernels.hpp"
 
+#include <bit>
+
 #include "saccade/map/ray_lanes-inl.hpp"
 #include "saccade/view/ray_packets.hpp"
 
@@ -57,9 +59,9 @@ class Walkers {
     return cast;
   }
 
-  /// Until every ray is stopped or has left; returns how many scored.
-  HWY_INLINE std::size_t walk(float min_t) {
-    std::size_t scored{0};
+  /// Until every ray is stopped or has left; returns those that scored, a bit each.
+  HWY_INLINE std::uint64_t walk(float min_t) {
+    M scored = none();
     while (any(active_)) {
       const VI word = word_index();
       const M stopped = hn::And(active_, has_bit(stops_.stop, word));
@@ -67,12 +69,14 @@ class Walkers {
         const M late_enough = hn::Ge(entered_.t, hn::Set(f_, min_t));
         const M entered = hn::RebindMask(f_, hn::Gt(entered_.axis, hn::Set(i_, -1)));  // not the camera's own voxel
         const M counts = hn::And(hn::And(stopped, has_bit(stops_.score, word)), hn::And(late_enough, entered));
-        scored += hn::CountTrue(f_, counts);
+        scored = hn::Or(scored, counts);
         active_ = hn::AndNot(stopped, active_);
       }
       step();
     }
-    return scored;
+    std::array<std::uint8_t, 8> bytes{};
+    hn::StoreMaskBits(f_, scored, bytes.data());
+    return std::bit_cast<std::uint64_t>(bytes) & ((std::uint64_t{1} << hn::Lanes(f_)) - 1);
   }
 
  private:
@@ -136,7 +140,7 @@ PacketTally cast_packets_simd(const RayPacket& packet, const FlatStops& stops, f
     const std::size_t cast = walkers.start(packet, max_t);
     if (cast == 0) continue;
     tally.cast += cast;
-    tally.scored += walkers.walk(min_t);
+    tally.scored |= walkers.walk(min_t) << first;
   }
   return tally;
 }

@@ -39,8 +39,8 @@ struct RayPacket {
 };
 
 struct PacketTally {
-  std::uint64_t scored{0};
-  std::uint64_t cast{0};  ///< rays that meet the box of scoring voxels
+  std::uint64_t scored{0};  ///< bit i: ray i scores
+  std::uint64_t cast{0};    ///< rays that meet the box of scoring voxels
 };
 
 /// Walks every ray voxel by voxel to the first that stops it, as GainCaster's walk does, to the bit; counts those that

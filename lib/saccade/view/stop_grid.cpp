@@ -29,11 +29,16 @@ IndexBox voxels_of_brick(const Index3& brick) {
   return {brick * kBrickEdge, brick * kBrickEdge + Index3{kBrickEdge, kBrickEdge, kBrickEdge}};
 }
 
-template <class Inside>
-Mask512 mask_where(const Index3& brick, Inside&& inside_of) {
+/// The voxels of a brick that lie in a box.
+Mask512 box_mask(const Index3& brick, const IndexBox& box) {
+  const IndexBox part = intersection(voxels_of_brick(brick), box);
   Mask512 mask;
-  for (int i = 0; i < kBrickVoxels; ++i) {
-    if (inside_of(brick * kBrickEdge + child_offset(i))) mask.set(i);
+  if (part.empty()) return mask;
+  const Index3 lo = part.lo - brick * kBrickEdge;
+  const Index3 hi = part.hi - brick * kBrickEdge;
+  const std::uint64_t row = (0xFFU >> (kBrickEdge - hi.x)) & (0xFFU << lo.x);
+  for (int z = lo.z; z < hi.z; ++z) {
+    for (int y = lo.y; y < hi.y; ++y) mask.words[static_cast<std::size_t>(z)] |= row << (kBrickEdge * y);
   }
   return mask;
 }
@@ -49,7 +54,11 @@ Mask512 region_mask(const Region& region, const Index3& brick, double voxel_size
     if ((offset + half).norm() < sphere->radius_m - slack) return Mask512::all_set();
     if ((offset - half).cwiseMax(0.0).norm() > sphere->radius_m + slack) return {};
   }
-  return mask_where(brick, [&](const Index3& voxel) { return contains(region, voxel_center(voxel, voxel_size_m)); });
+  Mask512 mask;
+  for (int i = 0; i < kBrickVoxels; ++i) {
+    mask.assign(i, contains(region, voxel_center(brick * kBrickEdge + child_offset(i), voxel_size_m)));
+  }
+  return mask;
 }
 
 IndexBox bounds_of_mask(const Mask512& mask, const Index3& brick) {
@@ -102,7 +111,7 @@ class StopGrid::Builder {
     return !workspace_ || inside(voxels, *workspace_) ? Kind::blocked : Kind::detailed;
   }
 
-  [[nodiscard]] std::unique_ptr<const SectorView> detailed(const Index3& index) const {
+  [[nodiscard]] std::unique_ptr<SectorView> detailed(const Index3& index) const {
     auto view = std::make_unique<SectorView>();
     const Sector* sector = map_.grid.find(index);
     for (int i = 0; i < kSectorBricks; ++i) add_brick(*view, index * kSectorEdge + child_offset(i), sector, i);
@@ -124,7 +133,7 @@ class StopGrid::Builder {
     const unsigned flags = (scores ? stop_flags::kScores : 0U) | (blocks ? stop_flags::kBlocks : 0U) |
                            (masks.stop.all() ? stop_flags::kSolid : 0U);
     code = static_cast<std::uint16_t>(flags);
-    if (flags == stop_flags::kAllScore || flags == stop_flags::kAllBlock) return;
+    if (stop_flags::uniform(flags)) return;
     code = static_cast<std::uint16_t>(flags | (view.masks.size() << stop_flags::kShift));
     view.masks.push_back(masks);
   }
@@ -134,7 +143,7 @@ class StopGrid::Builder {
     Mask512 occupied = ref == nullptr ? Mask512{} : ref->occupied_mask();
     const IndexBox voxels = voxels_of_brick(brick);
     if (workspace_ && !inside(voxels, *workspace_)) {
-      const Mask512 within = mask_where(brick, [&](const Index3& voxel) { return workspace_->contains(voxel); });
+      const Mask512 within = box_mask(brick, *workspace_);
       unknown = unknown & within;
       occupied = occupied & within;
     }
@@ -142,7 +151,8 @@ class StopGrid::Builder {
     if (unknown.any() && overlap(voxels, region_voxels_)) {
       score = unknown & region_mask(region_, brick, map_.config.voxel_size_m);
     }
-    return {occupied | (unknown_blocks_ ? unknown : score), score};
+    const Mask512 stop = occupied | (unknown_blocks_ ? unknown : score);
+    return {stop, score, stop};
   }
 
   const TsdfSnapshot& map_;
@@ -153,7 +163,7 @@ class StopGrid::Builder {
 };
 
 Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, UnknownOutside outside,
-                                 const IndexBox& domain, const Executor& executor) {
+                                 const IndexBox& domain, bool only_exposed, const Executor& executor) {
   StopGrid grid;
   grid.sectors_ = {parent(parent(domain.lo)), parent(parent(domain.hi - Index3{1, 1, 1})) + Index3{1, 1, 1}};
   const Index3 size = grid.sectors_.hi - grid.sectors_.lo;
@@ -175,7 +185,7 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
 
   const Builder builder{map, region, outside};
   grid.table_.assign(count, grid.clear_.get());
-  std::vector<std::pair<std::size_t, Index3>> detailed;
+  std::vector<std::size_t> places;  // of the detailed sectors in the table
   for (std::size_t i = 0; i < count; ++i) {
     const Index3 offset{static_cast<std::int32_t>(i % grid.size_x_),
                         static_cast<std::int32_t>(i / grid.size_x_ % grid.size_y_),
@@ -184,19 +194,89 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
     switch (builder.kind(sector)) {
       case Builder::Kind::clear: break;
       case Builder::Kind::blocked: grid.table_[i] = grid.blocked_.get(); break;
-      case Builder::Kind::detailed: detailed.emplace_back(i, sector); break;
+      case Builder::Kind::detailed:
+        places.push_back(i);
+        grid.detailed_.push_back(sector);
+        break;
     }
   }
-  grid.views_.resize(detailed.size());
-  executor.parallel_for(detailed.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) grid.views_[k] = builder.detailed(detailed[k].second);
+  grid.views_.resize(places.size());
+  executor.parallel_for(places.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) grid.views_[k] = builder.detailed(grid.detailed_[k]);
   });
-  for (std::size_t k = 0; k < detailed.size(); ++k) {
-    grid.table_[detailed[k].first] = grid.views_[k].get();
-    grid.scoring_voxels_ = hull(grid.scoring_voxels_, grid.views_[k]->scoring);
-  }
+  for (std::size_t k = 0; k < places.size(); ++k) grid.table_[places[k]] = grid.views_[k].get();
+  if (only_exposed) grid.find_exposed(executor);
+  for (const auto& view : grid.views_) grid.scoring_voxels_ = hull(grid.scoring_voxels_, view->scoring);
   grid.flatten(executor);
   return grid;
+}
+
+/// Which voxels have a neighbour that does not stop rays, and the flags and boxes that follow from it.
+void StopGrid::find_exposed(const Executor& executor) {
+  std::vector<std::array<std::uint16_t, kSectorBricks>> codes(views_.size());  // neighbours read the old ones meanwhile
+  executor.parallel_for(views_.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      SectorView& view = *views_[k];
+      codes[k] = view.codes;
+      view.scoring = {};
+      for (int i = 0; i < kSectorBricks; ++i) {
+        std::uint16_t& code = codes[k][static_cast<std::size_t>(i)];
+        const unsigned flags = code & stop_flags::kMask;
+        if (flags == stop_flags::kClear) continue;
+        const Index3 brick = detailed_[k] * kSectorEdge + child_offset(i);
+        if (stop_flags::uniform(flags)) {
+          if (buried(brick))
+            code = static_cast<std::uint16_t>(stop_flags::kBuried);
+          else if ((flags & stop_flags::kScores) != 0)
+            view.scoring = hull(view.scoring, voxels_of_brick(brick));
+          continue;
+        }
+        StopMasks& masks = view.masks[code >> stop_flags::kShift];
+        masks.exposed = exposed_voxels(brick, masks.stop);
+        const Mask512 scores = masks.exposed & masks.score;
+        if (scores.any()) view.scoring = hull(view.scoring, bounds_of_mask(scores, brick));
+        code = static_cast<std::uint16_t>((code & ~(stop_flags::kScores | stop_flags::kBlocks)) |
+                                          (scores.any() ? stop_flags::kScores : 0U) |
+                                          ((masks.exposed & ~masks.score).any() ? stop_flags::kBlocks : 0U));
+      }
+    }
+  });
+  for (std::size_t k = 0; k < views_.size(); ++k) views_[k]->codes = codes[k];
+}
+
+/// Whether a solid brick has only solid neighbours.
+bool StopGrid::buried(const Index3& brick) const {
+  return (brick_flags(brick + Index3{-1, 0, 0}) & brick_flags(brick + Index3{1, 0, 0}) &
+          brick_flags(brick + Index3{0, -1, 0}) & brick_flags(brick + Index3{0, 1, 0}) &
+          brick_flags(brick + Index3{0, 0, -1}) & brick_flags(brick + Index3{0, 0, 1}) & stop_flags::kSolid) != 0;
+}
+
+Mask512 StopGrid::exposed_voxels(const Index3& brick, const Mask512& stop) const {
+  constexpr std::uint64_t kFirstColumn{0x0101010101010101ULL};
+  constexpr std::uint64_t kLastColumn{kFirstColumn << 7};
+  const Mask512 clear = ~stop;
+  const auto clear_beside = [&](const Index3& step) {
+    const Brick neighbour = this->brick(brick + step);
+    if ((neighbour.flags & stop_flags::kSolid) != 0) return Mask512{};
+    return neighbour.flags == stop_flags::kClear ? Mask512::all_set() : ~neighbour.masks->stop;
+  };
+  const Mask512 left = clear_beside({-1, 0, 0});
+  const Mask512 right = clear_beside({1, 0, 0});
+  const Mask512 above = clear_beside({0, -1, 0});
+  const Mask512 below = clear_beside({0, 1, 0});
+  const Mask512 before = clear_beside({0, 0, -1});
+  const Mask512 behind = clear_beside({0, 0, 1});
+  Mask512 exposed;
+  for (std::size_t z = 0; z < kBrickEdge; ++z) {
+    const std::uint64_t here = clear.words[z];
+    const std::uint64_t beside_x = ((here & ~kLastColumn) << 1) | ((left.words[z] & kLastColumn) >> 7) |
+                                   ((here & ~kFirstColumn) >> 1) | ((right.words[z] & kFirstColumn) << 7);
+    const std::uint64_t beside_y = (here << 8) | (above.words[z] >> 56) | (here >> 8) | (below.words[z] << 56);
+    const std::uint64_t beside_z = (z == 0 ? before.words[kBrickEdge - 1] : clear.words[z - 1]) |
+                                   (z == kBrickEdge - 1 ? behind.words[0] : clear.words[z + 1]);
+    exposed.words[z] = stop.words[z] & (beside_x | beside_y | beside_z);
+  }
+  return exposed;
 }
 
 void StopGrid::flatten(const Executor& executor) {
@@ -238,7 +318,7 @@ void StopGrid::flatten(const Executor& executor) {
         const std::size_t place = sector.codes[i] >> stop_flags::kShift;
         auto slot = static_cast<std::int32_t>(first_slot[s] + place);
         if (flags == stop_flags::kClear) slot = FlatStops::kClear;
-        if (flags == stop_flags::kAllBlock) slot = FlatStops::kAllBlock;
+        if (flags == stop_flags::kAllBlock || flags == stop_flags::kBuried) slot = FlatStops::kAllBlock;
         if (flags == stop_flags::kAllScore) slot = FlatStops::kAllScore;
         flat_.slots[(z0 + i / 64) * slice + (y0 + i / 8 % 8) * row + x0 + i % 8] = slot;
       }

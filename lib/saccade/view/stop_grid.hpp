@@ -15,40 +15,48 @@
 
 namespace saccade {
 
-/// Voxels of a brick that stop a ray, and those among them that count for the gain (unknown, inside the region).
+/// Voxels of a brick that stop a ray; those among them that count for the gain (unknown, inside the region); and those
+/// that a ray can come to: a voxel all of whose six neighbours stop rays is reached by none.
 struct StopMasks {
   Mask512 stop;
   Mask512 score;
+  Mask512 exposed;
 };
 
 /// What a brick, or a box of bricks or voxels, holds.
 namespace stop_flags {
-constexpr unsigned kScores{1};  ///< a voxel that stops a ray and scores
-constexpr unsigned kBlocks{2};  ///< a voxel that stops a ray without scoring
+constexpr unsigned kScores{1};  ///< an exposed voxel that stops a ray and scores
+constexpr unsigned kBlocks{2};  ///< an exposed voxel that stops a ray without scoring
 constexpr unsigned kSolid{4};   ///< every voxel stops a ray
 constexpr unsigned kMask{7};
 constexpr int kShift{3};       ///< a brick's code has the place of its masks above the flags
 constexpr unsigned kClear{0};  ///< empty
 constexpr unsigned kAllScore{kScores | kSolid};
 constexpr unsigned kAllBlock{kBlocks | kSolid};
+constexpr unsigned kBuried{kSolid};  ///< and no ray comes to it
+/// Whether the flags of a brick say all there is to know about it.
+[[nodiscard]] constexpr bool uniform(unsigned flags) {
+  return flags == kClear || flags == kAllScore || flags == kAllBlock || flags == kBuried;
+}
 }  // namespace stop_flags
 
 /// The ternary map (eq. 2.11) as the rays of view evaluation see it: region (eq. 2.6), workspace and the treatment of
 /// unknown voxels outside the region are already worked in. Immutable; const use from many threads is safe.
 class StopGrid {
  public:
-  /// Covers the bricks of `domain` (voxels). Outside it everything is clear.
+  /// Covers the bricks of `domain` (voxels). Outside it everything is clear. Unless `only_exposed`, every voxel counts
+  /// as exposed.
   /// @return invalid_argument when the domain holds too many sectors.
   /// O(sectors in the domain + bricks of those that exist or touch the region). Same result for every thread count.
   [[nodiscard]] static Result<StopGrid> build(const TsdfSnapshot& map, const Region& region, UnknownOutside outside,
-                                              const IndexBox& domain, const Executor& executor);
+                                              const IndexBox& domain, bool only_exposed, const Executor& executor);
 
-  /// Smallest box around the voxels that score; empty when there are none.
+  /// Smallest box around the exposed voxels that score; empty when there are none.
   [[nodiscard]] const IndexBox& scoring_voxels() const { return scoring_voxels_; }
 
   struct Brick {
     unsigned flags{0};
-    const StopMasks* masks{nullptr};  ///< only for flags other than kClear, kAllScore and kAllBlock
+    const StopMasks* masks{nullptr};  ///< only for flags other than kClear, kAllScore, kAllBlock and kBuried
   };
   [[nodiscard]] unsigned brick_flags(const Index3& brick) const {
     return sector_of(brick).codes[static_cast<std::size_t>(child_index(brick))] & stop_flags::kMask;
@@ -72,6 +80,9 @@ class StopGrid {
     IndexBox scoring;
   };
   class Builder;
+  void find_exposed(const Executor& executor);
+  [[nodiscard]] bool buried(const Index3& brick) const;
+  [[nodiscard]] Mask512 exposed_voxels(const Index3& brick, const Mask512& stop) const;
   void flatten(const Executor& executor);
 
   [[nodiscard]] static unsigned flags_within(const Brick& brick, const Index3& lo, const Index3& hi);
@@ -92,7 +103,8 @@ class StopGrid {
   std::uint32_t size_z_{0};
   std::unique_ptr<const SectorView> clear_;
   std::unique_ptr<const SectorView> blocked_;
-  std::vector<std::unique_ptr<const SectorView>> views_;
+  std::vector<std::unique_ptr<SectorView>> views_;  ///< of `detailed_`
+  std::vector<Index3> detailed_;                    ///< sectors
   std::vector<const SectorView*> table_;
   IndexBox scoring_voxels_;
   FlatStops flat_;
@@ -100,10 +112,7 @@ class StopGrid {
 
 /// Flags of the voxels of one brick from lo to hi, relative to its corner, cut to the brick.
 inline unsigned StopGrid::flags_within(const Brick& brick, const Index3& lo, const Index3& hi) {
-  if (brick.flags == stop_flags::kClear || brick.flags == stop_flags::kAllScore ||
-      brick.flags == stop_flags::kAllBlock) {
-    return brick.flags;
-  }
+  if (stop_flags::uniform(brick.flags)) return brick.flags;
   const int x0 = std::max(lo.x, 0);
   const int x1 = std::min(hi.x, kBrickEdge - 1);
   const int y0 = std::max(lo.y, 0);
@@ -116,9 +125,10 @@ inline unsigned StopGrid::flags_within(const Brick& brick, const Index3& lo, con
   std::uint64_t missing{0};
   for (int z = std::max(lo.z, 0); z <= std::min(hi.z, kBrickEdge - 1); ++z) {
     const std::uint64_t stops = brick.masks->stop.words[static_cast<std::size_t>(z)] & rectangle;
-    const std::uint64_t scores = brick.masks->score.words[static_cast<std::size_t>(z)] & rectangle;
-    score |= scores;
-    block |= stops & ~scores;
+    const std::uint64_t exposed = brick.masks->exposed.words[static_cast<std::size_t>(z)] & rectangle;
+    const std::uint64_t scores = brick.masks->score.words[static_cast<std::size_t>(z)];
+    score |= exposed & scores;
+    block |= exposed & ~scores;
     missing |= rectangle & ~stops;
   }
   return (score != 0 ? stop_flags::kScores : 0U) | (block != 0 ? stop_flags::kBlocks : 0U) |

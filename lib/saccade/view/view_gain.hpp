@@ -35,10 +35,11 @@ struct GainSavings {
   bool empty_bricks{true};    ///< pass over empty bricks
   bool blocked_camera{true};  ///< decide a pose at once when its camera is in a voxel that is not empty
   bool shared_lattice{true};  ///< cast the rays that several poses have in common once (rolls; latitude 90°)
+  bool exposed_voxels{true};  ///< heed only voxels that a ray can come to: with a neighbour that does not stop it
   bool tiles{true};           ///< go through empty, solid and wholly unknown space with whole tiles of rays
   bool packets{true};         ///< walk the rays that tiles leave over many at a time; only with all of the above
 
-  [[nodiscard]] static GainSavings none() { return {false, false, false, false, false, false, false}; }
+  [[nodiscard]] static GainSavings none() { return {false, false, false, false, false, false, false, false}; }
 };
 
 struct GainConfig {
