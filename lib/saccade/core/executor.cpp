@@ -2,6 +2,7 @@
 #include "saccade/core/executor.hpp"
 
 #include <oneapi/tbb/global_control.h>
+#include <oneapi/tbb/info.h>
 #include <oneapi/tbb/parallel_for.h>
 #include <oneapi/tbb/task_arena.h>
 
@@ -19,8 +20,7 @@ namespace saccade {
 struct Executor::Impl {
   Backend backend{Backend::sequential};
   std::size_t threads{1};
-  // Lets an arena have more threads than cores; without it oneTBB ignores the wish and prints a warning.
-  std::unique_ptr<oneapi::tbb::global_control> allowance;
+  std::unique_ptr<oneapi::tbb::global_control> allowance;  // more threads than cores were asked for
   mutable std::unique_ptr<oneapi::tbb::task_arena> arena;  // thread-safe by itself
 };
 
@@ -55,6 +55,9 @@ void run_on_threads(std::size_t threads, std::size_t chunks, std::size_t count, 
   if (failure) std::rethrow_exception(failure);
 }
 
+/// Cores this process may run on. (std::thread::hardware_concurrency counts those of the machine.)
+std::size_t available_cores() { return static_cast<std::size_t>(oneapi::tbb::info::default_concurrency()); }
+
 }  // namespace
 
 Executor::Executor() : impl_{std::make_shared<Impl>()} {}
@@ -69,16 +72,19 @@ Executor Executor::with_threads(std::size_t threads) {
 }
 
 Executor Executor::with_threads(std::size_t threads, Backend backend) {
-  if (threads == 0) threads = std::max<std::size_t>(1, std::thread::hardware_concurrency());
+  if (threads == 0) threads = available_cores();
   if (backend == Backend::sequential || threads == 1) return Executor{};
   auto impl = std::make_shared<Impl>();
   impl->backend = backend;
   impl->threads = threads;
   if (backend == Backend::tbb) {
-    constexpr std::size_t kAllowedThreads{256};
-    impl->allowance = std::make_unique<oneapi::tbb::global_control>(
-        oneapi::tbb::global_control::max_allowed_parallelism, std::max(threads, kAllowedThreads));
-    impl->arena = std::make_unique<oneapi::tbb::task_arena>(static_cast<int>(threads));
+    using oneapi::tbb::global_control;
+    constexpr auto kLimit = global_control::max_allowed_parallelism;
+    if (threads > available_cores()) impl->allowance = std::make_unique<global_control>(kLimit, threads);
+    // An arena made at once and within the limit: oneTBB prints a warning where one asks for more.
+    const std::size_t slots = std::min(threads, global_control::active_value(kLimit));
+    impl->arena = std::make_unique<oneapi::tbb::task_arena>(static_cast<int>(slots));
+    impl->arena->initialize();
   }
   return Executor{std::move(impl)};
 }
@@ -101,11 +107,14 @@ void Executor::parallel_for(std::size_t count, std::size_t grain, const Body& bo
   if (chunks <= 1 || impl_->backend == Backend::sequential) {
     for (std::size_t chunk = 0; chunk < chunks; ++chunk) run_chunk(chunk, count, grain, body);
   } else if (impl_->backend == Backend::tbb) {
-    impl_->arena->execute([&] {
+    const auto run = [&] {
       oneapi::tbb::parallel_for(
           std::size_t{0}, chunks, [&](std::size_t chunk) { run_chunk(chunk, count, grain, body); },
           oneapi::tbb::simple_partitioner{});
-    });
+    };
+    // Isolated: while the caller waits for its last chunks it runs none of another loop, whose body may want a lock
+    // that the caller holds, such as a map's.
+    impl_->arena->execute([&] { oneapi::tbb::this_task_arena::isolate(run); });
   } else {
     run_on_threads(impl_->threads, chunks, count, grain, body);
   }
