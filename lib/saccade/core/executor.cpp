@@ -72,7 +72,8 @@ Executor Executor::with_threads(std::size_t threads) {
 }
 
 Executor Executor::with_threads(std::size_t threads, Backend backend) {
-  if (threads == 0) threads = available_cores();
+  constexpr std::size_t kMostThreads{256};
+  threads = threads == 0 ? available_cores() : std::min(threads, std::max(kMostThreads, available_cores()));
   if (backend == Backend::sequential || threads == 1) return Executor{};
   auto impl = std::make_shared<Impl>();
   impl->backend = backend;

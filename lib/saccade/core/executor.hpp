@@ -25,13 +25,14 @@ class Executor {
   /// Runs everything in the calling thread.
   Executor();
 
-  /// threads ≥ 1, or 0 for all cores that the process may run on. One thread is sequential. The back end is oneTBB,
-  /// except in builds for ThreadSanitizer (SACCADE_EXECUTOR_STD_THREAD), which does not understand Debian's oneTBB.
-  /// std_thread starts its threads anew in every loop and shares none.
+  /// threads ≥ 1, or 0 for all cores that the process may run on; more than 256, or than there are cores, are taken as
+  /// that many. One thread is sequential. The back end is oneTBB, except in builds for ThreadSanitizer
+  /// (SACCADE_EXECUTOR_STD_THREAD), which does not understand Debian's oneTBB. std_thread starts its threads anew in
+  /// every loop and shares none.
   [[nodiscard]] static Executor with_threads(std::size_t threads);
   [[nodiscard]] static Executor with_threads(std::size_t threads, Backend backend);
 
-  /// As asked for; fewer may run.
+  /// What was asked for; fewer may run.
   [[nodiscard]] std::size_t threads() const;
   [[nodiscard]] Backend backend() const;
   [[nodiscard]] std::string_view backend_name() const;

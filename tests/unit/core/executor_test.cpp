@@ -8,9 +8,11 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <atomic>
 #include <chrono>
 #include <cstdlib>
+#include <limits>
 #include <mutex>
 #include <stdexcept>
 #include <thread>
@@ -80,6 +82,16 @@ TEST(Executor, CoversTheRangeOnceInChunksThatDoNotDependOnTheThreads) {
     }
   }
   EXPECT_EQ(loops, 135);
+}
+
+TEST(Executor, AbsurdNumbersOfThreadsAreCut) {
+  for (const std::size_t threads : {std::size_t{1000000000}, std::numeric_limits<std::size_t>::max()}) {
+    const Executor executor = Executor::with_threads(threads, test::kParallelBackend);
+    EXPECT_EQ(executor.threads(), std::max<std::size_t>(256, cores()));
+    std::atomic<int> ran{0};
+    executor.parallel_for(100, 1, [&](std::size_t, std::size_t) { ++ran; });
+    EXPECT_EQ(ran, 100);
+  }
 }
 
 TEST(Executor, RethrowsWhatABodyThrows) {
