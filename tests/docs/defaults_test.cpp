@@ -79,6 +79,7 @@ TEST(Defaults, OfTrackingAreDocumented) {
   expect_documented("IcpConfig::max_distance_m", {icp.max_distance_m});
   expect_documented("IcpConfig::max_normal_angle_rad", {icp.max_normal_angle_rad});
   expect_documented("IcpConfig::min_inlier_share", {icp.min_inlier_share});
+  expect_documented("IcpConfig::min_agreement", {icp.min_agreement});
   expect_documented("IcpConfig::max_rmse_m", {icp.max_rmse_m});
   expect_documented("IcpConfig::max_translation_m", {icp.max_translation_m});
   expect_documented("IcpConfig::max_rotation_rad", {icp.max_rotation_rad});

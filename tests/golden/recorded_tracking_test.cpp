@@ -91,14 +91,122 @@ TEST_P(EveryNthFrame, IsTrackedByIcpWithoutALoss) {
               1e3 * error->aligned_rmse_m, 1e3 * error->max_m);
 }
 
+// Measured, with the whole sequence: 21.2 mm RMSE and 34.5 mm at most in the kitchen with every second frame, 21.1 and
+// 35.7 mm with every third (the given poses themselves jump by 3.6 cm between frames 121 and 122); 2.2 and 3.7 mm,
+// 1.9 and 3.1 mm around the box.
 INSTANTIATE_TEST_SUITE_P(RecordedTracking, EveryNthFrame,
-                         testing::Values(FastCamera{"rgbd_redkitchen", 1, 200, 0.03, 0.05},
-                                         FastCamera{"rgbd_redkitchen", 2, 100, 0.03, 0.05},
-                                         FastCamera{"rgbd_redkitchen", 3, 67, 0.03, 0.05},
-                                         FastCamera{"rgbd_redkitchen", 2, 50, 0.03, 0.05},
-                                         FastCamera{"rgbd_redkitchen", 3, 34, 0.03, 0.05},
-                                         FastCamera{"rgbd_realsense_box", 2, 13, 0.004, 0.008},
-                                         FastCamera{"rgbd_realsense_box", 3, 9, 0.004, 0.008}));
+                         testing::Values(FastCamera{"rgbd_redkitchen", 2, 70, 0.027, 0.045},
+                                         FastCamera{"rgbd_redkitchen", 3, 47, 0.027, 0.045},
+                                         FastCamera{"rgbd_realsense_box", 2, 13, 0.0035, 0.006},
+                                         FastCamera{"rgbd_realsense_box", 3, 9, 0.0035, 0.006}));
+
+/// A few frames fused, the last of them known: every second one, up to where the camera has moved on.
+class LostOnRecordedData : public testing::TestWithParam<const char*> {
+ protected:
+  void SetUp() override {
+    const fs::path folder = folder_of(GetParam());
+    if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
+    sequence_ = read_sequence(folder, {.read_color = false, .every_nth = 2, .count = kFused + 3});
+    ASSERT_EQ(sequence_.frames.size(), kFused + 3);
+    auto made = reconstruction();
+    ASSERT_TRUE(made.ok());
+    r_.emplace(std::move(made).value());
+    for (std::size_t i = 0; i < kFused; ++i) fuse(i);
+  }
+
+  FrameReport process(const Frame& frame, TrackingMode mode, const std::optional<Pose>& hint) {
+    const auto report = r_->process(frame, sequence_.camera, mode, hint, executor_);
+    EXPECT_TRUE(report.ok());
+    return report.ok() ? *report : FrameReport{};
+  }
+  void fuse(std::size_t i) {
+    const Frame& frame = sequence_.frames[i];
+    const FrameReport report = process(frame, TrackingMode::icp, frame.T_world_camera);
+    ASSERT_EQ(report.status, FrameReport::Status::fused) << frame.name << ": " << report.why;
+    EXPECT_LT((report.T_world_camera.translation() - frame.T_world_camera->translation()).norm(), 0.02) << frame.name;
+  }
+  void expect_lost(const Frame& frame, TrackingMode mode, const std::optional<Pose>& hint, const std::string& what) {
+    const TsdfSnapshot before = r_->map().snapshot();
+    const Pose last = *r_->last_pose();
+    const FrameReport report = process(frame, mode, hint);
+    EXPECT_EQ(report.status, FrameReport::Status::lost) << what << ": " << report.icp.agreement;
+    EXPECT_FALSE(report.why.empty());
+    EXPECT_TRUE(before.grid == r_->map().content().grid) << what;
+    EXPECT_TRUE(last.matrix() == r_->last_pose()->matrix());
+  }
+
+  static constexpr std::size_t kFused{4};
+  Sequence sequence_;
+  Executor executor_{Executor::with_threads(0)};
+  std::optional<Reconstruction> r_;
+};
+
+TEST_P(LostOnRecordedData, ABlindFrameIsNotFusedAndTheNextOneIs) {
+  Frame zeros = sequence_.frames[kFused];
+  zeros.depth = DepthImage{sequence_.camera.width, sequence_.camera.height};
+  expect_lost(zeros, TrackingMode::icp, std::nullopt, "zeros");
+  fuse(kFused + 1);
+  fuse(kFused + 2);
+}
+
+/// Wherever ICP starts 30 cm beside the camera, it must not take a place where only some planes fit. (Without
+/// IcpConfig::min_agreement one start in six was fused in the kitchen, 12 to 37 cm off.)
+TEST_P(LostOnRecordedData, AJumpOf30CmIsNotFusedAndAHintRecovers) {
+  constexpr int kStarts{test::scaled_cases(26)};
+  const Frame& next = sequence_.frames[kFused];
+  int tried{0};
+  for (int i = 0; i < 27; ++i) {
+    const Eigen::Vector3d direction{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
+    if (direction.isZero() || tried == kStarts) continue;
+    Pose wrong = *next.T_world_camera;
+    wrong.translation() += 0.30 * direction.normalized();
+    expect_lost(next, TrackingMode::hint, wrong, "start " + std::to_string(i));
+    ++tried;
+  }
+  EXPECT_EQ(tried, kStarts);
+
+  Pose hint = *next.T_world_camera;
+  hint.translation() += Eigen::Vector3d{0.02, -0.02, 0.02};
+  const FrameReport recovered = process(next, TrackingMode::hint, hint);
+  ASSERT_EQ(recovered.status, FrameReport::Status::fused) << recovered.why;
+  EXPECT_LT((recovered.T_world_camera.translation() - next.T_world_camera->translation()).norm(), 0.02);
+  fuse(kFused + 1);
+}
+
+INSTANTIATE_TEST_SUITE_P(RecordedTracking, LostOnRecordedData,
+                         testing::Values("rgbd_redkitchen", "rgbd_realsense_box"));
+
+/// The camera moves on unseen, by 12 cm and by more than 31 cm: lost until a hint says where it is.
+TEST(RecordedTracking, SkippedFramesAreNotFusedAndAHintRecovers) {
+  const fs::path folder = folder_of("rgbd_redkitchen");
+  if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
+  constexpr std::size_t kFused{4};
+  const Sequence sequence = read_sequence(folder, {.read_color = false, .first = 60, .every_nth = 2, .count = 33});
+  ASSERT_EQ(sequence.frames.size(), 33U);
+  const Executor executor = Executor::with_threads(0);
+  auto r = reconstruction();
+  ASSERT_TRUE(r.ok());
+  const auto expect = [&](FrameReport::Status status, std::size_t i, TrackingMode mode) {
+    const Frame& frame = sequence.frames[i];
+    const auto report = r->process(frame, sequence.camera, mode, frame.T_world_camera, executor);
+    ASSERT_TRUE(report.ok());
+    ASSERT_EQ(report->status, status) << frame.name << ": " << report->why;
+    if (status != FrameReport::Status::fused) return;
+    EXPECT_LT((report->T_world_camera.translation() - frame.T_world_camera->translation()).norm(), 0.02) << frame.name;
+  };
+  const auto moved_m = [&](std::size_t i) {
+    const Pose& last = *sequence.frames[kFused - 1].T_world_camera;
+    return (sequence.frames[i].T_world_camera->translation() - last.translation()).norm();
+  };
+  for (std::size_t i = 0; i < kFused; ++i) expect(FrameReport::Status::fused, i, TrackingMode::icp);
+  const TsdfSnapshot before = r->map().snapshot();
+  for (const std::size_t i : {14U, 28U, 29U, 30U}) expect(FrameReport::Status::lost, i, TrackingMode::icp);
+  EXPECT_GT(moved_m(14), 0.11);
+  EXPECT_GT(moved_m(28), 0.31);
+  EXPECT_TRUE(before.grid == r->map().content().grid);
+  expect(FrameReport::Status::fused, 31, TrackingMode::hint);
+  expect(FrameReport::Status::fused, 32, TrackingMode::icp);
+}
 
 }  // namespace
 }  // namespace saccade

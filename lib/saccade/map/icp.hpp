@@ -19,6 +19,7 @@ struct IcpConfig {
   double max_normal_angle_rad{0.6};         ///< pairs whose normals differ more are no pairs
   double converged_m{2e-5};        ///< a level ends when a step moves and turns (in rad) less than this · stride
   double min_inlier_share{0.25};   ///< lost: fewer of the measured pixels found a partner
+  double min_agreement{0.78};      ///< lost: fewer of the measured pixels before the map's surface lie at its depth
   double max_rmse_m{0.03};         ///< lost: the weighted residual stays above
   double max_translation_m{0.20};  ///< lost: farther from the start than a camera moves between frames
   double max_rotation_rad{0.35};   ///< lost: turned farther than that
@@ -33,12 +34,15 @@ struct IcpResult {
   std::string why;
   int iterations{0};
   double inlier_share{0.0};  ///< pairs / measured pixels, at the finest level
+  double agreement{0.0};     ///< of the measured pixels seen where the model has a surface: share at its depth
   double rmse_m{0.0};        ///< of the point-to-plane distances
 };
 
 /// Aligns measured points to a surface seen by the same camera from a known pose. Thesis §2.2.1 "Camera tracking".
 /// Pairs by projection into the model; minimises point-to-plane distances, weighted by the depth noise (growing with
 /// z²) and a Huber loss, with Gauss–Newton steps on SE(3).
+/// In a wrong place, too, ICP finds planes to slide on: a quarter to a half of the pixels then have partners. What
+/// tells is how many of the others contradict the model (agreement), rather than meet space it has no surface in.
 /// @param T_model_camera_start first guess.
 /// A failed alignment is a result (converged = false), not an error.
 /// O(pixels · iterations). Sums run in fixed lanes and chunks: neither threads nor simd_target() change a bit of the
