@@ -156,7 +156,9 @@ TEST_P(LostOnRecordedData, AJumpOf30CmIsNotFusedAndAHintRecovers) {
   const Frame& next = sequence_.frames[kFused];
   int tried{0};
   for (int i = 0; i < 27; ++i) {
-    const Eigen::Vector3d direction{i % 3 - 1.0, i / 3 % 3 - 1.0, i / 9 - 1.0};
+    const int row = i / 3;
+    const int layer = i / 9;
+    const Eigen::Vector3d direction{i % 3 - 1.0, row % 3 - 1.0, layer - 1.0};
     if (direction.isZero() || tried == kStarts) continue;
     Pose wrong = *next.T_world_camera;
     wrong.translation() += 0.30 * direction.normalized();
