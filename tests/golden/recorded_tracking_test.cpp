@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <filesystem>
 #include <vector>
 
@@ -63,9 +64,9 @@ TEST_P(EveryNthFrame, IsTrackedByIcpWithoutALoss) {
   const FastCamera& test = GetParam();
   const fs::path folder = folder_of(test.folder);
   if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
-  const auto count = static_cast<std::size_t>(test::scaled_cases(static_cast<int>(test.frames)));
-  const Sequence sequence = read_sequence(
-      folder, {.read_color = false, .every_nth = test.every_nth, .count = std::max<std::size_t>(4, count)});
+  const std::size_t count = std::max(4, test::scaled_cases(static_cast<int>(test.frames)));
+  const Sequence sequence = read_sequence(folder, {.read_color = false, .every_nth = test.every_nth, .count = count});
+  ASSERT_EQ(sequence.frames.size(), count);
   auto r = reconstruction();
   ASSERT_TRUE(r.ok());
   const Executor executor = Executor::with_threads(0);
