@@ -170,6 +170,7 @@ void snapshot(benchmark::State& state) {
     const TsdfSnapshot copy = map.snapshot();
     benchmark::DoNotOptimize(copy.grid.sector_count());
   }
+  state.counters["sectors"] = static_cast<double>(map.content().grid.sector_count());
 }
 
 void forget(benchmark::State& state) {

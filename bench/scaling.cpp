@@ -157,7 +157,7 @@ void surface_raycast(benchmark::State& state) {
 
 using Row = benchmark::internal::Benchmark;
 void row(Row* row, const char* argument) {
-  row->ArgName(argument)->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(0.15)->Repetitions(5);
+  row->ArgName(argument)->Unit(benchmark::kMillisecond)->UseRealTime()->MinTime(0.15);
 }
 void poses(Row* made) {
   row(made, "poses");
