@@ -89,7 +89,7 @@ void add(const std::string& name, const GainSavings& savings) {
   auto* row =
       benchmark::RegisterBenchmark(name.c_str(), [savings](benchmark::State& state) { evaluate(state, savings); });
   row->ArgName("views")->Arg(0)->Arg(1)->Iterations(1)->Unit(benchmark::kMillisecond)->UseRealTime();
-  if (every_center(savings) > 1) row->Repetitions(1);
+  if (every_center(savings) > 1 || !savings.region_rays) row->Repetitions(1);
 }
 
 void add_all() {

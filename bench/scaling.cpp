@@ -20,7 +20,7 @@ using bench::frames;
 using bench::kRegion;
 
 constexpr std::size_t kWarmFrames{40};  ///< fused before anything is timed
-constexpr double kDefaultVoxel_m{TsdfConfig{}.voxel_size_m};
+const double kDefaultVoxel_m{TsdfConfig{}.voxel_size_m};
 
 double voxel_size_m(const benchmark::State& state) { return 1e-6 * static_cast<double>(state.range(0)); }
 
@@ -112,9 +112,9 @@ const TsdfSnapshot& warm_map(double voxel_size_m) {
 
 /// What a row of the map runs on.
 struct MapCase {
-  double voxel_size_m{kDefaultVoxel_m};
-  std::int64_t width{640};
-  std::size_t threads{2};
+  double voxel_size_m;
+  std::int64_t width;
+  std::size_t threads;
 };
 MapCase by_image_width(const benchmark::State& state) { return {kDefaultVoxel_m, state.range(0), 2}; }
 MapCase by_voxel_um(const benchmark::State& state) { return {voxel_size_m(state), 640, 2}; }

@@ -45,10 +45,9 @@ def alignment(frame):
 def evaluation(counter):
     looks = counter("rays") * counter("looks_per_ray")
     return ({"look-ups": looks, "arithmetic": 6 * looks, "cache": counter("lattices") * counter("grid_bytes")},
-            f"{counter('rays') / 1e6:.1f} million distinct rays that meet the region, each walked by itself past "
-            f"{counter('looks_per_ray'):.0f} bricks and voxels: 1 look-up and 6 operations per step. Tiles leave only "
-            f"{counter('rays_open') / 1e6:.1f} million of them to be walked, so that this is no bound of what is done but of "
-            "doing it ray by ray.")
+            f"{counter('rays') / 1e6:.1f} million distinct rays meet the region; each walked by itself would look at "
+            f"{counter('looks_per_ray'):.0f} bricks and voxels, 6 operations each. That bounds ray by ray, not what is done: "
+            f"tiles leave {counter('rays_open') / 1e6:.1f} million rays to be walked.")
 
 
 def forgetting():
@@ -77,7 +76,8 @@ def entries(results):
         names = {name for amounts, _ in parts for name in amounts}
         made.append(("a whole tracked frame", "mapping:tracked_frame/2", 2,
                      {name: sum(amounts.get(name, 0) for amounts, _ in parts) for name in names}, "All three."))
-    for views, what in ((0, "960 poses, region just forgotten"), (1, "the same after a view"), (3, "the same after three")):
+    for views, what in ((0, "960 poses ray by ray, region just forgotten"), (1, "the same after a view"),
+                        (3, "the same after three")):
         counter = counters(f"phases:evaluation/views:{views}")
         if counter("rays"):
             made.append((what, f"view_evaluation:all_savings/views:{views}/threads:2", 2, *evaluation(counter)))

@@ -105,7 +105,7 @@ def lines(path, title, x_label, series):
     for x in xs:
         at = to_x(x)
         parts.append(f'<line class="axis" x1="{at:.1f}" x2="{at:.1f}" y1="{HEIGHT - BOTTOM}" y2="{HEIGHT - BOTTOM + 5}"/>')
-        parts.append(text(at, HEIGHT - BOTTOM + 20, number(x)))
+        parts.append(text(at, HEIGHT - BOTTOM + 20, f"{x:,g}"))
     parts.append(f'<path class="axis" fill="none" d="M{LEFT} {TOP}V{HEIGHT - BOTTOM}H{WIDTH - RIGHT + 8}"/>')
     parts.append(text((LEFT + WIDTH - RIGHT) / 2, HEIGHT - 14, x_label))
     middle = (TOP + HEIGHT - BOTTOM) / 2

@@ -3,7 +3,7 @@
 from performance import plots
 from performance.results import figure
 
-WORK = [("evaluate", "960 views"), ("integrate", "fuse a frame"), ("surface_raycast", "surface ray cast")]
+WORK = [("evaluate", "view evaluation"), ("integrate", "fuse a frame"), ("surface_raycast", "surface ray cast")]
 # (part of the rows' names, scale of their arguments, file, heading, axis).
 VARIED = [("poses", 1.0, "views", "Number of views", "view poses, 80 per longitude"),
           ("image_width", 1.0, "image", "Image size", "image width, px (4:3)"),
