@@ -102,7 +102,7 @@ void add_all() {
     alone.empty_bricks = alone.empty_bricks || alone.tiles;  // tiles go by bricks, and packets take what tiles leave
     if (!alone.packets && !alone.blocked_camera && !alone.region_rays) add(std::string{"only_"} + saving.name, alone);
     so_far.*saving.on = true;
-    add(std::string{"up_to_"} + saving.name, so_far);
+    if (!alone.blocked_camera) add(std::string{"up_to_"} + saving.name, so_far);
     GainSavings others;
     others.*saving.on = false;
     add(std::string{"without_"} + saving.name, others);
