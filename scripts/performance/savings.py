@@ -40,9 +40,9 @@ def section(results, images):
              "saving alone on top of none, added to those in the rows above it, and left out of all. Without tiles only 16",
              "or 88 of the poses are evaluated, all rolls of some camera centres, and the time is scaled to 960 (≈). Tiles",
              "alone include passing over empty bricks, which they go by; packets need all others. No camera of this scene",
-             "is blocked, so that saving is not timed by itself. Every gain equals that of all savings, which is checked before anything is timed; that none",
-             "changes a gain, each alone, without each, none and all, is held to brute force by",
-             "`tests/parity/view_gain_test.cpp`.", "",
+             "is blocked, so that saving is not timed by itself. Every gain equals that of all savings, which is checked",
+             "before anything is timed; that none changes a gain, each alone, without each, none and all, is held to brute",
+             "force by `tests/parity/view_gain_test.cpp`.", "",
              "| saving (`GainSavings`) | alone | added | all without it | after a view: alone | added | all without it |",
              "|---|---|---|---|---|---|---|",
              "| none | " + " | ".join(f"{cell(results, 'none', views)} | | " for views in (0, 1)) + "|"]
