@@ -148,18 +148,18 @@ void evaluation(benchmark::State& state) {
       domain.lo = {std::min(domain.lo.x, at.x), std::min(domain.lo.y, at.y), std::min(domain.lo.z, at.z)};
       domain.hi = {std::max(domain.hi.x, at.x + 1), std::max(domain.hi.y, at.y + 1), std::max(domain.hi.z, at.z + 1)};
     }
-    benchmark::DoNotOptimize(StopGrid::build(map, kRegion, config.unknown_outside, domain, executor).ok());
+    benchmark::DoNotOptimize(StopGrid::build(map, kRegion, config.unknown_outside, domain, true, executor).ok());
     grid_ms += stopwatch.lap_ms();
     prepare_ms += problem->prepare_ms;
     open_rays = scored = 0;
     for (const GainJob& job : problem->jobs) {
       GainCaster caster{problem->grid, job.window, problem->limits, nullptr};
       stopwatch.lap_ms();
-      caster.look_over_rows(0, static_cast<int>(job.window.b.size()), kOpenTile_px);
+      caster.look_over(kOpenTile_px);
       tiles_ms += stopwatch.lap_ms();
       open_rays += caster.open_rays();
       stopwatch.lap_ms();
-      caster.cast_open_tiles();
+      caster.refine(0);
       rays_ms += stopwatch.lap_ms();
       scored += caster.scored() * job.poses.size();
     }

@@ -20,7 +20,12 @@ ROWS = [
      "view_evaluation:embree/views:1/every:1", None, 250.0),
     ("view_evaluation:all_savings/views:3/threads:2", "the same after three",
      "view_evaluation:embree/views:3/every:1", None, 250.0),
-    ("view_evaluation:best_only/views:0/threads:2", "only the best of the 960 poses",
+    ("regions:best_pose/again:0/threads:2", "only the best of 960 poses, in 20 regions of scanned tables",
+     "regions:all_poses/again:0/threads:2", 2.0, None),
+    ("regions:all_poses/again:1/threads:2", "all gains of these again, after the frame from the best pose",
+     "regions:all_poses/again:0/threads:2", 2.0, None),
+    ("regions:best_pose/again:1/threads:2", "only the best again", "regions:best_pose/again:0/threads:2", 2.0, None),
+    ("view_evaluation:best_only/views:0/threads:2", "only the best of 960 poses, on the table that is known all around",
      "view_evaluation:all_savings/views:0/threads:2", 2.0, None),
 ]
 PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only",
@@ -29,7 +34,9 @@ PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only
          "view_evaluation:embree/views:0/every:1": "Embree, 16 rays at a time, without its preparation",
          "view_evaluation:embree/views:1/every:1": "Embree",
          "view_evaluation:embree/views:3/every:1": "Embree",
-         "view_evaluation:all_savings/views:0/threads:2": "all poses, as above"}
+         "view_evaluation:all_savings/views:0/threads:2": "all poses, as above",
+         "regions:all_poses/again:0/threads:2": "all poses",
+         "regions:best_pose/again:0/threads:2": "the first time"}
 
 
 def target_row(results, row):

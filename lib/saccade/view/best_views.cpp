@@ -72,6 +72,7 @@ Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std:
   executor.parallel_for(jobs, kLookGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       casters[i].look_over(kLookOverPx);
+      casters[i].judge_open_tiles();
     }
   });
   std::vector<std::size_t> order(jobs);

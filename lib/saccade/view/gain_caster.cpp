@@ -125,6 +125,9 @@ void GainCaster::look_over(int tile_px) {
     open.rays = rays_in(open.tile);
     open_rays_ += open.rays;
   }
+}
+
+void GainCaster::judge_open_tiles() {
   const auto same_root = [](const OpenTile& a, const OpenTile& b) {
     return a.tile.row_begin / kRootTile == b.tile.row_begin / kRootTile &&
            a.tile.column_begin / kRootTile == b.tile.column_begin / kRootTile;
@@ -216,7 +219,7 @@ void GainCaster::cast_tile(const Tile& tile) {
   Tile rest{tile};
   rest.slab = sight.clear_until();
   if (std::max(tile.columns(), tile.rows()) <= leave_open_px_) {
-    open_tiles_.push_back({rest, 0, 0.0});
+    open_tiles_.push_back({rest});
   } else {
     decide(rest);
   }

@@ -43,12 +43,15 @@ class GainCaster {
 
   /// Like cast_rows for the whole window, but tiles of at most so many pixels that are still undecided are left open.
   void look_over(int tile_px);
-  /// Decides open tiles, those first that probably score least of their rays, until none is left or at_most() < enough.
+  /// Casts some rays of the open tiles, to judge how many of theirs score; those that seem to score least come first.
+  void judge_open_tiles();
+  /// Decides open tiles, one after the other, until none is left or at_most() < enough.
   void refine(std::uint64_t enough);
   [[nodiscard]] bool decided() const { return open_tiles_.empty(); }
-  /// What the window scores at most, and about, judging the open tiles by some of their rays.
+  /// What the window scores at most, and about, as open tiles were judged.
   [[nodiscard]] std::uint64_t at_most() const { return scored_ + open_rays_; }
   [[nodiscard]] double about() const;
+  [[nodiscard]] std::uint64_t open_rays() const { return open_rays_; }
 
   [[nodiscard]] std::uint64_t scored() const { return scored_; }
   [[nodiscard]] std::uint64_t rays_cast() const { return rays_cast_; }
@@ -57,8 +60,8 @@ class GainCaster {
   class Sight;
   struct OpenTile {
     Tile tile;
-    std::uint64_t rays;
-    double scoring;  ///< about how many of them
+    std::uint64_t rays{0};
+    double scoring{0.0};  ///< about how many of them
   };
 
   void cast_tile(const Tile& tile);
