@@ -1,0 +1,95 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade reproduce TABLE…: tables of the thesis, ours beside theirs.
+#include <iomanip>
+#include <iostream>
+#include <memory>
+
+#include "command.hpp"
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "options.hpp"
+#include "progress_bar.hpp"
+#include "saccade/core/clock.hpp"
+#include "tables/thesis_table.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+Result<int> list_tables(const GlobalOptions& global) {
+  const Stopwatch clock;
+  json tables = json::array();
+  for (const ThesisTable& table : thesis_tables()) {
+    tables.push_back({{"table", table.number}, {"title", table.title}});
+    if (!global.json_to_stdout()) std::cout << std::left << std::setw(6) << table.number << table.title << '\n';
+  }
+  SACCADE_CHECK(write_json_output(global, json_envelope("reproduce", global, global.executor(),
+                                                        {{"total", clock.elapsed_ms()}}, {{"known", tables}})));
+  return static_cast<int>(ExitStatus::done);
+}
+
+Result<int> run_reproduce(const std::vector<std::string>& numbers, const ReproduceOptions& options,
+                          const GlobalOptions& global) {
+  if (numbers.empty()) return list_tables(global);
+  const Stopwatch clock;
+  const Executor executor = global.executor();
+  SACCADE_CHECK(check_json_output(global));
+  ProgressBar bar{global.quiet};
+  Progress progress{
+      [&bar](std::string_view stage, std::size_t done, std::size_t total) { bar.update(stage, done, total); }};
+  const CancelOnInterrupt cancel{progress};
+  TimingsMs timings_ms;
+  json tables = json::array();
+  for (const std::string& number : numbers) {
+    Stopwatch of_table;
+    SACCADE_TRY(const ReproducedTable table, find_thesis_table(number)->reproduce(options, executor, progress));
+    timings_ms["table " + number] = of_table.lap_ms();
+    bar.finish();
+    if (!global.json_to_stdout()) {
+      if (!tables.empty()) std::cout << '\n';
+      print(std::cout, table);
+      std::cout << std::flush;
+    }
+    json entry = table.figures;
+    entry["table"] = number;
+    entry["caption"] = table.caption;
+    entry["notes"] = table.notes;
+    tables.push_back(std::move(entry));
+  }
+  timings_ms["total"] = clock.elapsed_ms();
+  SACCADE_CHECK(write_json_output(
+      global, json_envelope("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}})));
+  return static_cast<int>(ExitStatus::done);
+}
+
+/// Throws a usage error that lists the tables.
+void require_known(const std::string& number) {
+  if (find_thesis_table(number) != nullptr) return;
+  std::string known;
+  for (const ThesisTable& table : thesis_tables()) known += (known.empty() ? "" : ", ") + std::string{table.number};
+  usage_error("TABLE", "there is no table \"" + number + "\"; known: " + known);
+}
+
+}  // namespace
+
+void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command = program.add_subcommand("reproduce", "tables of the thesis, ours beside theirs");
+  auto numbers = std::make_shared<std::vector<std::string>>();
+  auto options = std::make_shared<ReproduceOptions>();
+  command->add_option("tables", *numbers, "tables by their number; none: lists those that there are")
+      ->type_name("TABLE");
+  command
+      ->add_option("--poses", options->poses,
+                   "evaluate only so many of the view poses: quicker, but no longer what the thesis did (default: all)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+      ->type_name("N");
+  command->callback([numbers, options, &global, &action] {
+    for (const std::string& number : *numbers) require_known(number);
+    options->seed = global.seed;
+    action = [numbers, options, &global] { return run_reproduce(*numbers, *options, global); };
+  });
+}
+
+}  // namespace saccade::cli

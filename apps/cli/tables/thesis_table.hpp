@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ReproducedTable: a table of the thesis with our figures beside its own; thesis_tables: those that there are.
+// A further table is a source of its own here, with a line in thesis_table.cpp.
+
+#include <nlohmann/json.hpp>
+#include <ostream>
+#include <span>
+#include <string>
+#include <string_view>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/progress.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade::cli {
+
+struct ReproduceOptions {
+  std::size_t poses{0};  ///< view poses that are evaluated, evenly spread; 0: all that the thesis has
+  std::uint64_t seed{1};
+};
+
+struct ReproducedTable {
+  std::string caption;
+  std::vector<std::string> columns;
+  std::vector<std::vector<std::string>> rows;
+  std::vector<std::string> notes;  ///< what was done here, and what differs from the thesis
+  nlohmann::json figures;
+};
+
+/// A table of the thesis, by its number.
+struct ThesisTable {
+  std::string_view number;
+  std::string_view title;
+  Result<ReproducedTable> (*reproduce)(const ReproduceOptions&, const Executor&, const Progress&);
+};
+
+/// In the thesis' order.
+[[nodiscard]] std::span<const ThesisTable> thesis_tables();
+/// nullptr: there is none.
+[[nodiscard]] const ThesisTable* find_thesis_table(std::string_view number);
+
+/// As Markdown: the caption, the table with aligned columns, and the notes as a list.
+void print(std::ostream& out, const ReproducedTable& table);
+
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_9(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_10(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
+
+}  // namespace saccade::cli
