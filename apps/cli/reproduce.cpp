@@ -30,6 +30,14 @@ Result<int> list_tables(const GlobalOptions& global) {
   return static_cast<int>(ExitStatus::done);
 }
 
+json json_of(const std::string& number, const ReproducedTable& table) {
+  json entry = table.figures;
+  entry["table"] = number;
+  entry["caption"] = table.caption;
+  entry["notes"] = table.notes;
+  return entry;
+}
+
 Result<int> run_reproduce(const std::vector<std::string>& numbers, const ReproduceOptions& options,
                           const GlobalOptions& global) {
   if (numbers.empty()) return list_tables(global);
@@ -43,25 +51,28 @@ Result<int> run_reproduce(const std::vector<std::string>& numbers, const Reprodu
   TimingsMs timings_ms;
   json tables = json::array();
   for (const std::string& number : numbers) {
-    Stopwatch of_table;
-    SACCADE_TRY(const ReproducedTable table, find_thesis_table(number)->reproduce(options, executor, progress));
-    timings_ms["table " + number] = of_table.lap_ms();
+    const Stopwatch of_table;
+    const Result<ReproducedTable> table = find_thesis_table(number)->reproduce(options, executor, progress);
+    if (!table && table.error().code == Errc::cancelled && !tables.empty()) break;  // those before it are kept
+    if (!table) return table.error();
+    timings_ms["table " + number] = of_table.elapsed_ms();
     bar.finish();
     if (!global.json_to_stdout()) {
       if (!tables.empty()) std::cout << '\n';
-      print(std::cout, table);
+      print(std::cout, *table);
       std::cout << std::flush;
     }
-    json entry = table.figures;
-    entry["table"] = number;
-    entry["caption"] = table.caption;
-    entry["notes"] = table.notes;
-    tables.push_back(std::move(entry));
+    tables.push_back(json_of(number, *table));
   }
+  bar.finish();
   timings_ms["total"] = clock.elapsed_ms();
+  const std::size_t done = tables.size();
   SACCADE_CHECK(write_json_output(
       global, json_envelope("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}})));
-  return static_cast<int>(ExitStatus::done);
+  if (done == numbers.size()) return static_cast<int>(ExitStatus::done);
+  print_error("reproduce", "interrupted after " + std::to_string(done) + " of " + std::to_string(numbers.size()) +
+                               " tables; those are kept");
+  return interrupt_status();
 }
 
 /// Throws a usage error that lists the tables.

@@ -29,7 +29,7 @@ std::vector<Pose> scan_poses() {
   config.longitude_step_rad = radians(45.0);
   config.latitude_min_rad = radians(25.0);
   config.latitude_max_rad = radians(65.0);
-  config.latitude_step_rad = radians(20.0);
+  config.latitude_step_rad = radians(40.0);
   config.roll_step_rad = radians(360.0);
   return poses_of(view_sphere(kTable, config).value());
 }
