@@ -8,7 +8,8 @@ namespace saccade::cli {
 namespace {
 
 constexpr std::array<ThesisTable, 2> kTables{{
-    {"2.9", "time to evaluate the views of a region: ours, PCL's octree, a fixed step", reproduce_table_2_9},
+    {"2.9", "time to evaluate the views of a region: ours, PCL's octree, a fixed step (takes minutes)",
+     reproduce_table_2_9},
     {"2.10", "what it costs to keep unknown and empty apart while the map moves", reproduce_table_2_10},
 }};
 
