@@ -185,7 +185,7 @@ void evaluation(benchmark::State& state) {
   state.counters["rays"] = kEvery * walks.rays;
   state.counters["looks_per_ray"] = walks.looks / walks.rays;
   const FlatStops& flat = problem->grid.flat();
-  state.counters["grid_bytes"] = static_cast<double>(4 * (flat.slots.size() + flat.stop.size() + flat.score.size()));
+  state.counters["grid_bytes"] = static_cast<double>(4 * flat.bits.size());
 }
 
 BENCHMARK(tracked_frame)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();

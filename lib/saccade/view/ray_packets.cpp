@@ -46,16 +46,23 @@ class Walkers {
     active_ = hn::And(active_, before(entered_, exit_));
     const std::size_t cast = hn::CountTrue(f_, active_);
     if (cast == 0) return 0;
-    const Index3 lo = stops_.bricks.lo * kBrickEdge;
-    const std::array<std::int32_t, 3> from_lo{origin.x - lo.x, origin.y - lo.y, origin.z - lo.z};
+    const Index3 size = stops_.voxels.hi - stops_.voxels.lo;
+    const std::array<std::int32_t, 3> strides{1, size.x, size.x * size.y};
+    const std::array<std::int32_t, 3> from_lo{origin.x - stops_.voxels.lo.x, origin.y - stops_.voxels.lo.y,
+                                              origin.z - stops_.voxels.lo.z};
     const VF far = hn::Set(f_, 4194304.0F);
+    voxel_ = hn::Zero(i_);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VF p = rays_.position(axis, entered_, hn::Neg(far), far, active_);
       next_.plane[axis] = rays_.plane_ahead(axis, p);
       next_.t[axis] = rays_.crossing(axis, next_.plane[axis]);
-      voxel_[axis] = hn::Add(hn::ConvertTo(i_, p), hn::Set(i_, from_lo[axis]));
+      const VI stride = hn::Set(i_, strides[axis]);
+      voxel_ = hn::Add(voxel_, hn::Mul(hn::Add(hn::ConvertTo(i_, p), hn::Set(i_, from_lo[axis])), stride));
+      const M forward = rays_.forward[axis];
+      onward_[axis] = hn::IfThenElse(forward, hn::Set(f_, 1.0F), hn::Set(f_, -1.0F));
+      stride_[axis] = hn::IfThenElse(hn::RebindMask(i_, forward), stride, hn::Neg(stride));
     }
-    find_slots();
+    voxel_ = hn::IfThenElseZero(hn::RebindMask(i_, active_), voxel_);
     return cast;
   }
 
@@ -63,12 +70,12 @@ class Walkers {
   HWY_INLINE std::uint64_t walk(float min_t) {
     M scored = none();
     while (any(active_)) {
-      const VI word = word_index();
-      const M stopped = hn::And(active_, has_bit(stops_.stop, word));
+      const VI bits = bits_of_voxels();
+      const M stopped = hn::And(active_, has(bits, FlatStops::kStops));
       if (any(stopped)) {
         const M late_enough = hn::Ge(entered_.t, hn::Set(f_, min_t));
         const M entered = hn::RebindMask(f_, hn::Gt(entered_.axis, hn::Set(i_, -1)));  // not the camera's own voxel
-        const M counts = hn::And(hn::And(stopped, has_bit(stops_.score, word)), hn::And(late_enough, entered));
+        const M counts = hn::And(hn::And(stopped, has(bits, FlatStops::kScores)), hn::And(late_enough, entered));
         scored = hn::Or(scored, counts);
         active_ = hn::AndNot(stopped, active_);
       }
@@ -87,37 +94,28 @@ class Walkers {
   HWY_INLINE void step() {
     const NextPlanes::First leave = next_.first();
     active_ = hn::And(active_, before(leave.event, exit_));
-    const std::array<VI, 3> was = voxel_;
-    next_.advance(rays_, 0, hn::AndNot(hn::Or(leave.y, leave.z), active_), 1, voxel_[0]);
-    next_.advance(rays_, 1, hn::AndNot(leave.z, hn::And(leave.y, active_)), 1, voxel_[1]);
-    next_.advance(rays_, 2, hn::And(leave.z, active_), 1, voxel_[2]);
+    cross(0, hn::AndNot(hn::Or(leave.y, leave.z), active_));
+    cross(1, hn::AndNot(leave.z, hn::And(leave.y, active_)));
+    cross(2, hn::And(leave.z, active_));
     entered_ = select(active_, leave.event, entered_);
-    const VI changed =
-        hn::Or(hn::Or(hn::Xor(was[0], voxel_[0]), hn::Xor(was[1], voxel_[1])), hn::Xor(was[2], voxel_[2]));
-    if (any(hn::RebindMask(f_, hn::Gt(changed, hn::Set(i_, kBrickEdge - 1))))) find_slots();
+  }
+  /// NextPlanes::advance.
+  HWY_INLINE void cross(std::size_t axis, M rays) {
+    next_.plane[axis] = hn::IfThenElse(rays, hn::Add(next_.plane[axis], onward_[axis]), next_.plane[axis]);
+    next_.t[axis] = hn::IfThenElse(rays, rays_.crossing(axis, next_.plane[axis]), next_.t[axis]);
+    voxel_ = hn::Add(voxel_, hn::IfThenElseZero(hn::RebindMask(i_, rays), stride_[axis]));
   }
 
-  /// Of the rays' bricks. They lie in the tables: these hold all cameras and the box that rays end in, so all between.
-  HWY_INLINE void find_slots() {
-    const IndexBox& box = stops_.bricks;
-    const VI row =
-        hn::Add(hn::Mul(hn::ShiftRight<3>(voxel_[2]), hn::Set(i_, box.hi.y - box.lo.y)), hn::ShiftRight<3>(voxel_[1]));
-    const VI index = hn::Add(hn::Mul(row, hn::Set(i_, box.hi.x - box.lo.x)), hn::ShiftRight<3>(voxel_[0]));
-    const VI safe = hn::IfThenElseZero(hn::RebindMask(i_, active_), index);
-    slot_words_ = hn::ShiftLeft<4>(hn::GatherIndex(i_, stops_.slots.data(), safe));
+  /// Of the voxels the rays are in, in the lowest two bits. They lie in the table: it holds all cameras and the box
+  /// that rays end in, so all between.
+  [[nodiscard]] HWY_INLINE VI bits_of_voxels() const {
+    const VI word = hn::ShiftRight<4>(voxel_);
+    const VI words = hn::GatherIndex(i_, reinterpret_cast<const std::int32_t*>(stops_.bits.data()), word);
+    const VI place = hn::ShiftLeft<1>(hn::And(voxel_, hn::Set(i_, FlatStops::kVoxelsPerWord - 1)));
+    return hn::BitCast(i_, hn::Shr(hn::BitCast(u_, words), hn::BitCast(u_, place)));
   }
-  /// Of the rays' voxels, in the tables of words: two words per slice, the rows 4 … 7 in the second.
-  [[nodiscard]] HWY_INLINE VI word_index() const {
-    const VI slice = hn::And(voxel_[2], hn::Set(i_, 7));
-    const VI half = hn::And(hn::ShiftRight<2>(voxel_[1]), hn::Set(i_, 1));
-    return hn::Add(slot_words_, hn::Or(hn::ShiftLeft<1>(slice), half));
-  }
-  [[nodiscard]] HWY_INLINE M has_bit(const std::vector<std::uint32_t>& words, VI word) const {
-    const VI bits = hn::GatherIndex(i_, reinterpret_cast<const std::int32_t*>(words.data()), word);
-    const VI row = hn::And(voxel_[1], hn::Set(i_, 3));
-    const VI bit = hn::Or(hn::ShiftLeft<3>(row), hn::And(voxel_[0], hn::Set(i_, 7)));
-    const VI shifted = hn::BitCast(i_, hn::Shr(hn::BitCast(u_, bits), hn::BitCast(u_, bit)));
-    return hn::RebindMask(f_, hn::Ne(hn::And(shifted, hn::Set(i_, 1)), hn::Zero(i_)));
+  [[nodiscard]] HWY_INLINE static M has(VI bits, std::uint32_t bit) {
+    return hn::RebindMask(f_, hn::Ne(hn::And(bits, hn::Set(i_, static_cast<std::int32_t>(bit))), hn::Zero(i_)));
   }
 
   static constexpr F f_{};
@@ -129,8 +127,9 @@ class Walkers {
   Event entered_;  ///< the voxels that the rays are in
   Event exit_;
   NextPlanes next_;
-  std::array<VI, 3> voxel_;  ///< relative to the first voxel of the tables
-  VI slot_words_;            ///< first words of their bricks
+  std::array<VF, 3> onward_;  ///< ± 1
+  std::array<VI, 3> stride_;  ///< ± of the table
+  VI voxel_;                  ///< in the table
 };
 
 PacketTally cast_packets_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {

@@ -11,21 +11,18 @@
 
 namespace saccade {
 
-/// A StopGrid as flat tables, for look-ups in vectors: a slot per brick, the masks' words per slot.
+/// A StopGrid as one flat table of two bits per voxel, for look-ups in vectors.
 struct FlatStops {
-  static constexpr std::int32_t kClear{0};  ///< slots that many bricks share
-  static constexpr std::int32_t kAllBlock{1};
-  static constexpr std::int32_t kAllScore{2};
-  static constexpr std::size_t kWords{16};  ///< per slot
+  static constexpr std::uint32_t kStops{1};
+  static constexpr std::uint32_t kScores{2};
+  static constexpr int kVoxelsPerWord{16};
 
-  IndexBox bricks;                  ///< holds the rays' origins and scoring_voxels
-  std::vector<std::int32_t> slots;  ///< x fastest
-  std::vector<std::uint32_t> stop;
-  std::vector<std::uint32_t> score;
-  IndexBox scoring_voxels;  ///< rays end where they leave it
+  IndexBox voxels;                  ///< holds the rays' origins and scoring_voxels; whole bricks
+  std::vector<std::uint32_t> bits;  ///< x fastest; a voxel's two bits above those of the voxels before it
+  IndexBox scoring_voxels;          ///< rays end where they leave it
 
   /// Too large to be tabulated, or not built.
-  [[nodiscard]] bool empty() const { return slots.empty(); }
+  [[nodiscard]] bool empty() const { return bits.empty(); }
 };
 
 /// Rays from one origin that have come to the same slab of voxels.

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <bit>
+#include <cstring>
 #include <limits>
 
 namespace saccade {
@@ -82,6 +83,33 @@ IndexBox bounds_of_mask(const Mask512& mask, const Index3& brick) {
   const int x1 = 64 - std::countl_zero(row);
   const Index3 corner = brick * kBrickEdge;
   return {corner + Index3{x0, y0, z0}, corner + Index3{x1, y1, z1}};
+}
+
+/// Bits 0 … 7 at the even bits.
+constexpr std::array<std::uint16_t, 256> kSpread = [] {
+  std::array<std::uint16_t, 256> spread{};
+  for (unsigned i = 0; i < 256; ++i) {
+    for (unsigned bit = 0; bit < 8; ++bit)
+      spread[i] = static_cast<std::uint16_t>(spread[i] | (i >> bit & 1U) << 2 * bit);
+  }
+  return spread;
+}();
+
+/// A brick into the table of FlatStops; strides in bytes.
+void write_brick(const StopGrid::Brick& brick, std::byte* at, std::size_t row, std::size_t slice) {
+  const bool uniform = stop_flags::uniform(brick.flags);
+  const std::uint16_t all = brick.flags == stop_flags::kAllScore ? 0xFFFF : 0x5555;
+  for (std::size_t z = 0; z < kBrickEdge; ++z) {
+    for (std::size_t y = 0; y < kBrickEdge; ++y) {
+      std::uint16_t bits{all};
+      if (!uniform) {
+        const std::uint64_t stop = brick.masks->stop.words[z] >> (8 * y) & 0xFFU;
+        const std::uint64_t score = brick.masks->score.words[z] >> (8 * y) & 0xFFU;
+        bits = static_cast<std::uint16_t>(kSpread[stop] | kSpread[score] << 1U);
+      }
+      std::memcpy(at + z * slice + y * row, &bits, sizeof bits);
+    }
+  }
 }
 
 }  // namespace
@@ -207,7 +235,7 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
   for (std::size_t k = 0; k < places.size(); ++k) grid.table_[places[k]] = grid.views_[k].get();
   if (only_exposed) grid.find_exposed(executor);
   for (const auto& view : grid.views_) grid.scoring_voxels_ = hull(grid.scoring_voxels_, view->scoring);
-  grid.flatten(executor);
+  grid.flatten(domain, executor);
   return grid;
 }
 
@@ -279,52 +307,29 @@ Mask512 StopGrid::exposed_voxels(const Index3& brick, const Mask512& stop) const
   return exposed;
 }
 
-void StopGrid::flatten(const Executor& executor) {
-  constexpr std::size_t kMostFlat{1 << 15};  // sectors: 64 MiB of slots
-  if (scoring_voxels_.empty() || table_.size() > kMostFlat) return;
+void StopGrid::flatten(const IndexBox& domain, const Executor& executor) {
+  constexpr double kMost{1 << 28};  // voxels: 64 MiB
+  const IndexBox bricks{parent(domain.lo), parent(domain.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
+  flat_.voxels = {bricks.lo * kBrickEdge, bricks.hi * kBrickEdge};
+  const Index3 size = flat_.voxels.hi - flat_.voxels.lo;
+  if (scoring_voxels_.empty() || static_cast<double>(size.x) * size.y * size.z > kMost) return;
   flat_.scoring_voxels = scoring_voxels_;
-  flat_.bricks = {sectors_.lo * kSectorEdge, sectors_.hi * kSectorEdge};
-  std::vector<std::size_t> first_slot;  // of the sectors of the table that have masks
-  std::size_t slots{FlatStops::kAllScore + 1};
-  for (const SectorView* sector : table_) {
-    first_slot.push_back(slots);
-    slots += sector->masks.size();
-  }
-  flat_.slots.resize(table_.size() * kSectorBricks);
-  flat_.stop.resize(slots * FlatStops::kWords);
-  flat_.score.resize(slots * FlatStops::kWords);
-  const auto fill = [](std::vector<std::uint32_t>& words, std::int32_t slot) {
-    std::fill_n(words.data() + static_cast<std::size_t>(slot) * FlatStops::kWords, FlatStops::kWords,
-                ~std::uint32_t{0});
-  };
-  fill(flat_.stop, FlatStops::kAllBlock);
-  fill(flat_.stop, FlatStops::kAllScore);
-  fill(flat_.score, FlatStops::kAllScore);
-  const auto copy = [](const Mask512& mask, std::vector<std::uint32_t>& words, std::size_t slot) {
-    for (std::size_t i = 0; i < FlatStops::kWords; ++i) {
-      words[slot * FlatStops::kWords + i] = static_cast<std::uint32_t>(mask.words[i / 2] >> (i % 2 * 32));
-    }
-  };
-  const std::size_t row = std::size_t{size_x_} * kSectorEdge;
-  const std::size_t slice = std::size_t{size_y_} * kSectorEdge * row;
-  executor.parallel_for(table_.size(), 4, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t s = begin; s < end; ++s) {
-      const SectorView& sector = *table_[s];
-      const std::size_t x0 = s % size_x_ * kSectorEdge;
-      const std::size_t y0 = s / size_x_ % size_y_ * kSectorEdge;
-      const std::size_t z0 = s / size_x_ / size_y_ * kSectorEdge;
-      for (std::size_t i = 0; i < kSectorBricks; ++i) {
-        const unsigned flags = sector.codes[i] & stop_flags::kMask;
-        const std::size_t place = sector.codes[i] >> stop_flags::kShift;
-        auto slot = static_cast<std::int32_t>(first_slot[s] + place);
-        if (flags == stop_flags::kClear) slot = FlatStops::kClear;
-        if (flags == stop_flags::kAllBlock || flags == stop_flags::kBuried) slot = FlatStops::kAllBlock;
-        if (flags == stop_flags::kAllScore) slot = FlatStops::kAllScore;
-        flat_.slots[(z0 + i / 64) * slice + (y0 + i / 8 % 8) * row + x0 + i % 8] = slot;
-      }
-      for (std::size_t place = 0; place < sector.masks.size(); ++place) {
-        copy(sector.masks[place].stop, flat_.stop, first_slot[s] + place);
-        copy(sector.masks[place].score, flat_.score, first_slot[s] + place);
+  const auto row = static_cast<std::size_t>(size.x);
+  const std::size_t slice = row * static_cast<std::size_t>(size.y);
+  flat_.bits.resize(slice * static_cast<std::size_t>(size.z) / FlatStops::kVoxelsPerWord + 1);
+  auto* const bytes = reinterpret_cast<std::byte*>(flat_.bits.data());
+  const auto layers = static_cast<std::size_t>(bricks.hi.z - bricks.lo.z);
+  executor.parallel_for(layers, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t layer = begin; layer < end; ++layer) {
+      for (std::int32_t y = bricks.lo.y; y < bricks.hi.y; ++y) {
+        for (std::int32_t x = bricks.lo.x; x < bricks.hi.x; ++x) {
+          const Brick brick = this->brick({x, y, bricks.lo.z + static_cast<std::int32_t>(layer)});
+          if (brick.flags == stop_flags::kClear) continue;
+          const std::size_t first = layer * kBrickEdge * slice +
+                                    static_cast<std::size_t>(y - bricks.lo.y) * kBrickEdge * row +
+                                    static_cast<std::size_t>(x - bricks.lo.x) * kBrickEdge;
+          write_brick(brick, bytes + first / 4, row / 4, slice / 4);
+        }
       }
     }
   });

@@ -83,7 +83,7 @@ class StopGrid {
   void find_exposed(const Executor& executor);
   [[nodiscard]] bool buried(const Index3& brick) const;
   [[nodiscard]] Mask512 exposed_voxels(const Index3& brick, const Mask512& stop) const;
-  void flatten(const Executor& executor);
+  void flatten(const IndexBox& domain, const Executor& executor);
 
   [[nodiscard]] static unsigned flags_within(const Brick& brick, const Index3& lo, const Index3& hi);
 
