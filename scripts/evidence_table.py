@@ -83,6 +83,12 @@ def nbv_section(folder, lines):
     return good
 
 
+def reproduce_section(folder, lines):
+    log = folder / "reproduce.log"
+    if (folder / "reproduce.done").exists():
+        lines += ["## Tables of the thesis", "", f"`{command_of(folder, 'reproduce')}`", "", log.read_text().rstrip(), ""]
+
+
 def compare_section(folder, lines):
     path = folder / "compare.json"
     if not path.exists():
@@ -136,6 +142,7 @@ def main():
              f"Machine: {processor()}.", ""]
     held = fuse_section(folder, lines)
     held = nbv_section(folder, lines) and held
+    reproduce_section(folder, lines)
     held = compare_section(folder, lines) and held
     fuzz_section(folder, lines)
     document.write_text("\n".join(lines))
