@@ -52,6 +52,19 @@ struct Mask512 {
       }
     }
   }
+  /// Calls body(first, count) for the runs of bits that are set within a slice, in order.
+  template <class Body>
+  void for_each_run(const Body& body) const {
+    for (std::size_t z = 0; z < 8; ++z) {
+      for (std::uint64_t rest = words[z]; rest != 0;) {
+        const int first = std::countr_zero(rest);
+        const int count = std::countr_one(rest >> first);
+        body(z * 64 + static_cast<std::size_t>(first), static_cast<std::size_t>(count));
+        if (first + count == 64) break;
+        rest &= ~std::uint64_t{0} << (first + count);
+      }
+    }
+  }
   [[nodiscard]] constexpr Mask512 operator~() const {
     Mask512 m;
     for (std::size_t i = 0; i < 8; ++i) m.words[i] = ~words[i];

@@ -7,6 +7,7 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/map/frame_fuser.hpp"
+#include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {
 namespace {
@@ -34,71 +35,50 @@ Status check_frame(const PinholeCamera& camera, const DepthImage& depth, const P
   return {};
 }
 
-/// Marks the voxels of a cube in a brick whose centre the shape contains: all or none at once, or by its octants.
-template <class Shape>
-void mark_inside(const Shape& shape, const Index3& brick_lo, const Index3& cube, int edge, double voxel_size_m,
-                 Mask512& inside) {
-  constexpr int kSmallestCube{2};
-  const Index3 first = brick_lo + cube;
-  const Index3 last = first + Index3{edge - 1, edge - 1, edge - 1};
-  const Overlap known = overlap(shape, {voxel_center(first, voxel_size_m), voxel_center(last, voxel_size_m)});
-  if (known == Overlap::none) return;
-  if (known == Overlap::whole && edge == kBrickEdge) {
-    inside = Mask512::all_set();
-    return;
+/// Sectors of a box, in z-y-x order; all, or those that are stored.
+std::vector<Index3> sectors_in(const IndexBox& box, const TsdfGrid& grid, bool only_stored) {
+  std::vector<Index3> keys;
+  const Index3 size = box.hi - box.lo;
+  if (only_stored && static_cast<double>(size.x) * size.y * size.z > static_cast<double>(grid.sector_count())) {
+    keys = grid.sorted_sectors();
+    std::erase_if(keys, [&](const Index3& key) { return !box.contains(key); });
+    return keys;
   }
-  if (known == Overlap::partial && edge > kSmallestCube) {
-    const int half = edge / 2;
-    for (int i = 0; i < 8; ++i) {
-      const Index3 octant = cube + Index3{i & 1, (i >> 1) & 1, (i >> 2) & 1} * half;
-      mark_inside(shape, brick_lo, octant, half, voxel_size_m, inside);
-    }
-    return;
-  }
-  for (int z = 0; z < edge; ++z) {
-    for (int y = 0; y < edge; ++y) {
-      for (int x = 0; x < edge; ++x) {
-        const Index3 voxel = cube + Index3{x, y, z};
-        if (known == Overlap::whole || contains(shape, voxel_center(brick_lo + voxel, voxel_size_m))) {
-          inside.set(child_index(voxel));
-        }
+  for (int z = box.lo.z; z < box.hi.z; ++z) {
+    for (int y = box.lo.y; y < box.hi.y; ++y) {
+      for (int x = box.lo.x; x < box.hi.x; ++x) {
+        if (!only_stored || grid.find({x, y, z}) != nullptr) keys.push_back({x, y, z});
       }
     }
   }
+  return keys;
 }
 
-/// Applies `edit` to every stored or storable brick of the region: wholly inside, or voxel by voxel through a mask of
-/// the voxels whose centre it contains.
+/// Which bricks of a region an edit is for.
+enum class Bricks {
+  known,  ///< only those with a known voxel inside; nothing is created
+  all,    ///< created where they are absent
+};
+
+/// Applies `edit` to the bricks of the region, with a mask of the voxels whose centre it contains.
 template <class Edit>
-void edit_region(TsdfGrid& grid, const TsdfConfig& config, const Region& region, bool create, const Edit& edit) {
+void edit_region(TsdfGrid& grid, const TsdfConfig& config, const Region& region, Bricks which, const Edit& edit) {
   const IndexBox voxels = voxels_with_center_in(bounds(region), config.voxel_size_m);
   if (voxels.empty()) return;
-  const Index3 first = parent(parent(voxels.lo));
-  const Index3 last = parent(parent(voxels.hi - Index3{1, 1, 1}));
-  std::vector<Index3> keys;
-  if (create) {
-    for (int z = first.z; z <= last.z; ++z) {
-      for (int y = first.y; y <= last.y; ++y) {
-        for (int x = first.x; x <= last.x; ++x) keys.push_back({x, y, z});
-      }
-    }
-  } else {
-    const IndexBox sectors{first, last + Index3{1, 1, 1}};
-    keys = grid.sorted_sectors();
-    std::erase_if(keys, [&](const Index3& key) { return !sectors.contains(key); });
-  }
-  for (const Index3& key : keys) {
+  const IndexBox bricks{parent(voxels.lo), parent(voxels.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
+  const IndexBox sectors{parent(bricks.lo), parent(bricks.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
+  const bool only_known = which == Bricks::known;
+  for (const Index3& key : sectors_in(sectors, grid, only_known)) {
+    const Sector* shared = grid.find(key);
     Sector* sector{nullptr};  // unshared only when a brick of it is written
     for (int i = 0; i < kSectorBricks; ++i) {
-      const Index3 lo = (key * kSectorEdge + child_offset(i)) * kBrickEdge;
-      const Index3 hi = lo + Index3{kBrickEdge, kBrickEdge, kBrickEdge};
-      if (lo.x >= voxels.hi.x || lo.y >= voxels.hi.y || lo.z >= voxels.hi.z || hi.x <= voxels.lo.x ||
-          hi.y <= voxels.lo.y || hi.z <= voxels.lo.z) {
-        continue;
-      }
-      const Mask512 inside = voxels_inside(region, lo, config.voxel_size_m);
+      const Index3 index = key * kSectorEdge + child_offset(i);
+      if (!bricks.contains(index)) continue;
+      if (only_known && shared->bricks[static_cast<std::size_t>(i)].is_unknown()) continue;
+      const Mask512 inside = voxels_inside(region, index * kBrickEdge, config.voxel_size_m);
       if (inside.none()) continue;
-      if (sector == nullptr) sector = &grid.writable(key);
+      if (only_known && (inside & ~shared->bricks[static_cast<std::size_t>(i)].unknown_mask()).none()) continue;
+      if (sector == nullptr) shared = sector = &grid.writable(key);
       BrickRef& brick = sector->bricks[static_cast<std::size_t>(i)];
       edit(brick, inside);
       brick.canonicalize(config.free_weight);
@@ -108,19 +88,23 @@ void edit_region(TsdfGrid& grid, const TsdfConfig& config, const Region& region,
   }
 }
 
+/// Writes one voxel over all of a mask, without colour.
+void overwrite(DenseBrick& dense, const Mask512& mask, const Voxel& voxel) {
+  mask.for_each_run([&](std::size_t first, std::size_t count) {
+    std::fill_n(dense.v.begin() + static_cast<std::ptrdiff_t>(first), count, voxel.v);
+    std::fill_n(dense.w.begin() + static_cast<std::ptrdiff_t>(first), count, voxel.w);
+    if (dense.colors) std::fill_n(dense.colors->begin() + static_cast<std::ptrdiff_t>(first), count, Rgb8{});
+  });
+  const bool known = voxel.w != 0;
+  dense.unknown = known ? dense.unknown & ~mask : dense.unknown | mask;
+  dense.occupied = dense.occupied & ~mask;
+}
+
 void forget_voxels(BrickRef& brick, const Mask512& inside) {
-  if (brick.is_unknown()) return;
-  if (inside.all()) {
+  if ((brick.unknown_mask() | inside).all()) {
     brick = {};
   } else if (brick.kind() == BrickKind::dense) {
-    DenseBrick& dense = brick.writable_dense();
-    for (int i = 0; i < kBrickVoxels; ++i) {
-      if (!inside.test(i)) continue;
-      dense.v[static_cast<std::size_t>(i)] = 0;
-      dense.w[static_cast<std::size_t>(i)] = 0;
-      if (dense.colors) (*dense.colors)[static_cast<std::size_t>(i)] = {};
-    }
-    dense.update_masks();
+    overwrite(brick.writable_dense(), inside, {});
   } else {
     FreeBrick& weights = brick.expand_to_free();
     for (Mask512& bits : weights.weight_bits) bits = bits & ~inside;
@@ -131,14 +115,7 @@ void free_voxels(BrickRef& brick, const Mask512& inside, std::uint16_t free_weig
   if (inside.all()) {
     brick = BrickRef::constant_free(free_weight);
   } else if (brick.kind() == BrickKind::dense) {
-    DenseBrick& dense = brick.writable_dense();
-    for (int i = 0; i < kBrickVoxels; ++i) {
-      if (!inside.test(i)) continue;
-      dense.v[static_cast<std::size_t>(i)] = kTsdfOne;
-      dense.w[static_cast<std::size_t>(i)] = free_weight;
-      if (dense.colors) (*dense.colors)[static_cast<std::size_t>(i)] = {};
-    }
-    dense.update_masks();
+    overwrite(brick.writable_dense(), inside, {kTsdfOne, free_weight});
   } else {
     FreeBrick& weights = brick.expand_to_free();
     const FreeBrick full = FreeBrick::constant(free_weight);
@@ -149,12 +126,6 @@ void free_voxels(BrickRef& brick, const Mask512& inside, std::uint16_t free_weig
 }
 
 }  // namespace
-
-Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_m) {
-  Mask512 inside;
-  std::visit([&](const auto& shape) { mark_inside(shape, lo, {0, 0, 0}, kBrickEdge, voxel_size_m, inside); }, region);
-  return inside;
-}
 
 TsdfMap::TsdfMap(const TsdfConfig& config) : content_{config, {}} {}
 TsdfMap::TsdfMap(TsdfSnapshot content) : content_{std::move(content)} {}
@@ -214,7 +185,7 @@ Result<FusionStats> TsdfMap::integrate(const PinholeCamera& camera, const DepthI
 Status TsdfMap::forget(const Region& region) {
   SACCADE_CHECK(check_region(region));
   const std::scoped_lock lock{mutex_};
-  edit_region(content_.grid, config(), region, false,
+  edit_region(content_.grid, config(), region, Bricks::known,
               [](BrickRef& brick, const Mask512& inside) { forget_voxels(brick, inside); });
   return {};
 }
@@ -222,7 +193,7 @@ Status TsdfMap::forget(const Region& region) {
 Status TsdfMap::free(const Region& region) {
   SACCADE_CHECK(check_region(region));
   const std::scoped_lock lock{mutex_};
-  edit_region(content_.grid, config(), region, true,
+  edit_region(content_.grid, config(), region, Bricks::all,
               [&](BrickRef& brick, const Mask512& inside) { free_voxels(brick, inside, config().free_weight); });
   return {};
 }

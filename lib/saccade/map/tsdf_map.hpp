@@ -28,9 +28,6 @@ struct TsdfSnapshot {
   TsdfGrid grid;
 };
 
-/// Voxels of the brick from voxel `lo` whose centre lies in the region.
-[[nodiscard]] Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_m);
-
 /// Truncated signed distance map that never confuses unknown with empty. Thesis §2.2.1, §2.2.2, §2.3.1.
 /// One writer at a time (integrate, forget, free, replace); snapshot() may be called from any thread meanwhile.
 class TsdfMap {

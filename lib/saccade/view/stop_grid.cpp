@@ -6,6 +6,8 @@
 #include <cstring>
 #include <limits>
 
+#include "saccade/map/voxels_inside.hpp"
+
 namespace saccade {
 namespace {
 
@@ -40,24 +42,6 @@ Mask512 box_mask(const Index3& brick, const IndexBox& box) {
   const std::uint64_t row = (0xFFU >> (kBrickEdge - hi.x)) & (0xFFU << lo.x);
   for (int z = lo.z; z < hi.z; ++z) {
     for (int y = lo.y; y < hi.y; ++y) mask.words[static_cast<std::size_t>(z)] |= row << (kBrickEdge * y);
-  }
-  return mask;
-}
-
-/// Voxels of the brick whose centre lies in the region. Where the brick is clearly in or out of a sphere, no centre
-/// needs to be looked at; the slack is far above rounding and far below a voxel.
-Mask512 region_mask(const Region& region, const Index3& brick, double voxel_size_m) {
-  if (const auto* sphere = std::get_if<Sphere>(&region)) {
-    const Eigen::Vector3d half = Eigen::Vector3d::Constant(0.5 * kBrickEdge * voxel_size_m);
-    const Eigen::Vector3d center = Eigen::Vector3d{brick.x + 0.5, brick.y + 0.5, brick.z + 0.5} * (2.0 * half.x());
-    const Eigen::Vector3d offset = (sphere->center - center).cwiseAbs();
-    const double slack = 0.01 * voxel_size_m;
-    if ((offset + half).norm() < sphere->radius_m - slack) return Mask512::all_set();
-    if ((offset - half).cwiseMax(0.0).norm() > sphere->radius_m + slack) return {};
-  }
-  Mask512 mask;
-  for (int i = 0; i < kBrickVoxels; ++i) {
-    mask.assign(i, contains(region, voxel_center(brick * kBrickEdge + child_offset(i), voxel_size_m)));
   }
   return mask;
 }
@@ -177,7 +161,7 @@ class StopGrid::Builder {
     }
     Mask512 score;
     if (unknown.any() && overlap(voxels, region_voxels_)) {
-      score = unknown & region_mask(region_, brick, map_.config.voxel_size_m);
+      score = unknown & voxels_inside(region_, brick * kBrickEdge, map_.config.voxel_size_m);
     }
     const Mask512 stop = occupied | (unknown_blocks_ ? unknown : score);
     return {stop, score, stop};

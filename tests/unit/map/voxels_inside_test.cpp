@@ -4,8 +4,7 @@
 #include <array>
 #include <random>
 
-#include "saccade/core/region.hpp"
-#include "saccade/map/tsdf_map.hpp"
+#include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {
 namespace {
