@@ -87,14 +87,12 @@ class CellLanes {
     }
   }
 
-  /// ∇v in the cells: differences over two voxels; over the cell's own where a neighbour is unknown.
-  HWY_INLINE void find_gradient(VI index, const CellOfLanes& cell, const std::array<VF, 3>& fraction,
+  /// ∇v in the cells of some lanes: differences over two voxels; over the cell's own where a neighbour is unknown.
+  HWY_INLINE void find_gradient(M lanes, VI index, const CellOfLanes& cell, const std::array<VF, 3>& fraction,
                                 std::array<VF, 3>& gradient) const {
     const VI bytes = bytes_of(index);
     const auto& [x, y, z] = fraction;
     const auto& [v00, v10, v01, v11, from] = cell;
-    const VF zero = hn::Zero(f_);
-    const VF one = hn::Set(f_, 1.0F);
     {
       const Pair l00 = pair_at(bytes, -1, 0, 0), l10 = pair_at(bytes, -1, 1, 0);
       const Pair l01 = pair_at(bytes, -1, 0, 1), l11 = pair_at(bytes, -1, 1, 1);
@@ -103,23 +101,20 @@ class CellLanes {
       const M known = hn::And(
           hn::And(hn::And(is_known(l00.low), is_known(l10.low)), hn::And(is_known(l01.low), is_known(l11.low))),
           hn::And(hn::And(is_known(h00.high), is_known(h10.high)), hn::And(is_known(h01.high), is_known(h11.high))));
-      gradient[0] =
-          difference(known, interpolate(h00, h10, h01, h11, x, y, z), interpolate(l00, l10, l01, l11, x, y, z),
-                     interpolate(v00, v10, v01, v11, one, y, z), interpolate(v00, v10, v01, v11, zero, y, z));
+      gradient[0] = half_difference(interpolate(h00, h10, h01, h11, x, y, z), interpolate(l00, l10, l01, l11, x, y, z));
+      settle_unknown(lanes, known, cell, fraction, 0, gradient);
     }
     {
       const Pair l0 = pair_at(bytes, 0, -1, 0), l1 = pair_at(bytes, 0, -1, 1);
       const Pair h0 = pair_at(bytes, 0, 2, 0), h1 = pair_at(bytes, 0, 2, 1);
-      gradient[1] = difference(all_known(l0, l1, h0, h1), interpolate(v10, h0, v11, h1, x, y, z),
-                               interpolate(l0, v00, l1, v01, x, y, z), interpolate(v00, v10, v01, v11, x, one, z),
-                               interpolate(v00, v10, v01, v11, x, zero, z));
+      gradient[1] = half_difference(interpolate(v10, h0, v11, h1, x, y, z), interpolate(l0, v00, l1, v01, x, y, z));
+      settle_unknown(lanes, all_known(l0, l1, h0, h1), cell, fraction, 1, gradient);
     }
     {
       const Pair l0 = pair_at(bytes, 0, 0, -1), l1 = pair_at(bytes, 0, 1, -1);
       const Pair h0 = pair_at(bytes, 0, 0, 2), h1 = pair_at(bytes, 0, 1, 2);
-      gradient[2] = difference(all_known(l0, l1, h0, h1), interpolate(v01, v11, h0, h1, x, y, z),
-                               interpolate(l0, l1, v00, v10, x, y, z), interpolate(v00, v10, v01, v11, x, y, one),
-                               interpolate(v00, v10, v01, v11, x, y, zero));
+      gradient[2] = half_difference(interpolate(v01, v11, h0, h1, x, y, z), interpolate(l0, l1, v00, v10, x, y, z));
+      settle_unknown(lanes, all_known(l0, l1, h0, h1), cell, fraction, 2, gradient);
     }
   }
 
@@ -157,8 +152,19 @@ class CellLanes {
     const auto both = [&](const Pair& p) HWY_ATTR { return hn::And(is_known(p.low), is_known(p.high)); };
     return hn::And(hn::And(both(p0), both(p1)), hn::And(both(p2), both(p3)));
   }
-  [[nodiscard]] HWY_INLINE VF difference(M known, VF ahead, VF behind, VF high, VF low) const {
-    return hn::IfThenElse(known, hn::Mul(hn::Set(f_, 0.5F), hn::Sub(ahead, behind)), hn::Sub(high, low));
+  [[nodiscard]] HWY_INLINE VF half_difference(VF ahead, VF behind) const {
+    return hn::Mul(hn::Set(f_, 0.5F), hn::Sub(ahead, behind));
+  }
+  /// Where neighbours along an axis are not known: the difference across the cell.
+  HWY_INLINE void settle_unknown(M lanes, M known, const CellOfLanes& cell, std::array<VF, 3> fraction,
+                                 std::size_t axis, std::array<VF, 3>& gradient) const {
+    if (!any(hn::AndNot(known, lanes))) return;
+    const auto side = [&](float at) HWY_ATTR {
+      fraction[axis] = hn::Set(f_, at);
+      return interpolate(cell.v00, cell.v10, cell.v01, cell.v11, fraction[0], fraction[1], fraction[2]);
+    };
+    const VF high = side(1.0F);
+    gradient[axis] = hn::IfThenElse(known, gradient[axis], hn::Sub(high, side(0.0F)));
   }
 
   static constexpr F f_{};

@@ -94,7 +94,7 @@ class TileCaster {
       if (entry.nearest_m > farthest_end) break;  // every ray ended nearer
       const SurfaceBrick& surface = bricks_.get(entry.brick);
       const Index3 lo = cast_->tiles.bricks()[entry.brick].index * kBrickEdge - cast_->origin.voxel;
-      farthest_end = tile_cast::cast_in_brick(rays_, lo, surface, entry.brick, hits_);
+      farthest_end = tile_cast::cast_in_brick(rays_, lo, surface, entry, hits_);
     }
     write(tile_u * kTilePx, tile_v * kTilePx, view);
   }
@@ -109,9 +109,9 @@ class TileCaster {
       const double mx = cast_->per_cell(axis, 0);
       const double my = cast_->per_cell(axis, 1);
       const double mz = cast_->per_cell(axis, 2);
-      for (int i = 0; i < kTileRays; ++i) {
-        const auto [u, v] = pixel_of_ray(i);
-        d[i] = static_cast<float>((mx * x[u] + my * y[v]) + mz);
+      for (int first = 0; first < kTileRays; first += 4) {  // four pixels of a row
+        const auto [u, v] = pixel_of_ray(first);
+        for (int i = 0; i < 4; ++i) d[first + i] = static_cast<float>((mx * x[u + i] + my * y[v]) + mz);
       }
     }
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -119,7 +119,8 @@ class TileCaster {
         const float d = rays_.d[axis][i];
         const bool parallel = std::fabs(d) < kParallel;
         rays_.d[axis][i] = parallel ? 0.0F : d;
-        rays_.inv[axis][i] = parallel ? HUGE_VALF : 1.0F / d;
+        const float inv = 1.0F / (parallel ? 1.0F : d);
+        rays_.inv[axis][i] = parallel ? HUGE_VALF : inv;
       }
     }
   }

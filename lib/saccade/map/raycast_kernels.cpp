@@ -77,7 +77,7 @@ class Packet {
     std::array<VF, 3> fraction;
     in_cells_.fraction_at(cell, t, fraction);
     std::array<VF, 3> gradient;
-    in_cells_.find_gradient(cell_, cell, fraction, gradient);
+    in_cells_.find_gradient(front_, cell_, cell, fraction, gradient);
     keep(stopped_, hn::IfThenElseZero(front_, t), hits.t.data());
     for (std::size_t axis = 0; axis < 3; ++axis) {
       keep(front_, fraction[axis], hits.fraction[axis].data());
@@ -159,17 +159,20 @@ class Packet {
   SignChange change_;  ///< … and how v changed in it
 };
 
-float cast_in_brick_simd(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface, std::uint32_t brick,
-                         TileHits& hits) {
+float cast_in_brick_simd(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface,
+                         const SurfaceTiles::Entry& entry, TileHits& hits) {
   const F f;
   const I i;
   VF farthest = hn::Zero(f);
   for (std::size_t first = 0; first < kTileRays; first += hn::Lanes(f)) {
-    Packet packet{rays, lo, surface, first};
     const Event ended{hn::Load(f, hits.brick_t.data() + first), hn::Load(i, hits.brick_axis.data() + first)};
-    if (packet.enter(rays.farthest_m, ended)) {
-      packet.walk();
-      packet.store(first, brick, hits);
+    const bool in_block = ((entry.blocks >> (first / SurfaceTiles::kBlockRays)) & 1) != 0;
+    if (in_block && any(hn::Ge(ended.t, hn::Set(f, entry.nearest_m)))) {
+      Packet packet{rays, lo, surface, first};
+      if (packet.enter(rays.farthest_m, ended)) {
+        packet.walk();
+        packet.store(first, entry.brick, hits);
+      }
     }
     farthest = hn::Max(farthest, hn::Load(f, hits.brick_t.data() + first));
   }
@@ -188,9 +191,9 @@ HWY_EXPORT(cast_in_brick_simd);
 
 }  // namespace
 
-float cast_in_brick(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface, std::uint32_t brick,
-                    TileHits& hits) {
-  return HWY_DYNAMIC_DISPATCH(cast_in_brick_simd)(rays, lo, surface, brick, hits);
+float cast_in_brick(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface,
+                    const SurfaceTiles::Entry& entry, TileHits& hits) {
+  return HWY_DYNAMIC_DISPATCH(cast_in_brick_simd)(rays, lo, surface, entry, hits);
 }
 
 }  // namespace saccade::tile_cast

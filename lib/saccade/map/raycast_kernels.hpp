@@ -7,6 +7,7 @@
 #include <cstdint>
 
 #include "saccade/map/brick.hpp"
+#include "saccade/map/surface_tiles.hpp"
 #include "saccade/map/voxel_block.hpp"
 
 namespace saccade::tile_cast {
@@ -47,9 +48,9 @@ struct SurfaceBrick {
 
 /// Goes on with every ray of the tile through the brick; a ray keeps the end in the brick that it enters first. Visits
 /// the cells of walk_cells, and agrees to the bit with cross_cell and gradient_at on the scalar path.
-/// `lo`: the brick's first voxel relative to the rays' origin. Returns the largest brick_t: bricks that begin beyond it
-/// change nothing any more.
-float cast_in_brick(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface, std::uint32_t brick,
-                    TileHits& hits);
+/// `lo`: the brick's first voxel relative to the rays' origin; `entry`: the brick in the tile's list. Returns the
+/// largest brick_t: bricks that begin beyond it change nothing any more.
+float cast_in_brick(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface,
+                    const SurfaceTiles::Entry& entry, TileHits& hits);
 
 }  // namespace saccade::tile_cast

@@ -16,30 +16,31 @@ constexpr float kSlackPx{0.1F};
 /// Bricks that reach nearer than this to the camera's plane are on every tile's list.
 constexpr float kNearestZ{0.02F};
 
-/// A brick's rectangle of tiles, and its nearest depth.
+/// A brick's rectangle of blocks, and its nearest depth.
 struct Footprint {
   SurfaceTiles::Brick brick;
-  std::int16_t u0, v0, u1, v1;  // tiles, inclusive
+  std::int16_t u0, v0, u1, v1;  // blocks, inclusive
   float nearest_m;
 };
 
 /// Projects bricks; one per frame.
 class BrickProjector {
  public:
-  BrickProjector(const PinholeCamera& camera, const Pose& T_world_camera, double voxel_size_m, int tiles_u, int tiles_v)
+  BrickProjector(const PinholeCamera& camera, const Pose& T_world_camera, double voxel_size_m)
       : camera_{camera},
         T_camera_world_{T_world_camera.inverse()},
+        columns_{camera.fx, camera.cx, camera.width},
+        rows_{camera.fy, camera.cy, camera.height},
         voxel_size_m_{voxel_size_m},
-        last_u_{tiles_u - 1},
-        last_v_{tiles_v - 1},
+        last_u_{(camera.width - 1) / SurfaceTiles::kBlockPx},
+        last_v_{(camera.height - 1) / SurfaceTiles::kBlockPx},
         step_{(T_camera_world_.linear() * voxel_size_m).cast<float>()} {}
 
   /// Whether a ball can be in the image at all.
   [[nodiscard]] bool may_see(const Eigen::Vector3d& center_world, double radius_m) const {
     const Eigen::Vector3d c = T_camera_world_ * center_world;
     if (c.z() + radius_m < 0.0 || c.z() - radius_m > camera_.max_range_m) return false;
-    return beside(c.x(), c.z(), camera_.fx, camera_.cx, camera_.width) < radius_m &&
-           beside(c.y(), c.z(), camera_.fy, camera_.cy, camera_.height) < radius_m;
+    return columns_.beside(c.x(), c.z()) < radius_m && rows_.beside(c.y(), c.z()) < radius_m;
   }
 
   /// False: the box of cells is not in the image.
@@ -83,30 +84,43 @@ class BrickProjector {
     }
     const auto [u_min, u_max] = std::minmax_element(u.begin(), u.end());
     const auto [v_min, v_max] = std::minmax_element(v.begin(), v.end());
-    return tiles(*u_min, *u_max, camera_.cx, camera_.width, out.u0, out.u1) &&
-           tiles(*v_min, *v_max, camera_.cy, camera_.height, out.v0, out.v1);
+    return blocks(*u_min, *u_max, camera_.cx, camera_.width, out.u0, out.u1) &&
+           blocks(*v_min, *v_max, camera_.cy, camera_.height, out.v0, out.v1);
   }
 
  private:
-  /// How far a point lies outside the nearer of the two planes that bound the image on an axis; negative inside.
-  static double beside(double x, double z, double focal, double principal, int size) {
-    const double low = (-0.5 - principal) / focal;
-    const double high = (size - 0.5 - principal) / focal;
-    return std::max((low * z - x) / std::hypot(1.0, low), (x - high * z) / std::hypot(1.0, high));
-  }
+  /// The two planes that bound the image on an axis.
+  struct Sides {
+    double low;
+    double high;
+    double low_scale;
+    double high_scale;
 
-  static bool tiles(float lo, float hi, double principal, int size, std::int16_t& first, std::int16_t& last) {
+    Sides(double focal, double principal, int size)
+        : low{(-0.5 - principal) / focal},
+          high{(size - 0.5 - principal) / focal},
+          low_scale{1.0 / std::hypot(1.0, low)},
+          high_scale{1.0 / std::hypot(1.0, high)} {}
+    /// How far a point lies outside the nearer of the two; negative inside.
+    [[nodiscard]] double beside(double x, double z) const {
+      return std::max((low * z - x) * low_scale, (x - high * z) * high_scale);
+    }
+  };
+
+  static bool blocks(float lo, float hi, double principal, int size, std::int16_t& first, std::int16_t& last) {
     const float from = lo + static_cast<float>(principal) - kSlackPx;
     const float to = hi + static_cast<float>(principal) + kSlackPx;
     if (to < 0.0F || from > static_cast<float>(size - 1)) return false;
-    first = static_cast<std::int16_t>(static_cast<int>(std::max(from, 0.0F)) / SurfaceTiles::kTilePx);
-    last =
-        static_cast<std::int16_t>(static_cast<int>(std::min(to, static_cast<float>(size - 1))) / SurfaceTiles::kTilePx);
+    const float last_px = std::min(to, static_cast<float>(size - 1));
+    first = static_cast<std::int16_t>(static_cast<int>(std::max(from, 0.0F)) / SurfaceTiles::kBlockPx);
+    last = static_cast<std::int16_t>(static_cast<int>(last_px) / SurfaceTiles::kBlockPx);
     return true;
   }
 
   PinholeCamera camera_;
   Pose T_camera_world_;
+  Sides columns_;
+  Sides rows_;
   double voxel_size_m_;
   int last_u_;
   int last_v_;
@@ -118,9 +132,11 @@ class BrickProjector {
 SurfaceTiles::SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, const PinholeCamera& camera,
                            const Pose& T_world_camera, double voxel_size_m, const Executor& executor)
     : width_{(camera.width + kTilePx - 1) / kTilePx}, height_{(camera.height + kTilePx - 1) / kTilePx} {
-  const BrickProjector projector{camera, T_world_camera, voxel_size_m, width_, height_};
+  const BrickProjector projector{camera, T_world_camera, voxel_size_m};
   const double sector_m = kSectorVoxelEdge * voxel_size_m;
   const double radius_m = (0.5 * sector_m + voxel_size_m) * std::sqrt(3.0);
+  const double brick_m = kBrickEdge * voxel_size_m;
+  const double brick_radius_m = (0.5 * brick_m + voxel_size_m) * std::sqrt(3.0);
   const std::vector<Index3> keys = grid.sorted_sectors();
   std::vector<std::vector<Footprint>> seen(keys.size());
   executor.parallel_for(keys.size(), 8, [&](std::size_t begin, std::size_t end) {
@@ -132,6 +148,7 @@ SurfaceTiles::SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, con
           Footprint footprint;
           const int child = static_cast<int>(word) * 64 + std::countr_zero(left);
           footprint.brick.index = keys[s] * kSectorEdge + child_offset(child);
+          if (!projector.may_see(voxel_center(footprint.brick.index, brick_m), brick_radius_m)) continue;
           footprint.brick.cells = crossed_cells(sectors, footprint.brick.index);
           if (footprint.brick.cells.none()) continue;
           footprint.brick.box = bounds_of(footprint.brick.cells);
@@ -142,16 +159,24 @@ SurfaceTiles::SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, con
   });
 
   first_entry_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1);
+  // Calls body(tile, its blocks in the footprint).
   const auto for_each_tile = [&](const Footprint& footprint, const auto& body) {
-    for (int v = footprint.v0; v <= footprint.v1; ++v) {
-      for (int u = footprint.u0; u <= footprint.u1; ++u) {
-        body(static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u));
+    const auto halves = [](int tile, int first, int last) {
+      return (2 * tile >= first ? 1 : 0) | (2 * tile + 1 <= last ? 2 : 0);
+    };
+    for (int v = footprint.v0 / 2; v <= footprint.v1 / 2; ++v) {
+      const int rows = halves(v, footprint.v0, footprint.v1);
+      for (int u = footprint.u0 / 2; u <= footprint.u1 / 2; ++u) {
+        const int columns = halves(u, footprint.u0, footprint.u1);
+        const int blocks = ((rows & 1) != 0 ? columns : 0) | ((rows & 2) != 0 ? columns << 2 : 0);
+        body(static_cast<std::size_t>(v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(u),
+             static_cast<std::uint8_t>(blocks));
       }
     }
   };
   for (const auto& sector : seen) {
     for (const Footprint& footprint : sector)
-      for_each_tile(footprint, [&](std::size_t tile) { ++first_entry_[tile + 1]; });
+      for_each_tile(footprint, [&](std::size_t tile, std::uint8_t) { ++first_entry_[tile + 1]; });
   }
   for (std::size_t tile = 1; tile < first_entry_.size(); ++tile) first_entry_[tile] += first_entry_[tile - 1];
   entries_.resize(first_entry_.back());
@@ -160,7 +185,9 @@ SurfaceTiles::SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, con
     for (const Footprint& footprint : sector) {
       const auto brick = static_cast<std::uint32_t>(bricks_.size());
       bricks_.push_back(footprint.brick);
-      for_each_tile(footprint, [&](std::size_t tile) { entries_[next[tile]++] = {footprint.nearest_m, brick}; });
+      for_each_tile(footprint, [&](std::size_t tile, std::uint8_t blocks) {
+        entries_[next[tile]++] = {footprint.nearest_m, brick, blocks};
+      });
     }
   }
 }

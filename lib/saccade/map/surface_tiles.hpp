@@ -19,11 +19,14 @@ namespace saccade {
 class SurfaceTiles {
  public:
   static constexpr int kTilePx{8};
+  static constexpr int kBlockPx{4};  ///< a tile has 2×2 blocks
+  static constexpr std::size_t kBlockRays{std::size_t{kBlockPx} * kBlockPx};
 
   /// A brick in the list of a tile.
   struct Entry {
     float nearest_m{0.0F};   ///< its cells lie no nearer, along the camera's z
     std::uint32_t brick{0};  ///< index into bricks()
+    std::uint8_t blocks{0};  ///< bit x + 2 y: block (x, y) of the tile may see it
   };
 
   /// `sectors` covers the grid.

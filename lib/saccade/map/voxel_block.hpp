@@ -20,18 +20,15 @@ class VoxelBlock {
 
   /// Reads the block around `brick`; voxels observed less than min_weight (≥ 1) times count as unknown.
   void load(const SectorTable& table, const Index3& brick, std::uint16_t min_weight) {
-    for (int z = -1; z <= 1; ++z) {
-      for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
-          const Index3 key = brick + Index3{x, y, z};
-          const Sector* sector = table.find(parent(key));
-          const BrickRef unknown;
-          const BrickRef& ref =
-              sector == nullptr ? unknown : sector->bricks[static_cast<std::size_t>(child_index(key))];
-          copy(ref, {x * kBrickEdge, y * kBrickEdge, z * kBrickEdge}, min_weight);
-        }
-      }
+    const BrickRef unknown;
+    std::array<const BrickRef*, 27> bricks;  // all are on their way from memory before the first is read
+    for (std::size_t i = 0; i < bricks.size(); ++i) {
+      const Index3 key = brick + offset(i);
+      const Sector* sector = table.find(parent(key));
+      bricks[i] = sector == nullptr ? &unknown : &sector->bricks[static_cast<std::size_t>(child_index(key))];
+      bricks[i]->prefetch();
     }
+    for (std::size_t i = 0; i < bricks.size(); ++i) copy(*bricks[i], offset(i) * kBrickEdge, min_weight);
   }
 
   /// Only where known.
@@ -70,6 +67,11 @@ class VoxelBlock {
   }
 
  private:
+  /// Of the brick or its 26 neighbours.
+  static constexpr Index3 offset(std::size_t i) {
+    const auto n = static_cast<std::int32_t>(i);
+    return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
+  }
   static constexpr std::size_t at(int x, int y, int z) {
     return static_cast<std::size_t>(((z - kFirst) * kEdge + (y - kFirst)) * kEdge + (x - kFirst));
   }
@@ -102,6 +104,19 @@ class VoxelBlock {
     }
   }
 
+  /// Bit i of `known`: whether value i is. Without branches, so that a row becomes vector code.
+  template <std::size_t kCount>
+  static void copy_row(const std::int16_t* values, std::uint16_t known, std::int16_t* row) {
+    constexpr std::array<std::uint16_t, kBrickEdge> kBit{1, 2, 4, 8, 16, 32, 64, 128};
+    std::array<std::int16_t, kCount> copied;
+    std::copy_n(values, kCount, copied.begin());
+    for (std::size_t i = 0; i < kCount; ++i) {
+      const int hidden = (known & kBit[i]) == 0 ? -1 : 0;
+      copied[i] = static_cast<std::int16_t>((copied[i] & ~hidden) | (kUnknown & hidden));
+    }
+    std::copy_n(copied.begin(), kCount, row);
+  }
+
   template <std::size_t kCount>
   void copy_rows(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight) {
     const auto range = [](int start) {
@@ -113,9 +128,10 @@ class VoxelBlock {
     const DenseBrick* dense = brick.dense();
     const FreeBrick* free = dense == nullptr ? brick.free() : nullptr;
     const bool constant_known = dense == nullptr && free == nullptr && brick.constant_weight() >= min_weight;
-    constexpr int kAllKnown{(1 << kCount) - 1};
-    std::array<std::int16_t, kCount> values;
-    values.fill(kTsdfOne);
+    constexpr std::array<std::int16_t, 8> kOnes{kTsdfOne, kTsdfOne, kTsdfOne, kTsdfOne,
+                                                kTsdfOne, kTsdfOne, kTsdfOne, kTsdfOne};
+    const std::int16_t* values = dense != nullptr ? dense->v.data() : kOnes.data();
+    const int step = dense != nullptr ? 1 : 0;
     for (int z = z0; z < z1; ++z) {
       std::int16_t* row = &values_[at(x0, y0, z)];
       const auto slice = static_cast<std::size_t>(z & 7);
@@ -124,11 +140,7 @@ class VoxelBlock {
       if (free != nullptr) known = weight_at_least(*free, slice, min_weight);
       int first = child_index({x0, y0, z});
       for (int y = y0; y < y1; ++y, row += kEdge, first += kBrickEdge) {
-        if (dense != nullptr) std::copy_n(dense->v.data() + first, kCount, values.data());
-        std::copy_n(values.data(), kCount, row);
-        const auto bits = static_cast<int>((known >> (first & 63)) & kAllKnown);
-        if (bits == kAllKnown) continue;
-        for (std::size_t i = 0; i < kCount; ++i) row[i] = (bits & (1 << i)) != 0 ? values[i] : kUnknown;
+        copy_row<kCount>(values + first * step, static_cast<std::uint16_t>(known >> (first & 63)), row);
       }
     }
   }
