@@ -11,30 +11,77 @@ namespace {
 
 constexpr Rgb8 kNoColor{128, 128, 128};
 
-void mark_edges(const Index3& cell, unsigned inside, MeshBrick& owner) {
-  constexpr IndexBox kOwned{{0, 0, 0}, {kBrickEdge, kBrickEdge, kBrickEdge}};
-  for (const CubeEdge& edge : cube_edges()) {
-    const unsigned upper = edge.corner | (1U << edge.axis);
-    if (((inside >> edge.corner) & 1U) == ((inside >> upper) & 1U)) continue;
-    const Index3 voxel = cell + Index3{edge.corner & 1, (edge.corner >> 1) & 1, edge.corner >> 2};
-    if (kOwned.contains(voxel)) owner.edges[edge.axis].set(child_index(voxel));
-  }
-}
-
-/// Goes through the cells whose lower corner is -1 … 7: all that touch an edge the brick owns. Notes the crossed ones
-/// and marks the owned edges they use.
-void mark_cells(const VoxelBlock& block, MeshBrick& owner, MeshSector& sector) {
-  for (int z = -1; z < kBrickEdge; ++z) {
-    for (int y = -1; y < kBrickEdge; ++y) {
-      for (int x = -1; x < kBrickEdge; ++x) {
-        const int inside = block.cell_signs(x, y, z);
-        if (inside <= 0 || inside == 255) continue;
-        if (x >= 0 && y >= 0 && z >= 0) {
-          sector.cells.push_back(
-              {static_cast<std::uint16_t>(child_index({x, y, z})), static_cast<std::uint8_t>(inside)});
-          owner.triangle_count += cube_cases()[static_cast<std::size_t>(inside)].count;
+/// Cells and voxels around a brick as rows of bits: bit x + 1 of the row of every (y, z) stands for x in -1 … 8. Cells
+/// are named by their lower corner, which lies at -1 … 7.
+class CellRows {
+ public:
+  explicit CellRows(const VoxelBlock& block) {
+    std::array<unsigned, kRows> known_voxels{};
+    for (int z = -1; z <= kBrickEdge; ++z) {
+      for (int y = -1; y <= kBrickEdge; ++y) {
+        const std::int16_t* row = block.row(y, z);
+        unsigned known{0};
+        unsigned inside{0};
+        for (int i = 0; i < kCorners; ++i) {
+          known |= (row[i] != VoxelBlock::kUnknown ? 1U : 0U) << i;
+          inside |= (row[i] <= 0 ? 1U : 0U) << i;
         }
-        mark_edges({x, y, z}, static_cast<unsigned>(inside), owner);
+        known_voxels[at(y, z)] = known;
+        inside_[at(y, z)] = inside;
+      }
+    }
+    for (int z = -1; z < kBrickEdge; ++z) {
+      for (int y = -1; y < kBrickEdge; ++y) {
+        const unsigned corners = known_voxels[at(y, z)] & known_voxels[at(y + 1, z)] & known_voxels[at(y, z + 1)] &
+                                 known_voxels[at(y + 1, z + 1)];
+        known_[at(y, z)] = corners & (corners >> 1);
+      }
+    }
+  }
+
+  /// Cells whose corners are known, some of them inside and some not.
+  [[nodiscard]] unsigned crossed(int y, int z) const {
+    const std::array<unsigned, 4> rows{inside_[at(y, z)], inside_[at(y + 1, z)], inside_[at(y, z + 1)],
+                                       inside_[at(y + 1, z + 1)]};
+    const unsigned some = rows[0] | rows[1] | rows[2] | rows[3];
+    const unsigned all = rows[0] & rows[1] & rows[2] & rows[3];
+    return known_[at(y, z)] & (some | (some >> 1)) & ~(all & (all >> 1));
+  }
+
+  /// Voxels whose edge along the axis the surface crosses, in a cell whose corners are known; y and z in 0 … 7.
+  [[nodiscard]] unsigned crossed_edges(int axis, int y, int z) const {
+    const unsigned lower = inside_[at(y, z)];
+    if (axis == 0) {
+      return (lower ^ (lower >> 1)) &
+             (known_[at(y, z)] | known_[at(y - 1, z)] | known_[at(y, z - 1)] | known_[at(y - 1, z - 1)]);
+    }
+    const unsigned upper = axis == 1 ? inside_[at(y + 1, z)] : inside_[at(y, z + 1)];
+    const unsigned cells = known_[at(y, z)] | (axis == 1 ? known_[at(y, z - 1)] : known_[at(y - 1, z)]);
+    return (lower ^ upper) & (cells | (cells << 1));
+  }
+
+ private:
+  static constexpr int kCorners{kBrickEdge + 2};
+  static constexpr std::size_t kRows{std::size_t{kCorners} * kCorners};
+  static std::size_t at(int y, int z) { return static_cast<std::size_t>((z + 1) * kCorners + y + 1); }
+  std::array<unsigned, kRows> inside_{};  ///< voxels; those that are not known too
+  std::array<unsigned, kRows> known_{};   ///< cells all of whose corners are
+};
+
+/// Notes the brick's crossed cells and the edges it owns that these or cells of lower neighbours use.
+void mark_cells(const VoxelBlock& block, MeshBrick& owner, MeshSector& sector) {
+  const CellRows rows{block};
+  for (int z = 0; z < kBrickEdge; ++z) {
+    for (int y = 0; y < kBrickEdge; ++y) {
+      for (int axis = 0; axis < 3; ++axis) {
+        const std::uint64_t row = (rows.crossed_edges(axis, y, z) >> 1) & 0xFFU;
+        owner.edges[static_cast<std::size_t>(axis)].words[static_cast<std::size_t>(z)] |= row << (8 * y);
+      }
+      for (unsigned rest = (rows.crossed(y, z) >> 1) & 0xFFU; rest != 0; rest &= rest - 1) {
+        const Index3 cell{std::countr_zero(rest), y, z};
+        const auto inside = static_cast<std::uint8_t>(block.cell_signs(cell.x, cell.y, cell.z));
+        sector.cells.push_back({static_cast<std::uint16_t>(child_index(cell)), inside});
+        owner.triangle_count += cube_cases()[inside].count;
       }
     }
   }

@@ -38,6 +38,9 @@ class VoxelBlock {
   /// Row by row, x fastest, kEdge voxels each; kUnknown where unknown.
   [[nodiscard]] const std::int16_t* data() const { return values_.data(); }
 
+  /// The voxels from -1 on along x.
+  [[nodiscard]] const std::int16_t* row(int y, int z) const { return &values_[at(kFirst, y, z)]; }
+
   /// Bit c set: corner c of the cell whose lower corner is (x, y, z) is inside. -1 when a corner is unknown.
   [[nodiscard]] int cell_signs(int x, int y, int z) const {
     const std::int16_t* p = &values_[at(x, y, z)];
