@@ -167,6 +167,67 @@ TEST(Mesh, RandomSignsGiveAClosedManifoldSurface) {
   EXPECT_EQ(std::count(met.begin(), met.end(), 0), 0) << "some sign patterns were never met";
 }
 
+TEST(Mesh, TrianglesAreThoseOfEveryCellWithKnownCorners) {
+  const unsigned seed{7};
+  SCOPED_TRACE(seed);
+  std::mt19937 random{seed};
+  using Corner = std::array<float, 3>;
+  std::size_t compared{0};
+  for (const double unknown : {0.02, 0.15, 0.3}) {
+    TsdfSnapshot map = map_of(centimetre(), {{-16, -16, -16}, {16, 16, 16}}, [&](const Eigen::Vector3d&) {
+      return std::uniform_real_distribution{-0.04, 0.04}(random);
+    });
+    for (int i = 0; i < 32 * 32 * 32; ++i) {
+      if (std::uniform_real_distribution{0.0, 1.0}(random) >= unknown) continue;
+      const Index3 voxel{i % 32 - 16, i / 32 % 32 - 16, i / 1024 - 16};
+      Sector& sector = map.grid.writable(parent(parent(voxel)));
+      DenseBrick& dense = sector.bricks[static_cast<std::size_t>(child_index(parent(voxel)))].writable_dense();
+      dense.v[static_cast<std::size_t>(child_index(voxel))] = 0;
+      dense.w[static_cast<std::size_t>(child_index(voxel))] = 0;
+      dense.update_masks();
+    }
+    std::multiset<std::array<Corner, 3>> expected;
+    for (int i = 0; i < 31 * 31 * 31; ++i) {
+      const Index3 cell{i % 31 - 16, i / 31 % 31 - 16, i / 961 - 16};
+      const auto corner = [&](int c) { return cell + Index3{c & 1, (c >> 1) & 1, c >> 2}; };
+      unsigned inside{0};
+      bool known{true};
+      for (int c = 0; c < 8; ++c) {
+        const Voxel voxel = map.grid.voxel(corner(c));
+        known = known && voxel.w > 0;
+        inside |= (voxel.v <= 0 ? 1U : 0U) << c;
+      }
+      if (!known) continue;
+      for (const auto& edges : cube_cases()[inside].triangles()) {
+        std::array<Corner, 3> triangle{};
+        for (std::size_t k = 0; k < 3; ++k) {
+          const CubeEdge e = cube_edges()[edges[k]];
+          const double v0 = map.grid.voxel(corner(e.corner)).v;
+          const double v1 = map.grid.voxel(corner(e.corner | (1 << e.axis))).v;
+          Eigen::Vector3d p = voxel_center(corner(e.corner), 0.01);
+          p[e.axis] += v0 / (v0 - v1) * 0.01;
+          triangle[k] = {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+        }
+        expected.insert(triangle);
+      }
+    }
+    const TriangleMesh mesh = extract_mesh(map, Executor{});
+    std::multiset<std::array<Corner, 3>> actual;
+    for (const auto& t : mesh.triangles) {
+      std::array<Corner, 3> triangle{};
+      for (std::size_t k = 0; k < 3; ++k) {
+        const Eigen::Vector3f& p = mesh.vertices[t[k]];
+        triangle[k] = {p.x(), p.y(), p.z()};
+      }
+      actual.insert(triangle);
+    }
+    EXPECT_TRUE(actual == expected) << unknown << " of the voxels unknown";
+    EXPECT_EQ(facts_of(mesh).unused_vertices, 0U);
+    compared += expected.size();
+  }
+  EXPECT_GT(compared, 50000U);
+}
+
 TEST(Mesh, NormalsPointOutwardsAndAreUnit) {
   const TriangleMesh mesh = extract_mesh(sphere_map(), Executor{});
   ASSERT_EQ(mesh.normals.size(), mesh.vertices.size());
