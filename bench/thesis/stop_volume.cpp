@@ -4,6 +4,8 @@
 #include <algorithm>
 #include <array>
 
+#include "saccade/map/voxels_inside.hpp"
+
 namespace saccade::thesis {
 
 StopVolume::StopVolume(const IndexBox& bricks)

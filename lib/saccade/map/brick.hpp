@@ -164,8 +164,6 @@ class BrickRef {
 
   [[nodiscard]] BrickKind kind() const;
   [[nodiscard]] bool is_unknown() const { return bits_ == 0; }
-  /// Hints that the kind and the masks will be read soon.
-  void prefetch() const;
   /// Only for constant_free.
   [[nodiscard]] std::uint16_t constant_weight() const { return static_cast<std::uint16_t>(bits_); }
   /// nullptr unless of that kind.
@@ -228,13 +226,6 @@ inline BrickRef::BrickRef(const BrickRef& other) noexcept : bits_{other.bits_} {
 }
 inline BrickRef::~BrickRef() {
   if (is_block()) release();
-}
-inline void BrickRef::prefetch() const {
-  if (!is_block()) return;
-  constexpr std::uintptr_t kMasks{sizeof(DenseBlock) - sizeof(DenseBrick::colors) - 2 * sizeof(Mask512)};
-  __builtin_prefetch(reinterpret_cast<const void*>(bits_));
-  __builtin_prefetch(reinterpret_cast<const void*>(bits_ + kMasks));
-  __builtin_prefetch(reinterpret_cast<const void*>(bits_ + kMasks + sizeof(Mask512)));
 }
 inline BrickKind BrickRef::kind() const {
   if (is_block()) return block()->kind;

@@ -20,15 +20,18 @@ class VoxelBlock {
 
   /// Reads the block around `brick`; voxels observed less than min_weight (≥ 1) times count as unknown.
   void load(const SectorTable& table, const Index3& brick, std::uint16_t min_weight) {
-    const BrickRef unknown;
-    std::array<const BrickRef*, 27> bricks;  // all are on their way from memory before the first is read
-    for (std::size_t i = 0; i < bricks.size(); ++i) {
-      const Index3 key = brick + offset(i);
-      const Sector* sector = table.find(parent(key));
-      bricks[i] = sector == nullptr ? &unknown : &sector->bricks[static_cast<std::size_t>(child_index(key))];
-      bricks[i]->prefetch();
+    for (int z = -1; z <= 1; ++z) {
+      for (int y = -1; y <= 1; ++y) {
+        for (int x = -1; x <= 1; ++x) {
+          const Index3 key = brick + Index3{x, y, z};
+          const Sector* sector = table.find(parent(key));
+          const BrickRef unknown;
+          const BrickRef& ref =
+              sector == nullptr ? unknown : sector->bricks[static_cast<std::size_t>(child_index(key))];
+          copy(ref, {x * kBrickEdge, y * kBrickEdge, z * kBrickEdge}, min_weight);
+        }
+      }
     }
-    for (std::size_t i = 0; i < bricks.size(); ++i) copy(*bricks[i], offset(i) * kBrickEdge, min_weight);
   }
 
   /// Only where known.
@@ -70,11 +73,6 @@ class VoxelBlock {
   }
 
  private:
-  /// Of the brick or its 26 neighbours.
-  static constexpr Index3 offset(std::size_t i) {
-    const auto n = static_cast<std::int32_t>(i);
-    return {n % 3 - 1, n / 3 % 3 - 1, n / 9 - 1};
-  }
   static constexpr std::size_t at(int x, int y, int z) {
     return static_cast<std::size_t>(((z - kFirst) * kEdge + (y - kFirst)) * kEdge + (x - kFirst));
   }
