@@ -44,7 +44,7 @@ std::vector<Eigen::Vector3d> surface_points(const TsdfSnapshot& map) {
   return points;
 }
 
-/// Cases in the map that the scan of a scene leaves; nothing where something fails.
+/// Cases in the map that the scan of a scene leaves.
 Result<std::vector<Case>> cases_of(const std::string& name, const Executor& executor) {
   SACCADE_TRY(Scene scene, find_scene(name));
   const SimulatedRunConfig config;
