@@ -25,7 +25,7 @@ def system():
     release = pathlib.Path("/etc/os-release")
     names = [line.split("=", 1)[1].strip('"') for line in (release.read_text().splitlines() if release.exists() else [])
              if line.startswith("PRETTY_NAME=")]
-    kernel = subprocess.run(["uname", "-sr"], capture_output=True, text=True, check=True).stdout.strip()
+    kernel = subprocess.run(["uname", "-s"], capture_output=True, text=True, check=True).stdout.strip()
     return ", ".join([*names, kernel])
 
 
@@ -49,7 +49,7 @@ def main(folder, document):
     images = document.parent / "images"
     beside_peers, held = peers.section(results)
     lines = ["# Performance", "",
-             "Written by `make bench`: medians in milliseconds of seven repetitions, with the fastest and slowest; ours and",
+             "Written by `make bench`: medians in milliseconds of all repetitions, with the fastest and slowest; ours and",
              "the peers run in one process, on the same data, warm, in random order. Frames are those of the 7-Scenes kitchen",
              "(`bench/frames.cpp`); views look at a table with clutter (`bench/table_map.cpp`). Results are compared before",
              "or while they are timed. Ratios must not fall below `bench/floors.json`, which `make bench` checks at its end",
