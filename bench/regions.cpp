@@ -63,7 +63,7 @@ Result<std::vector<Case>> cases_of(const std::string& name, const Executor& exec
   std::mt19937 random{1};
   std::vector<Case> cases;
   for (std::size_t i = 0; i < kRegionsPerScene; ++i) {
-    const Eigen::Vector3d center = points[random() % points.size()];
+    const Eigen::Vector3d& center = points[random() % points.size()];
     Case made{Sphere{center, kRadius_m}, {}, {}, {}};
     SACCADE_TRY(const std::vector<ViewCandidate> sphere, view_sphere(center));
     made.poses = poses_of(sphere);
