@@ -2,13 +2,16 @@
 #pragma once
 // GlobalOptions, and the subcommands: each adds itself to the program and, when it is chosen, sets what is to be run.
 
-#include <CLI/CLI.hpp>
 #include <cstdint>
 #include <functional>
 #include <string>
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace saccade::cli {
 

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade compare: strategies × scenes × seeds, in one SQLite file that an interrupted comparison goes on from.
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iomanip>
 #include <iostream>

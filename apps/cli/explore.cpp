@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade explore: a camera looks, fuses and decides where to look next, until a scene is known.
+#include <CLI/CLI.hpp>
 #include <iomanip>
 #include <iostream>
 #include <memory>

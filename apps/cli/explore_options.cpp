@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "explore_options.hpp"
 
+#include <CLI/CLI.hpp>
 #include <set>
 
 namespace saccade::cli {

@@ -2,6 +2,7 @@
 // saccade fuse: RGB-D frames → map, mesh, trajectory, figures and pictures.
 #include <sys/resource.h>
 
+#include <CLI/CLI.hpp>
 #include <array>
 #include <iostream>
 #include <memory>

@@ -12,6 +12,10 @@
 #include "saccade/map/reconstruction.hpp"
 #include "saccade/sensor/gap_filling.hpp"
 
+namespace CLI {
+class App;
+}
+
 namespace saccade::cli {
 
 struct FuseOptions {

@@ -5,6 +5,7 @@
 #include <zlib.h>
 #include <zstd.h>
 
+#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <fstream>
 #include <iostream>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade: parses the command line, runs the chosen subcommand, and turns its outcome into an exit status.
+#include <CLI/CLI.hpp>
 #include <exception>
 #include <iostream>
 #include <new>

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade nbv: ranks view poses by what they would show of a region in a saved map.
+#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <iomanip>

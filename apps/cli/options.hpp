@@ -2,7 +2,6 @@
 #pragma once
 // Options that several subcommands share: lists of numbers, boxes, polygons, and the camera.
 
-#include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <optional>
 #include <string>
@@ -14,6 +13,10 @@
 #include "saccade/io/camera_io.hpp"
 #include "saccade/sensor/mask.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace saccade::cli {
 

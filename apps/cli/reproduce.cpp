@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade reproduce TABLE…: tables of the thesis, ours beside theirs.
+#include <CLI/CLI.hpp>
 #include <iomanip>
 #include <iostream>
 #include <memory>

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "run_options.hpp"
 
+#include <CLI/CLI.hpp>
+
 namespace saccade::cli {
 
 void add_run_options(CLI::App& command, RunOptions& options) {

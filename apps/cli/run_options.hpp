@@ -2,10 +2,12 @@
 #pragma once
 // RunOptions: how a simulated exploration goes, as the command line says it.
 
-#include <CLI/CLI.hpp>
-
 #include "options.hpp"
 #include "saccade/explore/simulated_run.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace saccade::cli {
 

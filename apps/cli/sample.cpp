@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade sample: writes a small posed RGB-D sequence of a made-up table, in the layout of 7-Scenes.
+#include <CLI/CLI.hpp>
 #include <array>
 #include <iomanip>
 #include <iostream>

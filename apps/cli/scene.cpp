@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade scene list|render|export: the scenes there are, a picture of one, and its truth for others to check against.
+#include <CLI/CLI.hpp>
 #include <array>
 #include <iomanip>
 #include <iostream>

@@ -94,7 +94,8 @@ TEST(ExternalProcess, AProgramThatDiesAmidItsBytes) {
 TEST(ExternalProcess, AProgramThatHangs) {
   const Stopwatch clock;
   expect_says(error_of("sh -c 'cat >/dev/null'", kShort_s), Errc::io_failure, "hello took longer");
-  expect_says(error_of("sh -c 'read a; printf half; cat >/dev/null'", kShort_s), Errc::io_failure,
+  expect_says(error_of("sh -c 'read a; printf half; cat >/dev/null'", 2.0),
+              Errc::io_failure,  // it waits that long for the helper; the program needs the time to end
               "than the 0.15 s allowed");
   const auto process = started("sh -c 'read a; echo ok; printf 123; cat >/dev/null'");
   const Request request{"frame 1", kShort_s};
@@ -107,7 +108,8 @@ TEST(ExternalProcess, AProgramThatHangs) {
 }
 
 TEST(ExternalProcess, AProgramWhoseHelperHangs) {
-  expect_says(error_of("sh -c 'sleep 1000 & exit 2'", kShort_s), Errc::io_failure,
+  expect_says(error_of("sh -c 'sleep 1000 & exit 2'", 2.0),
+              Errc::io_failure,  // it waits that long for the helper; the program needs the time to end
               "the program itself ended with exit status 2");
 }
 
