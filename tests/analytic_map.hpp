@@ -11,7 +11,7 @@
 #include "saccade/map/mesh.hpp"
 #include "saccade/map/tsdf_map.hpp"
 
-namespace saccade::testing {
+namespace saccade::test {
 
 /// A map of the voxels in `box` with v = clamp(sdf / truncation) and weight 10 (the free weight where v = 1); `colored`
 /// gives every dense brick the colour (200, 100, 50). sdf takes metres, positive outside.
@@ -99,4 +99,4 @@ inline MeshFacts facts_of(const TriangleMesh& mesh) {
   return facts;
 }
 
-}  // namespace saccade::testing
+}  // namespace saccade::test

@@ -8,9 +8,9 @@
 namespace saccade {
 namespace {
 
-using testing::facts_of;
-using testing::map_of;
-using testing::MeshFacts;
+using test::facts_of;
+using test::map_of;
+using test::MeshFacts;
 
 void expect_closed_sphere_topology(const MeshFacts& facts) {
   EXPECT_EQ(facts.open_edges, 0U);
@@ -26,7 +26,7 @@ TEST(MeshGolden, SphereAcrossSectorBorders) {
   const Eigen::Vector3d center{0.371, 0.002, -0.004};  // straddles sector borders along every axis
   const double r{0.15};
   const auto map = map_of(config, {{20, -48, -48}, {108, 48, 48}},
-                          [&](const Eigen::Vector3d& p) { return testing::sphere_sdf(p, center, r); });
+                          [&](const Eigen::Vector3d& p) { return test::sphere_sdf(p, center, r); });
   ASSERT_GE(map.grid.sector_count(), 8U);
   const TriangleMesh mesh = extract_mesh(map, Executor::with_threads(2));
   const MeshFacts facts = facts_of(mesh);
@@ -45,7 +45,7 @@ TEST(MeshGolden, Box) {
   const Eigen::Vector3d center{0.0012, 0.0007, 0.0021};
   const Eigen::Vector3d half{0.11, 0.07, 0.05};
   const auto map = map_of(config, {{-40, -32, -24}, {40, 32, 24}},
-                          [&](const Eigen::Vector3d& p) { return testing::box_sdf(p, center, half); });
+                          [&](const Eigen::Vector3d& p) { return test::box_sdf(p, center, half); });
   const TriangleMesh mesh = extract_mesh(map, Executor{});
   const MeshFacts facts = facts_of(mesh);
   expect_closed_sphere_topology(facts);
@@ -54,7 +54,7 @@ TEST(MeshGolden, Box) {
   EXPECT_NEAR(facts.area_m2, area, 0.03 * area);  // edges are bevelled over about a voxel
   EXPECT_NEAR(facts.volume_m3, size.prod(), 0.01 * size.prod());
   for (const auto& v : mesh.vertices) {
-    EXPECT_LT(std::abs(testing::box_sdf(v.cast<double>(), center, half)), 0.5 * config.voxel_size_m);
+    EXPECT_LT(std::abs(test::box_sdf(v.cast<double>(), center, half)), 0.5 * config.voxel_size_m);
   }
 }
 

@@ -43,7 +43,7 @@ Sequence read_sequence(const fs::path& folder, const RgbdFolderConfig& config) {
   return sequence;
 }
 
-Result<Reconstruction> reconstruction() {
+Result<Reconstruction> centimetre_reconstruction() {
   ReconstructionConfig config;
   config.map.voxel_size_m = 0.01;
   return Reconstruction::create(config);
@@ -67,7 +67,7 @@ TEST_P(EveryNthFrame, IsTrackedByIcpWithoutALoss) {
   const auto count = static_cast<std::size_t>(std::max(4, test::scaled_cases(static_cast<int>(test.frames))));
   const Sequence sequence = read_sequence(folder, {.read_color = false, .every_nth = test.every_nth, .count = count});
   ASSERT_EQ(sequence.frames.size(), count);
-  auto r = reconstruction();
+  auto r = centimetre_reconstruction();
   ASSERT_TRUE(r.ok());
   const Executor executor = Executor::with_threads(0);
   std::vector<Pose> tracked;
@@ -108,7 +108,7 @@ class LostOnRecordedData : public testing::TestWithParam<const char*> {
     if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
     sequence_ = read_sequence(folder, {.read_color = false, .every_nth = 2, .count = kFused + 3});
     ASSERT_EQ(sequence_.frames.size(), kFused + 3);
-    auto made = reconstruction();
+    auto made = centimetre_reconstruction();
     ASSERT_TRUE(made.ok());
     r_.emplace(std::move(made).value());
     for (std::size_t i = 0; i < kFused; ++i) fuse(i);
@@ -187,8 +187,8 @@ TEST(RecordedTracking, SkippedFramesAreNotFusedAndAHintRecovers) {
   const Sequence sequence = read_sequence(folder, {.read_color = false, .first = 60, .every_nth = 3, .count = 23});
   ASSERT_EQ(sequence.frames.size(), 23U);
   const Executor executor = Executor::with_threads(0);
-  auto r = reconstruction();
-  auto without_gap = reconstruction();
+  auto r = centimetre_reconstruction();
+  auto without_gap = centimetre_reconstruction();
   ASSERT_TRUE(r.ok() && without_gap.ok());
   const auto process = [&](Reconstruction& with, std::size_t i, TrackingMode mode) {
     const Frame& frame = sequence.frames[i];

@@ -1,11 +1,12 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Builds the core rooms with every package but Eigen, oneTBB and Highway hidden, then looks through the headers that were
-# read for any that belongs to another library.   Usage: core_only.sh SOURCE BUILD WORK
+# read for any that belongs to another library. Built as quickly as can be: nothing of it is run.   Usage: core_only.sh SOURCE BUILD WORK
 set -euo pipefail
 source_dir="$1" work="$3"
 rm -rf "$work"
 cmake -S "$source_dir" -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=Debug -DSACCADE_BUILD_APPS=OFF -DSACCADE_BUILD_TESTS=OFF \
+  -DCMAKE_CXX_FLAGS="-g0 -DHWY_COMPILE_ONLY_STATIC" -DCMAKE_UNITY_BUILD=ON \
   -DCMAKE_PROJECT_TOP_LEVEL_INCLUDES="$source_dir/tests/package/only_core_dependencies.cmake"
 targets=()
 for room in core sensor map surfel segment attention view annotate; do

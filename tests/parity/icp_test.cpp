@@ -16,7 +16,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint32_t kSeed{4211};
+constexpr std::uint32_t kIcpSeed{4211};
 
 using Point = std::array<float, 3>;
 
@@ -74,9 +74,9 @@ LevelPoints level_of(const PointImage& image, int stride) {
   return {image.z.data(), image.nx.data(), image.ny.data(), image.nz.data(), image.z.width(), image.z.height(), stride};
 }
 
-class RandomCase {
+class RandomIcpStep {
  public:
-  explicit RandomCase(std::uint32_t seed) : random_{seed} {
+  explicit RandomIcpStep(std::uint32_t seed) : random_{seed} {
     const int width = 1 + whole(90);
     const int height = 1 + whole(24);
     const int stride = 1 << whole(3);
@@ -129,12 +129,12 @@ class RandomCase {
 };
 
 TEST(IcpParity, SumsOverPairsEqualPlainLoopsToTheBit) {
-  std::cout << "seed " << kSeed << "\n";
+  std::cout << "seed " << kIcpSeed << "\n";
   const int cases = test::scaled_cases(400);
   std::size_t pairs{0};
   std::size_t compared{0};
   for (int i = 0; i < cases; ++i) {
-    const RandomCase c{kSeed + static_cast<std::uint32_t>(i)};
+    const RandomIcpStep c{kIcpSeed + static_cast<std::uint32_t>(i)};
     PairSums expected;
     for (int row = 0; row < c.task.measured.height; ++row) {
       for (int column = 0; column < c.task.measured.width; ++column) reference_pixel(c.task, row, column, expected);
@@ -188,9 +188,9 @@ std::array<float, 4> reference_point(const DepthImage& depth, const PinholeCamer
 }
 
 TEST(IcpParity, PointsAndNormalsEqualPlainLoopsToTheBit) {
-  std::cout << "seed " << kSeed << "\n";
+  std::cout << "seed " << kIcpSeed << "\n";
   const int cases = test::scaled_cases(60);
-  std::mt19937 random{kSeed};
+  std::mt19937 random{kIcpSeed};
   const auto whole = [&](int below) { return static_cast<int>(random() % static_cast<unsigned>(below)); };
   std::size_t normals{0};
   for (int i = 0; i < cases; ++i) {

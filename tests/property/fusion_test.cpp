@@ -16,9 +16,9 @@ namespace {
 using test::kHalfEdge;
 using test::RandomRun;
 
-constexpr int kRuns{test::scaled_cases(40)};
+constexpr int kFusionRuns{test::scaled_cases(40)};
 constexpr int kTargetRuns{test::scaled_cases(10)};
-constexpr int kStepsPerRun{6};
+constexpr int kFusionSteps{6};
 
 /// Every voxel of the reference, and the masks and summaries above it. Counts what was compared.
 struct Comparison {
@@ -73,14 +73,14 @@ void expect_canonical(const TsdfGrid& grid, const TsdfConfig& config) {
 
 TEST(FusionProperty, BricksEqualTheDenseReferenceToTheBit) {
   Comparison total;
-  for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kFusionRuns; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomRun run{seed};
     auto map = TsdfMap::create(run.config());
     ASSERT_TRUE(map.ok()) << map.error().to_string();
     test::DenseReference reference{run.config(), kHalfEdge};
     const Executor executor = Executor::with_threads(1 + seed % 3);
-    for (int step = 0; step < kStepsPerRun; ++step) {
+    for (int step = 0; step < kFusionSteps; ++step) {
       const int action = run.integer(0, 9);
       if (action == 0) {
         const Region region = run.region();
@@ -105,10 +105,10 @@ TEST(FusionProperty, BricksEqualTheDenseReferenceToTheBit) {
     ASSERT_NO_FATAL_FAILURE(compare(reference, map->content().grid, total));
     expect_canonical(map->content().grid, run.config());
   }
-  EXPECT_EQ(total.voxels, static_cast<std::size_t>(kRuns) * 8 * kHalfEdge * kHalfEdge * kHalfEdge);
+  EXPECT_EQ(total.voxels, static_cast<std::size_t>(kFusionRuns) * 8 * kHalfEdge * kHalfEdge * kHalfEdge);
   EXPECT_GT(total.known, total.voxels / 20);
   EXPECT_GT(total.occupied, total.voxels / 2000);
-  std::printf("compared %zu voxels over %d seeds: %zu known, %zu occupied\n", total.voxels, kRuns, total.known,
+  std::printf("compared %zu voxels over %d seeds: %zu known, %zu occupied\n", total.voxels, kFusionRuns, total.known,
               total.occupied);
 }
 
@@ -163,7 +163,7 @@ TEST(FusionProperty, InstructionSetsNeverChangeABit) {
       ASSERT_TRUE(map.ok());
       std::optional<test::DenseReference> reference;
       if (!first) reference.emplace(run.config(), kHalfEdge);
-      for (int step = 0; step < kStepsPerRun; ++step) {
+      for (int step = 0; step < kFusionSteps; ++step) {
         const DepthImage depth = run.depth();
         const ColorImage color = run.color();
         const Pose T_world_camera = run.pose();

@@ -20,8 +20,8 @@ namespace {
 
 using test::RandomRun;
 
-constexpr int kRuns{test::scaled_cases(24)};
-constexpr int kStepsPerRun{7};
+constexpr int kMeshRuns{test::scaled_cases(24)};
+constexpr int kMeshSteps{7};
 constexpr int kPatternRuns{test::scaled_cases(6)};
 
 const BrickRef& brick_at(const TsdfGrid& grid, const Index3& key, int child) {
@@ -147,11 +147,11 @@ TEST(MapChangesProperty, AreTheBricksWithOtherVoxels) {
   std::size_t listed{0};
   std::size_t kept{0};
   int compared{0};
-  for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kMeshRuns; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomMap random{seed};
     TsdfSnapshot before = random.snapshot();
-    for (int step = 0; step < kStepsPerRun; ++step, ++compared) {
+    for (int step = 0; step < kMeshSteps; ++step, ++compared) {
       random.step();
       const TsdfSnapshot after = random.snapshot();
       const std::vector<Index3> changed = changed_bricks(before.grid, after.grid, {});
@@ -167,7 +167,7 @@ TEST(MapChangesProperty, AreTheBricksWithOtherVoxels) {
       before = after;
     }
   }
-  EXPECT_EQ(compared, kRuns * kStepsPerRun);
+  EXPECT_EQ(compared, kMeshRuns * kMeshSteps);
   EXPECT_GT(listed, static_cast<std::size_t>(compared) * 50);
   EXPECT_LT(listed, kept);
   std::printf("%zu bricks changed in %d steps, the maps had %zu\n", listed, compared, kept);
@@ -177,7 +177,7 @@ TEST(LiveMeshProperty, EqualsExtractionAnewAfterEveryChange) {
   std::size_t triangles{0};
   std::size_t updates{0};
   std::size_t replaced{0};
-  for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kMeshRuns; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomMap random{seed};
     const MeshConfig config{static_cast<std::uint16_t>(seed % 3 == 0 ? 3 : 1)};
@@ -185,7 +185,7 @@ TEST(LiveMeshProperty, EqualsExtractionAnewAfterEveryChange) {
     LiveMesh two{config};
     LiveMesh seven{config};
     Viewer viewer;
-    for (int step = 0; step < kStepsPerRun; ++step, ++updates) {
+    for (int step = 0; step < kMeshSteps; ++step, ++updates) {
       SCOPED_TRACE("step " + std::to_string(step));
       random.step();
       const TsdfSnapshot map = random.snapshot();
@@ -206,7 +206,7 @@ TEST(LiveMeshProperty, EqualsExtractionAnewAfterEveryChange) {
       replaced += update.bricks.size();
     }
   }
-  EXPECT_EQ(updates, static_cast<std::size_t>(kRuns) * kStepsPerRun);
+  EXPECT_EQ(updates, static_cast<std::size_t>(kMeshRuns) * kMeshSteps);
   EXPECT_GT(triangles, updates * 300);
   std::printf("%zu updates, %zu bricks replaced, %zu triangles compared\n", updates, replaced, triangles);
 }
@@ -230,7 +230,7 @@ TEST(LiveMeshProperty, PiecesHaveTheNormalsOfTheWholeWhereTheGradientVanishes) {
     LiveMesh live;
     Viewer viewer;
     for (int i = 0; i < 3; ++i) {
-      TsdfSnapshot map = testing::map_of(config, {{-16, -16, -16}, {16 - 8 * i, 16, 16}}, sdf);
+      TsdfSnapshot map = test::map_of(config, {{-16, -16, -16}, {16 - 8 * i, 16, 16}}, sdf);
       viewer.follow(live, live.update(map, {}));
       const TriangleMesh mesh = live.mesh({});
       ASSERT_NO_FATAL_FAILURE(expect_same(mesh, extract_mesh(map, {})));
@@ -244,10 +244,10 @@ TEST(LiveMeshProperty, PiecesHaveTheNormalsOfTheWholeWhereTheGradientVanishes) {
 TEST(LiveMeshProperty, ExtractsOnlyAroundWhatChanged) {
   std::size_t all{0};
   std::size_t again{0};
-  for (std::uint32_t seed = 1; seed <= kRuns; ++seed) {
+  for (std::uint32_t seed = 1; seed <= kMeshRuns; ++seed) {
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomMap random{seed};
-    for (int step = 0; step < kStepsPerRun; ++step) random.step();
+    for (int step = 0; step < kMeshSteps; ++step) random.step();
     const TsdfSnapshot before = random.snapshot();
     LiveMesh live;
     all += live.update(before, {}).bricks_extracted;

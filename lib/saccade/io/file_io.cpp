@@ -48,6 +48,11 @@ Result<Container> read_all(const std::filesystem::path& path, std::uintmax_t max
 
 }  // namespace
 
+Error in_file(Error error, const std::filesystem::path& path) {
+  error.context = error.context.empty() ? path.string() : path.string() + ", " + error.context;
+  return error;
+}
+
 Result<std::vector<std::byte>> read_file(const std::filesystem::path& path, std::uintmax_t max_bytes) {
   return read_all<std::vector<std::byte>>(path, max_bytes);
 }

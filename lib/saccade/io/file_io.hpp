@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// read_file, read_text_file: a whole file into memory, or a clear error.
+// read_file, read_text_file: a whole file into memory, or a clear error. in_file: errors that say which file.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,6 +23,9 @@ constexpr std::uintmax_t kMaxFileBytes{std::uintmax_t{8} << 30U};
 /// The same as text.
 [[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& path,
                                                  std::uintmax_t max_bytes = kMaxFileBytes);
+
+/// The same error with the path in front of its context.
+[[nodiscard]] Error in_file(Error error, const std::filesystem::path& path);
 
 /// Borrows text as bytes, and bytes as text.
 [[nodiscard]] std::span<const std::byte> as_byte_span(std::string_view text);

@@ -43,9 +43,9 @@ struct Header {
   std::size_t body_line{1};
 };
 
-class HeaderParser {
+class PcdHeaderParser {
  public:
-  explicit HeaderParser(std::string_view text) : lines_{text} {}
+  explicit PcdHeaderParser(std::string_view text) : lines_{text} {}
 
   [[nodiscard]] Result<Header> parse() {
     while (const auto line = lines_.next()) {
@@ -302,7 +302,7 @@ Status write_compressed(AtomicFile& out, const ColumnTable& table) {
 }  // namespace
 
 Result<PcdFile> parse_pcd(std::span<const std::byte> bytes) {
-  SACCADE_TRY(Header header, HeaderParser{as_text(bytes)}.parse());
+  SACCADE_TRY(Header header, PcdHeaderParser{as_text(bytes)}.parse());
   const auto body = bytes.subspan(header.body_offset);
   ColumnTable& table = header.file.table;
   switch (header.format) {

@@ -55,9 +55,9 @@ std::vector<std::string_view> words_of(std::string_view line) {
   return words;
 }
 
-class HeaderParser {
+class PlyHeaderParser {
  public:
-  explicit HeaderParser(std::string_view text) : lines_{text} {}
+  explicit PlyHeaderParser(std::string_view text) : lines_{text} {}
 
   [[nodiscard]] Result<PlyHeader> parse() {
     const auto magic = lines_.next();
@@ -148,7 +148,7 @@ class HeaderParser {
 
 }  // namespace
 
-Result<PlyHeader> parse_ply_header(std::string_view text) { return HeaderParser{text}.parse(); }
+Result<PlyHeader> parse_ply_header(std::string_view text) { return PlyHeaderParser{text}.parse(); }
 
 std::vector<int> property_order(const PlyElement& element) {
   if (!element.order.empty()) return element.order;

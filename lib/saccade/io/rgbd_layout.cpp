@@ -14,11 +14,6 @@ namespace {
 
 namespace fs = std::filesystem;
 
-Error in_file(Error error, const fs::path& path) {
-  error.context = error.context.empty() ? path.string() : path.string() + ", " + error.context;
-  return error;
-}
-
 /// Regular files of a folder by name.
 Result<std::vector<fs::path>> files_in(const fs::path& folder) {
   std::error_code code;

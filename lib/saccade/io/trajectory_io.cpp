@@ -29,11 +29,6 @@ Error bad_line(std::size_t line, std::string what) {
   return {Errc::corrupt_data, std::move(what), "line " + std::to_string(line)};
 }
 
-Error in_file(Error error, const std::filesystem::path& path) {
-  error.context = error.context.empty() ? path.string() : path.string() + ", " + error.context;
-  return error;
-}
-
 Result<std::vector<NumberLine>> number_lines(std::string_view text) {
   std::vector<NumberLine> lines;
   LineScanner scanner{text};

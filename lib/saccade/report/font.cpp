@@ -125,7 +125,7 @@ constexpr std::array kGlyphs{
     Glyph{U'→', 5, "0454 325436"},
 };
 constexpr Glyph kUnknown{U'?', 3, "0030360600"};
-constexpr double kGap{1.9};  ///< units between glyphs
+constexpr double kGlyphGap{1.9};  ///< units between glyphs
 constexpr double kCapitalUnits{6.0};
 
 const Glyph& glyph_of(char32_t code) {
@@ -207,8 +207,8 @@ void draw_strokes(ColorImage& image, const std::vector<Segment>& segments, doubl
 
 double text_width(std::string_view text, const TextStyle& style) {
   double units{0.0};
-  for (const char32_t code : decode(text)) units += glyph_of(code).width + kGap;
-  return std::max(0.0, units - kGap) * style.size_px / kCapitalUnits;
+  for (const char32_t code : decode(text)) units += glyph_of(code).width + kGlyphGap;
+  return std::max(0.0, units - kGlyphGap) * style.size_px / kCapitalUnits;
 }
 
 void draw_text(ColorImage& image, double x, double y, std::string_view text, const TextStyle& style) {
@@ -218,7 +218,7 @@ void draw_text(ColorImage& image, double x, double y, std::string_view text, con
   for (const char32_t code : decode(text)) {
     const Glyph& glyph = glyph_of(code);
     draw_strokes(image, segments_of(glyph, x, y, unit_px), width_px, style.color);
-    x += (glyph.width + kGap) * unit_px;
+    x += (glyph.width + kGlyphGap) * unit_px;
   }
 }
 

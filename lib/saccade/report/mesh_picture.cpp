@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr float kNear{0.01F};
+constexpr float kNearest_m{0.01F};
 constexpr int kBandRows{32};
 
 struct ScreenVertex {
@@ -42,7 +42,7 @@ class Rasterizer {
     executor.parallel_for(screen_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const Eigen::Vector3d p = T_camera_world * mesh_.vertices[i].cast<double>();
-        if (p.z() < kNear) {
+        if (p.z() < kNearest_m) {
           screen_[i] = {0.0F, 0.0F, -1.0F};
           continue;
         }

@@ -14,8 +14,6 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kTwoPi{2.0 * std::numbers::pi};
-
 /// std::mt19937_64 is the same everywhere; the distributions of the standard library are not.
 class Dice {
  public:
@@ -126,7 +124,7 @@ Scene random_clutter(std::uint64_t seed, int objects) {
     for (int attempt = 0; attempt < kTries; ++attempt) {
       const Vector2d foot{dice.within(-kHalfTable_m.x(), kHalfTable_m.x()),
                           dice.within(-kHalfTable_m.y(), kHalfTable_m.y())};
-      const double turn_rad = dice.within(0.0, kTwoPi);
+      const double turn_rad = dice.within(0.0, 2.0 * std::numbers::pi);
       const bool free = std::all_of(taken.begin(), taken.end(), [&](const auto& other) {
         return (other.first - foot).norm() > other.second + body.reach_m + kGap_m;
       });

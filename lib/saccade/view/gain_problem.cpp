@@ -15,9 +15,8 @@ namespace {
 
 constexpr double kFarthest_vox{1 << 28};  // coordinates of poses and regions
 constexpr double kLongestRay_vox{1 << 22};
-constexpr std::string_view kContext{"view evaluation"};
 
-Error invalid(std::string what) { return {Errc::invalid_argument, std::move(what), std::string{kContext}}; }
+Error invalid(std::string what) { return {Errc::invalid_argument, std::move(what), std::string{kEvaluation}}; }
 
 Status check_poses(std::span<const Pose> poses, double voxel_size_m) {
   for (std::size_t i = 0; i < poses.size(); ++i) {

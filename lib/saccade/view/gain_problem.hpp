@@ -4,6 +4,7 @@
 
 #include <cstdint>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "saccade/view/cast_window.hpp"
@@ -12,6 +13,9 @@
 #include "saccade/view/view_gain.hpp"
 
 namespace saccade {
+
+/// Where errors and progress of an evaluation come from.
+inline constexpr std::string_view kEvaluation{"view evaluation"};
 
 /// Rays to cast, and the poses whose gain they are.
 struct GainJob {

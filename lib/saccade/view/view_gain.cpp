@@ -11,7 +11,6 @@ namespace saccade {
 namespace {
 
 constexpr int kBandRows{64};
-constexpr std::string_view kContext{"view evaluation"};
 
 /// A band of rows of a job; the whole window where distinct voxels are counted.
 struct Band {
@@ -56,10 +55,10 @@ Status cast_jobs(const std::vector<GainJob>& jobs, const StopGrid& grid, const C
       if (progress.cancelled()) return;
       tallies[i] = cast_band(bands[i], jobs, grid, limits, count);
       const std::lock_guard lock{report};
-      progress.report(kContext, ++done, bands.size());
+      progress.report(kEvaluation, ++done, bands.size());
     }
   });
-  if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", std::string{kContext}};
+  if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", std::string{kEvaluation}};
   for (std::size_t i = 0; i < bands.size(); ++i) {
     result.rays_cast += tallies[i].rays_cast;
     for (const std::size_t pose : jobs[bands[i].job].poses) result.gains[pose] += tallies[i].gain;

@@ -116,7 +116,7 @@ const std::string kHello{
     R"({"saccade": 1, "width": 4, "height": 2, "fx": 5, "fy": 5, "cx": 2, "cy": 1, "min_range_m": 0.1, )"
     R"("max_range_m": 3, "depth": "uint16_mm", "color": "none"})"};
 
-void expect_says(const Error& error, Errc code, const std::string& words) {
+void expect_one_line(const Error& error, Errc code, const std::string& words) {
   EXPECT_EQ(error.code, code) << error.to_string();
   EXPECT_NE(error.to_string().find(words), std::string::npos) << error.to_string();
   EXPECT_EQ(error.to_string().find_first_of("\r\n"), std::string::npos);
@@ -126,12 +126,12 @@ TEST(ExternalCamera, NonsenseInItsHelloIsNamed) {
   const Answers greeting{{"Welcome to CamSDK"}};
   const auto chatty = ExternalCamera::start({greeting.command()});
   ASSERT_FALSE(chatty.ok());
-  expect_says(chatty.error(), Errc::corrupt_data,
-              "': the answer to hello is wrong: it is not JSON: 'Welcome to CamSDK'; messages belong on stderr");
+  expect_one_line(chatty.error(), Errc::corrupt_data,
+                  "': the answer to hello is wrong: it is not JSON: 'Welcome to CamSDK'; messages belong on stderr");
   const Answers unplugged{{R"({"error": "no camera\nis plugged in"})"}};
   const auto none = ExternalCamera::start({unplugged.command()});
   ASSERT_FALSE(none.ok());
-  expect_says(none.error(), Errc::unavailable, "hello failed: no camera is plugged in");
+  expect_one_line(none.error(), Errc::unavailable, "hello failed: no camera is plugged in");
 }
 
 TEST(ExternalCamera, AFrameOfMillimetres) {
@@ -150,7 +150,7 @@ TEST(ExternalCamera, AFrameOfMillimetres) {
   EXPECT_EQ(frame->time_s, 12.5);
   const auto more = camera->capture(above());  // an empty line follows the frame, which nobody asked for
   ASSERT_FALSE(more.ok());
-  expect_says(more.error(), Errc::corrupt_data, "");
+  expect_one_line(more.error(), Errc::corrupt_data, "");
 }
 
 TEST(ExternalCamera, WrongSizesAreNamed) {
@@ -159,7 +159,7 @@ TEST(ExternalCamera, WrongSizesAreNamed) {
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
   const auto frame = camera->capture(above());
   ASSERT_FALSE(frame.ok());
-  expect_says(frame.error(), Errc::size_mismatch, "the answer to frame 0 is wrong: bytes must be 16, not 15");
+  expect_one_line(frame.error(), Errc::size_mismatch, "the answer to frame 0 is wrong: bytes must be 16, not 15");
 }
 
 TEST(ExternalCamera, MayBeAskedAgainAfterItsOwnErrorOnly) {
@@ -170,11 +170,11 @@ TEST(ExternalCamera, MayBeAskedAgainAfterItsOwnErrorOnly) {
   for (int i = 0; i < 2; ++i) {
     const auto dark = camera->capture(above());
     ASSERT_FALSE(dark.ok());
-    expect_says(dark.error(), Errc::unavailable, "frame " + std::to_string(i) + " failed: too dark");
+    expect_one_line(dark.error(), Errc::unavailable, "frame " + std::to_string(i) + " failed: too dark");
   }
   const auto rubbish = camera->capture(above());
   ASSERT_FALSE(rubbish.ok());
-  expect_says(rubbish.error(), Errc::corrupt_data, "'rubbish'");
+  expect_one_line(rubbish.error(), Errc::corrupt_data, "'rubbish'");
   const auto final = camera->capture(above());
   ASSERT_FALSE(final.ok());
   EXPECT_EQ(final.error().to_string(), rubbish.error().to_string());
@@ -201,23 +201,23 @@ TEST(ExternalRobot, SaysWhatItsProgramSays) {
   ASSERT_TRUE(unreached.ok() && !unreached->has_value());
   const auto stopped = (*robot)->move_to(above());
   ASSERT_FALSE(stopped.ok());
-  expect_says(stopped.error(), Errc::unavailable, "move 2 failed: protective stop");
+  expect_one_line(stopped.error(), Errc::unavailable, "move 2 failed: protective stop");
   const auto wrong = (*robot)->move_to(above());
   ASSERT_FALSE(wrong.ok());
-  expect_says(wrong.error(), Errc::corrupt_data, "the answer to move 3 is wrong: reached must be true or false");
+  expect_one_line(wrong.error(), Errc::corrupt_data, "the answer to move 3 is wrong: reached must be true or false");
 }
 
 TEST(ExternalRobot, ADeadRobotIsNamed) {
   const auto none = ExternalRobot::start({"/nowhere/robot"});
   ASSERT_FALSE(none.ok());
-  expect_says(none.error(), Errc::not_found, "robot '/nowhere/robot'");
+  expect_one_line(none.error(), Errc::not_found, "robot '/nowhere/robot'");
   auto robot =
       ExternalRobot::start({"sh -c 'read a; echo \"{\\\"saccade\\\": 1}\"; read b; echo emergency >&2; exit 9'"});
   ASSERT_TRUE(robot.ok()) << robot.error().to_string();
   const auto moved = (*robot)->move_to(above());
   ASSERT_FALSE(moved.ok());
-  expect_says(moved.error(), Errc::io_failure, "ended with exit status 9 before the answer to move 0");
-  expect_says(moved.error(), Errc::io_failure, "its stderr ends: emergency");
+  expect_one_line(moved.error(), Errc::io_failure, "ended with exit status 9 before the answer to move 0");
+  expect_one_line(moved.error(), Errc::io_failure, "its stderr ends: emergency");
 }
 
 }  // namespace

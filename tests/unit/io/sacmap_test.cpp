@@ -17,7 +17,7 @@ namespace saccade {
 namespace {
 
 using Bytes = std::vector<std::byte>;
-using testing::map_of;
+using test::map_of;
 
 constexpr std::size_t kHeaderBytes{108};
 constexpr std::size_t kSectorHeaderBytes{28};
@@ -40,7 +40,7 @@ TsdfSnapshot rich_map() {
   TsdfSnapshot map = map_of(
       config_with_workspace(), {{-20, -20, -20}, {21, 20, 20}},
       [](const Eigen::Vector3d& p) {
-        return testing::sphere_sdf(p, {0.02, 0.01, 0.0}, 0.1);
+        return test::sphere_sdf(p, {0.02, 0.01, 0.0}, 0.1);
       },
       true);
   FreeBrick free;

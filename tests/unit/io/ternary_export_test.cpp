@@ -17,7 +17,7 @@
 namespace saccade {
 namespace {
 
-using testing::map_of;
+using test::map_of;
 
 class TernaryExport : public ::testing::Test {
  protected:
@@ -44,7 +44,7 @@ TsdfSnapshot ball(bool colored) {
   return map_of(
       config, {{-13, -12, -11}, {64, 12, 11}},
       [](const Eigen::Vector3d& p) {
-        return testing::sphere_sdf(p, {0.0, 0.0, 0.0}, 0.05);
+        return test::sphere_sdf(p, {0.0, 0.0, 0.0}, 0.05);
       },
       colored);
 }

@@ -15,8 +15,8 @@ namespace {
 TsdfSnapshot ball() {
   TsdfConfig config;
   config.voxel_size_m = 0.01;
-  return testing::map_of(config, {{-70, -30, -30}, {70, 30, 30}}, [](const Eigen::Vector3d& p) {
-    return testing::sphere_sdf(p, {0.02, 0.01, 0.0}, 0.2);
+  return test::map_of(config, {{-70, -30, -30}, {70, 30, 30}}, [](const Eigen::Vector3d& p) {
+    return test::sphere_sdf(p, {0.02, 0.01, 0.0}, 0.2);
   });
 }
 

@@ -15,9 +15,9 @@
 namespace saccade {
 namespace {
 
-using testing::facts_of;
-using testing::map_of;
-using testing::MeshFacts;
+using test::facts_of;
+using test::map_of;
+using test::MeshFacts;
 
 using Segment = std::pair<int, int>;
 
@@ -131,7 +131,7 @@ const Eigen::Vector3d kCenter{0.013, -0.021, 0.004};
 
 TsdfSnapshot sphere_map(bool colored = false) {
   return map_of(
-      centimetre(), kBlock, [](const Eigen::Vector3d& p) { return testing::sphere_sdf(p, kCenter, 0.2); }, colored);
+      centimetre(), kBlock, [](const Eigen::Vector3d& p) { return test::sphere_sdf(p, kCenter, 0.2); }, colored);
 }
 
 TEST(Mesh, RandomSignsGiveAClosedManifoldSurface) {

@@ -7,9 +7,12 @@
 
 #include "saccade/report/blend.hpp"
 #include "saccade/report/font.hpp"
+#include "unit/report/pixels.hpp"
 
 namespace saccade {
 namespace {
+
+using test::count;
 
 constexpr Rgb8 kWhite{255, 255, 255};
 constexpr Rgb8 kRed{255, 0, 0};
@@ -20,10 +23,6 @@ Viewpoint straight() {
   Viewpoint view;
   view.camera = {100, 80, 100.0, 100.0, 49.5, 39.5, 0.1, 10.0};
   return view;
-}
-
-std::size_t count(const ColorImage& image, const Rgb8& color) {
-  return static_cast<std::size_t>(std::count(image.pixels().begin(), image.pixels().end(), color));
 }
 
 TEST(Canvas, LineCoversTheProjectedPixelsAndNothingElse) {

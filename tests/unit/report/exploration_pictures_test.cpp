@@ -10,25 +10,19 @@
 
 #include "analytic_map.hpp"
 #include "saccade/report/color_map.hpp"
+#include "unit/report/pixels.hpp"
 
 namespace saccade {
 namespace {
 
+using test::count;
+using test::is_dark;
+using test::kSequential;
+
 constexpr Rgb8 kChosen{214, 28, 92};
 constexpr Rgb8 kEarlier{112, 119, 131};
-constexpr Rgb8 kNoGain{176, 180, 188};
+constexpr Rgb8 kNoGainGrey{176, 180, 188};
 constexpr double kNotEvaluated{std::numeric_limits<double>::quiet_NaN()};
-const Executor kSequential;
-
-bool is_dark(const Rgb8& c) { return *std::max_element(c.begin(), c.end()) < 60; }
-
-template <class Predicate>
-std::size_t count(const ColorImage& image, const Predicate& predicate) {
-  return static_cast<std::size_t>(std::count_if(image.pixels().begin(), image.pixels().end(), predicate));
-}
-std::size_t count(const ColorImage& image, const Rgb8& color) {
-  return static_cast<std::size_t>(std::count(image.pixels().begin(), image.pixels().end(), color));
-}
 
 const Sphere kRegion{{0.0, 0.0, 0.0}, 0.15};
 
@@ -36,9 +30,8 @@ const Sphere kRegion{{0.0, 0.0, 0.0}, 0.15};
 TsdfSnapshot forgotten_ball() {
   TsdfConfig config;
   config.voxel_size_m = 0.01;
-  TsdfMap map{testing::map_of(config, {{-32, -32, -32}, {32, 32, 32}}, [](const Eigen::Vector3d& p) {
-    return testing::sphere_sdf(p, Eigen::Vector3d::Zero(), 0.1);
-  })};
+  TsdfMap map{test::map_of(config, {{-32, -32, -32}, {32, 32, 32}},
+                           [](const Eigen::Vector3d& p) { return test::sphere_sdf(p, Eigen::Vector3d::Zero(), 0.1); })};
   EXPECT_TRUE(map.forget(kRegion).ok());
   return map.snapshot();
 }
@@ -129,7 +122,7 @@ TEST(CandidatesPicture, ColorsEachPlaceByItsBestGain) {
     compared += picture(u, v) == want ? 1 : 0;
   }
   EXPECT_GE(compared, 9U) << "the region may hide a few";
-  EXPECT_GT(count(picture, kNoGain), 60U);
+  EXPECT_GT(count(picture, kNoGainGrey), 60U);
   EXPECT_GT(count(picture, is_dark), 600U) << "the forgotten ball";
   EXPECT_EQ(picture.width(), 360);
   EXPECT_GT(picture.height(), 270) << "the scale of gains below";
@@ -165,7 +158,7 @@ TEST(CandidatesPicture, NotEvaluatedIsNoGain) {
   const Pose chosen = candidates.front().T_world_camera;
   const ColorImage none = candidates_picture({map, kRegion, candidates, chosen, {}}, kSequential, small());
   EXPECT_EQ(none.height(), 270) << "no scale";
-  EXPECT_GT(count(none, kNoGain), 60U);
+  EXPECT_GT(count(none, kNoGainGrey), 60U);
   EXPECT_GT(count(none, kChosen), 60U);
   candidates[1].gain = 10.0;  // one roll of the first place
   EXPECT_GT(candidates_picture({map, kRegion, candidates, chosen, {}}, kSequential, small()).height(), 270);

@@ -12,19 +12,18 @@
 #include "saccade/report/mesh_picture.hpp"
 #include "saccade/report/ternary_picture.hpp"
 #include "saccade/report/view_picture.hpp"
+#include "unit/report/pixels.hpp"
 
 namespace saccade {
 namespace {
 
-using testing::map_of;
+using test::count;
+using test::is_dark;
+using test::kSequential;
 
-bool is_dark(const Rgb8& c) { return *std::max_element(c.begin(), c.end()) < 60; }
+using test::map_of;
+
 bool is_bright(const Rgb8& c) { return *std::min_element(c.begin(), c.end()) > 90; }
-
-template <class Predicate>
-std::size_t count(const ColorImage& image, const Predicate& predicate) {
-  return static_cast<std::size_t>(std::count_if(image.pixels().begin(), image.pixels().end(), predicate));
-}
 
 auto like(const Rgb8& want) {
   return [want](const Rgb8& c) {
@@ -38,7 +37,7 @@ TsdfSnapshot ball(bool colored = false) {
   config.voxel_size_m = 0.01;
   return map_of(
       config, {{-32, -32, -32}, {32, 32, 32}},
-      [](const Eigen::Vector3d& p) { return testing::sphere_sdf(p, Eigen::Vector3d::Zero(), 0.1); }, colored);
+      [](const Eigen::Vector3d& p) { return test::sphere_sdf(p, Eigen::Vector3d::Zero(), 0.1); }, colored);
 }
 
 constexpr double kFocal{150.0};
@@ -59,8 +58,6 @@ TernaryPictureConfig no_unknown() {
   config.unknown_within = Sphere{{0.0, 0.0, 50.0}, 0.01};
   return config;
 }
-
-const Executor kSequential;
 
 TEST(TernaryPicture, OccupiedIsGreyWithoutColorsAndTakesTheFusedOnes) {
   const Rgb8 grey = ternary_picture(ball(), inside(), kSequential, no_unknown())(80, 60);

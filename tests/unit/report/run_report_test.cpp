@@ -13,8 +13,8 @@
 namespace saccade {
 namespace {
 
-using testing::Markup;
-using testing::well_formed;
+using test::Markup;
+using test::well_formed;
 
 /// The beginning of a PNG: all that the page looks at.
 std::vector<std::byte> png_header(unsigned width, unsigned height, std::size_t size = 64) {

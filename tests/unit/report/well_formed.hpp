@@ -8,7 +8,7 @@
 #include <string_view>
 #include <vector>
 
-namespace saccade::testing {
+namespace saccade::test {
 
 /// What a page is made of, and the first thing wrong with it.
 struct Markup {
@@ -94,4 +94,4 @@ inline Markup well_formed(std::string_view text) {
   return open.empty() ? page : fail("<" + open.back() + "> stays open");
 }
 
-}  // namespace saccade::testing
+}  // namespace saccade::test
