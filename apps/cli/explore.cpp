@@ -4,6 +4,7 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <optional>
 
 #include "exit_status.hpp"
 #include "explore_report.hpp"
@@ -97,10 +98,14 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   SACCADE_TRY(const RunFolder out,
               RunFolder::open(options.out, {}, options.resume ? "journal.json" : "run.json", options.force));
   SACCADE_CHECK(make_room(options, out));
+  std::optional<SavedExploration> saved;  // read first: a damaged one is said before the scene is prepared
+  if (options.resume) {
+    SACCADE_TRY(saved, load_journal(out.path(), executor));
+  }
   SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
   SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, executor));
   SACCADE_TRY(ExploreRun run, ExploreRun::create(options, subject, devices, out, executor, progress));
-  if (options.resume) SACCADE_CHECK(run.resume());
+  if (saved) SACCADE_CHECK(run.resume(std::move(*saved)));
 
   const auto ended = run.run();
   if (!ended) {

@@ -101,8 +101,7 @@ Result<ExploreRun> ExploreRun::create(const ExploreOptions& options, const Explo
   return ExploreRun{options, subject, devices, out, executor, progress, std::move(map)};
 }
 
-Status ExploreRun::resume() {
-  SACCADE_TRY(SavedExploration saved, load_journal(out_.path(), executor_));
+Status ExploreRun::resume(SavedExploration saved) {
   for (const auto& [key, value] : journal_.settings.items()) {
     const json& then = saved.journal.settings.contains(key) ? saved.journal.settings.at(key) : json(nullptr);
     if (then == value) continue;

@@ -16,7 +16,7 @@ class ExploreRun {
                                                  ExploreDevices& devices, const RunFolder& out,
                                                  const Executor& executor, ProgressBar& progress);
   /// Takes up what an earlier run left in the folder. invalid_argument when that ran with other settings.
-  [[nodiscard]] Status resume();
+  [[nodiscard]] Status resume(SavedExploration saved);
 
   /// Scans, unless that was done before, and explores. After the scan and after every view the journal is written.
   [[nodiscard]] Result<StopReason> run();

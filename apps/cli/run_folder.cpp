@@ -7,7 +7,7 @@
 
 #include <algorithm>
 #include <cerrno>
-#include <regex>
+#include <string_view>
 #include <utility>
 #include <vector>
 
@@ -20,9 +20,21 @@ namespace fs = std::filesystem;
 constexpr std::size_t kProbeBytes{std::size_t{1} << 20U};
 
 /// ".NAME.PID-N.tmp": what an atomic write leaves when the program is killed.
-bool is_leftover(const std::string& name) {
-  static const std::regex kPattern{R"(\..+\.[0-9]+-[0-9]+\.tmp)"};
-  return std::regex_match(name, kPattern);
+bool is_leftover(std::string_view name) {
+  constexpr std::string_view kEnd{".tmp"};
+  if (!name.starts_with('.') || !name.ends_with(kEnd)) return false;
+  name.remove_suffix(kEnd.size());
+  const auto drop_number = [&name] {
+    const std::size_t digits = name.size() - 1 - name.find_last_not_of("0123456789");
+    name.remove_suffix(digits);
+    return digits > 0;
+  };
+  const auto drop = [&name](char c) {
+    if (!name.ends_with(c)) return false;
+    name.remove_suffix(1);
+    return true;
+  };
+  return drop_number() && drop('-') && drop_number() && drop('.') && name.size() > 1;
 }
 
 bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_files, std::string_view marker) {

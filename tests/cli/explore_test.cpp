@@ -10,6 +10,7 @@
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/sacmap.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -20,6 +21,9 @@ Arguments explore(const fs::path& out, Arguments more) {
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
+
+// Pictures take half of the time, and more under sanitizers.
+const Arguments kFewerPictures = kSanitized ? Arguments{"--no-pictures"} : Arguments{};
 
 TEST(ExploreCommand, GoesFromViewToView) {
   const TempFolder folder;
@@ -93,13 +97,13 @@ nlohmann::json figures(const fs::path& run) {
 
 TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
   const TempFolder folder;
-  const Arguments options{"--max-views", "3", "--min-gain", "5"};
+  const Arguments options = kFewerPictures + Arguments{"--max-views", kSanitized ? "2" : "3", "--min-gain", "5"};
   ASSERT_EQ(run_program(explore(folder / "whole", options)).status, 0);
 
   const fs::path killed = folder / "killed";
   {
     RunningProgram program{explore(killed, options)};
-    ASSERT_TRUE(wait_for_file(killed / "checkpoint-2.sacmap"));
+    ASSERT_TRUE(wait_for_file(killed / "checkpoint-1.sacmap"));
     program.send(SIGKILL);
     EXPECT_EQ(program.finish().status, -1);
   }
@@ -120,7 +124,7 @@ TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
 TEST(ExploreCommand, CtrlCKeepsWhatWasSeen) {
   const TempFolder folder;
   const fs::path run = folder / "run";
-  RunningProgram program{explore(run, {"--max-views", "50", "--min-gain", "1"})};
+  RunningProgram program{explore(run, kFewerPictures + Arguments{"--max-views", "50", "--min-gain", "1"})};
   ASSERT_TRUE(wait_for_file(run / "checkpoint-1.sacmap"));
   expect_failure(run_program(explore(run, {"--force"})), 3, "explore", {"another run"});
   program.send(SIGINT);

@@ -12,6 +12,8 @@ constexpr int kEffortDivisor{4};
 constexpr int kEffortDivisor{1};
 #endif
 
+constexpr bool kSanitized{kEffortDivisor > 1};
+
 /// At least one case; the tests assert that this many ran.
 [[nodiscard]] constexpr int scaled_cases(int cases) { return cases / kEffortDivisor > 0 ? cases / kEffortDivisor : 1; }
 

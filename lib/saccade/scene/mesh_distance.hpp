@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// MeshDistance: how far points are from the nearest triangle; closest_point_on_triangle.
+// MeshDistance: how far points are from the nearest triangle.
 
 #include <memory>
 
@@ -8,10 +8,6 @@
 #include "saccade/map/mesh.hpp"
 
 namespace saccade {
-
-/// The point of triangle abc (corners, edges and inside) nearest to p. A degenerate triangle is its longest edge.
-[[nodiscard]] Eigen::Vector3d closest_point_on_triangle(const Eigen::Vector3d& p, const Eigen::Vector3d& a,
-                                                        const Eigen::Vector3d& b, const Eigen::Vector3d& c);
 
 /// Distances to the surface of a mesh; triangles, not vertices. Immutable, cheap to copy, safe for concurrent use.
 class MeshDistance {
