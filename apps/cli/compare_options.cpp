@@ -101,7 +101,6 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
 }
 
 void check_compare_options(CompareOptions& options) {
-  if (options.out.empty()) usage_error("--out", "needs the name of a folder");
   options.scenes = scenes_of(options.scene_list);
   options.strategies = strategies_of(options.strategy_list);
   options.seeds = parse_seeds(options.seed_list);

@@ -42,7 +42,6 @@ void add_explore_options(CLI::App& command, ExploreOptions& options) {
 }
 
 void check_explore_options(ExploreOptions& options, const GlobalOptions& global) {
-  if (options.out.empty()) usage_error("--out", "needs the name of a folder");
   if (options.resume && options.force) usage_error("--resume", "goes on with a run, --force starts it anew: not both");
   require_positive(options.process_timeout_s, "--process-timeout");
   check_run_options(options);

@@ -88,9 +88,15 @@ void add_reading_options(CLI::App& command, FuseOptions& options) {
                   "close gaps of up to so many pixels between similar depths, as registered depth images have them "
                   "(default: 2 where they are all over the first frame, else 0)")
       ->type_name("PIXELS");
-  command.add_option("--first", options.folder.first, "leave out so many frames at the beginning")->type_name("N");
-  command.add_option("--count", options.folder.count, "use at most so many frames")->type_name("N");
-  command.add_option("--every", options.folder.every_nth, "use every n-th frame")->type_name("N");
+  command.add_option("--first", options.folder.first, "leave out so many frames at the beginning")
+      ->check(check_whole_number)
+      ->type_name("N");
+  command.add_option("--count", options.folder.count, "use at most so many frames")
+      ->check(check_whole_number)
+      ->type_name("N");
+  command.add_option("--every", options.folder.every_nth, "use every n-th frame")
+      ->check(check_whole_number)
+      ->type_name("N");
 }
 
 void add_map_options(CLI::App& command, FuseOptions& options) {
@@ -135,7 +141,6 @@ void add_fuse_options(CLI::App& command, FuseOptions& options) {
 }
 
 void check_fuse_options(FuseOptions& options) {
-  if (options.out.empty()) usage_error("--out", "needs the name of a folder");
   if (!options.map.color) options.folder.read_color = false;
   require_positive(options.map.voxel_size_m, "--voxel-size");
   require_positive(options.map.truncation_vox, "--truncation");

@@ -8,6 +8,7 @@
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
+#include "options.hpp"
 
 namespace {
 
@@ -22,10 +23,22 @@ void add_global_options(CLI::App& program, saccade::cli::GlobalOptions& global) 
   program.add_option("--threads", global.threads, "threads to use; 0: all cores. Results do not depend on it")
       ->check(CLI::Range(std::size_t{0}, std::size_t{4096}))
       ->type_name("N");
-  program.add_option("--seed", global.seed, "seed of everything random")->type_name("N")->capture_default_str();
+  program.add_option("--seed", global.seed, "seed of everything random")
+      ->check(saccade::cli::check_whole_number)
+      ->type_name("N")
+      ->capture_default_str();
   program.add_flag("--quiet,-q", global.quiet, "no progress and no notes on standard error");
   program.add_option("--json", global.json, "write the machine-readable result to a file; -: to standard output")
       ->type_name("FILE");
+}
+
+/// No option of the program or its subcommands takes an empty value, as a script's unset variable would be.
+void refuse_empty_values(CLI::App& program) {
+  for (CLI::Option* option : program.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;  // a flag
+    option->check([](const std::string& value) { return std::string{value.empty() ? "must not be empty" : ""}; });
+  }
+  for (CLI::App* subcommand : program.get_subcommands({})) refuse_empty_values(*subcommand);
 }
 
 int fail(const CLI::App& program, ExitStatus status, const std::string& text) {
@@ -56,6 +69,7 @@ int run(int argc, char** argv, CLI::App& program) {
   saccade::cli::add_scene(program, global, action);
   saccade::cli::add_reproduce(program, global, action);
   saccade::cli::add_sample(program, global, action);
+  refuse_empty_values(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {

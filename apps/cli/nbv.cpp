@@ -315,7 +315,10 @@ void add_nbv(CLI::App& program, const GlobalOptions& global, Action& action) {
   add_region_options(*command, *options);
   add_candidate_options(*command, *options);
   add_gain_options(*command, *options);
-  command->add_option("--top", options->top, "views to print and to write")->type_name("N")->capture_default_str();
+  command->add_option("--top", options->top, "views to print and to write")
+      ->check(check_whole_number)
+      ->type_name("N")
+      ->capture_default_str();
   command->add_flag("--all", options->all, "print and write all views");
   command->add_option("--out", options->out, "folder for views.json and views.png")->type_name("DIR");
   command->add_flag("--force", options->force, "write into a folder that holds other files");

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <charconv>
 #include <cmath>
+#include <cstdint>
 
 namespace saccade::cli {
 namespace {
@@ -39,6 +40,13 @@ void require_ok(const Status& status, const std::string& option) {
 
 void require_positive(double value, const std::string& option) {
   if (!(value > 0.0) || !std::isfinite(value)) usage_error(option, "must be a positive number");
+}
+
+std::string check_whole_number(const std::string& text) {
+  std::uint64_t value{0};
+  const auto [end, code] = std::from_chars(text.data(), text.data() + text.size(), value);
+  const bool is_one = code == std::errc{} && end == text.data() + text.size();
+  return is_one ? "" : "needs a whole number from 0 to 2^64 - 1, not '" + text + "'";
 }
 
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {

@@ -25,6 +25,8 @@ namespace saccade::cli {
 /// The same for the errors of a library check on values that came from options.
 void require_ok(const Status& status, const std::string& option);
 void require_positive(double value, const std::string& option);
+/// For CLI::Option::check: what is wrong with the text, or nothing. CLI11 itself takes -1 for the largest number.
+[[nodiscard]] std::string check_whole_number(const std::string& text);
 
 /// `count` finite numbers, separated by commas or blanks (any number of them, at least one, for count 0).
 [[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);

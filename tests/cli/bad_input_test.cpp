@@ -157,6 +157,9 @@ TEST_F(BadInput, SizesOfZeroAndLess) {
   expect_refused(2, {"--fill-gaps"}, {"--fill-gaps=-1"});
   expect_refused(2, {"step"}, {"--every", "0"});
   expect_refused(2, {"number of frames"}, {"--count", "0"});
+  for (const std::string option : {"--first", "--count", "--every"}) {
+    expect_refused(2, {option, "whole number", "'-1'"}, {option + "=-1"});
+  }
   expect_refused(2, {"--intrinsics", "positive"}, {"--intrinsics", "0,131,79.5,59.5"});
   expect_refused(2, {"--workspace"}, {"--workspace", "0,0,0,1,1,0"});
   expect_refused(2, {"--tracking", "forced|hint|icp"}, {"--tracking", "guess"});

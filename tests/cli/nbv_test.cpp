@@ -146,6 +146,8 @@ TEST_F(Nbv, RefusesBadOptions) {
   expect_failure(run_program(nbv({"--poi", "0,0,0", "--tilt", "-3"})), 2, "nbv", {"tilt"});
   expect_failure(run_program(nbv({"--box", "0,0,0,1,1,0"})), 2, "nbv", {"--box"});
   expect_failure(run_program(nbv({"--poi", "0,0,0", "--top", "0"})), 2, "nbv", {"--top"});
+  expect_failure(run_program(nbv({"--poi", "0,0,0", "--top=-1"})), 2, "nbv", {"--top", "whole number", "'-1'"});
+  expect_failure(run_program(nbv({"--poi", "0,0,0", "--out", ""})), 2, "nbv", {"--out", "empty"});
   expect_failure(run_program(nbv({"--poi", "0,0,0", "--image-size", "0,10"})), 2, "nbv", {"--image-size"});
 }
 
@@ -218,6 +220,13 @@ TEST(Program, UsageErrorsAreOneLine) {
   expect_failure(run_program({"fuse"}), 2, "fuse", {"see saccade fuse --help"});
   EXPECT_EQ(run_program({"dance"}).status, 2);
   EXPECT_EQ(run_program({"info", "--threads", "-1"}).status, 2);
+  for (const std::string seed : {"--seed=-1", "--seed=1e3", "--seed=1.5", "--seed=18446744073709551616"}) {
+    expect_failure(run_program({"info", seed}), 2, "info", {"--seed", "whole number"});
+  }
+  EXPECT_EQ(run_program({"info", "--seed=18446744073709551615"}).status, 0);
+  expect_failure(run_program({"info", "--json", ""}), 2, "info", {"--json", "empty"});
+  expect_failure(run_program({"info", ""}), 2, "info", {"subject", "empty"});
+  expect_failure(run_program({"scene", "render", "", "--out", "x.png"}), 2, "scene", {"scene", "empty"});
   EXPECT_EQ(run_program({"--version"}).status, 0);
   const Outcome help = run_program({"--help"});
   EXPECT_EQ(help.status, 0);
