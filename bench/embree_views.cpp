@@ -10,9 +10,13 @@
 
 #include "saccade/view/cast_window.hpp"
 #include "saccade/view/stop_grid.hpp"
+#include "thesis/stop_volume.hpp"
 
 namespace saccade::bench {
 namespace {
+
+using thesis::Stop;
+using thesis::StopVolume;
 
 constexpr int kPacketEdge{4};  // pixels
 constexpr int kPacketRays{kPacketEdge * kPacketEdge};
@@ -27,56 +31,6 @@ using EmbreeScene = std::unique_ptr<RTCSceneTy, Release>;
 Error embree_failed(RTCDevice device) {
   return {Errc::unavailable, "Embree failed with its error " + std::to_string(rtcGetDeviceError(device)), "benchmark"};
 }
-
-/// What a voxel does to a ray.
-enum class Stop : std::uint8_t { no, yes, scores };
-
-/// The voxels of a box of whole bricks.
-class StopVoxels {
- public:
-  StopVoxels(const TsdfSnapshot& map, const Region& region, const IndexBox& bricks, const Executor& executor)
-      : box_{bricks.lo * kBrickEdge, bricks.hi * kBrickEdge}, size_{box_.hi - box_.lo} {
-    stops_.resize(static_cast<std::size_t>(size_.x) * static_cast<std::size_t>(size_.y) *
-                  static_cast<std::size_t>(size_.z));
-    executor.parallel_for(static_cast<std::size_t>(bricks.hi.z - bricks.lo.z), 1, [&](std::size_t begin, std::size_t) {
-      const std::int32_t z = bricks.lo.z + static_cast<std::int32_t>(begin);
-      for (std::int32_t y = bricks.lo.y; y < bricks.hi.y; ++y) {
-        for (std::int32_t x = bricks.lo.x; x < bricks.hi.x; ++x) add_brick(map, region, {x, y, z});
-      }
-    });
-  }
-
-  [[nodiscard]] const IndexBox& box() const { return box_; }
-  /// Where lattice coordinates in single precision start, so that they stay small.
-  [[nodiscard]] Index3 middle() const { return box_.lo + Index3{size_.x / 2, size_.y / 2, size_.z / 2}; }
-  [[nodiscard]] Stop at(const Index3& voxel) const { return stops_[flat_index(voxel)]; }
-
- private:
-  void add_brick(const TsdfSnapshot& map, const Region& region, const Index3& brick) {
-    const TsdfConfig& config = map.config;
-    const Sector* sector = map.grid.find(parent(brick));
-    const BrickRef ref = sector == nullptr ? BrickRef{} : sector->bricks[static_cast<std::size_t>(child_index(brick))];
-    const Mask512 unknown = ref.unknown_mask();
-    const Mask512 occupied = ref.occupied_mask();
-    (unknown | occupied).for_each([&](std::size_t i) {
-      const Index3 voxel = brick * kBrickEdge + child_offset(static_cast<int>(i));
-      const Eigen::Vector3d center = voxel_center(voxel, config.voxel_size_m);
-      if (config.workspace && !contains(*config.workspace, center)) return;
-      const bool scores = unknown.test(static_cast<int>(i)) && contains(region, center);
-      stops_[flat_index(voxel)] = scores ? Stop::scores : Stop::yes;
-    });
-  }
-  [[nodiscard]] std::size_t flat_index(const Index3& voxel) const {
-    const Index3 i = voxel - box_.lo;
-    return (static_cast<std::size_t>(i.z) * static_cast<std::size_t>(size_.y) + static_cast<std::size_t>(i.y)) *
-               static_cast<std::size_t>(size_.x) +
-           static_cast<std::size_t>(i.x);
-  }
-
-  IndexBox box_;
-  Index3 size_;
-  std::vector<Stop> stops_;
-};
 
 /// A side of a voxel that stops rays; the corners in lattice coordinates relative to the middle of the box.
 struct Face {
@@ -98,7 +52,7 @@ Face face_of(const Index3& voxel, int axis, bool upper, bool scores) {
   return face;
 }
 
-std::vector<Face> boundary_faces(const StopVoxels& voxels, const Executor& executor) {
+std::vector<Face> boundary_faces(const StopVolume& voxels, const Executor& executor) {
   const IndexBox& box = voxels.box();
   const std::array<Index3, 3> steps{Index3{1, 0, 0}, Index3{0, 1, 0}, Index3{0, 0, 1}};
   std::vector<std::vector<Face>> slices(static_cast<std::size_t>(box.hi.z - box.lo.z));
@@ -149,7 +103,7 @@ bool attach_quads(RTCDevice device, RTCScene scene, const std::vector<Face>& fac
 struct EmbreeViews::Impl {
   double voxel_size_m;
   Region region;
-  StopVoxels voxels;
+  StopVolume voxels;
   std::vector<std::uint8_t> scores;  // per face
   EmbreeDevice device;               // released after
   EmbreeScene scene;                 // its faces
@@ -245,7 +199,7 @@ Result<EmbreeViews> EmbreeViews::prepare(const TsdfSnapshot& map, const Region& 
   const IndexBox bricks{parent(box.lo - one), parent(box.hi) + one};
 
   auto impl = std::make_unique<Impl>(
-      Impl{map.config.voxel_size_m, region, StopVoxels{map, region, bricks, executor}, {}, {}, {}});
+      Impl{map.config.voxel_size_m, region, StopVolume::fill(map, region, bricks, executor), {}, {}, {}});
   const std::vector<Face> faces = boundary_faces(impl->voxels, executor);
   for (const Face& face : faces) impl->scores.push_back(face.scores ? 1 : 0);
   impl->device.reset(rtcNewDevice(("threads=" + std::to_string(executor.threads())).c_str()));

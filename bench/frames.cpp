@@ -61,4 +61,16 @@ const Frames& frames() {
   return loaded;
 }
 
+const TsdfSnapshot& warm_map() {
+  static const TsdfSnapshot map = [] {
+    TsdfMap fused = TsdfMap::create({}).value();
+    for (std::size_t i = 0; i < kWarmFrames; ++i) {
+      const auto done = fused.integrate(frames().camera, frames().depth[i], frames().T_world_camera[i], {});
+      SACCADE_EXPECTS(done.ok());
+    }
+    return fused.snapshot();
+  }();
+  return map;
+}
+
 }  // namespace saccade::bench

@@ -15,8 +15,7 @@ namespace {
 
 using namespace saccade;
 using bench::frames;
-
-constexpr std::size_t kWarmFrames{40};  ///< fused before anything is timed
+using bench::kWarmFrames;
 
 Executor executor_of(const benchmark::State& state) {
   return Executor::with_threads(static_cast<std::size_t>(state.range(0)));
@@ -25,12 +24,12 @@ Executor executor_of(const benchmark::State& state) {
 /// The maps after 40 frames, 41 frames …
 const std::vector<TsdfSnapshot>& maps() {
   static const std::vector<TsdfSnapshot> after = [] {
-    std::vector<TsdfSnapshot> snapshots;
-    TsdfMap map = TsdfMap::create({}).value();
-    for (std::size_t i = 0; i < frames().depth.size(); ++i) {
+    std::vector<TsdfSnapshot> snapshots{bench::warm_map()};
+    TsdfMap map{bench::warm_map()};
+    for (std::size_t i = kWarmFrames; i < frames().depth.size(); ++i) {
       const auto done = map.integrate(frames().camera, frames().depth[i], frames().T_world_camera[i], {});
       SACCADE_EXPECTS(done.ok());
-      if (i + 1 >= kWarmFrames) snapshots.push_back(map.snapshot());
+      snapshots.push_back(map.snapshot());
     }
     return snapshots;
   }();

@@ -18,24 +18,11 @@ namespace {
 
 using namespace saccade;
 using bench::frames;
-
-constexpr std::size_t kWarmFrames{40};  ///< fused before anything is timed
+using bench::kWarmFrames;
+using bench::warm_map;
 
 Executor executor_of(const benchmark::State& state) {
   return Executor::with_threads(static_cast<std::size_t>(state.range(0)));
-}
-
-/// The map of the first frames.
-const TsdfSnapshot& warm_map() {
-  static const TsdfSnapshot map = [] {
-    TsdfMap fused = TsdfMap::create({}).value();
-    for (std::size_t i = 0; i < kWarmFrames; ++i) {
-      const auto done = fused.integrate(frames().camera, frames().depth[i], frames().T_world_camera[i], {});
-      SACCADE_EXPECTS(done.ok());
-    }
-    return fused.snapshot();
-  }();
-  return map;
 }
 
 void integrate(benchmark::State& state) {

@@ -18,25 +18,17 @@ namespace {
 using namespace saccade;
 using bench::frames;
 using bench::kRegion;
+using bench::kWarmFrames;
 
-constexpr std::size_t kWarmFrames{40};  ///< fused before anything is timed
-constexpr int kOpenTile_px{8};          ///< tiles of this size that are not decided go to the rays
+constexpr int kOpenTile_px{8};  ///< tiles of this size that are not decided go to the rays
 
 benchmark::Counter mean(double value) { return {value, benchmark::Counter::kAvgIterations}; }
-
-TsdfSnapshot warm_map() {
-  TsdfMap fused = TsdfMap::create({}).value();
-  for (std::size_t i = 0; i < kWarmFrames; ++i) {
-    SACCADE_EXPECTS(fused.integrate(frames().camera, frames().depth[i], frames().T_world_camera[i], {}).ok());
-  }
-  return fused.snapshot();
-}
 
 /// One frame per iteration, at its recorded pose. Argument: threads.
 void tracked_frame(benchmark::State& state) {
   const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(0)));
   const PinholeCamera& camera = frames().camera;
-  TsdfMap map{warm_map()};
+  TsdfMap map{bench::warm_map()};
   double list_ms{0.0};
   double raycast_ms{0.0};
   double points_ms{0.0};
@@ -118,7 +110,7 @@ struct Walks {
       looks += 1.0;
       const StopGrid::Brick brick = grid.brick(index);
       if (brick.flags == stop_flags::kClear) return false;
-      if (brick.flags == stop_flags::kAllBlock || brick.flags == stop_flags::kAllScore) return true;
+      if (stop_flags::uniform(brick.flags)) return true;
       return walk_cells<kVoxelLevel>(ray, in_brick, [&](const Index3& voxel, const RaySpan&) {
         looks += 1.0;
         return brick.masks->stop.test(child_index(voxel));

@@ -4,8 +4,7 @@
 // gives the same gains. The task is that of the thesis (bench/thesis/update_task.hpp).
 #include <benchmark/benchmark.h>
 
-#include <cmath>
-
+#include "peer_comparison.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "thesis/ray_search.hpp"
@@ -64,13 +63,9 @@ void run(benchmark::State& state, const RaySearch& search, double other_rays, do
     ours_ms += clock.lap_ms();
     search_ms += ms;
     state.SetIterationTime(1e-3 * ms);
-    double differ{0.0};
-    double total{0.0};
-    for (std::size_t i = 0; i < poses.size(); ++i) {
-      differ += std::fabs(static_cast<double>(gains->at(i)) - static_cast<double>(ours->gains[i]));
-      total += static_cast<double>(ours->gains[i]);
+    if (bench::gain_difference(*gains, ours->gains) > other_gains) {
+      return state.SkipWithError("the gains differ from ours");
     }
-    if (total == 0.0 || differ > other_gains * total) return state.SkipWithError("the gains differ from ours");
   }
   state.counters["poses"] = static_cast<double>(poses.size());
   state.counters["differing_rays"] = compared->other_voxel_share();

@@ -5,7 +5,6 @@
 
 #include <map>
 #include <numbers>
-#include <thread>
 
 #include "frames.hpp"
 #include "saccade/map/raycast.hpp"
@@ -18,8 +17,8 @@ namespace {
 using namespace saccade;
 using bench::frames;
 using bench::kRegion;
+using bench::kWarmFrames;
 
-constexpr std::size_t kWarmFrames{40};  ///< fused before anything is timed
 const double kDefaultVoxel_m{TsdfConfig{}.voxel_size_m};
 
 double voxel_size_m(const benchmark::State& state) { return 1e-6 * static_cast<double>(state.range(0)); }
@@ -178,8 +177,8 @@ void extents(Row* made) {
 /// 1, 2, 4 … up to all cores.
 void threads(Row* made) {
   row(made, "threads");
-  const unsigned cores = std::thread::hardware_concurrency();
-  for (unsigned n = 1; n < cores; n *= 2) made->Arg(static_cast<std::int64_t>(n));
+  const std::size_t cores = Executor::with_threads(0).threads();
+  for (std::size_t n = 1; n < cores; n *= 2) made->Arg(static_cast<std::int64_t>(n));
   made->Arg(static_cast<std::int64_t>(cores));
 }
 

@@ -4,12 +4,10 @@
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
-#include <cmath>
-#include <ctime>
 #include <optional>
 
 #include "embree_views.hpp"
-#include "saccade/core/clock.hpp"
+#include "peer_comparison.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/view/best_views.hpp"
 #include "saccade/view/view_gain.hpp"
@@ -100,34 +98,16 @@ void rays_one_by_one(benchmark::State& state) {
 }
 
 #ifdef SACCADE_WITH_EMBREE
+using bench::Cost;
+using bench::CostClock;
+
 constexpr double kMostDifference{1e-3};
 
-/// The share of rays that end elsewhere, as far as gains show it: differences pose by pose, of all that scores.
-double difference(const std::vector<std::uint64_t>& gains, const std::vector<std::uint64_t>& expected) {
-  double differ{0.0};
-  double total{0.0};
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    differ += std::fabs(static_cast<double>(gains[i]) - static_cast<double>(expected[i]));
-    total += static_cast<double>(expected[i]);
-  }
-  return total > 0.0 ? differ / total : 1.0;
-}
-
-/// Milliseconds passed, and those that the process' threads computed: on a busy machine only these can be compared.
-struct Cost {
-  double wall_ms{0.0};
-  double cpu_ms{0.0};
-  void operator+=(const Cost& other) {
-    wall_ms += other.wall_ms;
-    cpu_ms += other.cpu_ms;
-  }
-};
 template <class Work>
 Cost cost_of(const Work& work) {
-  const std::clock_t cpu = std::clock();
-  const Stopwatch stopwatch;
+  const CostClock clock;
   work();
-  return {stopwatch.elapsed_ms(), 1e3 * static_cast<double>(std::clock() - cpu) / CLOCKS_PER_SEC};
+  return clock.elapsed();
 }
 
 /// Embree's evaluation on two threads, without its preparation; ours with preparation, right after it. `speedup` and
@@ -147,22 +127,22 @@ void embree(benchmark::State& state) {
     std::vector<std::uint64_t> gains;
     std::vector<std::uint64_t> expected;
     const Cost cost = cost_of([&] { gains = peer->gains(poses, config.sensor, executor); });
-    ours += cost_of([&] { expected = evaluate_views(map, kRegion, poses, config, executor).value().gains; });
-    state.SetIterationTime(1e-3 * cost.wall_ms);
-    peers += cost;
-    differing = difference(gains, expected);
+    ours = ours + cost_of([&] { expected = evaluate_views(map, kRegion, poses, config, executor).value().gains; });
+    state.SetIterationTime(cost.wall_s);
+    peers = peers + cost;
+    differing = bench::gain_difference(gains, expected);
     if (differing > kMostDifference) return state.SkipWithError("the gains differ from ours");
   }
   const auto rounds = static_cast<double>(state.iterations());
   state.counters["poses"] = static_cast<double>(poses.size());
   state.counters["faces"] = static_cast<double>(peer->faces());
-  state.counters["prepare_ms"] = prepared.wall_ms;
+  state.counters["prepare_ms"] = 1e3 * prepared.wall_s;
   state.counters["differing"] = differing;
-  state.counters["cpu_ms"] = peers.cpu_ms / rounds;
-  state.counters["ours_ms"] = ours.wall_ms / rounds;
-  state.counters["ours_cpu_ms"] = ours.cpu_ms / rounds;
-  state.counters["speedup"] = peers.wall_ms / ours.wall_ms;
-  state.counters["cpu_speedup"] = peers.cpu_ms / ours.cpu_ms;
+  state.counters["cpu_ms"] = 1e3 * peers.cpu_s / rounds;
+  state.counters["ours_ms"] = 1e3 * ours.wall_s / rounds;
+  state.counters["ours_cpu_ms"] = 1e3 * ours.cpu_s / rounds;
+  state.counters["speedup"] = peers.wall_s / ours.wall_s;
+  state.counters["cpu_speedup"] = peers.cpu_s / ours.cpu_s;
 }
 
 // 17 has no factor in common with the numbers of rolls, longitudes and latitudes.

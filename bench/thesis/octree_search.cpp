@@ -16,8 +16,7 @@ namespace {
 /// One unit is a voxel; the origin is the middle of the volume, so that single precision holds where rays start.
 class OctreeSearch final : public RaySearch {
  public:
-  explicit OctreeSearch(const StopVolume& volume)
-      : middle_{volume.box().lo + Index3{volume.size().x / 2, volume.size().y / 2, volume.size().z / 2}} {
+  explicit OctreeSearch(const StopVolume& volume) : middle_{volume.middle()} {
     const auto most = static_cast<unsigned>(std::max({volume.size().x, volume.size().y, volume.size().z}));
     const double half = 0.5 * std::bit_ceil(most);
     auto cloud = std::make_shared<pcl::PointCloud<pcl::PointXYZ>>();

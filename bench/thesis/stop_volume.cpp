@@ -18,10 +18,13 @@ StopVolume::StopVolume(const IndexBox& bricks)
 StopVolume StopVolume::fill(const TsdfSnapshot& map, const Region& region, const IndexBox& bricks,
                             const Executor& executor) {
   StopVolume volume{bricks};
-  executor.parallel_for(static_cast<std::size_t>(bricks.hi.z - bricks.lo.z), 1, [&](std::size_t begin, std::size_t) {
-    const std::int32_t z = bricks.lo.z + static_cast<std::int32_t>(begin);
-    for (std::int32_t y = bricks.lo.y; y < bricks.hi.y; ++y) {
-      for (std::int32_t x = bricks.lo.x; x < bricks.hi.x; ++x) volume.fill_brick(map, region, {x, y, z});
+  const auto layers = static_cast<std::size_t>(bricks.hi.z - bricks.lo.z);
+  executor.parallel_for(layers, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t layer = begin; layer < end; ++layer) {
+      const std::int32_t z = bricks.lo.z + static_cast<std::int32_t>(layer);
+      for (std::int32_t y = bricks.lo.y; y < bricks.hi.y; ++y) {
+        for (std::int32_t x = bricks.lo.x; x < bricks.hi.x; ++x) volume.fill_brick(map, region, {x, y, z});
+      }
     }
   });
   return volume;

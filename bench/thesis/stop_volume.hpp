@@ -14,7 +14,8 @@ namespace saccade::thesis {
 /// What a voxel does to a ray: unknown voxels of the region score, all others that are not empty only block.
 enum class Stop : std::uint8_t { no, blocks, scores };
 
-/// The ternary representation (eq. 2.11) that NBV-CPU converts the TSDF volume to. Const use from many threads is safe.
+/// The ternary representation (eq. 2.11) that NBV-CPU converts the TSDF volume to. The map's workspace is not heeded:
+/// outside it all is unknown. Const use from many threads is safe.
 class StopVolume {
  public:
   /// The voxels of a box of bricks. O(voxels).
@@ -23,6 +24,8 @@ class StopVolume {
 
   [[nodiscard]] const IndexBox& box() const { return box_; }
   [[nodiscard]] const Index3& size() const { return size_; }
+  /// Where coordinates in single precision start, so that they stay small.
+  [[nodiscard]] Index3 middle() const { return box_.lo + Index3{size_.x / 2, size_.y / 2, size_.z / 2}; }
   /// Only for voxels of the box.
   [[nodiscard]] Stop at(const Index3& voxel) const { return at_offset(voxel - box_.lo); }
   /// Relative to the lower corner of the box.

@@ -2,12 +2,10 @@
 // Table 2.9: one phase of next-best view by NBV-GPU, NBV-CPU and NBV-CPU-step; here by ours, PCL's octree, a fixed
 // step.
 #include <algorithm>
-#include <cmath>
-#include <ctime>
 #include <optional>
 
 #include "json_output.hpp"
-#include "saccade/core/clock.hpp"
+#include "peer_comparison.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
@@ -17,6 +15,8 @@
 namespace saccade::cli {
 namespace {
 
+using bench::Cost;
+using bench::CostClock;
 using nlohmann::json;
 using thesis::RayComparison;
 using thesis::RaySearch;
@@ -27,23 +27,6 @@ constexpr double kStep_m{0.003};
 constexpr std::size_t kCheckedPoses{8};
 constexpr int kOurRuns{5};
 constexpr double kMostOtherVoxels{1e-3};  ///< share of rays; an octree that differs more is no peer
-
-/// Seconds passed, and those that the process' threads computed: on a busy machine only these can be compared.
-struct Cost {
-  double wall_s{0.0};
-  double cpu_s{0.0};
-  [[nodiscard]] Cost operator+(const Cost& other) const { return {wall_s + other.wall_s, cpu_s + other.cpu_s}; }
-};
-class CostClock {
- public:
-  [[nodiscard]] Cost elapsed() const {
-    return {1e-3 * wall_.elapsed_ms(), static_cast<double>(std::clock() - cpu_) / CLOCKS_PER_SEC};
-  }
-
- private:
-  Stopwatch wall_;
-  std::clock_t cpu_{std::clock()};
-};
 
 struct Views {
   const UpdateTask& task;
@@ -108,17 +91,6 @@ Result<Measured> measure_peer(const Views& views, const RaySearch& peer, const R
   return measured;
 }
 
-/// Of all that scores, how much is counted differently, pose by pose.
-double gain_difference(const std::vector<std::uint64_t>& gains, const std::vector<std::uint64_t>& expected) {
-  double differ{0.0};
-  double total{0.0};
-  for (std::size_t i = 0; i < gains.size(); ++i) {
-    differ += std::fabs(static_cast<double>(gains[i]) - static_cast<double>(expected[i]));
-    total += static_cast<double>(expected[i]);
-  }
-  return total > 0.0 ? differ / total : 0.0;
-}
-
 /// A row of the table. `here` is nothing where the algorithm is not built in or failed its check.
 struct Row {
   std::string name;  ///< in the thesis
@@ -181,7 +153,7 @@ json json_of(const Row& row, const Row& first) {
   figures["rays_compared"] = here.agreement.rays;
   figures["rays_other_voxel"] = here.agreement.other_voxel;
   figures["rays_other_score"] = here.agreement.other_score;
-  figures["gain_difference"] = gain_difference(here.gains, first.here->gains);
+  figures["gain_difference"] = bench::gain_difference(here.gains, first.here->gains);
   return figures;
 }
 
