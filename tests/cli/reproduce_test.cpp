@@ -24,6 +24,7 @@ TEST(Reproduce, ListsTheTables) {
 TEST(Reproduce, RefusesWhatItDoesNotKnow) {
   expect_failure(run_program({"reproduce", "9.9"}), 2, "reproduce", {"\"9.9\"", "2.9, 2.10"});
   expect_failure(run_program({"reproduce", "2.9", "2.1"}), 2, "reproduce", {"\"2.1\"", "2.9, 2.10"});
+  expect_failure(run_program({"reproduce", "2.9", "2.10", "2.9"}), 2, "reproduce", {"2.9 is named twice"});
   expect_failure(run_program({"reproduce", "2.9", "--poses", "0"}), 2, "reproduce", {"--poses"});
   expect_failure(run_program({"reproduce", "2.9", "--json", "/dev/null/no/file"}), 3, "reproduce", {"/dev/null/no"});
 }
@@ -79,6 +80,20 @@ TEST(Reproduce, TablesStandBesideTheThesis) {
     EXPECT_LE(elsewhere, i == 1 ? rays / 10000 : rays / 2);
     EXPECT_GE(elsewhere, i == 1 ? 0 : rays / 100);
   }
+}
+
+/// The map of Table 2.10 does not fit into the files that the program may write.
+TEST(Reproduce, AFailureKeepsTheTablesBeforeIt) {
+  const TempFolder folder;
+  const fs::path file = folder / "tables.json";
+  const Arguments arguments{"--quiet", "reproduce", "2.9", "2.10", "--poses", "1", "--json", file.string()};
+  const Outcome outcome = run_program(arguments, 500000);
+  EXPECT_EQ(outcome.status, 3) << outcome.err;
+  expect_in(outcome.err, {"saccade reproduce: ", "map.sacmap", "cannot write"});
+  expect_in(outcome.out, {"Table 2.9"});
+  const nlohmann::json document = nlohmann::json::parse(text_of(file), nullptr, false);
+  ASSERT_EQ(document.at("result").at("tables").size(), 1U);
+  EXPECT_EQ(document.at("result").at("tables").at(0).at("table"), "2.9");
 }
 
 TEST(Reproduce, StopsWhenInterrupted) {

@@ -25,9 +25,10 @@ class ScratchFolder {
   [[nodiscard]] static Result<ScratchFolder> create() {
     std::error_code error;
     const std::filesystem::path base = std::filesystem::temp_directory_path(error);
+    if (error) return Error{Errc::io_failure, "it names no folder; let it name one", "TMPDIR"};
     std::string path = (base / "saccade-XXXXXX").string();
-    if (error || ::mkdtemp(path.data()) == nullptr) {
-      return Error{Errc::io_failure, "cannot make a temporary folder (TMPDIR names where)", path};
+    if (::mkdtemp(path.data()) == nullptr) {
+      return Error{Errc::io_failure, "cannot make a folder here; let TMPDIR name another place", base.string()};
     }
     return ScratchFolder{path};
   }
@@ -47,9 +48,8 @@ class ScratchFolder {
 /// Medians.
 struct Costs {
   double snapshot_ms{0.0};
-  double frame_alone_ms{0.0};  ///< fusing a frame
-  double frame_after_snapshot_ms{
-      0.0};  ///< the same while a snapshot holds the map as it was: what is written is copied
+  double frame_alone_ms{0.0};           ///< fusing a frame
+  double frame_after_snapshot_ms{0.0};  ///< the same while a snapshot is held: what is written is copied first
   double save_ms{0.0};
   double load_ms{0.0};
   std::uintmax_t file_bytes{0};
