@@ -143,18 +143,15 @@ SurfaceTiles::SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, con
     for (std::size_t s = begin; s < end; ++s) {
       if (!projector.may_see(voxel_center(keys[s], sector_m), radius_m)) continue;
       const Mask512 bricks = bricks_with_occupied_corner(sectors, keys[s]);
-      for (std::size_t word = 0; word < 8; ++word) {
-        for (std::uint64_t left = bricks.words[word]; left != 0; left &= left - 1) {
-          Footprint footprint;
-          const int child = static_cast<int>(word) * 64 + std::countr_zero(left);
-          footprint.brick.index = keys[s] * kSectorEdge + child_offset(child);
-          if (!projector.may_see(voxel_center(footprint.brick.index, brick_m), brick_radius_m)) continue;
-          footprint.brick.cells = crossed_cells(sectors, footprint.brick.index);
-          if (footprint.brick.cells.none()) continue;
-          footprint.brick.box = bounds_of(footprint.brick.cells);
-          if (projector.project(footprint)) seen[s].push_back(footprint);
-        }
-      }
+      bricks.for_each([&](std::size_t child) {
+        Footprint footprint;
+        footprint.brick.index = keys[s] * kSectorEdge + child_offset(static_cast<int>(child));
+        if (!projector.may_see(voxel_center(footprint.brick.index, brick_m), brick_radius_m)) return;
+        footprint.brick.cells = crossed_cells(sectors, footprint.brick.index);
+        if (footprint.brick.cells.none()) return;
+        footprint.brick.box = bounds_of(footprint.brick.cells);
+        if (projector.project(footprint)) seen[s].push_back(footprint);
+      });
     }
   });
 

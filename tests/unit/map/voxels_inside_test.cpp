@@ -2,6 +2,7 @@
 #include <gtest/gtest.h>
 
 #include <array>
+#include <cmath>
 #include <random>
 
 #include "saccade/map/voxels_inside.hpp"
@@ -17,11 +18,13 @@ TEST(VoxelsInside, AgreesWithContainsForEveryVoxel) {
   std::uniform_int_distribution<int> brick{-4, 3};
   const auto point = [&] { return Eigen::Vector3d{place(random), place(random), place(random)}; };
   const auto on_lattice = [&] { return Eigen::Vector3d{(point() / kVoxelM).array().round() * kVoxelM}; };
+  const auto on_centers = [&] { return Eigen::Vector3d{on_lattice().array() + 0.5 * kVoxelM}; };
   std::array<int, 3> met{};  // by Overlap
+  int on_border{0};          // voxels whose distance rounding decides
   for (int i = 0; i < 3000; ++i) {
     Region region;
     switch (i % 4) {
-      case 0: region = Sphere{point(), size(random)}; break;
+      case 0: region = i % 8 == 0 ? Sphere{point(), size(random)} : Sphere{on_centers(), 0.15}; break;
       case 1: region = Cylinder{point(), point(), size(random)}; break;
       case 2: region = Cylinder{{0.0, 0.0, 0.005}, {0.0, 0.0, 0.005 + 16 * kVoxelM}, size(random)}; break;
       default: {
@@ -32,13 +35,17 @@ TEST(VoxelsInside, AgreesWithContainsForEveryVoxel) {
     const Index3 lo = Index3{brick(random), brick(random), brick(random)} * kBrickEdge;
     const Mask512 inside = voxels_inside(region, lo, kVoxelM);
     for (int k = 0; k < kBrickVoxels; ++k) {
-      ASSERT_EQ(inside.test(k), contains(region, voxel_center(lo + child_offset(k), kVoxelM))) << "region " << i;
+      const Eigen::Vector3d p = voxel_center(lo + child_offset(k), kVoxelM);
+      ASSERT_EQ(inside.test(k), contains(region, p)) << "region " << i;
+      const auto* sphere = std::get_if<Sphere>(&region);
+      if (sphere != nullptr && std::abs((p - sphere->center).norm() - sphere->radius_m) < 1e-12) ++on_border;
     }
     const Index3 last = lo + Index3{7, 7, 7};
     const Overlap judged = overlap(region, {voxel_center(lo, kVoxelM), voxel_center(last, kVoxelM)});
     ++met[static_cast<std::size_t>(judged)];
   }
   for (const int count : met) EXPECT_GT(count, 50);
+  EXPECT_GT(on_border, 50);
 }
 
 }  // namespace
