@@ -168,7 +168,8 @@ Result<IndexBox> volume_box(const TsdfSnapshot& map, const TernaryVolumeConfig& 
   if (config.box) {
     SACCADE_TRY(box, voxels_of(*config.box, map.config.voxel_size_m));
   }
-  if (box.empty()) return bad_box(config.box ? "the box holds no voxel; make it larger" : "the map is empty");
+  if (box.empty())
+    return bad_box(config.box ? "the box holds no voxel; make it larger, or the voxels smaller" : "the map is empty");
   const auto [z, y, x] = shape_of(box);
   const double bytes = static_cast<double>(x) * static_cast<double>(y) * static_cast<double>(z);
   if (bytes > static_cast<double>(config.max_bytes)) {
