@@ -10,6 +10,7 @@ from performance import bounds, peers, phases, savings, scaling
 from performance.results import Results
 
 PROGRAM = "build/release/saccade"
+USUAL_REPETITIONS = 7  # of scripts/bench.sh
 PACKAGES = [("libbenchmark-dev", "Google Benchmark"), ("libembree-dev", "Embree"), ("libopen3d-dev", "Open3D"),
             ("libopencv-contrib-dev", "OpenCV"), ("libpcl-dev", "PCL")]
 
@@ -29,14 +30,15 @@ def system():
     return ", ".join([*names, kernel])
 
 
-def machine(results):
+def machine(results, repetitions):
+    command = "make bench" if repetitions == USUAL_REPETITIONS else f"SACCADE_BENCH_REPETITIONS={repetitions} make bench"
     asked = subprocess.run([PROGRAM, "info", "--json", "-"], capture_output=True, text=True, check=True)
     about = json.loads(asked.stdout)["result"]
     caches = ", ".join(f"L{cache['level']} {cache['size'] // 1024:,} KiB" for cache in results.context.get("caches", [])
                        if cache["type"] in ("Unified", "Data"))
     versions = ", ".join(f"{name} {version(package)}" for package, name in PACKAGES if version(package))
     load = ", ".join(f"{load:.1f}" for load in results.context.get("load_avg", [])) or "unknown"
-    return [f"- Command: `make bench`, {results.context.get('date', 'undated')[:10]}; a Release build.",
+    return [f"- Command: `{command}`, {results.context.get('date', 'undated')[:10]}; a Release build.",
             f"- Machine: {about['processor']}, {about['cores']} cores, kernels on {about['simd_target']}; caches {caches}. "
             f"Load at the start: {load}.",
             f"- Versions: {about['compiler']}, oneTBB {about['dependencies']['onetbb']}, {versions}; {system()}.", ""]
@@ -47,13 +49,15 @@ def main(folder, document):
     if not results.times:
         sys.exit(f"{folder} holds no results: run make bench")
     images = document.parent / "images"
+    repetitions = max(len(times) for times in results.times.values())
     beside_peers, held = peers.section(results)
     lines = ["# Performance", "",
-             "Written by `make bench`: medians in milliseconds of all repetitions, with the fastest and slowest; ours and",
+             f"Written by `make bench`: medians in milliseconds of {repetitions} repetitions, with the fastest and slowest; "
+             "ours and",
              "the peers run in one process, on the same data, warm, in random order. Frames are those of the 7-Scenes kitchen",
              "(`bench/frames.cpp`); views look at a table with clutter (`bench/table_map.cpp`). Results are compared before",
              "or while they are timed. Ratios must not fall below `bench/floors.json`, which `make bench` checks at its end",
-             "and the tests check loosely.", "", *machine(results), *beside_peers, *savings.section(results, images),
+             "and the tests check loosely.", "", *machine(results, repetitions), *beside_peers, *savings.section(results, images),
              *scaling.section(results, images), *phases.section(results), *bounds.section(results),
              *peers.everything(results)]
     document.write_text("\n".join(lines).rstrip() + "\n")

@@ -53,7 +53,8 @@ def evaluation(counter):
 def forgetting():
     bricks = 4 / 3 * 3.14159 * 0.2**3 / (8 * 0.0058)**3
     return ({"memory": 2 * bricks * DENSE_BRICK},
-            f"The {bricks:.0f} bricks of the sphere are read and written, by one thread.")
+            f"The {bricks:.0f} bricks of the sphere are read and written, by one thread; less than 1 where they are in a "
+            "cache, as when the same sphere is forgotten again and again.")
 
 
 def snapshot(sectors):
