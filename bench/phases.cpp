@@ -65,7 +65,7 @@ void tracked_frame(benchmark::State& state) {
     const RangeImage ranges{camera, depth, config.truncation_m(), executor};
     range_ms += stopwatch.lap_ms();
     const FrameFuser fuser{config, ranges, pose, nullptr};
-    benchmark::DoNotOptimize(fuser.candidate_sectors(executor).size());
+    benchmark::DoNotOptimize(fuser.candidate_sectors(executor)->size());
     sectors_ms += stopwatch.lap_ms();
     const auto fused = map.integrate(camera, depth, pose, executor);
     integrate_ms += stopwatch.lap_ms();

@@ -83,10 +83,16 @@ Result<Reconstruction> make_reconstruction(const FuseRun& run) {
   return Reconstruction::resume(std::move(map), IcpConfig{});
 }
 
-/// Status of a run without a single fused frame.
+/// Status of a run without a single fused frame, or with none that shows anything.
 Result<int> nothing_fused(const FuseRun& run) {
   if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
   const FuseRecord& record = run.record;
+  if (!record.fused.empty()) {
+    print_error("fuse",
+                "no depth is within the camera's range: see --min-range, --max-range and --depth-scale; "
+                "nothing was written");
+    return static_cast<int>(ExitStatus::no_result);
+  }
   if (record.lost.empty()) {
     const LeftOutFrame& first = record.skipped.front();
     return Error{Errc::corrupt_data,
@@ -236,9 +242,9 @@ Result<int> run_fuse(const FuseOptions& options, const GlobalOptions& global) {
   if (options.fill_gaps_px) gaps = GapFilling{*options.fill_gaps_px};
   run.record = fuse_frames(*source, reconstruction, run.tracking, gaps, run.executor, run.progress);
   run.timings_ms["frames"] = stopwatch.lap_ms();
-  if (run.record.fused.empty()) return nothing_fused(run);
 
   const TsdfSnapshot& map = reconstruction.map().content();
+  if (run.record.fused.empty() || map.grid.empty()) return nothing_fused(run);
   if (run.tracking != TrackingMode::forced) run.trajectory = measure_trajectory(run.record);
   SACCADE_TRY(run.fit,
               measure_map(map, run.camera, options.frames, run.folder, run.record, run.executor, run.progress));

@@ -2,6 +2,7 @@
 #include "json_output.hpp"
 
 #include <algorithm>
+#include <fstream>
 #include <iostream>
 
 #include "saccade/io/atomic_file.hpp"
@@ -24,6 +25,11 @@ nlohmann::json json_envelope(const std::string& command, const GlobalOptions& gl
 Status check_json_output(const GlobalOptions& global) {
   if (global.json.empty() || global.json_to_stdout()) return {};
   SACCADE_TRY(const AtomicFile probe, AtomicFile::create(global.json));
+  std::ifstream existing{global.json, std::ios::binary};
+  char first{0};
+  if (existing.get(first) && first != '{') {
+    return Error{Errc::invalid_argument, "holds something else than a result; name another file", global.json};
+  }
   return {};
 }
 

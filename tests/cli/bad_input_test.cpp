@@ -168,6 +168,23 @@ TEST_F(BadInput, SizesOfZeroAndLess) {
   expect_refused(2, {"--distortion", "5 numbers"}, {"--distortion", "0.1,0.2"});
 }
 
+TEST_F(BadInput, NoDepthWithinTheRange) {
+  expect_refused(5, {"--min-range", "--max-range"}, {"--min-range", "100", "--max-range", "200"});
+}
+
+TEST_F(BadInput, CamerasThatSeeTooMuch) {
+  expect_refused(3, {frames().string(), name(0), "too many voxels"}, {"--intrinsics", "1e-6,1e-6,0,0"});
+}
+
+TEST_F(BadInput, AMapIsNotReplacedByAResult) {
+  ASSERT_EQ(fused().status, 0);
+  const fs::path map = run() / "map.sacmap";
+  const std::string whole = text_of(map);
+  const Outcome outcome = run_program({"nbv", map.string(), "--poi", "0,0,0", "--quiet", "--json", map.string()});
+  expect_failure(outcome, 3, "nbv", {map.string(), "name another file"});
+  EXPECT_EQ(text_of(map), whole);
+}
+
 class FullDisk : public BadInput {};
 
 TEST_F(FullDisk, ShowsBeforeTheWork) {

@@ -9,7 +9,8 @@
 namespace saccade {
 namespace {
 
-constexpr double kSlackM{1e-4};  // far above the rounding, far below a voxel
+constexpr double kSlackM{1e-4};          // far above the rounding, far below a voxel
+constexpr double kMostSectors{1 << 24};  // to go through for a frame
 
 Index3 octant(const Index3& lo, int half, int i) {
   return {lo.x + ((i & 1) != 0 ? half : 0), lo.y + ((i & 2) != 0 ? half : 0), lo.z + ((i & 4) != 0 ? half : 0)};
@@ -17,6 +18,12 @@ Index3 octant(const Index3& lo, int half, int i) {
 
 tsdf::Float3 to_float3(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
+}
+
+Error too_many_voxels() {
+  return {Errc::invalid_argument,
+          "too many voxels lie between the camera and what it sees; use a shorter range or larger voxels",
+          {}};
 }
 
 /// Calls body(brick index in the sector) for the bricks of a cube within it.
@@ -43,9 +50,9 @@ FrameFuser::FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const
   }
 }
 
-std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) const {
+Result<std::vector<Index3>> FrameFuser::candidate_sectors(const Executor& executor) const {
   const double reach_m = ranges_.max_reach_m();
-  if (reach_m <= 0.0) return {};
+  if (reach_m <= 0.0) return std::vector<Index3>{};
   // Box around the camera and the corners of its image at the farthest reach.
   const tsdf::FusionCamera& camera = ranges_.camera();
   const Pose T_world_camera = T_camera_world_.inverse();
@@ -55,11 +62,14 @@ std::vector<Index3> FrameFuser::candidate_sectors(const Executor& executor) cons
     for (const double v : {-0.5, camera.height - 0.5}) {
       const Eigen::Vector3d ray{(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0};
       const Eigen::Vector3d corner = T_world_camera * Eigen::Vector3d{ray * reach_m};
+      if (!corner.allFinite()) return too_many_voxels();
       lo = lo.cwiseMin(corner);
       hi = hi.cwiseMax(corner);
     }
   }
   const double sector_m = kSectorVoxelEdge * config_.voxel_size_m;
+  const Eigen::Vector3d sectors = (hi - lo) / sector_m + Eigen::Vector3d::Ones();
+  if (sectors.prod() > kMostSectors) return too_many_voxels();
   const Index3 first = voxel_at(lo - Eigen::Vector3d::Constant(kSlackM), sector_m);
   const Index3 last = voxel_at(hi + Eigen::Vector3d::Constant(kSlackM), sector_m);
   std::vector<Index3> keys;

@@ -22,7 +22,8 @@ class FrameFuser {
   FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const Pose& T_world_camera, const ColorImage* color);
 
   /// Sectors that this frame may change, in z-y-x order.
-  [[nodiscard]] std::vector<Index3> candidate_sectors(const Executor& executor) const;
+  /// @return invalid_argument when too many lie within the frame's view to go through.
+  [[nodiscard]] Result<std::vector<Index3>> candidate_sectors(const Executor& executor) const;
 
   struct Counts {
     std::size_t bricks_updated{0};

@@ -147,7 +147,7 @@ Result<FusionStats> TsdfMap::integrate(const PinholeCamera& camera, const DepthI
   const Stopwatch stopwatch;
   const RangeImage ranges{camera, depth, config().truncation_m(), executor};
   const FrameFuser fuser{config(), ranges, T_world_camera, color};
-  std::vector<Index3> keys = fuser.candidate_sectors(executor);
+  SACCADE_TRY(const std::vector<Index3> keys, fuser.candidate_sectors(executor));
 
   const std::scoped_lock lock{mutex_};
   TsdfGrid& grid = content_.grid;

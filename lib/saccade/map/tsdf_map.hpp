@@ -49,7 +49,7 @@ class TsdfMap {
   /// @param T_world_camera camera → world, rigid.
   /// @param color          optional, same size; averaged within the truncation band.
   /// @return what changed; size_mismatch if depth or colour and camera disagree, invalid_argument for a bad camera or
-  ///         pose. The map is untouched on error.
+  ///         pose, or a view of too many voxels. The map is untouched on error.
   /// O(bricks in the frustum up to the measured surface). The thread count never changes a bit of the result.
   [[nodiscard]] Result<FusionStats> integrate(const PinholeCamera& camera, const DepthImage& depth,
                                               const Pose& T_world_camera, const Executor& executor,
