@@ -1,0 +1,108 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ObstacleCells: the coarse cells of the workspace that hold an occupied or unknown voxel, brought up to date where the
+// map changed.
+
+#include <array>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/map/tsdf_map.hpp"
+
+namespace saccade {
+
+/// The planner's map. Thesis §2.1: voxels are taken together to cells of 4 cm, and a cell is an obstacle if any voxel in
+/// it is occupied or unknown. Only voxels whose centre lies in the map's workspace count: outside it nothing is an
+/// obstacle.
+///
+/// Cells are cubes of a whole number of voxels along each edge, the number nearest to the wanted size, so that each voxel
+/// lies in one cell: 4 cm at 5.8 mm are 7 voxels, 4.06 cm. Cell (0, 0, 0) begins at the origin of the world. A cell at
+/// the border of the workspace is an obstacle as a whole.
+///
+/// One writer; const use from many threads is safe.
+class ObstacleCells {
+ public:
+  static constexpr int kMostVoxelsAlong{256};
+  static constexpr double kMostCells{1 << 26};
+
+  /// The cells of a map in which nothing has been seen.
+  /// @return invalid_argument for a map without a workspace, for a cell size that is not positive or more than
+  ///         kMostVoxelsAlong voxels, and when the workspace holds more than kMostCells cells or no voxel.
+  [[nodiscard]] static Result<ObstacleCells> create(const TsdfConfig& map, double cell_size_m,
+                                                    bool unknown_is_obstacle);
+
+  struct Changes {
+    std::size_t bricks{0};  ///< bricks whose obstacle voxels differ
+    std::size_t cells{0};   ///< cells that became obstacles or ceased to be
+  };
+  /// Follows the map to its present state; afterwards the same as made anew. The configuration must be that of create().
+  /// What is shared with the state before is passed over, and so are bricks that are free in both. O(sectors in the
+  /// workspace + bricks written since that hold an obstacle, or did). Same result for every thread count.
+  Changes update(const TsdfGrid& map, const Executor& executor);
+
+  [[nodiscard]] int voxels_along_cell() const { return voxels_along_; }
+  [[nodiscard]] double cell_edge_m() const { return cell_edge_m_; }
+  /// The cells of the workspace; cell c covers [c, c + 1) · cell_edge_m.
+  [[nodiscard]] const IndexBox& box() const { return box_; }
+  [[nodiscard]] Index3 size() const { return box_.hi - box_.lo; }
+  /// World coordinates of a cell.
+  [[nodiscard]] Box bounds_of(const Index3& cell) const;
+  [[nodiscard]] std::size_t obstacle_count() const { return obstacle_count_; }
+  /// False outside box().
+  [[nodiscard]] bool is_obstacle(const Index3& cell) const;
+
+  /// Rows of cells along x, numbered z · size().y + y from the lower corner of box(): cell x at bit x % 64 of word x / 64.
+  /// A word of zeros follows the last.
+  [[nodiscard]] std::size_t row_count() const { return row_changed_.size(); }
+  [[nodiscard]] const std::uint64_t* row(std::size_t index) const { return bits_.data() + index * words_per_row_; }
+  /// Per row, whether the last update changed a cell of it; after the first, all.
+  [[nodiscard]] std::span<const std::uint8_t> row_changed() const { return row_changed_; }
+
+  /// Equal obstacles of equal cells.
+  [[nodiscard]] bool operator==(const ObstacleCells& other) const;
+
+ private:
+  /// How the cells cut a brick along one axis: part i is voxels start[i] … start[i + 1] − 1 of the brick, in cell
+  /// first_cell + i. Voxels outside the workspace are in no part.
+  struct Cut {
+    std::int32_t first_cell;
+    std::int32_t parts;
+    std::array<std::uint8_t, kBrickEdge + 1> start;
+  };
+  using Words = std::array<std::uint64_t, kBrickEdge>;
+  /// Cells that a brick begins, or ceases, to make an obstacle; one entry per brick and cell.
+  struct Flips {
+    std::vector<std::uint32_t> begun;
+    std::vector<std::uint32_t> ended;
+  };
+
+  ObstacleCells() = default;
+  void cut_axis(std::size_t axis, std::int32_t voxel_lo, std::int32_t voxel_hi);
+  void see_nothing();
+  [[nodiscard]] Words stops_of(const BrickRef& brick) const;
+  [[nodiscard]] bool same_stops(const BrickRef& a, const BrickRef& b) const;
+  [[nodiscard]] Mask512 may_differ(const Sector* before, const Sector* after) const;
+  [[nodiscard]] std::size_t compare(const Index3& sector, const Sector* before, const Sector* after,
+                                    Flips& flips) const;
+  void compare(const Index3& brick, const Words& before, const Words& after, Flips& flips) const;
+  void toggle(std::uint32_t cell);
+
+  bool unknown_is_obstacle_{true};
+  int voxels_along_{1};
+  double cell_edge_m_{0.0};
+  IndexBox box_;
+  IndexBox bricks_;                       ///< of the workspace
+  std::array<std::vector<Cut>, 3> cuts_;  ///< per axis, the bricks of bricks_
+  std::size_t words_per_row_{0};
+  std::size_t obstacle_count_{0};
+  std::vector<std::uint16_t> makers_;  ///< per cell, the bricks that hold an obstacle voxel of it
+  std::vector<std::uint64_t> bits_;
+  std::vector<std::uint8_t> row_changed_;
+  bool updated_{false};
+  TsdfGrid seen_;  ///< the map that this is up to date with
+};
+
+}  // namespace saccade
