@@ -56,8 +56,11 @@ class RandomObstacles {
   }
   void free(const Region& region) { EXPECT_TRUE(map_->free(region).ok()); }
   void forget(const Region& region) { EXPECT_TRUE(map_->forget(region).ok()); }
-  [[nodiscard]] Eigen::Vector3d point(double reach) {
-    return Eigen::Vector3d::NullaryExpr([&] { return run_.uniform(-reach, reach) * run_.extent(); });
+  /// Multiples of 2⁻²⁰ m, which floats hold.
+  [[nodiscard]] Eigen::Vector3d float_point(double reach) {
+    constexpr double kStep_m{1.0 / (1 << 20)};
+    return Eigen::Vector3d::NullaryExpr(
+        [&] { return std::round(run_.uniform(-reach, reach) * run_.extent() / kStep_m) * kStep_m; });
   }
 
  private:
@@ -122,8 +125,7 @@ void expect_spheres(RandomObstacles& random, const ObstacleMap& obstacles, Tally
   std::vector<bool> touching;
   const auto slack_m = 1e-8;
   while (touching.size() < kSpheresPerStep) {
-    const Eigen::Vector3f center = random.point(1.3).cast<float>();
-    const Eigen::Vector3d p = center.cast<double>();
+    const Eigen::Vector3d p = random.float_point(1.3);
     const double distance = naive_distance(boxes, p);
     const double most = obstacles.config().max_distance_m;
     EXPECT_NEAR(obstacles.distance_m(p), std::min(distance, most), slack_m);
@@ -134,9 +136,9 @@ void expect_spheres(RandomObstacles& random, const ObstacleMap& obstacles, Tally
     if (std::abs(r - distance) < slack_m) continue;
     const bool touches = r > distance;
     EXPECT_EQ(obstacles.clear(p, r), !touches) << p.transpose() << ", radius " << r << ", distance " << distance;
-    x.push_back(center.x());
-    y.push_back(center.y());
-    z.push_back(center.z());
+    x.push_back(static_cast<float>(p.x()));
+    y.push_back(static_cast<float>(p.y()));
+    z.push_back(static_cast<float>(p.z()));
     radius.push_back(r);
     touching.push_back(touches);
     ++tally.spheres;
@@ -217,10 +219,10 @@ TEST(ObstacleMapProperty, SameForEveryInstructionSet) {
   const ObstacleMap expected = ObstacleMap::create(map, random.config(), {}).value();
   std::vector<float> x, y, z, radius;
   for (int i = 0; i < 300; ++i) {
-    const Eigen::Vector3f p = random.point(1.2).cast<float>();
-    x.push_back(p.x());
-    y.push_back(p.y());
-    z.push_back(p.z());
+    const Eigen::Vector3d p = random.float_point(1.2);
+    x.push_back(static_cast<float>(p.x()));
+    y.push_back(static_cast<float>(p.y()));
+    z.push_back(static_cast<float>(p.z()));
     radius.push_back(static_cast<float>(random.run().uniform(0.0, 0.3) * random.run().extent()));
   }
   std::size_t targets{0};

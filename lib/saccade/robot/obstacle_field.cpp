@@ -78,15 +78,16 @@ ObstacleField::ObstacleField(const ObstacleCells& cells, int reach_cells, std::s
   std::copy_n(costs_.begin(), std::min(costs_.size(), rising_.size()), rising_.begin());
   falling_.assign(rising_.rbegin(), rising_.rend());
   const std::size_t padded = cells.row_count() * stride_;
-  limit_.assign(fixtures.empty() ? stride_ : padded, static_cast<std::uint16_t>(limit));
+  far_away_.assign(stride_, static_cast<std::uint16_t>(limit));
+  if (!fixtures.empty()) fixtures_.assign(padded, static_cast<std::uint16_t>(limit));
   along_x_.assign(padded, static_cast<std::uint16_t>(limit));
   along_xy_.assign(padded, static_cast<std::uint16_t>(limit));
   distances_.assign(padded, reach());
-  if (!fixtures.empty()) limit_by(fixtures, cells, executor);
+  if (!fixtures.empty()) measure_fixtures(fixtures, cells, executor);
 }
 
 /// In half cells, rounded down.
-void ObstacleField::limit_by(std::span<const Box> fixtures, const ObstacleCells& cells, const Executor& executor) {
+void ObstacleField::measure_fixtures(std::span<const Box> fixtures, const ObstacleCells& cells, const Executor& executor) {
   constexpr double kRounding{1e-9};
   const Eigen::Vector3d origin = cells.bounds_of(cells.box().lo).min;
   const double scale = 2.0 / cells.cell_edge_m();
@@ -98,18 +99,15 @@ void ObstacleField::limit_by(std::span<const Box> fixtures, const ObstacleCells&
       const auto z = static_cast<double>(row / unsigned_of(size_.y));
       for (std::int32_t x = 0; x < size_.x; ++x) {
         const Eigen::Vector3d centre = Eigen::Vector3d{2.0 * x + 1.0, 2.0 * y + 1.0, 2.0 * z + 1.0};
-        std::uint16_t& limit = limit_[row * stride_ + unsigned_of(x)];
+        std::uint16_t& least = fixtures_[row * stride_ + unsigned_of(x)];
         for (const Box& box : boxes) {
           const double squared = (box.min - centre).cwiseMax(centre - box.max).cwiseMax(0.0).squaredNorm();
-          limit = static_cast<std::uint16_t>(std::min<double>(limit, std::floor(squared * (1.0 - kRounding))));
+          least = static_cast<std::uint16_t>(std::min<double>(least, std::floor(squared * (1.0 - kRounding))));
         }
+        distances_[row * stride_ + unsigned_of(x)] = std::sqrt(static_cast<float>(least));
       }
     }
   });
-}
-
-const std::uint16_t* ObstacleField::limit_of(std::size_t row) const {
-  return limit_.data() + (limit_.size() == stride_ ? 0 : row * stride_);
 }
 
 /// Squared distances of a row's cells from the obstacles of that row: between two obstacles they rise to the middle and
@@ -123,7 +121,7 @@ void ObstacleField::distances_along(const std::uint64_t* row, std::uint16_t* out
     const bool from_left = gap > 0;
     const bool to_right = end < length;
     if (!from_left && !to_right) {
-      std::fill(out, out + length, static_cast<std::uint16_t>(4 * reach_cells_ * reach_cells_));
+      std::copy_n(far_away_.begin(), length, out);
       return;
     }
     const std::size_t middle = !from_left ? gap : !to_right ? end : gap + (end - gap + 1) / 2;
@@ -147,11 +145,12 @@ void ObstacleField::update(const ObstacleCells& cells, const Executor& executor)
   std::vector<std::uint8_t> changed(cells.row_count(), 0);
   for_each_row(rows_within_reach(cells.row_changed(), along_y, reach), executor, [&](std::size_t row) {
     const auto window = window_around(along_x_, row, stride_, along_y, reach, costs_.data());
-    changed[row] = obstacle::min_across_rows(window, limit_of(row), steps, along_xy_.data() + row * stride_) ? 1 : 0;
+    changed[row] = obstacle::min_across_rows(window, far_away_.data(), steps, along_xy_.data() + row * stride_) ? 1 : 0;
   });
   for_each_row(rows_within_reach(changed, along_z, reach), executor, [&](std::size_t row) {
     const auto window = window_around(along_xy_, row, stride_, along_z, reach, costs_.data());
-    obstacle::root_of_min_across_rows(window, limit_of(row), steps, distances_.data() + row * stride_);
+    const std::uint16_t* limit = fixtures_.empty() ? far_away_.data() : fixtures_.data() + row * stride_;
+    obstacle::root_of_min_across_rows(window, limit, steps, distances_.data() + row * stride_);
   });
 }
 

@@ -47,9 +47,8 @@ class ObstacleField {
   [[nodiscard]] bool operator==(const ObstacleField& other) const { return distances_ == other.distances_; }
 
  private:
-  void limit_by(std::span<const Box> fixtures, const ObstacleCells& cells, const Executor& executor);
+  void measure_fixtures(std::span<const Box> fixtures, const ObstacleCells& cells, const Executor& executor);
   void distances_along(const std::uint64_t* row, std::uint16_t* out) const;
-  [[nodiscard]] const std::uint16_t* limit_of(std::size_t row) const;
 
   int reach_cells_;
   Index3 size_;
@@ -57,7 +56,8 @@ class ObstacleField {
   std::vector<std::uint16_t> costs_;     ///< squared gap of so many cells
   std::vector<std::uint16_t> rising_;    ///< the same at most reach², for a whole row
   std::vector<std::uint16_t> falling_;   ///< backwards
-  std::vector<std::uint16_t> limit_;     ///< squared distance from fixtures; one row without any
+  std::vector<std::uint16_t> far_away_;  ///< a row of reach²
+  std::vector<std::uint16_t> fixtures_;  ///< squared distance from fixtures; empty without any
   std::vector<std::uint16_t> along_x_;   ///< squared distance from obstacles of the same row
   std::vector<std::uint16_t> along_xy_;  ///< of the same layer
   std::vector<float> distances_;
