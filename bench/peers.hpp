@@ -3,8 +3,10 @@
 // The other libraries that the benchmarks measure ours against, where they are installed.
 
 #include <memory>
+#include <span>
 
 #include "saccade/core/pose.hpp"
+#include "saccade/core/region.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
 
@@ -36,6 +38,20 @@ class OpencvIcp {
   void set_model(const DepthImage& depth);
   /// The pose of the frame relative to the model's; false: none found.
   [[nodiscard]] bool align(const DepthImage& depth, Pose& T_model_camera);
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+/// FCL's dynamic tree of axis-aligned boxes, as motion planners keep it.
+class FclBoxes {
+ public:
+  explicit FclBoxes(std::span<const Box> boxes);
+  ~FclBoxes();
+
+  [[nodiscard]] std::size_t size() const;
+  [[nodiscard]] bool touches(const Sphere& sphere) const;
 
  private:
   struct Impl;
