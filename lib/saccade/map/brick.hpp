@@ -187,6 +187,8 @@ class BrickRef {
   /// The free form of an unknown or constant-free brick; *this becomes it.
   FreeBrick& expand_to_free();
 
+  /// Whether both handles are copies of one, so that their content is equal without a look at it.
+  [[nodiscard]] bool shares(const BrickRef& other) const { return bits_ == other.bits_; }
   /// Bytes on the heap, and whether both handles hold equal content.
   [[nodiscard]] std::size_t heap_bytes() const;
   [[nodiscard]] bool operator==(const BrickRef& other) const;

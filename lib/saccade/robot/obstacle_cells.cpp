@@ -135,18 +135,6 @@ ObstacleCells::Words ObstacleCells::stops_of(const BrickRef& brick) const {
   return words;
 }
 
-/// Whether it takes no look at voxels to see that both hold the same.
-bool ObstacleCells::same_stops(const BrickRef& a, const BrickRef& b) const {
-  if (a.kind() != b.kind()) return false;
-  switch (a.kind()) {
-    case BrickKind::unknown:
-    case BrickKind::constant_free: return true;
-    case BrickKind::free: return a.free() == b.free();
-    case BrickKind::dense: return a.dense() == b.dense();
-  }
-  return false;
-}
-
 /// The bricks with an obstacle voxel before or after, by the summaries.
 Mask512 ObstacleCells::may_differ(const Sector* before, const Sector* after) const {
   const auto stopping = [&](const Sector* sector) {
@@ -203,7 +191,7 @@ std::size_t ObstacleCells::compare(const Index3& sector, const Sector* before, c
     const Index3 brick = sector * kSectorEdge + child_offset(static_cast<int>(i));
     const BrickRef& was = brick_of(before, i);
     const BrickRef& is = brick_of(after, i);
-    if (!bricks_.contains(brick) || same_stops(was, is)) return;
+    if (!bricks_.contains(brick) || was.shares(is)) return;
     const Words words_before = stops_of(was);
     const Words words_after = stops_of(is);
     if (words_before == words_after) return;

@@ -83,7 +83,6 @@ class ObstacleCells {
   void cut_axis(std::size_t axis, std::int32_t voxel_lo, std::int32_t voxel_hi);
   void see_nothing();
   [[nodiscard]] Words stops_of(const BrickRef& brick) const;
-  [[nodiscard]] bool same_stops(const BrickRef& a, const BrickRef& b) const;
   [[nodiscard]] Mask512 may_differ(const Sector* before, const Sector* after) const;
   [[nodiscard]] std::size_t compare(const Index3& sector, const Sector* before, const Sector* after,
                                     Flips& flips) const;
