@@ -22,8 +22,7 @@ FclBoxes::FclBoxes(std::span<const Box> boxes) : impl_{std::make_unique<Impl>()}
     const Eigen::Vector3d edges = box.max - box.min;
     fcl::Transform3d T_world_box{fcl::Transform3d::Identity()};
     T_world_box.translation() = 0.5 * (box.min + box.max);
-    impl_->objects.push_back(
-        std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(edges), T_world_box));
+    impl_->objects.push_back(std::make_unique<fcl::CollisionObjectd>(std::make_shared<fcl::Boxd>(edges), T_world_box));
     pointers.push_back(impl_->objects.back().get());
   }
   impl_->tree.registerObjects(pointers);

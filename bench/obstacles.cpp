@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The planner's map: cells of 4 cm and distances from them in a workspace of 3 m at 5.8 mm, after each of a few views of
-// the table, and spheres of an arm's size against it; beside FCL with a box per obstacle cell.
+// The planner's map: cells of 4 cm and distances from them in a workspace of 3 m at 5.8 mm, after each of a few views
+// of the table, and spheres of an arm's size against it; beside FCL with a box per obstacle cell.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -163,7 +163,8 @@ void clear_spheres_one_by_one(benchmark::State& state) {
   for (auto _ : state) {
     for (const Arm& arm : arms().clear) {
       for (std::size_t i = 0; i < kSpheresPerArm; ++i) {
-        if (!obstacles().clear({arm.x[i], arm.y[i], arm.z[i]}, arm.radius[i])) return state.SkipWithError("a sphere touches");
+        if (!obstacles().clear({arm.x[i], arm.y[i], arm.z[i]}, arm.radius[i]))
+          return state.SkipWithError("a sphere touches");
       }
     }
   }
@@ -198,7 +199,8 @@ std::vector<Box> exposed_boxes() {
       for (int x = box.lo.x; x < box.hi.x; ++x) {
         const Index3 cell{x, y, z};
         const auto free = [&](int dx, int dy, int dz) { return !cells.is_obstacle(cell + Index3{dx, dy, dz}); };
-        const bool reached = free(1, 0, 0) || free(-1, 0, 0) || free(0, 1, 0) || free(0, -1, 0) || free(0, 0, 1) || free(0, 0, -1);
+        const bool reached =
+            free(1, 0, 0) || free(-1, 0, 0) || free(0, 1, 0) || free(0, -1, 0) || free(0, 0, 1) || free(0, 0, -1);
         if (cells.is_obstacle(cell) && reached) exposed.push_back(cells.bounds_of(cell));
       }
     }
@@ -221,7 +223,8 @@ void fcl_clear_arms(benchmark::State& state) {
   for (const Arm& arm : arms().touching) {
     std::size_t first{0};
     while (first < kSpheresPerArm && !touches(arm, first)) ++first;
-    if (first != obstacles().first_touching(arm.spans())) return state.SkipWithError("another sphere is the first to touch");
+    if (first != obstacles().first_touching(arm.spans()))
+      return state.SkipWithError("another sphere is the first to touch");
   }
   for (auto _ : state) {
     for (const Arm& arm : arms().clear) {

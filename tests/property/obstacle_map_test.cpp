@@ -33,7 +33,8 @@ class RandomObstacles {
       return Eigen::Vector3d{Eigen::Vector3d::NullaryExpr([&] { return run_.uniform(lo, hi) * run_.extent(); })};
     };
     map.workspace = Box{corner(-1.0, -0.2), corner(0.1, 1.0)};
-    config_.cell_size_m = map.voxel_size_m * (run_.integer(0, 3) == 0 ? run_.uniform(9.0, 30.0) : run_.uniform(2.0, 9.0));
+    config_.cell_size_m =
+        map.voxel_size_m * (run_.integer(0, 3) == 0 ? run_.uniform(9.0, 30.0) : run_.uniform(2.0, 9.0));
     config_.unknown_is_obstacle = run_.integer(0, 2) != 0;
     config_.max_distance_m = run_.uniform(0.3, 12.0) * config_.cell_size_m;
     for (int i = run_.integer(0, 3); i > 0; --i) {
@@ -165,10 +166,11 @@ void expect_field(RandomObstacles& random, const ObstacleMap& obstacles) {
   const double half_m = 0.5 * cells.cell_edge_m();
   for (int i = 0; i < 60; ++i) {
     const Index3 n = cells.size();
-    const Index3 at{random.run().integer(0, n.x - 1), random.run().integer(0, n.y - 1), random.run().integer(0, n.z - 1)};
+    const Index3 at{random.run().integer(0, n.x - 1), random.run().integer(0, n.y - 1),
+                    random.run().integer(0, n.z - 1)};
     const Box bounds = cells.bounds_of(cells.box().lo + at);
-    const double distance = std::min(naive_distance(boxes, 0.5 * (bounds.min + bounds.max)) / half_m,
-                                     static_cast<double>(field.reach()));
+    const double distance =
+        std::min(naive_distance(boxes, 0.5 * (bounds.min + bounds.max)) / half_m, static_cast<double>(field.reach()));
     EXPECT_LE(field.distance(at), distance + 1e-4);
     EXPECT_GE(field.distance(at) * field.distance(at), distance * distance - 1.0 - 1e-4);
     if (obstacles.config().fixtures.empty()) {

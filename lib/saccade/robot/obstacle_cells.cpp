@@ -28,6 +28,8 @@ const BrickRef& brick_of(const Sector* sector, std::size_t i) {
   return sector == nullptr ? unknown : sector->bricks[i];
 }
 
+bool is_uniform(const BrickRef& brick) { return brick.is_unknown() || brick.kind() == BrickKind::constant_free; }
+
 }  // namespace
 
 Result<ObstacleCells> ObstacleCells::create(const TsdfConfig& map, double cell_size_m, bool unknown_is_obstacle) {
@@ -66,12 +68,16 @@ void ObstacleCells::cut_axis(std::size_t axis, std::int32_t voxel_lo, std::int32
   for (std::int32_t first = voxel_lo & ~(kBrickEdge - 1); first < voxel_hi; first += kBrickEdge) {
     const std::int32_t end = std::min(first + kBrickEdge, voxel_hi);
     std::int32_t voxel = std::max(first, voxel_lo);
-    Cut cut{cell_of(voxel, voxels_along_) - cell_lo, 0, {}};
+    Cut cut{cell_of(voxel, voxels_along_) - cell_lo, 0, {}, {}, {}};
     while (voxel < end) {
       cut.start[unsigned_of(cut.parts++)] = static_cast<std::uint8_t>(voxel - first);
       voxel = (cell_of(voxel, voxels_along_) + 1) * voxels_along_;
     }
     cut.start[unsigned_of(cut.parts)] = static_cast<std::uint8_t>(end - first);
+    for (std::size_t i = 0; i < unsigned_of(cut.parts); ++i) {
+      cut.rows[i] = rows_mask(cut.start[i], cut.start[i + 1]);
+      cut.columns[i] = columns_mask(cut.start[i], cut.start[i + 1]);
+    }
     cuts_[axis].push_back(cut);
   }
 }
@@ -192,6 +198,11 @@ std::size_t ObstacleCells::compare(const Index3& sector, const Sector* before, c
     const BrickRef& was = brick_of(before, i);
     const BrickRef& is = brick_of(after, i);
     if (!bricks_.contains(brick) || was.shares(is)) return;
+    if (is_uniform(was) && is_uniform(is)) {
+      if (!unknown_is_obstacle_ || was.is_unknown() == is.is_unknown()) return;
+      ++differing;
+      return add_all(brick, is.is_unknown() ? flips.begun : flips.ended);
+    }
     const Words words_before = stops_of(was);
     const Words words_after = stops_of(is);
     if (words_before == words_after) return;
@@ -201,12 +212,32 @@ std::size_t ObstacleCells::compare(const Index3& sector, const Sector* before, c
   return differing;
 }
 
+/// All cells that the brick has a part in.
+void ObstacleCells::add_all(const Index3& brick, std::vector<std::uint32_t>& to) const {
+  const Index3 i = brick - bricks_.lo;
+  const Cut& cut_x = cuts_[0][unsigned_of(i.x)];
+  const Cut& cut_y = cuts_[1][unsigned_of(i.y)];
+  const Cut& cut_z = cuts_[2][unsigned_of(i.z)];
+  const Index3 n = size();
+  for (std::int32_t z = cut_z.first_cell; z < cut_z.first_cell + cut_z.parts; ++z) {
+    for (std::int32_t y = cut_y.first_cell; y < cut_y.first_cell + cut_y.parts; ++y) {
+      for (std::int32_t x = cut_x.first_cell; x < cut_x.first_cell + cut_x.parts; ++x) {
+        to.push_back(static_cast<std::uint32_t>((z * n.y + y) * n.x + x));
+      }
+    }
+  }
+}
+
 void ObstacleCells::compare(const Index3& brick, const Words& before, const Words& after, Flips& flips) const {
   const Index3 i = brick - bricks_.lo;
   const Cut& cut_x = cuts_[0][unsigned_of(i.x)];
   const Cut& cut_y = cuts_[1][unsigned_of(i.y)];
   const Cut& cut_z = cuts_[2][unsigned_of(i.z)];
   const Index3 n = size();
+  std::array<std::uint32_t, kBrickVoxels> begun;
+  std::array<std::uint32_t, kBrickVoxels> ended;
+  std::size_t begun_count{0};
+  std::size_t ended_count{0};
   for (std::size_t z = 0; z < unsigned_of(cut_z.parts); ++z) {
     std::uint64_t slice_before{0};
     std::uint64_t slice_after{0};
@@ -215,19 +246,23 @@ void ObstacleCells::compare(const Index3& brick, const Words& before, const Word
       slice_after |= after[k];
     }
     if (slice_before == slice_after) continue;
+    const std::int32_t layer = (cut_z.first_cell + static_cast<std::int32_t>(z)) * n.y;
     for (std::size_t y = 0; y < unsigned_of(cut_y.parts); ++y) {
-      const std::uint64_t rows = rows_mask(cut_y.start[y], cut_y.start[y + 1]);
-      const std::size_t row = (unsigned_of(cut_z.first_cell) + z) * unsigned_of(n.y) + unsigned_of(cut_y.first_cell) + y;
-      for (std::size_t x = 0; x < unsigned_of(cut_x.parts); ++x) {
-        const std::uint64_t part = rows & columns_mask(cut_x.start[x], cut_x.start[x + 1]);
+      const std::int32_t row = layer + cut_y.first_cell + static_cast<std::int32_t>(y);
+      auto cell = static_cast<std::uint32_t>(row * n.x + cut_x.first_cell);
+      for (std::size_t x = 0; x < unsigned_of(cut_x.parts); ++x, ++cell) {
+        const std::uint64_t part = cut_y.rows[y] & cut_x.columns[x];
         const bool was = (slice_before & part) != 0;
         const bool is = (slice_after & part) != 0;
-        if (was == is) continue;
-        const std::size_t cell = row * unsigned_of(n.x) + unsigned_of(cut_x.first_cell) + x;
-        (is ? flips.begun : flips.ended).push_back(static_cast<std::uint32_t>(cell));
+        begun[begun_count] = cell;  // without a branch: what comes is hard to foresee
+        ended[ended_count] = cell;
+        begun_count += static_cast<std::size_t>(!was & is);
+        ended_count += static_cast<std::size_t>(was & !is);
       }
     }
   }
+  flips.begun.insert(flips.begun.end(), begun.begin(), begun.begin() + static_cast<std::ptrdiff_t>(begun_count));
+  flips.ended.insert(flips.ended.end(), ended.begin(), ended.begin() + static_cast<std::ptrdiff_t>(ended_count));
 }
 
 void ObstacleCells::toggle(std::uint32_t cell) {

@@ -14,13 +14,13 @@
 
 namespace saccade {
 
-/// The planner's map. Thesis §2.1: voxels are taken together to cells of 4 cm, and a cell is an obstacle if any voxel in
-/// it is occupied or unknown. Only voxels whose centre lies in the map's workspace count: outside it nothing is an
+/// The planner's map. Thesis §2.1: voxels are taken together to cells of 4 cm, and a cell is an obstacle if any voxel
+/// in it is occupied or unknown. Only voxels whose centre lies in the map's workspace count: outside it nothing is an
 /// obstacle.
 ///
-/// Cells are cubes of a whole number of voxels along each edge, the number nearest to the wanted size, so that each voxel
-/// lies in one cell: 4 cm at 5.8 mm are 7 voxels, 4.06 cm. Cell (0, 0, 0) begins at the origin of the world. A cell at
-/// the border of the workspace is an obstacle as a whole.
+/// Cells are cubes of a whole number of voxels along each edge, the number nearest to the wanted size, so that each
+/// voxel lies in one cell: 4 cm at 5.8 mm are 7 voxels, 4.06 cm. Cell (0, 0, 0) begins at the origin of the world. A
+/// cell at the border of the workspace is an obstacle as a whole.
 ///
 /// One writer; const use from many threads is safe.
 class ObstacleCells {
@@ -38,9 +38,9 @@ class ObstacleCells {
     std::size_t bricks{0};  ///< bricks whose obstacle voxels differ
     std::size_t cells{0};   ///< cells that became obstacles or ceased to be
   };
-  /// Follows the map to its present state; afterwards the same as made anew. The configuration must be that of create().
-  /// What is shared with the state before is passed over, and so are bricks that are free in both. O(sectors in the
-  /// workspace + bricks written since that hold an obstacle, or did). Same result for every thread count.
+  /// Follows the map to its present state; afterwards the same as made anew. The configuration must be that of
+  /// create(). What is shared with the state before is passed over, and so are bricks that are free in both. O(sectors
+  /// in the workspace + bricks written since that hold an obstacle, or did). Same result for every thread count.
   Changes update(const TsdfGrid& map, const Executor& executor);
 
   [[nodiscard]] int voxels_along_cell() const { return voxels_along_; }
@@ -54,8 +54,8 @@ class ObstacleCells {
   /// False outside box().
   [[nodiscard]] bool is_obstacle(const Index3& cell) const;
 
-  /// Rows of cells along x, numbered z · size().y + y from the lower corner of box(): cell x at bit x % 64 of word x / 64.
-  /// A word of zeros follows the last.
+  /// Rows of cells along x, numbered z · size().y + y from the lower corner of box(): cell x at bit x % 64 of word x
+  /// / 64. A word of zeros follows the last.
   [[nodiscard]] std::size_t row_count() const { return row_changed_.size(); }
   [[nodiscard]] const std::uint64_t* row(std::size_t index) const { return bits_.data() + index * words_per_row_; }
   /// Per row, whether the last update changed a cell of it; after the first, all.
@@ -71,6 +71,8 @@ class ObstacleCells {
     std::int32_t first_cell;
     std::int32_t parts;
     std::array<std::uint8_t, kBrickEdge + 1> start;
+    std::array<std::uint64_t, kBrickEdge> rows;     ///< a slice's voxels in part i, if the axis is y
+    std::array<std::uint64_t, kBrickEdge> columns;  ///< or x
   };
   using Words = std::array<std::uint64_t, kBrickEdge>;
   /// Cells that a brick begins, or ceases, to make an obstacle; one entry per brick and cell.
@@ -87,6 +89,7 @@ class ObstacleCells {
   [[nodiscard]] std::size_t compare(const Index3& sector, const Sector* before, const Sector* after,
                                     Flips& flips) const;
   void compare(const Index3& brick, const Words& before, const Words& after, Flips& flips) const;
+  void add_all(const Index3& brick, std::vector<std::uint32_t>& to) const;
   void toggle(std::uint32_t cell);
 
   bool unknown_is_obstacle_{true};

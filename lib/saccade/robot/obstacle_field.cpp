@@ -73,7 +73,8 @@ ObstacleField::ObstacleField(const ObstacleCells& cells, int reach_cells, std::s
   const std::size_t length = unsigned_of(size_.x);
   stride_ = (length + obstacle::kRowStep - 1) / obstacle::kRowStep * obstacle::kRowStep;
   const int limit = 4 * reach_cells * reach_cells;
-  for (int k = 0; k <= reach_cells; ++k) costs_.push_back(static_cast<std::uint16_t>(k == 0 ? 0 : (2 * k - 1) * (2 * k - 1)));
+  for (int k = 0; k <= reach_cells; ++k)
+    costs_.push_back(static_cast<std::uint16_t>(k == 0 ? 0 : (2 * k - 1) * (2 * k - 1)));
   rising_.assign(length + 1, static_cast<std::uint16_t>(limit));
   std::copy_n(costs_.begin(), std::min(costs_.size(), rising_.size()), rising_.begin());
   falling_.assign(rising_.rbegin(), rising_.rend());
@@ -87,24 +88,33 @@ ObstacleField::ObstacleField(const ObstacleCells& cells, int reach_cells, std::s
 }
 
 /// In half cells, rounded down.
-void ObstacleField::measure_fixtures(std::span<const Box> fixtures, const ObstacleCells& cells, const Executor& executor) {
+void ObstacleField::measure_fixtures(std::span<const Box> fixtures, const ObstacleCells& cells,
+                                     const Executor& executor) {
   constexpr double kRounding{1e-9};
   const Eigen::Vector3d origin = cells.bounds_of(cells.box().lo).min;
   const double scale = 2.0 / cells.cell_edge_m();
   std::vector<Box> boxes;
   for (const Box& box : fixtures) boxes.push_back({(box.min - origin) * scale, (box.max - origin) * scale});
+  const double most = far_away_.front();
+  const auto squared_gap = [](const Box& box, Eigen::Index axis, std::size_t cell) {
+    const double centre = 2.0 * static_cast<double>(cell) + 1.0;
+    const double gap = std::max({box.min[axis] - centre, centre - box.max[axis], 0.0});
+    return gap * gap;
+  };
   executor.parallel_for(cells.row_count(), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
     for (std::size_t row = begin; row < end; ++row) {
-      const auto y = static_cast<double>(row % unsigned_of(size_.y));
-      const auto z = static_cast<double>(row / unsigned_of(size_.y));
-      for (std::int32_t x = 0; x < size_.x; ++x) {
-        const Eigen::Vector3d centre = Eigen::Vector3d{2.0 * x + 1.0, 2.0 * y + 1.0, 2.0 * z + 1.0};
-        std::uint16_t& least = fixtures_[row * stride_ + unsigned_of(x)];
-        for (const Box& box : boxes) {
-          const double squared = (box.min - centre).cwiseMax(centre - box.max).cwiseMax(0.0).squaredNorm();
-          least = static_cast<std::uint16_t>(std::min<double>(least, std::floor(squared * (1.0 - kRounding))));
+      for (const Box& box : boxes) {
+        const double aside =
+            squared_gap(box, 1, row % unsigned_of(size_.y)) + squared_gap(box, 2, row / unsigned_of(size_.y));
+        if (aside >= most) continue;
+        for (std::size_t x = 0; x < unsigned_of(size_.x); ++x) {
+          std::uint16_t& least = fixtures_[row * stride_ + x];
+          const double squared = std::floor((aside + squared_gap(box, 0, x)) * (1.0 - kRounding));
+          least = static_cast<std::uint16_t>(std::min<double>(least, squared));
         }
-        distances_[row * stride_ + unsigned_of(x)] = std::sqrt(static_cast<float>(least));
+      }
+      for (std::size_t i = row * stride_; i < (row + 1) * stride_; ++i) {
+        distances_[i] = std::sqrt(static_cast<float>(fixtures_[i]));
       }
     }
   });
@@ -125,7 +135,7 @@ void ObstacleField::distances_along(const std::uint64_t* row, std::uint16_t* out
       return;
     }
     const std::size_t middle = !from_left ? gap : !to_right ? end : gap + (end - gap + 1) / 2;
-    std::copy_n(rising_.data() + 1, middle - gap, out + gap);                        // 1, 2 … from the left
+    std::copy_n(rising_.data() + 1, middle - gap, out + gap);                            // 1, 2 … from the left
     std::copy_n(falling_.data() + length - (end - middle), end - middle, out + middle);  // … 2, 1 to the right
     begin = end;
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ObstacleField: for each cell of the workspace how far its centre is from the nearest obstacle, brought up to date where
-// cells changed.
+// ObstacleField: for each cell of the workspace how far its centre is from the nearest obstacle, brought up to date
+// where cells changed.
 
 #include <array>
 #include <cstdint>
@@ -13,13 +13,14 @@
 
 namespace saccade {
 
-/// Distance transform of ObstacleCells and of boxes that stay where they are. Distances are those between a cell's centre
-/// and the nearest point of an obstacle cell's cube, or of a box, and end at a reach.
+/// Distance transform of ObstacleCells and of boxes that stay where they are. Distances are those between a cell's
+/// centre and the nearest point of an obstacle cell's cube, or of a box, and end at a reach.
 ///
 /// Exact for cells: in half cells the gap between a centre and a cube k cells away along an axis is the whole number
 /// max(2k − 1, 0), so the squared distance is a sum of three such squares, and its minimum is taken one axis after the
-/// other, along x by the gaps between obstacles, then across rows. A pass goes only through rows that a change of the pass
-/// before can reach, and stops where nothing changed; hence the same as made anew, to the bit, for any thread count.
+/// other, along x by the gaps between obstacles, then across rows. A pass goes only through rows that a change of the
+/// pass before can reach, and stops where nothing changed; hence the same as made anew, to the bit, for any thread
+/// count.
 class ObstacleField {
  public:
   static constexpr int kMostReach_cells{127};  ///< squares fit 16 bits

@@ -86,8 +86,8 @@ HWY_INLINE Coordinate place(FloatVec at_m, float origin_m, float half_cells_per_
   const FloatVec at = hn::Mul(hn::Sub(at_m, hn::Set(d, origin_m)), hn::Set(d, half_cells_per_m));
   const FloatVec inside = hn::Min(hn::Max(at, hn::Zero(d)), hn::Set(d, static_cast<float>(2 * size)));
   // Whatever becomes of a coordinate that is not finite, the index is one of the field.
-  const IntVec cell = hn::Min(hn::Max(hn::ConvertTo(di, hn::Mul(inside, hn::Set(d, 0.5F))), hn::Zero(di)),
-                              hn::Set(di, size - 1));
+  const IntVec cell =
+      hn::Min(hn::Max(hn::ConvertTo(di, hn::Mul(inside, hn::Set(d, 0.5F))), hn::Zero(di)), hn::Set(di, size - 1));
   const FloatVec beyond = hn::Sub(at, inside);
   const FloatVec centre = hn::Add(hn::Add(hn::ConvertTo(d, cell), hn::ConvertTo(d, cell)), hn::Set(d, 1.0F));
   const FloatVec offset = hn::Sub(inside, centre);
@@ -106,8 +106,8 @@ HWY_INLINE hn::Mask<Floats> clear_of_fixtures(const FieldView& field, FloatVec x
   const Floats d;
   auto clear = hn::Eq(radius, radius);
   const FloatVec magnitude = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
-  const FloatVec slack = hn::Add(hn::Mul(magnitude, hn::Set(d, 1e-6F)),
-                                 hn::Set(d, field.slack / field.half_cells_per_m));
+  const FloatVec slack =
+      hn::Add(hn::Mul(magnitude, hn::Set(d, 1e-6F)), hn::Set(d, field.slack / field.half_cells_per_m));
   const FloatVec reach = hn::Add(hn::Mul(radius, hn::Set(d, 1.000001F)), slack);
   const FloatVec reach_squared = hn::Mul(reach, reach);
   for (const std::array<float, 6>& box : field.fixtures) {
@@ -132,15 +132,13 @@ HWY_INLINE hn::Mask<Floats> clear_of_field(const FieldView& field, FloatVec x, F
       hn::Mul(hn::Add(hn::Mul(at_z.cell, hn::Set(di, field.size[1])), at_y.cell), hn::Set(di, field.row_stride)),
       at_x.cell);
   const FloatVec distance = hn::GatherIndex(d, field.distances, index);
-  const FloatVec outside = hn::Mul(hn::Add(hn::Add(at_x.outside, at_y.outside), at_z.outside),
-                                   hn::Set(d, 0.999998F));
+  const FloatVec outside = hn::Mul(hn::Add(hn::Add(at_x.outside, at_y.outside), at_z.outside), hn::Set(d, 0.999998F));
   const FloatVec from_centre = hn::Sqrt(hn::Add(hn::Add(at_x.from_centre, at_y.from_centre), at_z.from_centre));
   const FloatVec reach = hn::Add(hn::Mul(radius, hn::Set(d, scale)), hn::Set(d, field.slack));
   const FloatVec left = hn::Sub(hn::Mul(reach, reach), outside);
   const FloatVec reach_inside = hn::Sqrt(hn::Max(left, hn::Zero(d)));
   const auto finite = hn::And(hn::Lt(outside, hn::Set(d, kFarthest)), hn::Lt(reach, hn::Set(d, kFarthest)));
-  auto clear = hn::And(
-      finite, hn::Or(hn::Lt(left, hn::Zero(d)), hn::Gt(distance, hn::Add(from_centre, reach_inside))));
+  auto clear = hn::And(finite, hn::Or(hn::Lt(left, hn::Zero(d)), hn::Gt(distance, hn::Add(from_centre, reach_inside))));
   if (!field.fixtures.empty() && !hn::AllFalse(d, hn::Gt(outside, hn::Zero(d)))) {
     clear = hn::And(clear, clear_of_fixtures(field, x, y, z, radius));
   }

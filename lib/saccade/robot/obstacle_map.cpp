@@ -85,8 +85,8 @@ ObstacleMap::ObstacleMap(const TsdfConfig& map, ObstacleConfig config, ObstacleC
       origin_{cells_.bounds_of(cells_.box().lo).min},
       half_cells_per_m_{2.0 / cells_.cell_edge_m()} {
   // A float's rounding is 6e-8 of it; the kernel adds a few.
-  const double largest = half_cells_per_m_ * (origin_.cwiseAbs().maxCoeff() +
-                                              (cells_.bounds_of(cells_.box().hi).min - origin_).maxCoeff());
+  const double largest = half_cells_per_m_ *
+                         (origin_.cwiseAbs().maxCoeff() + (cells_.bounds_of(cells_.box().hi).min - origin_).maxCoeff());
   batch_slack_ = static_cast<float>(1e-3 + 1e-6 * largest);
   for (const Box& box : config_.fixtures) {
     const Eigen::Vector3f lo = box.min.cast<float>();
@@ -114,9 +114,10 @@ ObstacleMap::Place ObstacleMap::place(const Eigen::Vector3d& p_world) const {
   const Eigen::Array3d at = (p_world - origin_).array() * half_cells_per_m_;
   const Eigen::Array3d inside = at.max(0.0).min(most);
   const Eigen::Array3d cell = (inside * 0.5).floor().min(most * 0.5 - 1.0);
-  return {{static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()), static_cast<std::int32_t>(cell.z())},
-          (at - inside).matrix().squaredNorm(),
-          (inside - (2.0 * cell + 1.0)).matrix().norm()};
+  return {
+      {static_cast<std::int32_t>(cell.x()), static_cast<std::int32_t>(cell.y()), static_cast<std::int32_t>(cell.z())},
+      (at - inside).matrix().squaredNorm(),
+      (inside - (2.0 * cell + 1.0)).matrix().norm()};
 }
 
 bool ObstacleMap::clear(const Eigen::Vector3d& center_world, double radius_m) const {
@@ -139,14 +140,14 @@ std::size_t ObstacleMap::first_touching(const SphereSpans& spheres) const {
   const std::size_t count = spheres.x_m.size();
   SACCADE_EXPECTS(spheres.y_m.size() == count && spheres.z_m.size() == count && spheres.radius_m.size() == count);
   const Index3 n = cells_.size();
-  const obstacle::FieldView view{field_.distances().data(),
-                                 {n.x, n.y, n.z},
-                                 static_cast<std::int32_t>(field_.row_stride()),
-                                 {static_cast<float>(origin_.x()), static_cast<float>(origin_.y()),
-                                  static_cast<float>(origin_.z())},
-                                 static_cast<float>(half_cells_per_m_),
-                                 batch_slack_,
-                                 float_fixtures_};
+  const obstacle::FieldView view{
+      field_.distances().data(),
+      {n.x, n.y, n.z},
+      static_cast<std::int32_t>(field_.row_stride()),
+      {static_cast<float>(origin_.x()), static_cast<float>(origin_.y()), static_cast<float>(origin_.z())},
+      static_cast<float>(half_cells_per_m_),
+      batch_slack_,
+      float_fixtures_};
   constexpr std::size_t kAtOnce{64};
   for (std::size_t first = 0; first < count; first += kAtOnce) {
     const obstacle::SphereArrays arrays{spheres.x_m.data() + first, spheres.y_m.data() + first,

@@ -14,7 +14,7 @@ struct ObstacleConfig {
   double cell_size_m{0.04};        ///< thesis §2.1; the nearest whole number of voxels is taken
   bool unknown_is_obstacle{true};  ///< thesis §2.1; else only occupied voxels are
   double max_distance_m{0.5};      ///< distances are followed up to here
-  std::vector<Box> fixtures;       ///< solid boxes in the world frame, inside and outside the workspace, as exact as given
+  std::vector<Box> fixtures;  ///< solid boxes in the world frame, inside and outside the workspace, as exact as given
 
   [[nodiscard]] Status validate() const;
 };
@@ -34,10 +34,10 @@ struct SphereSpans {
   std::span<const float> radius_m;
 };
 
-/// Obstacle cells (ObstacleCells) and fixtures for collision checks. Thesis §2.1. A sphere touches an obstacle when a point
-/// of the obstacle's closed box lies in the closed sphere; the answer is exact, up to a slack of 1e-9 cells on the side of
-/// touching, and does not depend on thread count or instruction set. Where a coordinate or radius is not finite, a
-/// sphere is not clear.
+/// Obstacle cells (ObstacleCells) and fixtures for collision checks. Thesis §2.1. A sphere touches an obstacle when a
+/// point of the obstacle's closed box lies in the closed sphere; the answer is exact, up to a slack of 1e-9 cells on
+/// the side of touching, and does not depend on thread count or instruction set. Where a coordinate or radius is not
+/// finite, a sphere is not clear.
 ///
 /// One writer (update); const use from many threads is safe. Copies are independent; about 10 bytes per cell.
 class ObstacleMap {
@@ -47,8 +47,8 @@ class ObstacleMap {
   [[nodiscard]] static Result<ObstacleMap> create(const TsdfSnapshot& map, const ObstacleConfig& config,
                                                   const Executor& executor);
 
-  /// Follows the map to its present state; afterwards equal to one made anew, to the bit. It keeps the snapshot until the
-  /// next update, to see by what both share where the map changed.
+  /// Follows the map to its present state; afterwards equal to one made anew, to the bit. It keeps the snapshot until
+  /// the next update, to see by what both share where the map changed.
   /// @return invalid_argument, changing nothing, when voxel size or workspace are not those of create().
   /// O(sectors + bricks written since that hold an obstacle + rows of cells within max_distance_m of a change); about a
   /// millisecond after a view. The thread count never changes a bit of the result.
@@ -92,7 +92,7 @@ class ObstacleMap {
   ObstacleField field_;
   Eigen::Vector3d origin_;  ///< lower corner of the cells
   double half_cells_per_m_;
-  float batch_slack_;                                ///< in half cells
+  float batch_slack_;  ///< in half cells
   std::vector<std::array<float, 6>> float_fixtures_;
 };
 

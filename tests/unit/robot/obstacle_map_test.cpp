@@ -200,7 +200,8 @@ TEST(ObstacleMap, SaysWhatIsWrong) {
   EXPECT_NE(refusal(map, with([](auto& c) { c.max_distance_m = 5.1; })).find("127 cells"), std::string::npos);
   EXPECT_NE(refusal(map, with([](auto& c) {
                       c.fixtures = {Box{{0, 0, 0}, {1, 1, 1}}, Box{{0, 0, 0}, {1, -1, 1}}};
-                    })).find("fixture 2"),
+                    }))
+                .find("fixture 2"),
             std::string::npos);
   const TsdfConfig large = config_of({{-5.0, -5.0, -5.0}, {5.0, 5.0, 5.0}});
   EXPECT_NE(refusal(large, with([](auto& c) { c.cell_size_m = 0.01; })).find("cells"), std::string::npos);
