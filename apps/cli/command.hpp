@@ -36,6 +36,7 @@ void add_info(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_compare(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_explore(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& action);
+void add_robot(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_scene(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_sample(CLI::App& program, const GlobalOptions& global, Action& action);
 

@@ -11,8 +11,10 @@
 
 #include "saccade/core/pose.hpp"
 #include "saccade/explore/simulated_run.hpp"
+#include "saccade/io/urdf.hpp"
 #include "saccade/map/icp.hpp"
 #include "saccade/map/tsdf_grid.hpp"
+#include "saccade/robot/inverse_kinematics.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -50,6 +52,16 @@ TEST(Defaults, OfTheMapAreDocumented) {
   expect_documented("TsdfConfig::truncation_vox", {map.truncation_vox});
   expect_documented("TsdfConfig::max_weight", {static_cast<double>(map.max_weight)});
   expect_documented("TsdfConfig::free_weight", {static_cast<double>(map.free_weight)});
+}
+
+TEST(Defaults, OfArmsAreDocumented) {
+  const IkConfig ik;
+  expect_documented("IkConfig::max_turns", {static_cast<double>(ik.max_turns)});
+  expect_documented("NumericIkConfig::restarts", {static_cast<double>(ik.numeric.restarts)});
+  expect_documented("NumericIkConfig::max_solutions", {static_cast<double>(ik.numeric.max_solutions)});
+  expect_documented("NumericIkConfig::iterations", {static_cast<double>(ik.numeric.iterations)});
+  expect_documented("UrdfConfig::default_speed", {UrdfConfig{}.default_speed});
+  expect_documented("UrdfConfig::acceleration_time_s", {UrdfConfig{}.acceleration_time_s});
 }
 
 TEST(Defaults, OfExplorationsAreDocumented) {

@@ -1,0 +1,175 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade robot check: what a URDF says about an arm, as it is understood here, and what is wrong with it.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <numbers>
+#include <utility>
+#include <vector>
+
+#include "command.hpp"
+#include "exit_status.hpp"
+#include "json_output.hpp"
+#include "options.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/json_io.hpp"
+#include "saccade/io/urdf.hpp"
+#include "saccade/robot/inverse_kinematics.hpp"
+#include "saccade/robot/kinematics.hpp"
+#include "summary.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+struct RobotOptions {
+  std::string robot;
+  UrdfConfig urdf;
+  std::vector<std::string> packages;
+  bool drop_beyond_tip{false};
+};
+
+/// null for what is infinite.
+json number_json(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
+
+json joint_json(const ArmJoint& joint) {
+  const JointLimits& limits = joint.limits;
+  return {{"name", joint.name},
+          {"kind", to_string(joint.kind)},
+          {"axis", {joint.axis_joint.x(), joint.axis_joint.y(), joint.axis_joint.z()}},
+          {"T_parent_joint", pose_to_json(joint.T_parent_joint)},
+          {"lower", number_json(limits.lower)},
+          {"upper", number_json(limits.upper)},
+          {"speed", limits.speed},
+          {"acceleration", limits.acceleration}};
+}
+
+json link_json(const ArmLink& link) {
+  json bodies = json::array();
+  for (const CollisionBody& body : link.bodies) {
+    json entry{{"link", body.name}, {"kind", kind_of(body)}, {"T_link_body", pose_to_json(body.T_link_body)}};
+    if (const auto* mesh = std::get_if<MeshBody>(&body.shape)) entry["triangles"] = mesh->mesh.triangles.size();
+    bodies.push_back(std::move(entry));
+  }
+  return {{"name", link.name}, {"bodies", std::move(bodies)}};
+}
+
+json robot_json(const UrdfArm& read, const InverseKinematics& ik) {
+  const ArmModel& arm = read.arm;
+  json joints = json::array();
+  json links = json::array();
+  for (const ArmJoint& joint : arm.joints()) joints.push_back(joint_json(joint));
+  for (const ArmLink& link : arm.links()) links.push_back(link_json(link));
+  json result{{"robot", arm.name()},
+              {"base", arm.links().front().name},
+              {"flange", arm.description().flange_name},
+              {"camera", arm.description().camera_name},
+              {"T_flange_camera", pose_to_json(arm.description().T_flange_camera)},
+              {"joints", std::move(joints)},
+              {"links", std::move(links)},
+              {"inverse_kinematics", to_string(ik.method())},
+              {"reach_bound_m", reach_bound_m(arm)},
+              {"notes", read.notes}};
+  if (!ik.why_numeric().empty()) result["why_numeric"] = ik.why_numeric();
+  return result;
+}
+
+std::string limits_text(const ArmJoint& joint) {
+  const JointLimits& limits = joint.limits;
+  const bool slides = joint.kind == JointKind::prismatic;
+  const double unit = slides ? 1.0 : 180.0 / std::numbers::pi;
+  const std::string name = slides ? " m" : "°";
+  const int decimals = slides ? 3 : 1;
+  const std::string range = joint.kind == JointKind::continuous ? "without end"
+                                                                : fixed(unit * limits.lower, decimals) + " to " +
+                                                                      fixed(unit * limits.upper, decimals) + name;
+  return std::string{to_string(joint.kind)} + ", " + range + ", " + fixed(unit * limits.speed, decimals) + name +
+         "/s, " + fixed(unit * limits.acceleration, decimals) + name + "/s²";
+}
+
+std::string bodies_text(const ArmLink& link) {
+  if (link.bodies.empty()) return "no collision body";
+  std::string text;
+  for (const CollisionBody& body : link.bodies) {
+    text += (text.empty() ? "" : ", ") + std::string{kind_of(body)};
+    if (const auto* mesh = std::get_if<MeshBody>(&body.shape))
+      text += " of " + std::to_string(mesh->mesh.triangles.size()) + " triangles";
+    if (body.name != link.name) text += " (" + body.name + ")";
+  }
+  return text;
+}
+
+std::string camera_text(const ArmModel& arm) {
+  const Eigen::Vector3d p = arm.description().T_flange_camera.translation();
+  return arm.description().camera_name + ", at (" + fixed(p.x(), 3) + ", " + fixed(p.y(), 3) + ", " + fixed(p.z(), 3) +
+         ") m from the flange " + arm.description().flange_name;
+}
+
+void print_robot(const UrdfArm& read, const InverseKinematics& ik) {
+  const ArmModel& arm = read.arm;
+  std::vector<std::pair<std::string, std::string>> lines;
+  lines.emplace_back("robot", arm.name() + ", " + std::to_string(arm.dof()) + " joints");
+  for (const ArmJoint& joint : arm.joints()) lines.emplace_back(joint.name, limits_text(joint));
+  for (const ArmLink& link : arm.links()) lines.emplace_back(link.name, bodies_text(link));
+  lines.emplace_back("camera", camera_text(arm));
+  lines.emplace_back("reach", fixed(reach_bound_m(arm), 3) + " m at most, from the first joint to the camera");
+  lines.emplace_back("inverse",
+                     std::string{to_string(ik.method())} + (ik.why_numeric().empty() ? "" : "; " + ik.why_numeric()));
+  for (const std::string& note : read.notes) lines.emplace_back("note", note);
+  std::size_t width{0};
+  for (const auto& [name, text] : lines) width = std::max(width, name.size() + 2);
+  for (const auto& [name, text] : lines)
+    std::cout << std::left << std::setw(static_cast<int>(width)) << name << text << '\n';
+}
+
+Result<int> run_check(const RobotOptions& options, const GlobalOptions& global) {
+  const Stopwatch stopwatch;
+  SACCADE_CHECK(check_json_output(global));
+  SACCADE_TRY(const UrdfArm read, find_robot(options.robot, options.urdf));
+  SACCADE_TRY(const InverseKinematics ik, InverseKinematics::create(read.arm));
+  if (!global.json_to_stdout()) print_robot(read, ik);
+  SACCADE_CHECK(write_json_output(global, json_envelope("robot", global, global.executor(),
+                                                        {{"total", stopwatch.elapsed_ms()}}, robot_json(read, ik))));
+  return static_cast<int>(ExitStatus::done);
+}
+
+/// "NAME=FOLDER".
+void add_package(const std::string& text, UrdfConfig& config) {
+  const std::size_t equals = text.find('=');
+  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
+    usage_error("--package", "wants NAME=FOLDER, not " + text);
+  config.packages[text.substr(0, equals)] = text.substr(equals + 1);
+}
+
+}  // namespace
+
+void add_robot(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command = program.add_subcommand("robot", "checks descriptions of arms");
+  command->require_subcommand(1);
+  auto options = std::make_shared<RobotOptions>();
+  CLI::App* check = command->add_subcommand("check", "what a URDF says about an arm, and what is wrong with it");
+  check->add_option("robot", options->robot, "a URDF file, or the name of a built-in robot (comau_smart_six)")
+      ->required()
+      ->type_name("URDF");
+  check->add_option("--base", options->urdf.base, "link that the chain begins with; default: the root")
+      ->type_name("LINK");
+  check->add_option("--tip", options->urdf.tip, "flange; default: the end of the longest chain")->type_name("LINK");
+  check
+      ->add_option("--camera-frame", options->urdf.camera,
+                   "the camera's optical frame; default: camera_optical_frame if there is one, else the tip")
+      ->type_name("LINK");
+  check->add_option("--package", options->packages, "where package://NAME/… lies; may be repeated")
+      ->type_name("NAME=FOLDER");
+  check->add_flag("--drop-beyond-tip", options->drop_beyond_tip, "leave out what is fixed behind the tip");
+  check->callback([options, &global, &action] {
+    for (const std::string& package : options->packages) add_package(package, options->urdf);
+    options->urdf.keep_beyond_tip = !options->drop_beyond_tip;
+    action = [options, &global] { return run_check(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli

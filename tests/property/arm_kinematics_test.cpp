@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: Apache-2.0
+// Kinematics of the recorded arms against Orocos KDL, and inverse kinematics against the way back.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "saccade/robot/inverse_kinematics.hpp"
+#include "saccade/robot/kinematics.hpp"
+#include "support/effort.hpp"
+#include "support/kdl_arm.hpp"
+#include "support/shared_arms.hpp"
+#include "support/test_arms.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr std::uint64_t kSeed{20};
+
+class RecordedArms : public testing::Test {
+ protected:
+  void SetUp() override {
+    if (!std::filesystem::exists(test::shared_robots())) GTEST_SKIP() << "no robots among the recorded data";
+    RecordProperty("seed", static_cast<int>(kSeed));
+  }
+};
+
+TEST_F(RecordedArms, PosesAndJacobiansAreThoseOfKdl) {
+  std::mt19937_64 random{kSeed};
+  int cases = 0;
+  for (const auto& read : {test::shared_comau(false), test::shared_panda(), test::shared_iiwa()}) {
+    ASSERT_TRUE(read) << read.error().to_string();
+    test::KdlArm kdl{read->arm};
+    for (int i = 0; i < test::scaled_cases(5000); ++i, ++cases) {
+      const Configuration q = test::random_configuration(read->arm, random);
+      ASSERT_LT(test::miss(camera_pose(read->arm, q), kdl.camera_pose(q)), 1e-13);
+      ASSERT_LT((camera_jacobian(read->arm, q) - kdl.camera_jacobian(q)).norm(), 1e-12);
+    }
+  }
+  EXPECT_EQ(cases, 3 * test::scaled_cases(5000));
+}
+
+TEST_F(RecordedArms, TheComausConfigurationsAreFoundAgain) {
+  for (const bool exact : {true, false}) {
+    const auto read = test::shared_comau(exact);
+    ASSERT_TRUE(read) << read.error().to_string();
+    const InverseKinematics ik = InverseKinematics::create(read->arm).value();
+    ASSERT_EQ(ik.method(), IkMethod::closed_form) << ik.why_numeric();
+    std::mt19937_64 random{kSeed};
+    const int cases = test::scaled_cases(20000);
+    int again = 0;
+    for (int i = 0; i < cases; ++i) {
+      const Configuration q = test::random_configuration(ik.arm(), random);
+      const Pose T = camera_pose(ik.arm(), q);
+      const std::vector<Configuration> solutions = ik.solve(T);
+      for (const Configuration& solution : solutions) {
+        ASSERT_TRUE(ik.arm().within_limits(solution));
+        ASSERT_LT(test::miss(camera_pose(ik.arm(), solution), T), kIkTolerance);
+      }
+      again += test::nearest(solutions, q) < 1e-5 ? 1 : 0;
+    }
+    // Its rounded angles move the wrist's centre by 0.6 µm: next to straight wrists a solution may get lost.
+    EXPECT_GE(again, exact ? cases : cases - cases / 500) << "seed " << kSeed;
+  }
+}
+
+TEST_F(RecordedArms, SevenJointsAreSolvedByIteration) {
+  std::mt19937_64 random{kSeed};
+  for (const auto& read : {test::shared_panda(), test::shared_iiwa()}) {
+    ASSERT_TRUE(read) << read.error().to_string();
+    const InverseKinematics ik = InverseKinematics::create(read->arm).value();
+    EXPECT_EQ(ik.method(), IkMethod::numeric);
+    EXPECT_EQ(ik.why_numeric(), "no closed form: it has 7 joints, not six");
+    const int cases = test::scaled_cases(200);
+    int found = 0;
+    for (int i = 0; i < cases; ++i) {
+      const Pose T = camera_pose(ik.arm(), test::random_configuration(ik.arm(), random));
+      const std::vector<Configuration> solutions = ik.solve(T);
+      for (const Configuration& q : solutions) {
+        ASSERT_TRUE(ik.arm().within_limits(q));
+        ASSERT_LT(test::miss(camera_pose(ik.arm(), q), T), kIkTolerance);
+      }
+      found += solutions.empty() ? 0 : 1;
+    }
+    EXPECT_GE(found, cases - cases / 50) << ik.arm().name() << ", seed " << kSeed;
+  }
+}
+
+}  // namespace
+}  // namespace saccade
