@@ -17,6 +17,9 @@ namespace {
 
 namespace fs = std::filesystem;
 
+/// XML elements in one another, and links one behind the other; the parser and we go through them by recursion.
+constexpr int kMostNested{500};
+
 Error corrupt(const std::string& what, const std::string& where = "") { return {Errc::corrupt_data, what, where}; }
 
 /// Keeps what urdfdom would print.
@@ -55,6 +58,25 @@ Result<urdf::ModelInterfaceSharedPtr> parse_quietly(const std::string& urdf) {
   return corrupt("no URDF that can be read: " + messages.text());
 }
 
+/// Depth of the elements, counted without a parser; comments are passed over.
+int nesting_of(const std::string& xml) {
+  int depth{0};
+  int most{0};
+  for (std::size_t i = xml.find('<'); i != std::string::npos; i = xml.find('<', i + 1)) {
+    if (xml.compare(i, 4, "<!--") == 0) {
+      i = xml.find("-->", i);
+      if (i == std::string::npos) break;
+      continue;
+    }
+    const std::size_t end = xml.find('>', i);
+    const bool closes = i + 1 < xml.size() && xml[i + 1] == '/';
+    const bool alone = end != std::string::npos && xml[end - 1] == '/';
+    depth += closes ? -1 : alone ? 0 : 1;
+    most = std::max(most, depth);
+  }
+  return most;
+}
+
 /// One parent for every link, one root, and every link below it.
 Status check_tree(const urdf::ModelInterface& model) {
   std::map<std::string, std::string> joint_above;
@@ -70,6 +92,7 @@ Status check_tree(const urdf::ModelInterface& model) {
     std::set<std::string> seen;
     for (auto at = joint_above.find(above); at != joint_above.end(); at = joint_above.find(above)) {
       if (!seen.insert(above).second) return corrupt("is part of a loop of joints", "link " + name);
+      if (seen.size() > kMostNested) return corrupt("has too many links before it", "link " + name);
       above = model.joints_.at(at->second)->parent_link_name;
     }
   }
@@ -105,6 +128,7 @@ bool is_package(const fs::path& folder, const std::string& name) {
 }  // namespace
 
 Result<UrdfDocument> parse_urdf_document(const std::string& urdf) {
+  if (nesting_of(urdf) > kMostNested) return corrupt("no URDF: its elements are nested too deeply");
   TiXmlDocument xml;
   xml.Parse(urdf.c_str());
   if (xml.Error() || xml.RootElement() == nullptr) {

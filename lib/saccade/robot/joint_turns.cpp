@@ -31,10 +31,10 @@ Ways ways_of(const ArmJoint& joint, double value, double reference, int max_turn
   const double last = std::floor((limits.upper + kLimitSlack - value) / kTurn);
   if (last < first) return ways;
   // From the turn nearest to the reference outwards, the nearer side first.
-  double down = std::clamp((nearest - value) / kTurn, first, last);
-  down = std::round(down);
+  double down = std::clamp(std::round((nearest - value) / kTurn), first, last);
   double up = down + 1.0;
-  const int wanted = std::min({max_turns, static_cast<int>(ways.values.size()), static_cast<int>(last - first) + 1});
+  const double most = std::min<double>(max_turns, static_cast<double>(ways.values.size()));
+  const auto wanted = static_cast<int>(std::min(most, last - first + 1.0));
   while (ways.count < wanted) {
     const double below = value + kTurn * down;
     const double above = value + kTurn * up;

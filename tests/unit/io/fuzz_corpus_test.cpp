@@ -11,6 +11,7 @@
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/process_messages.hpp"
 #include "saccade/io/scene_yaml.hpp"
+#include "saccade/io/urdf.hpp"
 
 namespace saccade {
 namespace {
@@ -48,6 +49,7 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
                         }),
             6U);
   EXPECT_GE(check_seeds("scene", [](const auto& content, const auto&) { return parse_scene(content).ok(); }), 3U);
+  EXPECT_GE(check_seeds("urdf", [](const auto& content, const auto&) { return parse_urdf(content).ok(); }), 3U);
   EXPECT_GE(check_seeds("process_message",
                         [](const std::string& content, const std::string& name) {
                           const std::string line = content.substr(0, content.find('\n'));

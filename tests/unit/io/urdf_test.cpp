@@ -5,6 +5,7 @@
 
 #include <filesystem>
 
+#include "saccade/io/scene_yaml.hpp"
 #include "saccade/robot/inverse_kinematics.hpp"
 #include "saccade/robot/kinematics.hpp"
 #include "support/shared_arms.hpp"
@@ -123,6 +124,16 @@ TEST(Urdf, SaysWhatIsWrongAndWhere) {
   expect_refused("", "no XML");
   expect_refused("<robot name='a'><link name='b'>", "no XML");
   expect_refused("<scene/>", "begins with <scene>");
+  std::string deep;
+  for (int i = 0; i < 200000; ++i) deep += "<a>";
+  expect_refused(deep, "nested too deeply");
+  std::string chain{"<robot name='a'><link name='0'/>"};
+  for (int i = 0; i < 2000; ++i) {
+    const std::string next = std::to_string(i + 1);
+    chain += "<link name='" + next + "'/><joint name='" + next + "' type='fixed'><parent link='" + std::to_string(i) +
+             "'/><child link='" + next + "'/></joint>";
+  }
+  expect_refused(chain + "</robot>", "too many links before it");
   expect_refused("<robot name='a'/>", "no URDF that can be read");
   expect_refused("<robot name='a'><link name='b'/></robot>", "has no joint that moves");
   expect_refused(with("<link name='lost'/>"), "root link");
@@ -218,6 +229,19 @@ TEST(BuiltinRobots, TheComauIsThatOfItsRows) {
   }
   EXPECT_EQ(InverseKinematics::create(arm)->method(), IkMethod::closed_form);
   EXPECT_FALSE(find_robot("hal"));
+}
+
+TEST(BuiltinRobots, TheComauReachesTheFirstLookOfEveryScene) {
+  const InverseKinematics ik = InverseKinematics::create(find_robot("comau_smart_six")->arm).value();
+  int looks{0};
+  for (const BuiltinScene& builtin : builtin_scenes()) {
+    const Scene scene = parse_scene(builtin.yaml).value();
+    for (const Pose& T_world_camera : scene.scan) {
+      EXPECT_FALSE(ik.solve(T_world_camera).empty()) << builtin.name;
+      ++looks;
+    }
+  }
+  EXPECT_GE(looks, 8);
 }
 
 TEST(BuiltinRobots, TheComauMovesAsTheRecordedOne) {

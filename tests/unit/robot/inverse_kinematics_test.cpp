@@ -81,6 +81,8 @@ TEST_P(ClosedForm, FindsNothingBeyondTheReach) {
   Pose far = Pose::Identity();
   far.translation().x() = 100.0;
   EXPECT_TRUE(ik.solve(far).empty());
+  far.translation().x() = std::numeric_limits<double>::quiet_NaN();
+  EXPECT_TRUE(ik.solve(far).empty());
 }
 
 TEST_P(ClosedForm, HandlesStraightWristsAndStretchedArms) {
