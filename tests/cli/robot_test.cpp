@@ -31,7 +31,7 @@ TEST(RobotCommand, SaysWhatIsWrong) {
     return std::string{arm}.replace(arm.find("AXIS"), 4, axis);
   };
   expect_failure(run_program({"robot", "check", file(with_axis("0"))}), 3, "robot",
-                 {"arm.urdf: joint j: its axis has no length"});
+                 {"arm.urdf, joint j: its axis has no length"});
   expect_failure(run_program({"robot", "check", file("hello")}), 3, "robot", {"no XML"});
   expect_failure(run_program({"robot", "check", file(with_axis("1")), "--camera-frame", "eye"}), 3, "robot",
                  {"eye: there is no such link to be the camera's frame"});

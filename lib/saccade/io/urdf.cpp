@@ -78,7 +78,7 @@ class Tree {
       most = count;
       ends.push_back(name);
     }
-    if (most == 0) return wrong(Errc::corrupt_data, "has no joint that moves", "the URDF");
+    if (most == 0) return wrong(Errc::corrupt_data, "no joint moves behind " + base, "");
     if (ends.size() == 1) return ends.front();
     std::string names;
     std::set<std::string> last;
@@ -87,7 +87,7 @@ class Tree {
       last.insert(last_moving(base, end));
     }
     if (last.size() == 1) return *last.begin();
-    return wrong(Errc::invalid_argument, "has several chains of the same length; name a tip: " + names, "the URDF");
+    return wrong(Errc::invalid_argument, "several chains are equally long; name a tip: " + names, "");
   }
 
  private:
@@ -112,7 +112,7 @@ class Builder {
       }
     }
     if (arm_.joints.empty())
-      return wrong(Errc::invalid_argument, "no joint moves between " + base_ + " and " + tip_, "the URDF");
+      return wrong(Errc::invalid_argument, "no joint moves between " + base_ + " and " + tip_, "");
     SACCADE_CHECK(walk(base_, 0, Pose::Identity(), true));
     SACCADE_CHECK(place_mounts());
     auto arm = ArmModel::create(std::move(arm_));

@@ -135,7 +135,7 @@ TEST(Urdf, SaysWhatIsWrongAndWhere) {
   }
   expect_refused(chain + "</robot>", "too many links before it");
   expect_refused("<robot name='a'/>", "no URDF that can be read");
-  expect_refused("<robot name='a'><link name='b'/></robot>", "has no joint that moves");
+  expect_refused("<robot name='a'><link name='b'/></robot>", "no joint moves behind b");
   expect_refused(with("<link name='lost'/>"), "root link");
   expect_refused(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="arm"/></joint>)"),
                  "link arm: has two joints above it, back and turn; the joints must form a tree");
@@ -178,7 +178,7 @@ TEST(Urdf, RefusesFramesThatAreNotThere) {
   expect_refused(kArm, "link arm: does not come behind the base flange", Errc::invalid_argument, config);
   const std::string fork = R"(<joint name="other" type="continuous"><parent link="arm"/><child link="left"/></joint>
                               <link name="left"/>)";
-  expect_refused(with(fork), "several chains of the same length; name a tip: flange, left", Errc::invalid_argument);
+  expect_refused(with(fork), "several chains are equally long; name a tip: flange, left", Errc::invalid_argument);
 }
 
 TEST(Urdf, FindsMeshes) {
