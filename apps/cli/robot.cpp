@@ -72,6 +72,7 @@ json robot_json(const UrdfArm& read, const InverseKinematics& ik) {
               {"joints", std::move(joints)},
               {"links", std::move(links)},
               {"inverse_kinematics", to_string(ik.method())},
+              {"refined", ik.refines()},
               {"reach_bound_m", reach_bound_m(arm)},
               {"notes", read.notes}};
   if (!ik.why_numeric().empty()) result["why_numeric"] = ik.why_numeric();
@@ -109,6 +110,13 @@ std::string camera_text(const ArmModel& arm) {
          ") m from the flange " + arm.description().flange_name;
 }
 
+std::string inverse_text(const InverseKinematics& ik) {
+  std::string text{to_string(ik.method())};
+  if (!ik.why_numeric().empty()) text += "; " + ik.why_numeric();
+  if (ik.refines()) text += "; refined, as the axes of the wrist or axes 2 and 3 are rounded off";
+  return text;
+}
+
 void print_robot(const UrdfArm& read, const InverseKinematics& ik) {
   const ArmModel& arm = read.arm;
   std::vector<std::pair<std::string, std::string>> lines;
@@ -117,8 +125,7 @@ void print_robot(const UrdfArm& read, const InverseKinematics& ik) {
   for (const ArmLink& link : arm.links()) lines.emplace_back(link.name, bodies_text(link));
   lines.emplace_back("camera", camera_text(arm));
   lines.emplace_back("reach", fixed(reach_bound_m(arm), 3) + " m at most, from the first joint to the camera");
-  lines.emplace_back("inverse",
-                     std::string{to_string(ik.method())} + (ik.why_numeric().empty() ? "" : "; " + ik.why_numeric()));
+  lines.emplace_back("inverse", inverse_text(ik));
   for (const std::string& note : read.notes) lines.emplace_back("note", note);
   std::size_t width{0};
   for (const auto& [name, text] : lines) width = std::max(width, name.size() + 2);

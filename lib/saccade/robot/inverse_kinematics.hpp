@@ -56,6 +56,8 @@ class InverseKinematics {
   [[nodiscard]] const ArmModel& arm() const { return *arm_; }
   /// closed_form or numeric.
   [[nodiscard]] IkMethod method() const { return wrist_ ? IkMethod::closed_form : IkMethod::numeric; }
+  /// Whether the closed form is refined, because the arm's axes only nearly meet or are parallel, as after rounding.
+  [[nodiscard]] bool refines() const { return wrist_ && !wrist_->is_exact(); }
   /// Why there is no closed form; empty where there is one or none was looked for.
   [[nodiscard]] const std::string& why_numeric() const { return why_numeric_; }
 

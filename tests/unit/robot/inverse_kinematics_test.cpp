@@ -37,6 +37,7 @@ class ClosedForm : public testing::TestWithParam<std::vector<test::DhRow>> {};
 TEST_P(ClosedForm, FindsEveryConfigurationAgain) {
   const InverseKinematics ik = ik_of(test::with_camera(describe("arm", GetParam())), every_turn());
   ASSERT_EQ(ik.method(), IkMethod::closed_form) << ik.why_numeric();
+  EXPECT_FALSE(ik.refines());
   std::mt19937_64 random{11};
   const int cases = test::scaled_cases(20000);
   std::size_t most = 0;
@@ -205,6 +206,7 @@ TEST(InverseKinematics, RefinesForAnArmThatWasRoundedOff) {
   description.joints[2].axis_joint.x() += 1e-5;
   const InverseKinematics ik = ik_of(test::with_camera(std::move(description)));
   ASSERT_EQ(ik.method(), IkMethod::closed_form);
+  EXPECT_TRUE(ik.refines());
   std::mt19937_64 random{15};
   int again = 0;
   for (int i = 0; i < test::scaled_cases(1000); ++i) {
