@@ -178,8 +178,8 @@ void touching_arms(benchmark::State& state) {
       if (obstacles().first_touching(arm.spans()) == kSpheresPerArm) return state.SkipWithError("no sphere touches");
     }
   }
-  state.counters["arms_per_s"] =
-      benchmark::Counter(static_cast<double>(state.iterations() * kArms), benchmark::Counter::kIsRate);
+  state.counters["arms_per_s"] = benchmark::Counter(
+      static_cast<double>(state.iterations()) * static_cast<double>(kArms), benchmark::Counter::kIsRate);
 }
 
 BENCHMARK(update_after_view)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseManualTime();

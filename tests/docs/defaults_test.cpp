@@ -15,6 +15,7 @@
 #include "saccade/map/icp.hpp"
 #include "saccade/map/tsdf_grid.hpp"
 #include "saccade/robot/inverse_kinematics.hpp"
+#include "saccade/robot/obstacle_map.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -82,6 +83,12 @@ TEST(Defaults, OfViewsAreDocumented) {
   expect_documented("ViewSphereConfig::latitude_step_rad", {degrees(sphere.latitude_step_rad)});
   expect_documented("ViewSphereConfig::roll_step_rad", {degrees(sphere.roll_step_rad)});
   expect_documented("GainConfig::tilt_rad", {degrees(GainConfig{}.tilt_rad)});
+}
+
+TEST(Defaults, OfObstaclesAreDocumented) {
+  const ObstacleConfig obstacles;
+  expect_documented("ObstacleConfig::cell_size_m", {obstacles.cell_size_m});
+  expect_documented("ObstacleConfig::max_distance_m", {obstacles.max_distance_m});
 }
 
 TEST(Defaults, OfTrackingAreDocumented) {

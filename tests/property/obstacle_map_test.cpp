@@ -121,7 +121,9 @@ struct Tally {
 /// Random spheres, most of them within a few millimetres of contact, in float coordinates.
 void expect_spheres(RandomObstacles& random, const ObstacleMap& obstacles, Tally& tally) {
   const std::vector<Box> boxes = obstacles.boxes();
-  const double edge_m = obstacles.cells().cell_edge_m();
+  const ObstacleCells& cells = obstacles.cells();
+  const double edge_m = cells.cell_edge_m();
+  const Box workspace{cells.bounds_of(cells.box().lo).min, cells.bounds_of(cells.box().hi).min};
   std::vector<float> x, y, z, radius;
   std::vector<bool> touching;
   const auto slack_m = 1e-8;
@@ -131,6 +133,9 @@ void expect_spheres(RandomObstacles& random, const ObstacleMap& obstacles, Tally
     const double most = obstacles.config().max_distance_m;
     EXPECT_NEAR(obstacles.distance_m(p), std::min(distance, most), slack_m);
     EXPECT_LE(obstacles.distance_bound_m(p), distance + slack_m);
+    if (contains(workspace, p)) {
+      EXPECT_GE(obstacles.distance_bound_m(p), std::min(distance, most) - (std::sqrt(3.0) + 0.5) * edge_m);
+    }
     const double how = random.run().uniform(0.0, 1.0);
     const double off = how < 0.4 ? 1e-6 : how < 0.8 ? 0.1 * edge_m : 2.0 * edge_m;
     const auto r = static_cast<float>(std::clamp(distance + random.run().uniform(-off, off), 0.0, 30.0 * edge_m));

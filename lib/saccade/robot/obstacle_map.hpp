@@ -62,7 +62,8 @@ class ObstacleMap {
 
   /// Distance of a point from the nearest obstacle, at most max_distance_m; 0 inside one. O(rows of cells within it).
   [[nodiscard]] double distance_m(const Eigen::Vector3d& p_world) const;
-  /// At most distance_m, and in the workspace less by no more than a cell's diagonal. One look at one cell.
+  /// At most distance_m, and in the workspace less by no more than a cell's diagonal, or where a fixture is nearest,
+  /// that and half an edge. One look at one cell.
   [[nodiscard]] double distance_bound_m(const Eigen::Vector3d& p_world) const;
 
   [[nodiscard]] const ObstacleConfig& config() const { return config_; }
