@@ -182,9 +182,22 @@ void touching_arms(benchmark::State& state) {
       static_cast<double>(state.iterations()) * static_cast<double>(kArms), benchmark::Counter::kIsRate);
 }
 
+void clearances_of_arms(benchmark::State& state) {
+  std::vector<float> clearances(kSpheresPerArm);
+  SACCADE_EXPECTS(arms().clear.size() == kArms);
+  for (auto _ : state) {
+    for (const Arm& arm : arms().clear) {
+      obstacles().clearance_bounds(arm.spans(), clearances);
+      benchmark::DoNotOptimize(clearances.data());
+    }
+  }
+  count(state, kArms);
+}
+
 BENCHMARK(update_after_view)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseManualTime();
 BENCHMARK(make_anew)->ArgName("threads")->Arg(1)->Arg(2)->Unit(benchmark::kMillisecond)->UseRealTime();
 BENCHMARK(clear_arms)->Unit(benchmark::kMicrosecond);
+BENCHMARK(clearances_of_arms)->Unit(benchmark::kMicrosecond);
 BENCHMARK(clear_spheres_one_by_one)->Unit(benchmark::kMicrosecond);
 BENCHMARK(touching_arms)->Unit(benchmark::kMicrosecond);
 

@@ -151,6 +151,13 @@ void expect_spheres(RandomObstacles& random, const ObstacleMap& obstacles, Tally
     tally.clear += touches ? 0 : 1;
     tally.near_contact += std::abs(r - distance) < 0.1 * edge_m ? 1 : 0;
   }
+  std::vector<float> clearances(x.size());
+  obstacles.clearance_bounds({x, y, z, radius}, clearances);
+  for (std::size_t i = 0; i < x.size(); ++i) {
+    const Eigen::Vector3d p{x[i], y[i], z[i]};
+    EXPECT_NEAR(clearances[i] + radius[i], obstacles.distance_bound_m(p), 2e-3 * edge_m);
+    EXPECT_LE(clearances[i], obstacles.distance_m(p) - radius[i] + 1e-9);
+  }
   // Lists of any length, and the first of each that touches.
   for (std::size_t begin = 0; begin < touching.size();) {
     const auto length = static_cast<std::size_t>(random.run().integer(0, 150));

@@ -2,6 +2,7 @@
 #include "saccade/robot/obstacle_kernels.hpp"
 
 #include <algorithm>
+#include <limits>
 
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "saccade/robot/obstacle_kernels.cpp"
@@ -101,48 +102,101 @@ HWY_INLINE FloatVec squared_gap(FloatVec at, float lo, float hi) {
   return hn::Mul(gap, gap);
 }
 
-HWY_INLINE hn::Mask<Floats> clear_of_fixtures(const FieldView& field, FloatVec x, FloatVec y, FloatVec z,
-                                              FloatVec radius) {
+/// Squared distance from the nearest fixture, in metres.
+HWY_INLINE FloatVec squared_from_fixtures(const FieldView& field, FloatVec x, FloatVec y, FloatVec z) {
   const Floats d;
-  auto clear = hn::Eq(radius, radius);
-  const FloatVec magnitude = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Abs(z));
-  const FloatVec slack =
-      hn::Add(hn::Mul(magnitude, hn::Set(d, 1e-6F)), hn::Set(d, field.slack / field.half_cells_per_m));
-  const FloatVec reach = hn::Add(hn::Mul(radius, hn::Set(d, 1.000001F)), slack);
-  const FloatVec reach_squared = hn::Mul(reach, reach);
+  FloatVec least = hn::Set(d, kFarthest);
   for (const std::array<float, 6>& box : field.fixtures) {
     const FloatVec squared = hn::Add(hn::Add(squared_gap(x, box[0], box[3]), squared_gap(y, box[1], box[4])),
                                      squared_gap(z, box[2], box[5]));
-    clear = hn::And(clear, hn::Gt(squared, reach_squared));
+    least = hn::Min(least, squared);
   }
-  return clear;
+  return least;
 }
 
-/// For points beyond the field: obstacles lie in the field, which is convex, so the squared distance is at least that
-/// from the field plus that from the field's nearest point to the obstacle.
-HWY_INLINE hn::Mask<Floats> clear_of_field(const FieldView& field, FloatVec x, FloatVec y, FloatVec z,
-                                           FloatVec radius) {
+/// Above the rounding of coordinates and of distances between them, in metres.
+HWY_INLINE FloatVec slack_of(const FieldView& field, FloatVec x, FloatVec y, FloatVec z, FloatVec radius) {
+  const Floats d;
+  const FloatVec magnitude = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(radius)));
+  return hn::Add(hn::Mul(magnitude, hn::Set(d, 1e-6F)), hn::Set(d, field.slack / field.half_cells_per_m));
+}
+
+/// What one look at the field tells of spheres; in half cells.
+struct Look {
+  FloatVec outside;      ///< of the field, squared
+  FloatVec distance;     ///< of the nearest cell's centre
+  FloatVec from_centre;  ///< from there to the nearest point of the field
+  FloatVec reach;        ///< the radius and slack
+  hn::Mask<Floats> finite;
+};
+
+HWY_INLINE Look look_up(const FieldView& field, FloatVec x, FloatVec y, FloatVec z, FloatVec radius) {
   const Floats d;
   const Ints di;
   const float scale = field.half_cells_per_m;
   const Coordinate at_x = place(x, field.origin_m[0], scale, field.size[0]);
   const Coordinate at_y = place(y, field.origin_m[1], scale, field.size[1]);
   const Coordinate at_z = place(z, field.origin_m[2], scale, field.size[2]);
-  const IntVec index = hn::Add(
-      hn::Mul(hn::Add(hn::Mul(at_z.cell, hn::Set(di, field.size[1])), at_y.cell), hn::Set(di, field.row_stride)),
-      at_x.cell);
-  const FloatVec distance = hn::GatherIndex(d, field.distances, index);
+  const IntVec row = hn::Add(hn::Mul(at_z.cell, hn::Set(di, field.size[1])), at_y.cell);
+  const IntVec index = hn::Add(hn::Mul(row, hn::Set(di, field.row_stride)), at_x.cell);
   const FloatVec outside = hn::Mul(hn::Add(hn::Add(at_x.outside, at_y.outside), at_z.outside), hn::Set(d, 0.999998F));
   const FloatVec from_centre = hn::Sqrt(hn::Add(hn::Add(at_x.from_centre, at_y.from_centre), at_z.from_centre));
   const FloatVec reach = hn::Add(hn::Mul(radius, hn::Set(d, scale)), hn::Set(d, field.slack));
-  const FloatVec left = hn::Sub(hn::Mul(reach, reach), outside);
+  const FloatVec farthest = hn::Set(d, kFarthest);
+  return {outside, hn::GatherIndex(d, field.distances, index), from_centre, reach,
+          hn::And(hn::Lt(outside, farthest), hn::Lt(hn::Abs(reach), farthest))};
+}
+
+HWY_INLINE bool asks_for_fixtures(const FieldView& field, FloatVec outside) {
+  const Floats d;
+  return !field.fixtures.empty() && !hn::AllFalse(d, hn::Gt(outside, hn::Zero(d)));
+}
+
+/// For points beyond the field: obstacles lie in the field, which is convex, so the squared distance is at least that
+/// from the field plus that from the field's nearest point to the obstacle.
+HWY_INLINE hn::Mask<Floats> clear_of_all(const FieldView& field, FloatVec x, FloatVec y, FloatVec z, FloatVec radius) {
+  const Floats d;
+  const Look look = look_up(field, x, y, z, radius);
+  const FloatVec left = hn::Sub(hn::Mul(look.reach, look.reach), look.outside);
   const FloatVec reach_inside = hn::Sqrt(hn::Max(left, hn::Zero(d)));
-  const auto finite = hn::And(hn::Lt(outside, hn::Set(d, kFarthest)), hn::Lt(reach, hn::Set(d, kFarthest)));
-  auto clear = hn::And(finite, hn::Or(hn::Lt(left, hn::Zero(d)), hn::Gt(distance, hn::Add(from_centre, reach_inside))));
-  if (!field.fixtures.empty() && !hn::AllFalse(d, hn::Gt(outside, hn::Zero(d)))) {
-    clear = hn::And(clear, clear_of_fixtures(field, x, y, z, radius));
+  const auto beyond_reach = hn::Gt(look.distance, hn::Add(look.from_centre, reach_inside));
+  auto clear = hn::And(look.finite, hn::Or(hn::Lt(left, hn::Zero(d)), beyond_reach));
+  if (asks_for_fixtures(field, look.outside)) {
+    const FloatVec reach = hn::Add(radius, slack_of(field, x, y, z, radius));
+    clear = hn::And(clear, hn::Gt(squared_from_fixtures(field, x, y, z), hn::Mul(reach, reach)));
   }
   return clear;
+}
+
+HWY_INLINE FloatVec clearance_from_all(const FieldView& field, FloatVec x, FloatVec y, FloatVec z, FloatVec radius) {
+  const Floats d;
+  const Look look = look_up(field, x, y, z, radius);
+  const FloatVec inside = hn::Max(hn::Sub(look.distance, look.from_centre), hn::Zero(d));
+  const FloatVec half_cells = hn::Sqrt(hn::Add(look.outside, hn::Mul(inside, inside)));
+  FloatVec distance = hn::Div(half_cells, hn::Set(d, field.half_cells_per_m));
+  if (asks_for_fixtures(field, look.outside)) {
+    distance = hn::IfThenElse(hn::Gt(look.outside, hn::Zero(d)),
+                              hn::Min(distance, hn::Sqrt(squared_from_fixtures(field, x, y, z))), distance);
+  }
+  distance = hn::Min(distance, hn::Set(d, field.max_distance_m));
+  distance = hn::Max(hn::Sub(distance, slack_of(field, x, y, z, radius)), hn::Zero(d));
+  return hn::IfThenElse(look.finite, hn::Sub(distance, radius), hn::Set(d, -std::numeric_limits<float>::infinity()));
+}
+
+/// The spheres from i on; zeros where there are none left.
+struct SphereVecs {
+  FloatVec x, y, z, radius;
+};
+HWY_INLINE FloatVec load_some(const float* from, std::size_t left) {
+  const Floats d;
+  if (left >= hn::Lanes(d)) return hn::LoadU(d, from);
+  alignas(64) std::array<float, 16> few{};
+  std::copy(from, from + left, few.begin());
+  return hn::Load(d, few.data());
+}
+HWY_INLINE SphereVecs load_spheres(const SphereArrays& from, std::size_t i, std::size_t count) {
+  return {load_some(from.x_m + i, count - i), load_some(from.y_m + i, count - i), load_some(from.z_m + i, count - i),
+          load_some(from.radius_m + i, count - i)};
 }
 
 std::uint64_t perhaps_touching_kernel(const FieldView& field, const SphereArrays& spheres, std::size_t count) {
@@ -150,20 +204,29 @@ std::uint64_t perhaps_touching_kernel(const FieldView& field, const SphereArrays
   const std::size_t lanes = hn::Lanes(d);
   std::uint64_t undecided{0};
   for (std::size_t i = 0; i < count; i += lanes) {
-    const auto load = [&](const float* from) HWY_ATTR {
-      if (i + lanes <= count) return hn::LoadU(d, from + i);
-      alignas(64) std::array<float, 16> few{};
-      std::copy(from + i, from + count, few.begin());
-      return hn::Load(d, few.data());
-    };
-    const auto clear =
-        clear_of_field(field, load(spheres.x_m), load(spheres.y_m), load(spheres.z_m), load(spheres.radius_m));
+    const SphereVecs at = load_spheres(spheres, i, count);
     std::array<std::uint8_t, 8> bits{};
-    hn::StoreMaskBits(d, hn::Not(clear), bits.data());
+    hn::StoreMaskBits(d, hn::Not(clear_of_all(field, at.x, at.y, at.z, at.radius)), bits.data());
     const std::uint64_t touching = std::uint64_t{bits[0]} | std::uint64_t{bits[1]} << 8;
     undecided |= (touching & ((std::uint64_t{1} << lanes) - 1)) << i;
   }
   return count < 64 ? undecided & ((std::uint64_t{1} << count) - 1) : undecided;
+}
+
+void clearances_kernel(const FieldView& field, const SphereArrays& spheres, std::size_t count, float* out) {
+  const Floats d;
+  const std::size_t lanes = hn::Lanes(d);
+  for (std::size_t i = 0; i < count; i += lanes) {
+    const SphereVecs at = load_spheres(spheres, i, count);
+    const FloatVec clearance = clearance_from_all(field, at.x, at.y, at.z, at.radius);
+    if (i + lanes <= count) {
+      hn::StoreU(clearance, d, out + i);
+    } else {
+      alignas(64) std::array<float, 16> few;
+      hn::Store(clearance, d, few.data());
+      std::copy(few.begin(), few.begin() + static_cast<std::ptrdiff_t>(count - i), out + i);
+    }
+  }
 }
 
 }  // namespace
@@ -177,6 +240,7 @@ namespace {
 HWY_EXPORT(min_across_rows_kernel);
 HWY_EXPORT(root_of_min_across_rows_kernel);
 HWY_EXPORT(perhaps_touching_kernel);
+HWY_EXPORT(clearances_kernel);
 
 }  // namespace
 
@@ -190,6 +254,10 @@ void root_of_min_across_rows(const RowWindow& window, const std::uint16_t* limit
 
 std::uint64_t perhaps_touching(const FieldView& field, const SphereArrays& spheres, std::size_t count) {
   return HWY_DYNAMIC_DISPATCH(perhaps_touching_kernel)(field, spheres, count);
+}
+
+void clearances(const FieldView& field, const SphereArrays& spheres, std::size_t count, float* out) {
+  HWY_DYNAMIC_DISPATCH(clearances_kernel)(field, spheres, count, out);
 }
 
 }  // namespace saccade::obstacle

@@ -36,7 +36,8 @@ struct FieldView {
   std::array<float, 3> origin_m;
   float half_cells_per_m;
   float slack;  ///< half cells; above all rounding within the field
-  /// Boxes outside the field, or in part; lower and upper corner.
+  float max_distance_m;
+  /// Lower and upper corners in metres. The field holds their distances, too; points beyond it ask them.
   std::span<const std::array<float, 6>> fixtures;
 };
 
@@ -51,5 +52,8 @@ struct SphereArrays {
 /// Spheres that the field cannot say to be clear, bit i; count ≤ 64. None that touches an obstacle is missing, and none
 /// with a coordinate that is not finite.
 [[nodiscard]] std::uint64_t perhaps_touching(const FieldView& field, const SphereArrays& spheres, std::size_t count);
+
+/// At most the distances of the centres, up to max_distance_m, less the radii; -∞ where a coordinate is not finite.
+void clearances(const FieldView& field, const SphereArrays& spheres, std::size_t count, float* out);
 
 }  // namespace saccade::obstacle

@@ -8,7 +8,6 @@
 #include <utility>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/robot/obstacle_kernels.hpp"
 
 namespace saccade {
 namespace {
@@ -136,23 +135,31 @@ bool ObstacleMap::clear(const Eigen::Vector3d& center_world, double radius_m) co
   return !touches_cell(center_world, radius) && !touches_fixture(center_world, radius);
 }
 
-std::size_t ObstacleMap::first_touching(const SphereSpans& spheres) const {
-  const std::size_t count = spheres.x_m.size();
-  SACCADE_EXPECTS(spheres.y_m.size() == count && spheres.z_m.size() == count && spheres.radius_m.size() == count);
+obstacle::FieldView ObstacleMap::view() const {
   const Index3 n = cells_.size();
-  const obstacle::FieldView view{
-      field_.distances().data(),
-      {n.x, n.y, n.z},
-      static_cast<std::int32_t>(field_.row_stride()),
-      {static_cast<float>(origin_.x()), static_cast<float>(origin_.y()), static_cast<float>(origin_.z())},
-      static_cast<float>(half_cells_per_m_),
-      batch_slack_,
-      float_fixtures_};
+  const Eigen::Vector3f origin = origin_.cast<float>();
+  return {field_.distances().data(),
+          {n.x, n.y, n.z},
+          static_cast<std::int32_t>(field_.row_stride()),
+          {origin.x(), origin.y(), origin.z()},
+          static_cast<float>(half_cells_per_m_),
+          batch_slack_,
+          static_cast<float>(config_.max_distance_m),
+          float_fixtures_};
+}
+
+void ObstacleMap::clearance_bounds(const SphereSpans& spheres, std::span<float> out) const {
+  SACCADE_EXPECTS(spheres.same_length() && out.size() == spheres.x_m.size());
+  obstacle::clearances(view(), spheres.arrays(0), out.size(), out.data());
+}
+
+std::size_t ObstacleMap::first_touching(const SphereSpans& spheres) const {
+  SACCADE_EXPECTS(spheres.same_length());
+  const std::size_t count = spheres.x_m.size();
+  const obstacle::FieldView field = view();
   constexpr std::size_t kAtOnce{64};
   for (std::size_t first = 0; first < count; first += kAtOnce) {
-    const obstacle::SphereArrays arrays{spheres.x_m.data() + first, spheres.y_m.data() + first,
-                                        spheres.z_m.data() + first, spheres.radius_m.data() + first};
-    std::uint64_t perhaps = obstacle::perhaps_touching(view, arrays, std::min(kAtOnce, count - first));
+    std::uint64_t perhaps = obstacle::perhaps_touching(field, spheres.arrays(first), std::min(kAtOnce, count - first));
     for (; perhaps != 0; perhaps &= perhaps - 1) {
       const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(perhaps));
       if (!clear({spheres.x_m[i], spheres.y_m[i], spheres.z_m[i]}, spheres.radius_m[i])) return i;

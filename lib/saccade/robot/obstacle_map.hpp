@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saccade/robot/obstacle_field.hpp"
+#include "saccade/robot/obstacle_kernels.hpp"
 
 namespace saccade {
 
@@ -32,6 +33,14 @@ struct SphereSpans {
   std::span<const float> y_m;
   std::span<const float> z_m;
   std::span<const float> radius_m;
+
+  [[nodiscard]] bool same_length() const {
+    return y_m.size() == x_m.size() && z_m.size() == x_m.size() && radius_m.size() == x_m.size();
+  }
+  /// From one of them on.
+  [[nodiscard]] obstacle::SphereArrays arrays(std::size_t first) const {
+    return {x_m.data() + first, y_m.data() + first, z_m.data() + first, radius_m.data() + first};
+  }
 };
 
 /// Obstacle cells (ObstacleCells) and fixtures for collision checks. Thesis §2.1. A sphere touches an obstacle when a
@@ -60,6 +69,10 @@ class ObstacleMap {
   /// about, so the most endangered ones belong in front.
   [[nodiscard]] std::size_t first_touching(const SphereSpans& spheres) const;
 
+  /// For each sphere distance_bound_m of its centre less its radius, but for rounding; never more than the true
+  /// clearance. -∞ where a coordinate or radius is not finite. `out` has the spheres' number.
+  void clearance_bounds(const SphereSpans& spheres, std::span<float> out) const;
+
   /// Distance of a point from the nearest obstacle, at most max_distance_m; 0 inside one. O(rows of cells within it).
   [[nodiscard]] double distance_m(const Eigen::Vector3d& p_world) const;
   /// At most distance_m, and in the workspace less by no more than a cell's diagonal, or where a fixture is nearest,
@@ -82,6 +95,7 @@ class ObstacleMap {
   ObstacleMap(const TsdfConfig& map, ObstacleConfig config, ObstacleCells cells, int reach_cells,
               const Executor& executor);
   [[nodiscard]] Place place(const Eigen::Vector3d& p_world) const;
+  [[nodiscard]] obstacle::FieldView view() const;
   [[nodiscard]] bool touches_cell(const Eigen::Vector3d& center_world, double radius_m) const;
   [[nodiscard]] bool touches_fixture(const Eigen::Vector3d& center_world, double radius_m) const;
   [[nodiscard]] double fixture_distance_m(const Eigen::Vector3d& p_world) const;

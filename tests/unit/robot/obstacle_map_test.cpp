@@ -164,6 +164,9 @@ TEST(ObstacleMap, SpheresThatAreNotFiniteAreNotClear) {
       EXPECT_EQ(first(), 1U);
       sphere[i] = bad;
       EXPECT_EQ(first(), 0U) << bad << " at " << i;
+      float clearance{0.0F};
+      obstacles.clearance_bounds({{&sphere[0], 1}, {&sphere[1], 1}, {&sphere[2], 1}, {&sphere[3], 1}}, {&clearance, 1});
+      EXPECT_EQ(clearance, -infinity);
       EXPECT_FALSE(obstacles.clear({sphere[0], sphere[1], sphere[2]}, sphere[3]));
     }
     EXPECT_EQ(obstacles.distance_m({bad, 0.0, 0.0}), 0.0);
