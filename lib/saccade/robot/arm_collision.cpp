@@ -36,11 +36,9 @@ class Separation {
     const double gap_m = (a.center.cast<double>() - T_a_b_ * b.center.cast<double>()).norm() -
                          static_cast<double>(a.radius_m) - static_cast<double>(b.radius_m);
     if (gap_m >= least_m_) return;
-    const bool a_is_leaf = a.next == i + 1;
-    const bool b_is_leaf = b.next == j + 1;
-    if (gap_m > enough_m_ || (a_is_leaf && b_is_leaf)) {
+    if (gap_m > enough_m_ || (a.finest && b.finest)) {
       least_m_ = gap_m;
-    } else if (b_is_leaf || (!a_is_leaf && a.radius_m >= b.radius_m)) {
+    } else if (b.finest || (!a.finest && a.radius_m >= b.radius_m)) {
       for (std::uint32_t child = i + 1; child < a.next && least_m_ > 0.0; child = a_[child].next) look(child, j);
     } else {
       for (std::uint32_t child = j + 1; child < b.next && least_m_ > 0.0; child = b_[child].next) look(i, child);
@@ -162,7 +160,10 @@ std::optional<Contact> ArmCollision::contact(const ArmPoses& poses, const Obstac
     const Pose& T_world_link = poses.T_world_link[static_cast<std::size_t>(link)];
     for (const SphereTree& body : cover(link)) {
       const bool clear = body.clear([&](const TreeBall& ball) {
-        return obstacles.clear(center_in(T_world_link, ball), static_cast<double>(ball.radius_m));
+        const Vector3d center = center_in(T_world_link, ball);
+        const auto radius_m = static_cast<double>(ball.radius_m);
+        // The exact answer costs more than a look at the balls below.
+        return obstacles.distance_bound_m(center) > radius_m || (ball.finest && obstacles.clear(center, radius_m));
       });
       if (!clear) return Contact{link, std::nullopt};
     }
@@ -181,9 +182,9 @@ double ArmCollision::clearance_m(const ArmPoses& poses, const ObstacleMap& obsta
       body.clear([&](const TreeBall& ball) {
         const double gap_m =
             obstacles.distance_bound_m(center_in(poses.T_world_link[link], ball)) - static_cast<double>(ball.radius_m);
-        const bool is_leaf = &ball + 1 == &body.balls()[0] + ball.next;
-        if (gap_m > config_.max_step_m || is_leaf) least_m = std::min(least_m, gap_m);
-        return gap_m > config_.max_step_m || is_leaf;
+        const bool enough = gap_m > config_.max_step_m || ball.finest;
+        if (enough) least_m = std::min(least_m, gap_m);
+        return enough;
       });
     }
   }

@@ -18,7 +18,7 @@ using Polygon = std::vector<Vector3d>;
 using Triangle = std::array<Vector3d, 3>;
 
 constexpr std::size_t kMostBalls{std::size_t{1} << 16U};
-constexpr double kRounding_m{1e-6};  ///< added to every radius: more than float coordinates lose
+constexpr double kRounding_m{1e-5};  ///< added to every radius: more than float coordinates and flat sides lose
 
 /// A part of space between six planes, the body's surface in it, and which of its corners lie in the body.
 struct Cell {
@@ -98,9 +98,36 @@ Ball ball_around(const std::vector<Vector3d>& points) {
   return best;
 }
 
+using Plane = Eigen::Hyperplane<double, 3>;
+
+/// The planes of the sides of a convex body, normals outwards; none for a body that is not convex.
+std::vector<Plane> sides_of(const std::vector<Triangle>& body) {
+  Vector3d middle = Vector3d::Zero();
+  for (const Triangle& t : body) middle += (t[0] + t[1] + t[2]) / (3.0 * static_cast<double>(body.size()));
+  std::vector<Plane> sides;
+  for (const Triangle& t : body) {
+    const Vector3d normal = (t[1] - t[0]).cross(t[2] - t[0]);
+    if (normal.norm() <= 1e-12) continue;
+    Plane side{normal.normalized(), t[0]};
+    if (side.signedDistance(middle) > 0.0) side.coeffs() = -side.coeffs();
+    const bool known = std::any_of(sides.begin(), sides.end(), [&](const Plane& other) {
+      return (other.coeffs() - side.coeffs()).cwiseAbs().maxCoeff() < 1e-9;
+    });
+    if (!known) sides.push_back(side);
+  }
+  const auto holds_all = [&](const Plane& side) {
+    return std::all_of(body.begin(), body.end(), [&](const Triangle& t) {
+      return std::all_of(t.begin(), t.end(), [&](const Vector3d& p) { return side.signedDistance(p) <= kRounding_m; });
+    });
+  };
+  if (sides.size() < 4 || !std::all_of(sides.begin(), sides.end(), holds_all)) sides.clear();
+  return sides;
+}
+
 class Builder {
  public:
-  Builder(std::vector<Triangle> body, double max_excess_m) : body_{std::move(body)}, max_excess_m_{max_excess_m} {}
+  Builder(std::vector<Triangle> body, double max_excess_m)
+      : body_{std::move(body)}, sides_{sides_of(body_)}, max_excess_m_{max_excess_m} {}
 
   /// False when there would be too many balls.
   [[nodiscard]] bool build() {
@@ -112,7 +139,7 @@ class Builder {
     }
     all.low = box.min();
     all.high = box.max();
-    for (int i = 0; i < 8; ++i) all.inside[static_cast<std::size_t>(i)] = is_inside(body_, all.corner(i));
+    for (int i = 0; i < 8; ++i) all.inside[static_cast<std::size_t>(i)] = holds(all.corner(i));
     return add(all);
   }
 
@@ -134,7 +161,7 @@ class Builder {
     const bool tight = excess_m(deeper) <= max_excess_m_;
     const Ball& ball = tight ? deeper : around;
     const std::size_t index = balls_.size();
-    balls_.push_back({ball.center.cast<float>(), static_cast<float>(ball.radius_m + kRounding_m), 0});
+    balls_.push_back({ball.center.cast<float>(), static_cast<float>(ball.radius_m + kRounding_m), 0, tight});
     if (!tight && !add_halves(cell)) return false;
     balls_[index].next = static_cast<std::uint32_t>(balls_.size());
     return true;
@@ -157,7 +184,7 @@ class Builder {
     }
     for (std::size_t i = 0; i < 8; ++i) {
       if ((i & bit) == 0) continue;
-      const bool inside = cell.surface.empty() || is_inside(body_, low.corner(static_cast<int>(i)));
+      const bool inside = cell.surface.empty() || holds(low.corner(static_cast<int>(i)));
       low.inside[i] = inside;
       high.inside[i ^ bit] = inside;
     }
@@ -167,8 +194,30 @@ class Builder {
   /// No point of the ball is farther from the body.
   [[nodiscard]] double excess_m(const Ball& ball) const { return ball.radius_m - depth(ball.center).first; }
 
+  /// Of a convex body, the side above which p is highest, or below which it is least.
+  [[nodiscard]] const Plane* highest_side(const Vector3d& p) const {
+    const Plane* highest = &sides_.front();
+    double height_m = -std::numeric_limits<double>::infinity();
+    for (const Plane& side : sides_) {
+      const double over_m = side.signedDistance(p);
+      if (over_m > height_m) {
+        height_m = over_m;
+        highest = &side;
+      }
+    }
+    return highest;
+  }
+
+  [[nodiscard]] bool holds(const Vector3d& p) const {
+    return sides_.empty() ? is_inside(body_, p) : highest_side(p)->signedDistance(p) <= 0.0;
+  }
+
   /// How deep a point lies in the body, negative outside, and the way inwards.
   [[nodiscard]] std::pair<double, Vector3d> depth(const Vector3d& p) const {
+    if (!sides_.empty()) {
+      const Plane* nearest = highest_side(p);
+      return {-nearest->signedDistance(p), -nearest->normal()};
+    }
     Vector3d nearest = Vector3d::Zero();
     double distance_m = std::numeric_limits<double>::infinity();
     for (const Triangle& t : body_) {
@@ -178,7 +227,7 @@ class Builder {
         nearest = candidate;
       }
     }
-    const double sign = is_inside(body_, p) ? 1.0 : -1.0;
+    const double sign = holds(p) ? 1.0 : -1.0;
     return {sign * distance_m, sign * (p - nearest).normalized()};
   }
 
@@ -200,6 +249,7 @@ class Builder {
   }
 
   std::vector<Triangle> body_;
+  std::vector<Plane> sides_;  ///< empty: not convex
   double max_excess_m_;
   std::vector<TreeBall> balls_;
 };
