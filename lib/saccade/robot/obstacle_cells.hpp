@@ -54,8 +54,8 @@ class ObstacleCells {
   /// False outside box().
   [[nodiscard]] bool is_obstacle(const Index3& cell) const;
 
-  /// Rows of cells along x, numbered z · size().y + y from the lower corner of box(): cell x at bit x % 64 of word x
-  /// / 64. A word of zeros follows the last.
+  /// Rows of cells along x, numbered z · size().y + y from the lower corner of box(). Cell x is bit x % 64 of word
+  /// x / 64; a word of zeros follows the last.
   [[nodiscard]] std::size_t row_count() const { return row_changed_.size(); }
   [[nodiscard]] const std::uint64_t* row(std::size_t index) const { return bits_.data() + index * words_per_row_; }
   /// Per row, whether the last update changed a cell of it; after the first, all.

@@ -15,7 +15,7 @@ struct ObstacleConfig {
   double cell_size_m{0.04};        ///< thesis §2.1; the nearest whole number of voxels is taken
   bool unknown_is_obstacle{true};  ///< thesis §2.1; else only occupied voxels are
   double max_distance_m{0.5};      ///< distances are followed up to here
-  std::vector<Box> fixtures;  ///< solid boxes in the world frame, inside and outside the workspace, as exact as given
+  std::vector<Box> fixtures;  ///< solid boxes in the world frame, inside or outside the workspace; not cut into cells
 
   [[nodiscard]] Status validate() const;
 };
