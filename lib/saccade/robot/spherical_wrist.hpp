@@ -42,7 +42,7 @@ class SphericalWrist {
   [[nodiscard]] bool is_exact() const { return exact_; }
 
   /// All solutions in which every angle, give or take whole turns, is within its limits. Angles are in (−π, π] but for
-  /// those taken from the reference. Order: shoulder, elbow, wrist. About a microsecond; safe for concurrent use.
+  /// those taken from the reference. Order: shoulder, elbow, wrist. A microsecond or two; safe for concurrent use.
   [[nodiscard]] WristSolutions solve(const Pose& T_world_camera, const Configuration& reference) const;
 
  private:
