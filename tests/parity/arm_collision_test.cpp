@@ -129,23 +129,24 @@ class FclArm {
   std::vector<std::vector<Body>> links_;
 };
 
-/// Free space around the arm with unknown clutter in it, and a table under it.
-ObstacleMap clutter_around(const Vector3d& base, std::mt19937_64& random) {
+/// Free space around the first joint with unknown clutter in it, and a table under it.
+ObstacleMap clutter_around(const Vector3d& shoulder, std::mt19937_64& random) {
   TsdfConfig config;
   config.voxel_size_m = 0.01;
-  config.workspace = Box{base + Vector3d{-1.5, -1.5, -0.2}, base + Vector3d{1.5, 1.5, 2.0}};
+  config.workspace = Box{shoulder - Vector3d{1.5, 1.5, 0.6}, shoulder + Vector3d{1.5, 1.5, 1.5}};
   TsdfMap map = TsdfMap::create(config).value();
   EXPECT_TRUE(map.free(*config.workspace).ok());
   const auto within = [&](double low, double high) {
     return std::uniform_real_distribution<double>{low, high}(random);
   };
   for (int i = 0; i < 20; ++i) {
-    const Vector3d p = base + Vector3d{within(-1.4, 1.4), within(-1.4, 1.4), within(0.0, 1.9)};
-    if ((p - base).head<2>().norm() < 0.5) continue;
-    EXPECT_TRUE(map.forget(Sphere{p, within(0.03, 0.12)}).ok());
+    const Vector3d offset{within(-1.4, 1.4), within(-1.4, 1.4), within(-0.4, 1.4)};
+    const double radius_m = within(0.03, 0.12);
+    if (offset.head<2>().norm() < 0.7) continue;
+    EXPECT_TRUE(map.forget(Sphere{shoulder + offset, radius_m}).ok());
   }
   ObstacleConfig obstacles;
-  obstacles.fixtures = {Box{base + Vector3d{0.4, -1.0, -0.2}, base + Vector3d{1.4, 1.0, 0.05}}};
+  obstacles.fixtures = {Box{shoulder + Vector3d{0.5, -1.0, -0.6}, shoulder + Vector3d{1.4, 1.0, -0.3}}};
   return ObstacleMap::create(map.snapshot(), obstacles, Executor{}).value();
 }
 
@@ -157,10 +158,13 @@ struct Tally {
 };
 
 void compare(const ArmModel& model) {
-  const auto arm = ArmCollision::create(model);
+  ArmCollisionConfig config;
+  if (test::kSanitized) config.max_excess_m = 0.02;  // fewer balls
+  const auto arm = ArmCollision::create(model, config);
   ASSERT_TRUE(arm.ok()) << arm.error().to_string();
   std::mt19937_64 random{11};
-  const ObstacleMap obstacles = clutter_around(model.T_world_base().translation(), random);
+  const ObstacleMap obstacles =
+      clutter_around(forward_kinematics(model, model.middle()).T_world_link[1].translation(), random);
   FclArm fcl{*arm, obstacles};
   Tally all;
   Tally near;
@@ -186,7 +190,7 @@ void compare(const ArmModel& model) {
             << near.called << " of " << near.free << '\n';
   EXPECT_GT(share, 0.3);
   EXPECT_LT(share, 0.7);
-  EXPECT_LE(all.called, 0.05 * all.free);
+  if (!test::kSanitized) EXPECT_LE(all.called, 0.05 * all.free);
 }
 
 TEST(ArmCollisionParity, BuiltInComauIsNeverFreeWhereFclCollides) { compare(find_robot("comau_smart_six")->arm); }
