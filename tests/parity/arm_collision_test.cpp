@@ -24,7 +24,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kNear_m{0.05};  ///< of contact
+constexpr double kNear_m{0.05};   ///< of contact
+constexpr int kDistanceEvery{8};  ///< distances to meshes take FCL long
 
 int cases() {
   const char* wanted = std::getenv("SACCADE_COLLISION_CASES");
@@ -139,7 +140,7 @@ ObstacleMap clutter_around(const Vector3d& shoulder, std::mt19937_64& random) {
   const auto within = [&](double low, double high) {
     return std::uniform_real_distribution<double>{low, high}(random);
   };
-  for (int i = 0; i < 20; ++i) {
+  for (int i = 0; i < 60; ++i) {
     const Vector3d offset{within(-1.4, 1.4), within(-1.4, 1.4), within(-0.4, 1.4)};
     const double radius_m = within(0.03, 0.12);
     if (offset.head<2>().norm() < 0.7) continue;
@@ -180,7 +181,7 @@ void compare(const ArmModel& model) {
     }
     ++all.free;
     all.called += ours ? 1 : 0;
-    if (fcl.distance_m(poses) > kNear_m) continue;
+    if (i % kDistanceEvery != 0 || fcl.distance_m(poses) > kNear_m) continue;
     ++near.free;
     near.called += ours ? 1 : 0;
   }
@@ -190,7 +191,9 @@ void compare(const ArmModel& model) {
             << near.called << " of " << near.free << '\n';
   EXPECT_GT(share, 0.3);
   EXPECT_LT(share, 0.7);
-  if (!test::kSanitized) EXPECT_LE(all.called, 0.05 * all.free);
+  if (!test::kSanitized) {
+    EXPECT_LE(all.called, 0.05 * all.free);
+  }
 }
 
 TEST(ArmCollisionParity, BuiltInComauIsNeverFreeWhereFclCollides) { compare(find_robot("comau_smart_six")->arm); }
