@@ -2,10 +2,12 @@
 #include "saccade/robot/arm_collision.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
 #include <random>
+#include <span>
 
 #include "saccade/robot/body_surface.hpp"
 
@@ -14,6 +16,8 @@ namespace {
 
 using Eigen::Vector3d;
 
+constexpr std::size_t kFrontBalls{96};
+constexpr double kBarely_m{1e-6};
 constexpr int kSelfSamples{200};
 constexpr std::uint32_t kSelfSeed{1};
 
@@ -52,6 +56,20 @@ class Separation {
   double least_m_{std::numeric_limits<double>::infinity()};
 };
 
+/// Whether a side of one of two boxes has the other wholly beyond it, by more than margin_m. `half_m` are half edges.
+bool boxes_apart(const Pose& T_world_a, const Vector3d& a_half_m, const Pose& T_world_b, const Vector3d& b_half_m,
+                 double margin_m) {
+  const Eigen::Matrix3d R_a_b = T_world_a.linear().transpose() * T_world_b.linear();
+  const Vector3d apart = T_world_b.translation() - T_world_a.translation();
+  const Vector3d along_a = (T_world_a.linear().transpose() * apart).cwiseAbs();
+  const Vector3d along_b = (T_world_b.linear().transpose() * apart).cwiseAbs();
+  const Eigen::Matrix3d turned = R_a_b.cwiseAbs();
+  return ((along_a - a_half_m - turned * b_half_m).array() > margin_m).any() ||
+         ((along_b - b_half_m - turned.transpose() * a_half_m).array() > margin_m).any();
+}
+
+Vector3d half_edges(const Eigen::AlignedBox3d& box) { return 0.5 * box.sizes() + Vector3d::Constant(kBarely_m); }
+
 /// How far the origin of a joint can be from that of the joint before.
 double longest_offset_m(const ArmJoint& joint) {
   const double slide_m =
@@ -86,19 +104,82 @@ Result<ArmCollision> ArmCollision::create(const ArmModel& arm, const ArmCollisio
   ArmCollision collision{arm, config};
   for (const ArmLink& link : arm.links()) {
     std::vector<SphereTree>& covers = collision.covers_.emplace_back();
+    std::vector<BodyBox>& boxes = collision.boxes_.emplace_back();
+    Eigen::AlignedBox3d around;
     for (const CollisionBody& body : link.bodies) {
-      auto cover = SphereTree::build(body_surface(body), {config.max_excess_m});
+      const TriangleMesh surface = body_surface(body);
+      auto cover = SphereTree::build(surface, {config.max_excess_m});
       if (!cover) {
         Error error = cover.error();
         error.context += ", link " + body.name;
         return error;
       }
       covers.push_back(std::move(*cover));
+      Eigen::AlignedBox3d box;
+      const Pose T_body_link = body.T_link_body.inverse(Eigen::Isometry);
+      for (const Eigen::Vector3f& p : surface.vertices) {
+        box.extend(T_body_link * p.cast<double>());
+        around.extend(p.cast<double>());
+      }
+      boxes.push_back({body.T_link_body * Eigen::Translation3d{box.center()}, half_edges(box)});
     }
+    collision.link_boxes_.push_back({Pose{Eigen::Translation3d{around.center()}}, half_edges(around)});
   }
+  collision.choose_front();
   collision.find_travel();
   collision.find_self_pairs();
   return collision;
+}
+
+/// The largest ball is replaced by those below it until there are enough.
+void ArmCollision::choose_front() {
+  for (std::size_t link = covers_.size() - 1; link > 0; --link) {  // the hand first: it is nearest to things
+    for (std::size_t body = 0; body < covers_[link].size(); ++body) {
+      front_.push_back({link, body, 0, covers_[link][body].balls().front()});
+    }
+  }
+  const auto worth_less = [](const FrontBall& a, const FrontBall& b) {
+    return (a.ball.finest ? 0.0F : a.ball.radius_m) < (b.ball.finest ? 0.0F : b.ball.radius_m);
+  };
+  while (!front_.empty() && front_.size() < kFrontBalls) {
+    const auto largest = std::max_element(front_.begin(), front_.end(), worth_less);
+    const FrontBall split = *largest;
+    if (split.ball.finest) break;
+    front_.erase(largest);
+    const auto balls = covers_[split.link][split.body].balls();
+    for (std::uint32_t i = split.index + 1; i < split.ball.next; i = balls[i].next) {
+      front_.push_back({split.link, split.body, i, balls[i]});
+    }
+  }
+  std::stable_sort(front_.begin(), front_.end(),
+                   [](const FrontBall& a, const FrontBall& b) { return a.link > b.link; });
+}
+
+template <class Visit>
+bool ArmCollision::visit_front(const ArmPoses& poses, const ObstacleMap& obstacles, const Visit& visit) const {
+  constexpr std::size_t kAtOnce{128};
+  std::array<float, kAtOnce> x_m;
+  std::array<float, kAtOnce> y_m;
+  std::array<float, kAtOnce> z_m;
+  std::array<float, kAtOnce> radius_m;
+  std::array<float, kAtOnce> clearance_m;
+  for (std::size_t begin = 0; begin < front_.size(); begin += kAtOnce) {
+    const std::span<const FrontBall> some = std::span{front_}.subspan(begin, std::min(kAtOnce, front_.size() - begin));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      const Vector3d center = center_in(poses.T_world_link[some[i].link], some[i].ball);
+      x_m[i] = static_cast<float>(center.x());
+      y_m[i] = static_cast<float>(center.y());
+      z_m[i] = static_cast<float>(center.z());
+      radius_m[i] = some[i].ball.radius_m;
+    }
+    const auto first = [&](const std::array<float, kAtOnce>& values) { return std::span{values}.first(some.size()); };
+    obstacles.clearance_bounds({first(x_m), first(y_m), first(z_m), first(radius_m)},
+                               std::span{clearance_m}.first(some.size()));
+    for (std::size_t i = 0; i < some.size(); ++i) {
+      if (!visit(some[i], static_cast<double>(clearance_m[i]))) return false;
+    }
+  }
+  return true;
 }
 
 void ArmCollision::find_travel() {
@@ -140,12 +221,32 @@ void ArmCollision::find_self_pairs() {
 }
 
 double ArmCollision::separation_m(const ArmPoses& poses, int a, int b, double enough_m) const {
-  const Pose T_a_b = poses.T_world_link[static_cast<std::size_t>(a)].inverse(Eigen::Isometry) *
-                     poses.T_world_link[static_cast<std::size_t>(b)];
+  const auto link_a = static_cast<std::size_t>(a);
+  const auto link_b = static_cast<std::size_t>(b);
+  const Pose& T_world_a = poses.T_world_link[link_a];
+  const Pose& T_world_b = poses.T_world_link[link_b];
+  if (boxes_apart(T_world_a * link_boxes_[link_a].T_link_box, link_boxes_[link_a].half_m,
+                  T_world_b * link_boxes_[link_b].T_link_box, link_boxes_[link_b].half_m, enough_m)) {
+    return enough_m + kBarely_m;
+  }
   double least_m = std::numeric_limits<double>::infinity();
-  for (const SphereTree& of_a : cover(a)) {
-    for (const SphereTree& of_b : cover(b)) {
-      least_m = std::min(least_m, Separation{of_a, T_a_b, of_b, enough_m}.metres());
+  for (std::size_t i = 0; i < boxes_[link_a].size(); ++i) {
+    const BodyBox& box_a = boxes_[link_a][i];
+    const TreeBall& ball_a = covers_[link_a][i].balls().front();
+    for (std::size_t j = 0; j < boxes_[link_b].size(); ++j) {
+      const BodyBox& box_b = boxes_[link_b][j];
+      const TreeBall& ball_b = covers_[link_b][j].balls().front();
+      const double gap_m = (center_in(T_world_a, ball_a) - center_in(T_world_b, ball_b)).norm() -
+                           static_cast<double>(ball_a.radius_m) - static_cast<double>(ball_b.radius_m);
+      if (gap_m > enough_m) {
+        least_m = std::min(least_m, gap_m);
+      } else if (boxes_apart(T_world_a * box_a.T_link_box, box_a.half_m, T_world_b * box_b.T_link_box, box_b.half_m,
+                             enough_m)) {
+        least_m = std::min(least_m, enough_m + kBarely_m);
+      } else {
+        const Pose T_a_b = T_world_a.inverse(Eigen::Isometry) * T_world_b;
+        least_m = std::min(least_m, Separation{covers_[link_a][i], T_a_b, covers_[link_b][j], enough_m}.metres());
+      }
     }
   }
   return least_m;
@@ -156,18 +257,19 @@ std::optional<Contact> ArmCollision::contact(const Configuration& q, const Obsta
 }
 
 std::optional<Contact> ArmCollision::contact(const ArmPoses& poses, const ObstacleMap& obstacles) const {
-  for (int link = static_cast<int>(covers_.size()) - 1; link > 0; --link) {  // the hand first: it is nearest to things
-    const Pose& T_world_link = poses.T_world_link[static_cast<std::size_t>(link)];
-    for (const SphereTree& body : cover(link)) {
-      const bool clear = body.clear([&](const TreeBall& ball) {
-        const Vector3d center = center_in(T_world_link, ball);
-        const auto radius_m = static_cast<double>(ball.radius_m);
-        // The exact answer costs more than a look at the balls below.
-        return obstacles.distance_bound_m(center) > radius_m || (ball.finest && obstacles.clear(center, radius_m));
-      });
-      if (!clear) return Contact{link, std::nullopt};
-    }
-  }
+  int touching{0};
+  const bool clear = visit_front(poses, obstacles, [&](const FrontBall& front, double clearance_m) {
+    if (clearance_m > 0.0) return true;
+    touching = static_cast<int>(front.link);
+    const auto is_clear = [&](const TreeBall& ball) {
+      const Vector3d center = center_in(poses.T_world_link[front.link], ball);
+      const auto radius_m = static_cast<double>(ball.radius_m);
+      // The exact answer costs more than a look at the balls below.
+      return obstacles.distance_bound_m(center) > radius_m || (ball.finest && obstacles.clear(center, radius_m));
+    };
+    return covers_[front.link][front.body].clear(is_clear, front.index);
+  });
+  if (!clear) return Contact{touching, std::nullopt};
   for (const auto& [a, b] : self_pairs_) {
     if (separation_m(poses, a, b, 0.0) <= 0.0) return Contact{b, a};
   }
@@ -177,17 +279,21 @@ std::optional<Contact> ArmCollision::contact(const ArmPoses& poses, const Obstac
 /// Lower bound of how far the arm is from obstacles and from itself, looked for until it is more than max_step_m.
 double ArmCollision::clearance_m(const ArmPoses& poses, const ObstacleMap& obstacles) const {
   double least_m = std::numeric_limits<double>::infinity();
-  for (std::size_t link = 1; link < covers_.size(); ++link) {
-    for (const SphereTree& body : covers_[link]) {
-      body.clear([&](const TreeBall& ball) {
-        const double gap_m =
-            obstacles.distance_bound_m(center_in(poses.T_world_link[link], ball)) - static_cast<double>(ball.radius_m);
-        const bool enough = gap_m > config_.max_step_m || ball.finest;
-        if (enough) least_m = std::min(least_m, gap_m);
-        return enough;
-      });
+  visit_front(poses, obstacles, [&](const FrontBall& front, double clearance_m) {
+    if (clearance_m > config_.max_step_m) {
+      least_m = std::min(least_m, clearance_m);
+      return true;
     }
-  }
+    return covers_[front.link][front.body].clear(
+        [&](const TreeBall& ball) {
+          const double gap_m = obstacles.distance_bound_m(center_in(poses.T_world_link[front.link], ball)) -
+                               static_cast<double>(ball.radius_m);
+          const bool enough = gap_m > config_.max_step_m || ball.finest;
+          if (enough) least_m = std::min(least_m, gap_m);
+          return enough;
+        },
+        front.index);
+  });
   for (const auto& [a, b] : self_pairs_) least_m = std::min(least_m, separation_m(poses, a, b, config_.max_step_m));
   return least_m;
 }

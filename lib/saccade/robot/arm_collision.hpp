@@ -61,16 +61,37 @@ class ArmCollision {
   [[nodiscard]] const std::vector<std::pair<int, int>>& self_pairs() const { return self_pairs_; }
 
  private:
+  /// Balls that cover the whole arm are asked about together; only where one is not clear, those below it.
+  struct FrontBall {
+    std::size_t link;
+    std::size_t body;
+    std::uint32_t index;  ///< in the body's cover
+    TreeBall ball;
+  };
+
+  /// A box around a body, or around all of a link, in the link's frame.
+  struct BodyBox {
+    Pose T_link_box;
+    Eigen::Vector3d half_m;
+  };
+
   explicit ArmCollision(const ArmModel& arm, const ArmCollisionConfig& config)
       : arm_{std::make_shared<const ArmModel>(arm)}, config_{config} {}
+  void choose_front();
   void find_travel();
   void find_self_pairs();
+  /// Calls visit(front ball, lower bound of its clearance in metres) until it returns false; whether it never did.
+  template <class Visit>
+  bool visit_front(const ArmPoses& poses, const ObstacleMap& obstacles, const Visit& visit) const;
   [[nodiscard]] double clearance_m(const ArmPoses& poses, const ObstacleMap& obstacles) const;
   [[nodiscard]] double separation_m(const ArmPoses& poses, int a, int b, double enough_m) const;
 
   std::shared_ptr<const ArmModel> arm_;
   ArmCollisionConfig config_;
   std::vector<std::vector<SphereTree>> covers_;  ///< per link
+  std::vector<std::vector<BodyBox>> boxes_;      ///< the same bodies
+  std::vector<BodyBox> link_boxes_;              ///< per link
+  std::vector<FrontBall> front_;                 ///< links that move, hand first
   std::vector<std::pair<int, int>> self_pairs_;
   std::vector<double> travel_m_;  ///< per joint: no point behind it is farther from its axis; 1 for prismatic joints
 };

@@ -18,7 +18,8 @@ using Polygon = std::vector<Vector3d>;
 using Triangle = std::array<Vector3d, 3>;
 
 constexpr std::size_t kMostBalls{std::size_t{1} << 16U};
-constexpr double kRounding_m{1e-5};  ///< added to every radius: more than float coordinates and flat sides lose
+constexpr double kFlat_m{1e-5};      ///< what is convex but for this is convex
+constexpr double kRounding_m{2e-5};  ///< added to every radius: more than float coordinates and flat sides lose
 
 /// A part of space between six planes, the body's surface in it, and which of its corners lie in the body.
 struct Cell {
@@ -117,7 +118,7 @@ std::vector<Plane> sides_of(const std::vector<Triangle>& body) {
   }
   const auto holds_all = [&](const Plane& side) {
     return std::all_of(body.begin(), body.end(), [&](const Triangle& t) {
-      return std::all_of(t.begin(), t.end(), [&](const Vector3d& p) { return side.signedDistance(p) <= kRounding_m; });
+      return std::all_of(t.begin(), t.end(), [&](const Vector3d& p) { return side.signedDistance(p) <= kFlat_m; });
     });
   };
   if (sides.size() < 4 || !std::all_of(sides.begin(), sides.end(), holds_all)) sides.clear();

@@ -37,10 +37,10 @@ class SphereTree {
   /// In depth-first order; the first one covers the whole body.
   [[nodiscard]] std::span<const TreeBall> balls() const { return balls_; }
 
-  /// Whether `is_clear(ball)` holds for balls that cover the body, the coarsest that will do.
+  /// Whether `is_clear(ball)` holds for balls that cover what ball `from` covers, the coarsest that will do.
   template <class IsClear>
-  bool clear(const IsClear& is_clear) const {
-    for (std::uint32_t i = 0; i < balls_.size();) {
+  bool clear(const IsClear& is_clear, std::uint32_t from = 0) const {
+    for (std::uint32_t i = from; i < balls_[from].next;) {
       const TreeBall& ball = balls_[i];
       if (is_clear(ball)) {
         i = ball.next;
