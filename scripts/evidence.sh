@@ -68,8 +68,13 @@ scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'impor
 step compare build/release/saccade --quiet compare --scenes "$scenes,clutter:1" --strategies sphere,random --seeds 1-10 --max-views 12 \
   --out "$out/compare" --json "$out/compare.json"
 
+echo "Arms beside FCL: 100,000 configurations each"
+scripts/install_packages.sh program tests
+configure release -DSACCADE_BUILD_TESTS=ON && compile release parity >"$out/build_parity.log" || failed=1
+step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity '--gtest_filter=ArmCollision*'
+
 echo "Fuzzing"
-scripts/install_packages.sh program tests && scripts/build_fuzzers.sh >"$out/build_fuzzers.log" || failed=1
+scripts/build_fuzzers.sh >"$out/build_fuzzers.log" || failed=1
 for source in tests/fuzz/fuzz_*.cpp; do
   [[ -f $source ]] || continue
   target="$(basename "$source" .cpp)"

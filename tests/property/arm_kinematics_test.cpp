@@ -14,18 +14,18 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint64_t kSeed{20};
+constexpr std::uint64_t kArmSeed{20};
 
 class RecordedArms : public testing::Test {
  protected:
   void SetUp() override {
     if (!std::filesystem::exists(test::shared_robots())) GTEST_SKIP() << "no robots among the recorded data";
-    RecordProperty("seed", static_cast<int>(kSeed));
+    RecordProperty("seed", static_cast<int>(kArmSeed));
   }
 };
 
 TEST_F(RecordedArms, PosesAndJacobiansAreThoseOfKdl) {
-  std::mt19937_64 random{kSeed};
+  std::mt19937_64 random{kArmSeed};
   int cases = 0;
   for (const auto& read : {test::shared_comau(false), test::shared_panda(), test::shared_iiwa()}) {
     ASSERT_TRUE(read) << read.error().to_string();
@@ -45,7 +45,7 @@ TEST_F(RecordedArms, TheComausConfigurationsAreFoundAgain) {
     ASSERT_TRUE(read) << read.error().to_string();
     const InverseKinematics ik = InverseKinematics::create(read->arm).value();
     ASSERT_EQ(ik.method(), IkMethod::closed_form) << ik.why_numeric();
-    std::mt19937_64 random{kSeed};
+    std::mt19937_64 random{kArmSeed};
     const int cases = test::scaled_cases(20000);
     int again = 0;
     for (int i = 0; i < cases; ++i) {
@@ -59,12 +59,12 @@ TEST_F(RecordedArms, TheComausConfigurationsAreFoundAgain) {
       again += test::nearest(solutions, q) < 1e-5 ? 1 : 0;
     }
     // Its rounded angles move the wrist's centre by 0.6 µm: next to straight wrists a solution may get lost.
-    EXPECT_GE(again, exact ? cases : cases - cases / 500) << "seed " << kSeed;
+    EXPECT_GE(again, exact ? cases : cases - cases / 500) << "seed " << kArmSeed;
   }
 }
 
 TEST_F(RecordedArms, SevenJointsAreSolvedByIteration) {
-  std::mt19937_64 random{kSeed};
+  std::mt19937_64 random{kArmSeed};
   for (const auto& read : {test::shared_panda(), test::shared_iiwa()}) {
     ASSERT_TRUE(read) << read.error().to_string();
     const InverseKinematics ik = InverseKinematics::create(read->arm).value();
@@ -81,7 +81,7 @@ TEST_F(RecordedArms, SevenJointsAreSolvedByIteration) {
       }
       found += solutions.empty() ? 0 : 1;
     }
-    EXPECT_GE(found, cases - cases / 50) << ik.arm().name() << ", seed " << kSeed;
+    EXPECT_GE(found, cases - cases / 50) << ik.arm().name() << ", seed " << kArmSeed;
   }
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kRowsPerChunk{32};
 
-std::size_t unsigned_of(std::int32_t i) { return static_cast<std::size_t>(i); }
+std::size_t size_from(std::int32_t i) { return static_cast<std::size_t>(i); }
 
 /// The first cell from x on that is an obstacle, or is none; `length` when there is none such.
 std::size_t next_cell(const std::uint64_t* row, std::size_t x, std::size_t length, bool obstacle) {
@@ -70,7 +70,7 @@ ObstacleField::ObstacleField(const ObstacleCells& cells, int reach_cells, std::s
                              const Executor& executor)
     : reach_cells_{reach_cells}, size_{cells.size()} {
   SACCADE_EXPECTS(reach_cells >= 1 && reach_cells <= kMostReach_cells);
-  const std::size_t length = unsigned_of(size_.x);
+  const std::size_t length = size_from(size_.x);
   stride_ = (length + obstacle::kRowStep - 1) / obstacle::kRowStep * obstacle::kRowStep;
   const int limit = 4 * reach_cells * reach_cells;
   for (int k = 0; k <= reach_cells; ++k)
@@ -105,9 +105,9 @@ void ObstacleField::measure_fixtures(std::span<const Box> fixtures, const Obstac
     for (std::size_t row = begin; row < end; ++row) {
       for (const Box& box : boxes) {
         const double aside =
-            squared_gap(box, 1, row % unsigned_of(size_.y)) + squared_gap(box, 2, row / unsigned_of(size_.y));
+            squared_gap(box, 1, row % size_from(size_.y)) + squared_gap(box, 2, row / size_from(size_.y));
         if (aside >= most) continue;
-        for (std::size_t x = 0; x < unsigned_of(size_.x); ++x) {
+        for (std::size_t x = 0; x < size_from(size_.x); ++x) {
           std::uint16_t& least = fixtures_[row * stride_ + x];
           const double squared = std::floor((aside + squared_gap(box, 0, x)) * (1.0 - kRounding));
           least = static_cast<std::uint16_t>(std::min<double>(least, squared));
@@ -123,7 +123,7 @@ void ObstacleField::measure_fixtures(std::span<const Box> fixtures, const Obstac
 /// Squared distances of a row's cells from the obstacles of that row: between two obstacles they rise to the middle and
 /// fall again.
 void ObstacleField::distances_along(const std::uint64_t* row, std::uint16_t* out) const {
-  const std::size_t length = unsigned_of(size_.x);
+  const std::size_t length = size_from(size_.x);
   for (std::size_t begin = 0; begin < length;) {
     const std::size_t gap = next_cell(row, begin, length, false);
     std::fill(out + begin, out + gap, std::uint16_t{0});
@@ -142,9 +142,9 @@ void ObstacleField::distances_along(const std::uint64_t* row, std::uint16_t* out
 }
 
 void ObstacleField::update(const ObstacleCells& cells, const Executor& executor) {
-  const auto layers = unsigned_of(size_.z);
-  const auto rows_per_layer = unsigned_of(size_.y);
-  const auto reach = unsigned_of(reach_cells_);
+  const auto layers = size_from(size_.z);
+  const auto rows_per_layer = size_from(size_.y);
+  const auto reach = size_from(reach_cells_);
   const std::size_t steps = stride_ / obstacle::kRowStep;
   const RowAxis along_y{rows_per_layer, 1, layers, rows_per_layer};
   const RowAxis along_z{layers, rows_per_layer, rows_per_layer, 1};

@@ -255,26 +255,27 @@ class Builder {
   std::vector<TreeBall> balls_;
 };
 
-Error invalid(std::string what) { return {Errc::invalid_argument, std::move(what), "sphere tree"}; }
+Error invalid_body(std::string what) { return {Errc::invalid_argument, std::move(what), "sphere tree"}; }
 
 }  // namespace
 
 Result<SphereTree> SphereTree::build(const TriangleMesh& body, const SphereTreeConfig& config) {
   if (!(config.max_excess_m >= 1e-4) || !std::isfinite(config.max_excess_m)) {
-    return invalid("max_excess_m must be a number of at least 0.0001");
+    return invalid_body("max_excess_m must be a number of at least 0.0001");
   }
-  if (body.triangles.empty()) return invalid("the body has no triangles");
+  if (body.triangles.empty()) return invalid_body("the body has no triangles");
   std::vector<Triangle> triangles;
   for (const auto& corners : body.triangles) {
     Triangle& t = triangles.emplace_back();
     for (std::size_t i = 0; i < 3; ++i) {
-      if (corners[i] >= body.vertices.size()) return invalid("a triangle names a vertex that does not exist");
+      if (corners[i] >= body.vertices.size()) return invalid_body("a triangle names a vertex that does not exist");
       t[i] = body.vertices[corners[i]].cast<double>();
-      if (!t[i].allFinite()) return invalid("a vertex is not finite");
+      if (!t[i].allFinite()) return invalid_body("a vertex is not finite");
     }
   }
   Builder builder{std::move(triangles), config.max_excess_m};
-  if (!builder.build()) return invalid("the body is too large for balls that exceed it by no more than max_excess_m");
+  if (!builder.build())
+    return invalid_body("the body is too large for balls that exceed it by no more than max_excess_m");
   return SphereTree{builder.take()};
 }
 

@@ -21,7 +21,7 @@ constexpr double kOblique{1e-3};    ///< axes that must not be parallel differ b
 constexpr double kSingular{1e-10};  ///< below this length or angle a direction is none
 constexpr double kSlack{1e-12};     ///< how far beyond the reach a pose may lie by rounding, relative
 
-double squared(double x) { return x * x; }
+double square_of(double x) { return x * x; }
 
 double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * pi); }
 
@@ -155,13 +155,13 @@ void SphericalWrist::solve_elbow(const Shoulder& shoulder, const Configuration& 
                                  WristSolutions& found) const {
   // |wrist|² = upper² + fore² + 2 upper fore cos γ, γ: the angle from the upper arm to the forearm.
   const double distance2 = shoulder.wrist.squaredNorm();
-  const double longest2 = squared(upper_m_ + fore_m_);
-  const double folded = longest2 - distance2;                        // 4 upper fore sin²(γ/2)
-  const double stretched = distance2 - squared(upper_m_ - fore_m_);  // 4 upper fore cos²(γ/2)
+  const double longest2 = square_of(upper_m_ + fore_m_);
+  const double folded = longest2 - distance2;                          // 4 upper fore sin²(γ/2)
+  const double stretched = distance2 - square_of(upper_m_ - fore_m_);  // 4 upper fore cos²(γ/2)
   if (folded < -kSlack * longest2 || stretched < -kSlack * longest2) return;
   const double gamma = 2.0 * std::atan2(std::sqrt(std::max(0.0, folded)), std::sqrt(std::max(0.0, stretched)));
   const bool twice = gamma > kSingular && gamma < pi - kSingular;
-  const bool direction_is_free = distance2 < squared(kSingular);
+  const bool direction_is_free = distance2 < square_of(kSingular);
   const double direction = direction_is_free ? 0.0 : std::atan2(shoulder.wrist.y(), shoulder.wrist.x());
   for (const double bend : {gamma, -gamma}) {
     if (bend == -gamma && !twice) break;
