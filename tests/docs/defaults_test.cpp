@@ -14,6 +14,7 @@
 #include "saccade/io/urdf.hpp"
 #include "saccade/map/icp.hpp"
 #include "saccade/map/tsdf_grid.hpp"
+#include "saccade/robot/arm_collision.hpp"
 #include "saccade/robot/inverse_kinematics.hpp"
 #include "saccade/robot/obstacle_map.hpp"
 #include "saccade/view/view_gain.hpp"
@@ -89,6 +90,9 @@ TEST(Defaults, OfObstaclesAreDocumented) {
   const ObstacleConfig obstacles;
   expect_documented("ObstacleConfig::cell_size_m", {obstacles.cell_size_m});
   expect_documented("ObstacleConfig::max_distance_m", {obstacles.max_distance_m});
+  const ArmCollisionConfig arm;
+  expect_documented("ArmCollisionConfig::max_excess_m", {arm.max_excess_m});
+  expect_documented("ArmCollisionConfig::max_step_m", {arm.max_step_m});
 }
 
 TEST(Defaults, OfTrackingAreDocumented) {
