@@ -38,8 +38,8 @@ const std::string kCamera{
     R"(<joint name="mount" type="fixed"><parent link="flange"/><child link="camera_optical_frame"/>
   <origin xyz="0 0 0.05" rpy="0 1.5707963267948966 0"/></joint><link name="camera_optical_frame"/>)"};
 
-void expect_refused(const std::string& urdf, const std::string& part, Errc code = Errc::corrupt_data,
-                    const UrdfConfig& config = {}) {
+void expect_bad_urdf(const std::string& urdf, const std::string& part, Errc code = Errc::corrupt_data,
+                     const UrdfConfig& config = {}) {
   testing::internal::CaptureStderr();
   testing::internal::CaptureStdout();
   const auto arm = parse_urdf(urdf, {}, config);
@@ -121,64 +121,64 @@ TEST(Urdf, GivesEndlessJointsASpeed) {
 }
 
 TEST(Urdf, SaysWhatIsWrongAndWhere) {
-  expect_refused("", "no XML");
-  expect_refused("<robot name='a'><link name='b'>", "no XML");
-  expect_refused("<scene/>", "begins with <scene>");
+  expect_bad_urdf("", "no XML");
+  expect_bad_urdf("<robot name='a'><link name='b'>", "no XML");
+  expect_bad_urdf("<scene/>", "begins with <scene>");
   std::string deep;
   for (int i = 0; i < 200000; ++i) deep += "<a>";
-  expect_refused(deep, "nested too deeply");
+  expect_bad_urdf(deep, "nested too deeply");
   std::string chain{"<robot name='a'><link name='0'/>"};
   for (int i = 0; i < 2000; ++i) {
     const std::string next = std::to_string(i + 1);
     chain += "<link name='" + next + "'/><joint name='" + next + "' type='fixed'><parent link='" + std::to_string(i) +
              "'/><child link='" + next + "'/></joint>";
   }
-  expect_refused(chain + "</robot>", "too many links before it");
-  expect_refused("<robot name='a'/>", "no URDF that can be read");
-  expect_refused("<robot name='a'><link name='b'/></robot>", "no joint moves behind b");
-  expect_refused(with("<link name='lost'/>"), "root link");
-  expect_refused(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="arm"/></joint>)"),
-                 "link arm: has two joints above it, back and turn; the joints must form a tree");
-  expect_refused(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="base"/></joint>)"),
-                 "root");
-  expect_refused(with(R"(<joint name="on" type="fixed"><parent link="flange"/><child link="nowhere"/></joint>)"),
-                 "nowhere");
-  expect_refused(replaced(kArm, "0 0 2", "0 0 0"), "joint turn: its axis has no length");
-  expect_refused(replaced(kArm, "upper=\"2\"", "upper=\"nan\""), "upper");
-  expect_refused(replaced(kArm, "upper=\"2\"", "upper=\"-2\""), "joint turn: its lower limit must lie below");
-  expect_refused(replaced(kArm, "velocity=\"3\"", ""), "velocity");
-  expect_refused(replaced(kArm, "velocity=\"3\"", "velocity=\"0\""), "joint turn: its speed limit must be positive");
-  expect_refused(replaced(kArm, "acceleration=\"4\"", "acceleration=\"-4\""), "joint turn: its acceleration limit");
-  expect_refused(replaced(kArm, "acceleration=\"4\"", "acceleration=\"fast\""),
-                 "joint turn: acceleration is no number");
-  expect_refused(replaced(kArm, "radius=\"0.03\"", "radius=\"0\""), "link flange: the radius of a collision sphere");
-  expect_refused(replaced(kArm, "type=\"revolute\"", "type=\"floating\""), "joint turn: only revolute, continuous",
-                 Errc::unsupported);
-  expect_refused(replaced(kArm, "velocity=\"0.5\"/>", "velocity=\"0.5\"/><mimic joint=\"turn\"/>"),
-                 "joint slide: follows joint turn", Errc::unsupported);
-  expect_refused(replaced(kArm, "revolute\">", "revolute\"><parent"), "no XML");
+  expect_bad_urdf(chain + "</robot>", "too many links before it");
+  expect_bad_urdf("<robot name='a'/>", "no URDF that can be read");
+  expect_bad_urdf("<robot name='a'><link name='b'/></robot>", "no joint moves behind b");
+  expect_bad_urdf(with("<link name='lost'/>"), "root link");
+  expect_bad_urdf(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="arm"/></joint>)"),
+                  "link arm: has two joints above it, back and turn; the joints must form a tree");
+  expect_bad_urdf(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="base"/></joint>)"),
+                  "root");
+  expect_bad_urdf(with(R"(<joint name="on" type="fixed"><parent link="flange"/><child link="nowhere"/></joint>)"),
+                  "nowhere");
+  expect_bad_urdf(replaced(kArm, "0 0 2", "0 0 0"), "joint turn: its axis has no length");
+  expect_bad_urdf(replaced(kArm, "upper=\"2\"", "upper=\"nan\""), "upper");
+  expect_bad_urdf(replaced(kArm, "upper=\"2\"", "upper=\"-2\""), "joint turn: its lower limit must lie below");
+  expect_bad_urdf(replaced(kArm, "velocity=\"3\"", ""), "velocity");
+  expect_bad_urdf(replaced(kArm, "velocity=\"3\"", "velocity=\"0\""), "joint turn: its speed limit must be positive");
+  expect_bad_urdf(replaced(kArm, "acceleration=\"4\"", "acceleration=\"-4\""), "joint turn: its acceleration limit");
+  expect_bad_urdf(replaced(kArm, "acceleration=\"4\"", "acceleration=\"fast\""),
+                  "joint turn: acceleration is no number");
+  expect_bad_urdf(replaced(kArm, "radius=\"0.03\"", "radius=\"0\""), "link flange: the radius of a collision sphere");
+  expect_bad_urdf(replaced(kArm, "type=\"revolute\"", "type=\"floating\""), "joint turn: only revolute, continuous",
+                  Errc::unsupported);
+  expect_bad_urdf(replaced(kArm, "velocity=\"0.5\"/>", "velocity=\"0.5\"/><mimic joint=\"turn\"/>"),
+                  "joint slide: follows joint turn", Errc::unsupported);
+  expect_bad_urdf(replaced(kArm, "revolute\">", "revolute\"><parent"), "no XML");
 }
 
 TEST(Urdf, RefusesFramesThatAreNotThere) {
   UrdfConfig config;
   config.base = "pelvis";
-  expect_refused(kArm, "pelvis: there is no such link to be the base", Errc::invalid_argument, config);
+  expect_bad_urdf(kArm, "pelvis: there is no such link to be the base", Errc::invalid_argument, config);
   config = {};
   config.tip = "hand";
-  expect_refused(kArm, "hand: there is no such link to be the tip", Errc::invalid_argument, config);
+  expect_bad_urdf(kArm, "hand: there is no such link to be the tip", Errc::invalid_argument, config);
   config = {};
   config.camera = "eye";
-  expect_refused(kArm, "eye: there is no such link to be the camera's frame", Errc::invalid_argument, config);
+  expect_bad_urdf(kArm, "eye: there is no such link to be the camera's frame", Errc::invalid_argument, config);
   config.camera = "arm";
   config.tip = "flange";
-  expect_refused(kArm, "link arm: the camera's frame is not fixed to the tip flange", Errc::invalid_argument, config);
+  expect_bad_urdf(kArm, "link arm: the camera's frame is not fixed to the tip flange", Errc::invalid_argument, config);
   config = {};
   config.base = "flange";
   config.tip = "arm";
-  expect_refused(kArm, "link arm: does not come behind the base flange", Errc::invalid_argument, config);
+  expect_bad_urdf(kArm, "link arm: does not come behind the base flange", Errc::invalid_argument, config);
   const std::string fork = R"(<joint name="other" type="continuous"><parent link="arm"/><child link="left"/></joint>
                               <link name="left"/>)";
-  expect_refused(with(fork), "several chains are equally long; name a tip: flange, left", Errc::invalid_argument);
+  expect_bad_urdf(with(fork), "several chains are equally long; name a tip: flange, left", Errc::invalid_argument);
 }
 
 TEST(Urdf, FindsMeshes) {
@@ -204,13 +204,13 @@ TEST(Urdf, FindsMeshes) {
   UrdfConfig config;
   config.packages["elsewhere"] = folder / "arm";
   EXPECT_TRUE(parse_urdf(mesh("package://elsewhere/meshes/t.obj"), {}, config));
-  expect_refused(mesh("package://nowhere/meshes/t.obj"),
-                 "link flange, mesh package://nowhere/meshes/t.obj: there is no package", Errc::not_found);
-  expect_refused(mesh("package://elsewhere/meshes/u.obj"), "is not in", Errc::not_found, config);
-  expect_refused(mesh("t.obj"), "there is no such file", Errc::not_found);
-  expect_refused(mesh("http://example.com/t.obj"), "only package:// and file:// are read", Errc::unsupported);
+  expect_bad_urdf(mesh("package://nowhere/meshes/t.obj"),
+                  "link flange, mesh package://nowhere/meshes/t.obj: there is no package", Errc::not_found);
+  expect_bad_urdf(mesh("package://elsewhere/meshes/u.obj"), "is not in", Errc::not_found, config);
+  expect_bad_urdf(mesh("t.obj"), "there is no such file", Errc::not_found);
+  expect_bad_urdf(mesh("http://example.com/t.obj"), "only package:// and file:// are read", Errc::unsupported);
   folder.write("arm/meshes/t.obj", "nothing");
-  expect_refused(mesh("package://elsewhere/meshes/t.obj"), "no mesh that can be read", Errc::corrupt_data, config);
+  expect_bad_urdf(mesh("package://elsewhere/meshes/t.obj"), "no mesh that can be read", Errc::corrupt_data, config);
 }
 
 TEST(BuiltinRobots, TheComauIsThatOfItsRows) {
