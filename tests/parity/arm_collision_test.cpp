@@ -33,7 +33,7 @@ struct Tally {
 
 void compare(const ArmModel& model) {
   ArmCollisionConfig config;
-  if (test::kSanitized) config.max_excess_m = 0.02;  // fewer balls
+  if (test::kSanitized) config.max_excess_m = 0.01;  // fewer balls
   const auto arm = ArmCollision::create(model, config);
   ASSERT_TRUE(arm.ok()) << arm.error().to_string();
   std::mt19937_64 random{11};
@@ -62,11 +62,11 @@ void compare(const ArmModel& model) {
   std::cout << model.name() << ": " << cases() << " configurations, " << 100.0 * share << " % collide; of " << all.free
             << " free ones " << all.called << " are called contacts; within " << 100.0 * kNear_m << " cm "
             << near.called << " of " << near.free << '\n';
+  EXPECT_GT(all.collisions, 0);
+  if (test::kSanitized) return;  // too few for shares, and covered by coarser balls
   EXPECT_GT(share, 0.3);
   EXPECT_LT(share, 0.7);
-  if (!test::kSanitized) {
-    EXPECT_LE(all.called, 0.05 * all.free);
-  }
+  EXPECT_LE(all.called, 0.05 * all.free);
 }
 
 TEST(ArmCollisionParity, BuiltInComauIsNeverFreeWhereFclCollides) { compare(find_robot("comau_smart_six")->arm); }
