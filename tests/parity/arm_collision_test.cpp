@@ -28,7 +28,6 @@ struct Tally {
   int free{0};        ///< by FCL
   int called{0};      ///< of these, contacts by ours
   int collisions{0};  ///< by FCL
-  int missed{0};      ///< of these, free by ours
 };
 
 void compare(const ArmModel& model) {
@@ -48,7 +47,6 @@ void compare(const ArmModel& model) {
     const bool ours = arm->contact(poses, obstacles).has_value();
     if (fcl.collides(poses)) {
       ++all.collisions;
-      all.missed += ours ? 0 : 1;
       EXPECT_TRUE(ours) << model.name() << " at " << q.transpose();
       continue;
     }
