@@ -77,23 +77,46 @@ int nesting_of(const std::string& xml) {
   return most;
 }
 
-/// One parent for every link, one root, and every link below it.
-Status check_tree(const urdf::ModelInterface& model) {
+struct JointLinks {
+  std::string parent;
+  std::string child;
+};
+
+/// Joints by name, as far as they are complete.
+std::map<std::string, JointLinks> joints_of(const TiXmlElement& robot) {
+  const auto link_in = [](const TiXmlElement& joint, const char* role) {
+    const TiXmlElement* element = joint.FirstChildElement(role);
+    return element == nullptr ? nullptr : element->Attribute("link");
+  };
+  std::map<std::string, JointLinks> joints;
+  for (const auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
+       joint = joint->NextSiblingElement("joint")) {
+    const char* name = joint->Attribute("name");
+    const char* parent = link_in(*joint, "parent");
+    const char* child = link_in(*joint, "child");
+    if (name != nullptr && parent != nullptr && child != nullptr) joints.emplace(name, JointLinks{parent, child});
+  }
+  return joints;
+}
+
+/// One joint above every link at most, and no link above itself. urdfdom never frees the links of a loop, so it does
+/// not get to see one.
+Status check_tree(const std::map<std::string, JointLinks>& joints) {
   std::map<std::string, std::string> joint_above;
-  for (const auto& [name, joint] : model.joints_) {
-    const auto [known, is_new] = joint_above.emplace(joint->child_link_name, name);
+  for (const auto& [name, links] : joints) {
+    const auto [known, is_new] = joint_above.emplace(links.child, name);
     if (is_new) continue;
     return corrupt(
         "has two joints above it, " + known->second + " and " + name + "; the joints must form a tree, without loops",
-        "link " + joint->child_link_name);
+        "link " + links.child);
   }
-  for (const auto& [name, link] : model.links_) {
-    std::string above = name;
+  for (const auto& [link, ignored] : joint_above) {
+    std::string above = link;
     std::set<std::string> seen;
     for (auto at = joint_above.find(above); at != joint_above.end(); at = joint_above.find(above)) {
-      if (!seen.insert(above).second) return corrupt("is part of a loop of joints", "link " + name);
-      if (seen.size() > kMostNested) return corrupt("has too many links before it", "link " + name);
-      above = model.joints_.at(at->second)->parent_link_name;
+      if (!seen.insert(above).second) return corrupt("is part of a loop of joints", "link " + link);
+      if (seen.size() > kMostNested) return corrupt("has too many links before it", "link " + link);
+      above = joints.at(at->second).parent;
     }
   }
   return {};
@@ -139,8 +162,8 @@ Result<UrdfDocument> parse_urdf_document(const std::string& urdf) {
     return corrupt("no URDF: it begins with <" + xml.RootElement()->ValueStr() + ">, not with <robot>");
   UrdfDocument document;
   SACCADE_TRY(document.accelerations, accelerations_of(*xml.RootElement()));
+  SACCADE_CHECK(check_tree(joints_of(*xml.RootElement())));
   SACCADE_TRY(document.model, parse_quietly(urdf));
-  SACCADE_CHECK(check_tree(*document.model));
   return document;
 }
 

@@ -140,7 +140,7 @@ TEST(Urdf, SaysWhatIsWrongAndWhere) {
   expect_bad_urdf(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="arm"/></joint>)"),
                   "link arm: has two joints above it, back and turn; the joints must form a tree");
   expect_bad_urdf(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="base"/></joint>)"),
-                  "root");
+                  "loop of joints");
   expect_bad_urdf(with(R"(<joint name="on" type="fixed"><parent link="flange"/><child link="nowhere"/></joint>)"),
                   "nowhere");
   expect_bad_urdf(replaced(kArm, "0 0 2", "0 0 0"), "joint turn: its axis has no length");
