@@ -13,8 +13,11 @@ constexpr double kInfinity{std::numeric_limits<double>::infinity()};
 
 Error wrong(const std::string& what, const std::string& where) { return {Errc::invalid_argument, what, where}; }
 
+/// And such as an arm can have: lengths of numbers without bounds add up to infinity.
 bool rigid(const Pose& T) {
-  return T.matrix().allFinite() && (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm() <= 1e-9 &&
+  constexpr double kFarthest_m{1000.0};
+  return T.matrix().allFinite() && T.translation().cwiseAbs().maxCoeff() <= kFarthest_m &&
+         (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm() <= 1e-9 &&
          T.linear().determinant() > 0.0;
 }
 
@@ -36,7 +39,7 @@ Status check_joint(ArmJoint& joint) {
   const double length = joint.axis_joint.norm();
   if (!std::isfinite(length) || length < kShortestAxis) return wrong("its axis has no length", where);
   joint.axis_joint /= length;
-  if (!rigid(joint.T_parent_joint)) return wrong("its origin is no rigid transform", where);
+  if (!rigid(joint.T_parent_joint)) return wrong("its origin is no rigid transform, or goes farther than 1 km", where);
   SACCADE_CHECK(check_limits(joint, where));
   if (joint.kind == JointKind::continuous) {
     joint.limits.lower = -kInfinity;
@@ -76,7 +79,8 @@ Status check_shape(const MeshBody& body, const std::string& where) {
 Status check_link(const ArmLink& link) {
   for (const CollisionBody& body : link.bodies) {
     const std::string where = "link " + (body.name.empty() ? link.name : body.name);
-    if (!rigid(body.T_link_body)) return wrong("the origin of a collision body is no rigid transform", where);
+    if (!rigid(body.T_link_body))
+      return wrong("the origin of a collision body is no rigid transform, or goes farther than 1 km", where);
     SACCADE_CHECK(std::visit([&where](const auto& shape) { return check_shape(shape, where); }, body.shape));
   }
   return {};
@@ -109,9 +113,12 @@ Result<ArmModel> ArmModel::create(ArmDescription description) {
   if (description.links.size() != description.joints.size() + 1) return wrong("needs one link more than joints", where);
   for (ArmJoint& joint : description.joints) SACCADE_CHECK(check_joint(joint));
   for (const ArmLink& link : description.links) SACCADE_CHECK(check_link(link));
-  if (!rigid(description.T_world_base)) return wrong("the pose of its base is no rigid transform", where);
-  if (!rigid(description.T_link_flange)) return wrong("the pose of its flange is no rigid transform", where);
-  if (!rigid(description.T_flange_camera)) return wrong("its hand-eye transform is no rigid transform", where);
+  if (!rigid(description.T_world_base))
+    return wrong("the pose of its base is no rigid transform, or goes farther than 1 km", where);
+  if (!rigid(description.T_link_flange))
+    return wrong("the pose of its flange is no rigid transform, or goes farther than 1 km", where);
+  if (!rigid(description.T_flange_camera))
+    return wrong("its hand-eye transform is no rigid transform, or goes farther than 1 km", where);
   return ArmModel{std::move(description)};
 }
 

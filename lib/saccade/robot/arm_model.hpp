@@ -100,9 +100,10 @@ struct ArmDescription {
 class ArmModel {
  public:
   /// invalid_argument, with the joint or link at fault, for no joint or more than kMaxJoints, numbers of links and
-  /// joints that disagree, an axis shorter than 1e-6, transforms that are not rigid, limits that are not finite (but
-  /// for the positions of continuous joints, which become infinite), lower ≥ upper, speeds or accelerations that are
-  /// not positive, sizes of bodies that are not, and meshes without triangles or with bad indices.
+  /// joints that disagree, an axis shorter than 1e-6, transforms that are not rigid or longer than 1 km, limits that
+  /// are not finite (but for the positions of continuous joints, which become infinite), lower ≥ upper, speeds or
+  /// accelerations that are not positive, sizes of bodies that are not, and meshes without triangles or with bad
+  /// indices.
   [[nodiscard]] static Result<ArmModel> create(ArmDescription description);
 
   [[nodiscard]] const std::string& name() const { return description_.name; }
