@@ -44,9 +44,10 @@ const Scene& scene() {
 }
 
 void free_arms(benchmark::State& state) {
+  const Scene& of = scene();
   std::size_t i{0};
   for (auto _ : state) {
-    benchmark::DoNotOptimize(scene().arm.contact(scene().free[i], scene().obstacles));
+    benchmark::DoNotOptimize(of.arm.contact(of.free[i], of.obstacles));
     i = (i + 1) % kFree;
   }
   state.SetItemsProcessed(state.iterations());
@@ -66,9 +67,10 @@ BENCHMARK(fcl_free_arms)->Unit(benchmark::kMicrosecond);
 
 /// From one free configuration straight to the next, the first contact if there is one.
 void motions(benchmark::State& state) {
+  const Scene& of = scene();
   std::size_t i{0};
   for (auto _ : state) {
-    benchmark::DoNotOptimize(scene().arm.motion_contact(scene().free[i], scene().free[i + 1], scene().obstacles));
+    benchmark::DoNotOptimize(of.arm.motion_contact(of.free[i], of.free[i + 1], of.obstacles));
     i = (i + 1) % (kFree - 1);
   }
 }

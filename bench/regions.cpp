@@ -56,8 +56,8 @@ Result<std::vector<Case>> cases_of(const std::string& name, const Executor& exec
   SACCADE_TRY(FreeRobot robot, flying_camera(rays));
   ExplorationCell cell{config.camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); },
                        robot};
-  SACCADE_TRY(const bool scanned, scan(map, cell, rays.scene().scan, config.exploration, executor));
-  SACCADE_EXPECTS(scanned);
+  SACCADE_TRY(const ScanResult scanned, scan(map, cell, rays.scene().scan, config.exploration, executor));
+  SACCADE_EXPECTS(scanned.complete);
 
   const std::vector<Eigen::Vector3d> points = surface_points(map.content());
   std::mt19937 random{1};

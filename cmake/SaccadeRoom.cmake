@@ -17,6 +17,9 @@ if(SACCADE_SANITIZE)
   target_compile_options(saccade_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${SACCADE_SANITIZE}
                          -fno-sanitize-recover=all -fno-omit-frame-pointer>)
   target_link_options(saccade_flags INTERFACE $<BUILD_INTERFACE:-fsanitize=${SACCADE_SANITIZE}>)
+  # With AddressSanitizer Eigen takes its own allocator instead of malloc. That of a program replaces the one in OMPL's
+  # library, which still frees by free.
+  target_compile_definitions(saccade_flags INTERFACE $<BUILD_INTERFACE:EIGEN_MALLOC_ALREADY_ALIGNED=1>)
   # Kernels for two instruction sets instead of three: the widest differs from AVX2 in nothing but the number of lanes.
   target_compile_definitions(saccade_flags INTERFACE "$<BUILD_INTERFACE:HWY_DISABLED_TARGETS=(HWY_AVX3|HWY_AVX3_DL)>")
   if(SACCADE_SANITIZE MATCHES "thread")

@@ -44,6 +44,9 @@ def check_results(folder):
 
 
 def benchmarks_of(program):
+    """Empty where the program was not built."""
+    if not program.exists():
+        return set()
     listed = subprocess.run([program, "--benchmark_list_tests"], capture_output=True, text=True, check=True)
     return {plain_name(line.strip()) for line in listed.stdout.splitlines()}
 

@@ -73,6 +73,9 @@ scripts/install_packages.sh program tests
 configure release -DSACCADE_BUILD_TESTS=ON && compile release parity >"$out/build_parity.log" || failed=1
 step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity '--gtest_filter=ArmCollision*'
 
+echo "Motions of the arm beside FCL: ten seeds, all built-in scenes"
+step motion_planning env SACCADE_PLANNING_SEEDS=10 build/release/tests/parity '--gtest_filter=MotionPlanning*'
+
 echo "Fuzzing"
 scripts/build_fuzzers.sh >"$out/build_fuzzers.log" || failed=1
 for source in tests/fuzz/fuzz_*.cpp; do

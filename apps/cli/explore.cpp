@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade explore: a camera looks, fuses and decides where to look next, until a scene is known.
 #include <CLI/CLI.hpp>
+#include <array>
 #include <iomanip>
 #include <iostream>
+#include <map>
 #include <memory>
 #include <optional>
 
@@ -17,6 +19,7 @@
 #include "saccade/io/sacmap.hpp"
 #include "saccade/io/ternary_export.hpp"
 #include "saccade/map/mesh.hpp"
+#include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -49,6 +52,38 @@ Status make_room(const ExploreOptions& options, const RunFolder& out) {
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
 }
 
+std::string phases_text(const json& phases) {
+  constexpr std::array<std::pair<const char*, const char*>, 7> kPhases{{{"candidates", "candidates"},
+                                                                        {"reachability", "reachability"},
+                                                                        {"evaluation", "evaluation"},
+                                                                        {"planner_map", "planner's map"},
+                                                                        {"planning", "motion planning"},
+                                                                        {"fusion", "fusion"},
+                                                                        {"robot", "robot's motion (simulated)"}}};
+  std::string text;
+  for (const auto& [key, name] : kPhases) {
+    const double s = phases.value(key, 0.0);
+    if (s <= 0.0) continue;
+    text += (text.empty() ? "" : ", ") + std::string{name} + " " + fixed(s, s < 10.0 ? 2 : 1) + " s";
+  }
+  return text.empty() ? "-" : text;
+}
+
+/// Why views were not taken, over all views; empty: none was refused.
+std::string refused_text(const json& views) {
+  std::map<std::string, std::size_t> counts;
+  std::size_t candidates = 0;
+  for (const json& view : views) {
+    candidates += view["candidates"].get<std::size_t>();
+    for (const auto& [reason, count] : view["refused"].items()) counts[reason] += count.get<std::size_t>();
+  }
+  std::string text;
+  for (const auto& [reason, count] : counts) {
+    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
+  }
+  return text.empty() ? "" : text + " of " + std::to_string(candidates) + " candidates";
+}
+
 void print_summary(const ExploreOptions& options, const json& result) {
   const auto percent = [](const json& coverage) { return 100.0 * coverage.get<double>(); };
   std::cout << std::fixed << std::setprecision(1);
@@ -68,8 +103,23 @@ void print_summary(const ExploreOptions& options, const json& result) {
               << 1e3 * final["chamfer_m"].get<double>() << " mm, F-score at 5 mm " << std::setprecision(3)
               << final["f_score"].get<double>() << '\n';
   }
-  std::cout << "stopped   " << result["stopped_because"].get<std::string>() << '\n'
+  const std::string refused = refused_text(result["views"]);
+  if (!refused.empty()) std::cout << "refused   " << refused << '\n';
+  std::cout << "time      " << phases_text(result["phases_s"]) << '\n'
+            << "stopped   " << result["stopped_because"].get<std::string>() << '\n'
             << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
+}
+
+/// Seconds of all views per phase, as in Table 3.1 of the thesis.
+json phases_json(const json& views) {
+  json phases = json::object();
+  for (const json& view : views) {
+    for (const auto& [phase, ms] : view["ms"].items()) {
+      phases[phase] = phases.value(phase, 0.0) + 1e-3 * ms.get<double>();
+    }
+    phases["robot"] = phases.value("robot", 0.0) + view["motion_s"].get<double>();
+  }
+  return phases;
 }
 
 json result_json(const ExploreOptions& options, const ExploreCase& subject, const ExploreDevices& devices,
@@ -85,6 +135,7 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"interrupted", reason == StopReason::cancelled},
           {"initial", run.initial()},
           {"views", run.views()},
+          {"phases_s", phases_json(run.views())},
           {"final", run.final()},
           {"stopped_because", to_string(reason)}};
 }
@@ -95,6 +146,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   ProgressBar progress{global.quiet};
   SACCADE_CHECK(check_json_output(global));
   SACCADE_CHECK(check_journal(options));
+  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options));  // before anything is written
   SACCADE_TRY(const RunFolder out,
               RunFolder::open(options.out, {}, options.resume ? "journal.json" : "run.json", options.force));
   SACCADE_CHECK(make_room(options, out));
@@ -103,7 +155,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
     SACCADE_TRY(saved, load_journal(out.path(), executor));
   }
   SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
-  SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, executor));
+  SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
   SACCADE_TRY(ExploreRun run, ExploreRun::create(options, subject, devices, out, executor, progress));
   if (saved) SACCADE_CHECK(run.resume(std::move(*saved)));
 

@@ -10,6 +10,7 @@
 #include "explore_options.hpp"
 #include "saccade/io/external_camera.hpp"
 #include "saccade/io/external_robot.hpp"
+#include "saccade/robot/arm_silhouette.hpp"
 
 namespace saccade::cli {
 
@@ -20,6 +21,8 @@ struct ExploreCase {
   std::optional<Truth> truth;    ///< for a simulated camera
 };
 
+/// The arm that the options name; none where something else carries the camera. Errors: those of find_robot.
+[[nodiscard]] Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options);
 /// The built-in scene or file.
 [[nodiscard]] Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& executor);
 
@@ -27,25 +30,32 @@ class ExploreDevices {
  public:
   /// Starts what has to be started. Errors: those of the camera and the robot.
   [[nodiscard]] static Result<ExploreDevices> open(const ExploreOptions& options, const ExploreCase& subject,
-                                                   const Executor& executor);
+                                                   const std::optional<ArmModel>& arm, const Executor& executor);
 
   [[nodiscard]] const PinholeCamera& camera() const;
   [[nodiscard]] Robot& robot() { return *robot_; }
-  /// Takes a frame and remembers it.
+  /// The arm, if it is one that we move ourselves.
+  [[nodiscard]] const ArmModel* arm() const { return silhouette_ ? &silhouette_->arm() : nullptr; }
+  /// Takes a frame, without the arm where that stands in its own picture, and remembers it.
   [[nodiscard]] Result<Frame> observe(const Pose& T_world_camera);
   [[nodiscard]] std::size_t frames() const { return frames_; }
   /// Goes on as if so many frames had been taken.
   void resume_at(std::size_t frames);
+  /// The arm stands as in the interrupted run. invalid_argument.
+  [[nodiscard]] Status place_arm(const Configuration& q);
   /// The frames since the last call.
   std::vector<Frame> take_frames() { return std::exchange(seen_, {}); }
 
  private:
   using Camera = std::variant<SimulatedCamera, ExternalCamera>;
-  ExploreDevices(Camera camera, std::unique_ptr<Robot> robot, const Executor& executor)
-      : camera_{std::move(camera)}, robot_{std::move(robot)}, executor_{executor} {}
+  ExploreDevices(Camera camera, std::unique_ptr<Robot> robot, std::shared_ptr<const ArmSilhouette> silhouette,
+                 const Executor& executor)
+      : camera_{std::move(camera)}, robot_{std::move(robot)}, silhouette_{std::move(silhouette)}, executor_{executor} {}
+  [[nodiscard]] Result<Frame> capture(const Pose& T_world_camera);
 
   Camera camera_;
   std::unique_ptr<Robot> robot_;
+  std::shared_ptr<const ArmSilhouette> silhouette_;  ///< of an arm that we move ourselves
   Executor executor_;
   std::size_t frames_{0};
   std::vector<Frame> seen_;

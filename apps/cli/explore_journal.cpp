@@ -43,8 +43,8 @@ Status remove_checkpoints(const fs::path& folder, const std::string& but) {
 Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, const Executor& executor) const {
   const std::string checkpoint = "checkpoint-" + std::to_string(views.size()) + ".sacmap";
   SACCADE_CHECK(save_map(map, folder / checkpoint, executor));
-  json document{{"schema", kSchema}, {"settings", settings}, {"map", checkpoint},
-                {"frames", frames},  {"initial", initial},   {"views", views}};
+  json document{{"schema", kSchema},  {"settings", settings}, {"map", checkpoint}, {"frames", frames},
+                {"initial", initial}, {"views", views},       {"arm", arm}};
   document["crc32"] = checksum_of(document);
   SACCADE_CHECK(write_json(folder / kFile, document));
   return remove_checkpoints(folder, checkpoint);
@@ -67,7 +67,7 @@ Result<SavedExploration> load_journal(const fs::path& folder, const Executor& ex
     if (document.at("crc32") != checksum_of(document)) throw std::runtime_error{"its checksum is another"};
     const auto checkpoint = document.at("map").get<std::string>();
     ExploreJournal journal{document.at("settings"), document.at("initial"), document.at("views"),
-                           document.at("frames").get<std::size_t>()};
+                           document.at("frames").get<std::size_t>(), document.value("arm", json(nullptr))};
     SACCADE_TRY(TsdfSnapshot map, load_map(folder / checkpoint, executor));
     return SavedExploration{std::move(journal), std::move(map)};
   } catch (const std::exception& e) {

@@ -16,6 +16,7 @@ struct ExploreJournal {
   nlohmann::json initial;   ///< as in the result
   nlohmann::json views = nlohmann::json::array();
   std::size_t frames{0};  ///< that the camera has taken
+  nlohmann::json arm;     ///< joint values as it stands; null for what is no arm
 
   /// Writes the map and then the journal that names it, and removes the map of the last time: whatever happens in
   /// between, one complete pair is there. io_failure.

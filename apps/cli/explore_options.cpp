@@ -6,6 +6,39 @@
 
 namespace saccade::cli {
 
+namespace {
+
+void add_arm_options(CLI::App& command, ExploreOptions& options) {
+  command
+      .add_option("--fixture", options.fixtures,
+                  "a solid box that the arm keeps clear of, besides those of the scene; may be repeated")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  command
+      .add_option("--free", options.free,
+                  "a box that is known to be empty in the beginning; may be repeated. What the arm sweeps in its "
+                  "initial scan is taken to be empty anyway")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  command
+      .add_option("--obstacle-cell", options.arm.obstacles.cell_size_m,
+                  "edge of the cells in which the arm plans, metres; one is an obstacle if any voxel in it is")
+      ->type_name("METRES")
+      ->capture_default_str();
+  command.add_flag("--unknown-is-free{false}", options.arm.obstacles.unknown_is_obstacle,
+                   "let the arm move through space that was never seen");
+  command.add_option("--planner", options.arm.planner.planner, "OMPL's name of the planner that finds paths")
+      ->check(CLI::IsMember(planner_names()))
+      ->type_name("NAME")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+std::vector<Box> ExploreOptions::free_boxes() const {
+  std::vector<Box> boxes;
+  for (const std::string& text : free) boxes.push_back(parse_box("--free", text));
+  return boxes;
+}
+
 void add_explore_options(CLI::App& command, ExploreOptions& options) {
   command.add_option("scene", options.scene, "name of a built-in scene, clutter:SEED, or a YAML file")
       ->required()
@@ -20,9 +53,12 @@ void add_explore_options(CLI::App& command, ExploreOptions& options) {
       ->capture_default_str();
   add_run_options(command, options);
 
-  command.add_option("--robot", options.robot, "what carries the camera; free: it flies")
-      ->check(CLI::IsMember(std::set<std::string>{"free"}))
-      ->capture_default_str();
+  command
+      .add_option("--robot", options.robot,
+                  "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
+                  "--camera-command")
+      ->type_name("ROBOT");
+  add_arm_options(command, options);
   command.add_option("--robot-command", options.robot_command, "a program that moves a robot (docs/processes.md)")
       ->type_name("COMMAND")
       ->excludes("--robot");
@@ -49,6 +85,14 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
   options.run.strategy = *strategy;
   options.run.seed = global.seed;
+  if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";
+  for (const std::string& text : options.fixtures) {
+    options.arm.obstacles.fixtures.push_back(parse_box("--fixture", text));
+  }
+  options.arm.planner.seed = global.seed;
+  require_positive(options.arm.obstacles.cell_size_m, "--obstacle-cell");
+  require_ok(options.arm.validate(), "--obstacle-cell, --fixture");
+  static_cast<void>(options.free_boxes());
 }
 
 }  // namespace saccade::cli

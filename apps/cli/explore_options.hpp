@@ -5,6 +5,7 @@
 #include <filesystem>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "command.hpp"
 #include "run_options.hpp"
@@ -14,7 +15,10 @@ namespace saccade::cli {
 struct ExploreOptions : RunOptions {
   std::string scene;
   std::filesystem::path out;
-  std::string robot{"free"};
+  std::string robot;  ///< a built-in arm, a URDF, or free; empty: an arm, or free with a camera of one's own
+  std::vector<std::string> fixtures;  ///< as they were given
+  std::vector<std::string> free;      ///< boxes, too
+  ArmRobotConfig arm;
   std::string robot_command;   ///< a program that moves a robot; empty: robot
   std::string camera_command;  ///< a program that has a camera; empty: a simulated one
   double process_timeout_s{60.0};
@@ -23,6 +27,10 @@ struct ExploreOptions : RunOptions {
   bool write_pictures{true};
   bool force{false};
   std::string strategy{"sphere"};  ///< as it was given
+
+  [[nodiscard]] bool has_arm() const { return robot_command.empty() && robot != "free"; }
+  /// Boxes that are known to be free from the beginning.
+  [[nodiscard]] std::vector<Box> free_boxes() const;
 };
 
 /// Adds the options to the command.

@@ -10,6 +10,7 @@
 #include "saccade/io/image_io.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/run_report.hpp"
+#include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -51,9 +52,19 @@ ReportView view_of(const RunFolder& out, const json& view) {
   shown.unknown_left = view.at("unknown_left").get<std::size_t>();
   shown.unknown_near_objects = optional_of<std::size_t>(view.at("unknown_near_objects"));
   shown.points_at_object = optional_of<bool>(view.at("points_at_object"));
-  for (const char* phase : {"candidates", "evaluation", "motion", "fusion"}) {
+  for (const char* phase :
+       {"planner_map", "candidates", "reachability", "evaluation", "planning", "motion", "fusion"}) {
     shown.phases.push_back({phase, view.at("ms").at(phase).get<double>()});
   }
+  if (const double motion_s = view.value("motion_s", 0.0); motion_s > 0.0) {
+    shown.facts.emplace_back(
+        "robot", fixed(motion_s, 1) + " s, camera's way " + fixed(view.at("path_m").get<double>(), 2) + " m");
+  }
+  std::string refused;
+  for (const auto& [reason, count] : view.at("refused").items()) {
+    refused += (refused.empty() ? "" : ", ") + std::to_string(count.get<std::size_t>()) + " " + reason;
+  }
+  if (!refused.empty()) shown.facts.emplace_back("refused", refused);
   shown.pictures = pictures_of(
       out, shown.index,
       {{{}, "The chosen view among its candidates", "The candidates around the region and the chosen view", "choice"},
@@ -78,20 +89,26 @@ Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor&
     candidates.push_back({proposal.T_world_camera, proposal.gain});
   CandidatesPictureConfig config;
   config.sensor = scenes.camera;
-  SACCADE_CHECK(write_png(
-      out / picture_name(scenes.number, "choice"),
-      candidates_picture({scenes.before, scenes.region, candidates, scenes.view.T_world_camera, scenes.T_world_earlier},
-                         executor, config)));
+  SACCADE_CHECK(write_png(out / picture_name(scenes.number, "choice"),
+                          candidates_picture({scenes.before, scenes.region, candidates, scenes.view.T_world_camera,
+                                              scenes.T_world_earlier, scenes.robot},
+                                             executor, config)));
   if (!scenes.frames.empty()) {
     const Frame& middle = scenes.frames[scenes.frames.size() / 2];
     const DepthScale scale{scenes.camera.min_range_m, scenes.camera.max_range_m};
     SACCADE_CHECK(write_png(out / picture_name(scenes.number, "seen"), seen_picture(middle, scale)));
   }
-  return write_png(out / picture_name(scenes.number, "map"), map_picture(scenes.after, scenes.workspace, executor));
+  MapPictureConfig map;
+  map.robot = scenes.robot;
+  return write_png(out / picture_name(scenes.number, "map"),
+                   map_picture(scenes.after, scenes.workspace, executor, map));
 }
 
-Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace, const Executor& executor) {
-  return write_png(out / picture_name(0, "map"), map_picture(map, workspace, executor));
+Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace, const Executor& executor,
+                 const RobotDrawing* robot) {
+  MapPictureConfig config;
+  config.robot = robot;
+  return write_png(out / picture_name(0, "map"), map_picture(map, workspace, executor, config));
 }
 
 bool is_view_picture(const std::string& file_name) {
@@ -105,6 +122,7 @@ Status write_report(const RunFolder& out, const json& document, const ExploreOpt
   report.title = "Exploration of " + report.scene;
   report.strategy = result.at("strategy").get<std::string>();
   report.robot = result.at("robot").get<std::string>();
+  report.draws_robot = options.has_arm();
   report.noise = !options.camera_command.empty() ? "" : result.at("noise").get<bool>() ? "Kinect v1" : "none";
   report.seed = document.at("seed").get<std::uint64_t>();
   report.threads = document.at("threads").get<std::size_t>();

@@ -7,6 +7,7 @@
 
 #include "explore_devices.hpp"
 #include "run_folder.hpp"
+#include "saccade/report/robot_drawing.hpp"
 
 namespace saccade::cli {
 
@@ -22,13 +23,14 @@ struct ViewScenes {
   const std::vector<Frame>& frames;  ///< of the oscillation, the view itself in the middle
   const Box& workspace;
   PinholeCamera camera;
+  const RobotDrawing* robot{nullptr};  ///< drawn at the view; none: the camera flies
 };
 
 /// Writes view-NN-choice.png, view-NN-seen.png and view-NN-map.png. io_failure.
 [[nodiscard]] Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor& executor);
 /// Writes view-00-map.png.
 [[nodiscard]] Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace,
-                               const Executor& executor);
+                               const Executor& executor, const RobotDrawing* robot = nullptr);
 [[nodiscard]] bool is_view_picture(const std::string& file_name);
 
 /// Writes report.html from the document that goes to run.json and the pictures in the folder; pictures that are not

@@ -13,6 +13,7 @@
 #include "interrupt.hpp"
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/json_io.hpp"
+#include "saccade/robot/arm_mesh.hpp"
 #include "saccade/scene/scene_hash.hpp"
 
 namespace saccade::cli {
@@ -28,6 +29,34 @@ json gain_json(double gain) {
   return gain >= 0.0 && gain < kExact && gain == std::floor(gain) ? json(static_cast<std::uint64_t>(gain)) : json(gain);
 }
 
+json configuration_json(const std::optional<Configuration>& q) {
+  return q ? json(std::vector<double>(q->begin(), q->end())) : json(nullptr);
+}
+
+/// Reasons that occurred.
+json refused_json(const RefusalCounts& refused) {
+  json counts = json::object();
+  for (const Refusal refusal : kRefusals) {
+    if (refused.of(refusal) > 0) counts[std::string{to_string(refusal)}] = refused.of(refusal);
+  }
+  return counts;
+}
+
+double length_m(const std::vector<Eigen::Vector3d>& path) {
+  double sum_m = 0.0;
+  for (std::size_t i = 1; i < path.size(); ++i) sum_m += (path[i] - path[i - 1]).norm();
+  return sum_m;
+}
+
+/// The arm at the end of its camera's path; none where there is no arm.
+std::optional<RobotDrawing> drawing_of(const ArmModel* arm, const std::optional<Configuration>& q,
+                                       const std::vector<Eigen::Vector3d>& path) {
+  if (arm == nullptr || !q) return std::nullopt;
+  constexpr double kTall_m{0.9};  // an arm rises about so far above its first joint
+  const Eigen::Vector3d p_base = (arm->T_world_base() * arm->joint(0).T_parent_joint).translation();
+  return RobotDrawing{arm_mesh(*arm, *q), path, p_base, {p_base + kTall_m * Eigen::Vector3d::UnitZ()}};
+}
+
 /// All that decides how a run goes on.
 json settings_of(const ExploreOptions& options, const ExploreCase& subject, const PinholeCamera& camera) {
   const SimulatedRunConfig& run = options.run;
@@ -35,6 +64,11 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
           {"scene_hash", subject.rays ? scene_hash(*subject.rays) : ""},
           {"strategy", to_string(run.strategy)},
           {"robot", options.robot_command.empty() ? options.robot : options.robot_command},
+          {"fixtures", options.fixtures},
+          {"free", options.free},
+          {"obstacle_cell_m", options.arm.obstacles.cell_size_m},
+          {"unknown_is_obstacle", options.arm.obstacles.unknown_is_obstacle},
+          {"planner", options.arm.planner.planner},
           {"camera", options.camera_command.empty() ? "simulated" : options.camera_command},
           {"intrinsics", camera_to_json(camera)},
           {"noise", run.noise},
@@ -43,7 +77,8 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
           {"truncation_vox", run.truncation_vox},
           {"radii_m", run.sphere.radii_m},
           {"gain_width_px", run.gain_width_px},
-          {"min_gain", run.exploration.min_gain}};
+          {"min_gain", run.exploration.min_gain},
+          {"good_enough", run.exploration.good_enough}};
 }
 
 Result<std::vector<ExploredView>> views_from_json(const json& views) {
@@ -114,7 +149,14 @@ Status ExploreRun::resume(SavedExploration saved) {
   map_ = TsdfMap{std::move(saved.map)};
   before_ = map_.snapshot();
   devices_.resume_at(journal_.frames);
-  return {};
+  if (journal_.arm.is_null()) return {};
+  try {
+    const auto values = journal_.arm.get<std::vector<double>>();
+    if (values.size() > kMaxJoints) throw std::runtime_error{"too many joints"};
+    return devices_.place_arm(Eigen::Map<const Eigen::VectorXd>{values.data(), std::ssize(values)});
+  } catch (const std::exception& e) {
+    return Error{Errc::corrupt_data, std::string{"the journal is damaged: "} + e.what(), out_.path().string()};
+  }
 }
 
 Result<StopReason> ExploreRun::run() {
@@ -130,9 +172,10 @@ Result<StopReason> ExploreRun::run() {
   const ExplorationConfig& config = options_.run.exploration;
   if (journal_.initial.is_null()) {
     progress_.update("initial scan", 0, 0);
-    SACCADE_TRY(const bool scanned, scan(map_, cell, subject_.scene.scan, config, executor_, hooks));
-    if (!scanned) return StopReason::cancelled;
-    SACCADE_CHECK(record_scan());
+    for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
+    SACCADE_TRY(const ScanResult scanned, scan(map_, cell, subject_.scene.scan, config, executor_, hooks));
+    if (!scanned.complete) return StopReason::cancelled;
+    SACCADE_CHECK(record_scan(scanned));
   }
   const std::vector<Region> regions = regions_of(subject_.scene);
   const std::unique_ptr<Strategy> strategy = make_strategy(options_.run, devices_.camera(), regions.size());
@@ -169,14 +212,20 @@ MeasuredMap ExploreRun::measure_now() const {
   return {{}, count_unknown(map(), subject_.scene.workspace)};
 }
 
-Status ExploreRun::record_scan() {
+Status ExploreRun::record_scan(const ScanResult& scanned) {
   const MeasuredMap measured = measure_now();
   journal_.initial = {{"coverage", subject_.truth ? json(measured.metrics.coverage) : json(nullptr)},
-                      {"unknown_left", measured.unknown_left}};
+                      {"unknown_left", measured.unknown_left},
+                      {"views", scanned.views},
+                      {"refused", refused_json(scanned.refused)}};
   journal_.frames = devices_.frames();
+  journal_.arm = configuration_json(devices_.robot().configuration());
   before_ = map_.snapshot();
   devices_.take_frames();
-  if (options_.write_pictures) SACCADE_CHECK(draw_scan(out_, map(), subject_.scene.workspace, executor_));
+  if (options_.write_pictures) {
+    const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), devices_.robot().configuration(), {});
+    SACCADE_CHECK(draw_scan(out_, map(), subject_.scene.workspace, executor_, robot ? &*robot : nullptr));
+  }
   return journal_.save(out_.path(), map(), executor_);
 }
 
@@ -185,16 +234,23 @@ Status ExploreRun::record_view(const ExploredView& view, const Proposals& propos
   json record{{"index", journal_.views.size()},
               {"region", view.region},
               {"gain", gain_json(view.gain)},
-              {"candidates", proposals.views.size()},
+              {"candidates", view.candidates},
+              {"refused", refused_json(view.refused)},
               {"frames", view.frames},
               {"T_world_camera", pose_to_json(view.T_world_camera)},
               {"unknown_left", measured.unknown_left},
               {"unknown_near_objects", nullptr},
               {"points_at_object", nullptr},
               {"coverage", nullptr},
+              {"q", configuration_json(view.q)},
+              {"motion_s", view.motion_s},
+              {"path_m", length_m(view.path)},
               {"ms",
-               {{"candidates", view.candidates_ms},
+               {{"planner_map", view.planner_map_ms},
+                {"candidates", view.candidates_ms},
+                {"reachability", view.reachability_ms},
                 {"evaluation", view.evaluation_ms},
+                {"planning", view.planning_ms},
                 {"motion", view.motion_ms},
                 {"fusion", view.fusion_ms}}}};
   if (subject_.truth) {
@@ -204,6 +260,7 @@ Status ExploreRun::record_view(const ExploredView& view, const Proposals& propos
   }
   journal_.views.push_back(std::move(record));
   journal_.frames = devices_.frames();
+  journal_.arm = configuration_json(devices_.robot().configuration());
   progress_.update("exploring", journal_.views.size(), static_cast<std::size_t>(options_.run.exploration.max_views));
   const std::vector<Frame> frames = devices_.take_frames();
   if (options_.write_pictures) SACCADE_CHECK(draw(view, proposals, frames));
@@ -228,9 +285,10 @@ Status ExploreRun::draw(const ExploredView& view, const Proposals& proposals, co
   std::vector<Pose> earlier;
   for (std::size_t i = 0; i + 1 < views.size(); ++i) earlier.push_back(views[i].T_world_camera);
   const Region region = regions_of(subject_.scene).at(view.region);
+  const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.q, view.path);
   return draw_view(out_,
                    {views.size(), before_, map(), region, view, proposals, std::move(earlier), frames,
-                    subject_.scene.workspace, devices_.camera()},
+                    subject_.scene.workspace, devices_.camera(), robot ? &*robot : nullptr},
                    executor_);
 }
 

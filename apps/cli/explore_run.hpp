@@ -31,7 +31,7 @@ class ExploreRun {
   ExploreRun(const ExploreOptions& options, const ExploreCase& subject, ExploreDevices& devices, const RunFolder& out,
              const Executor& executor, ProgressBar& progress, TsdfMap map);
   [[nodiscard]] Consent ask(const Proposal& view);
-  [[nodiscard]] Status record_scan();
+  [[nodiscard]] Status record_scan(const ScanResult& scanned);
   [[nodiscard]] Status record_view(const ExploredView& view, const Proposals& proposals);
   [[nodiscard]] Status draw(const ExploredView& view, const Proposals& proposals,
                             const std::vector<Frame>& frames) const;

@@ -41,6 +41,8 @@ Status write_json_output(const GlobalOptions& global, const nlohmann::json& docu
   return {};
 }
 
+nlohmann::json point_json(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
+
 double median_of(std::vector<double> values) {
   if (values.empty()) return 0.0;
   std::sort(values.begin(), values.end());

@@ -2,6 +2,7 @@
 #pragma once
 // The machine-readable result: its envelope, and writing it to a file or to standard output.
 
+#include <Eigen/Core>
 #include <map>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -25,6 +26,9 @@ using TimingsMs = std::map<std::string, double>;
 [[nodiscard]] Status check_json_output(const GlobalOptions& global);
 /// Does what --json asks for; nothing without it.
 [[nodiscard]] Status write_json_output(const GlobalOptions& global, const nlohmann::json& document);
+
+/// [x, y, z]
+[[nodiscard]] nlohmann::json point_json(const Eigen::Vector3d& p);
 
 /// Median; the mean of the middle two for an even count; 0 for none.
 [[nodiscard]] double median_of(std::vector<double> values);

@@ -13,7 +13,8 @@
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "json_output.hpp"
-#include "options.hpp"
+#include "robot_options.hpp"
+#include "robot_reach.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/urdf.hpp"
@@ -25,13 +26,6 @@ namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-struct RobotOptions {
-  std::string robot;
-  UrdfConfig urdf;
-  std::vector<std::string> packages;
-  bool drop_beyond_tip{false};
-};
 
 /// null for what is infinite.
 json number_json(double value) { return std::isfinite(value) ? json(value) : json(nullptr); }
@@ -133,7 +127,7 @@ void print_robot(const UrdfArm& read, const InverseKinematics& ik) {
     std::cout << std::left << std::setw(static_cast<int>(width)) << name << text << '\n';
 }
 
-Result<int> run_check(const RobotOptions& options, const GlobalOptions& global) {
+Result<int> run_check(const ArmOptions& options, const GlobalOptions& global) {
   const Stopwatch stopwatch;
   SACCADE_CHECK(check_json_output(global));
   SACCADE_TRY(const UrdfArm read, find_robot(options.robot, options.urdf));
@@ -144,39 +138,19 @@ Result<int> run_check(const RobotOptions& options, const GlobalOptions& global) 
   return static_cast<int>(ExitStatus::done);
 }
 
-/// "NAME=FOLDER".
-void add_package(const std::string& text, UrdfConfig& config) {
-  const std::size_t equals = text.find('=');
-  if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
-    usage_error("--package", "wants NAME=FOLDER, not " + text);
-  config.packages[text.substr(0, equals)] = text.substr(equals + 1);
-}
-
 }  // namespace
 
 void add_robot(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("robot", "checks descriptions of arms");
+  CLI::App* command = program.add_subcommand("robot", "checks descriptions of arms, and draws what they reach");
   command->require_subcommand(1);
-  auto options = std::make_shared<RobotOptions>();
+  auto options = std::make_shared<ArmOptions>();
   CLI::App* check = command->add_subcommand("check", "what a URDF says about an arm, and what is wrong with it");
-  check->add_option("robot", options->robot, "a URDF file, or the name of a built-in robot (comau_smart_six)")
-      ->required()
-      ->type_name("URDF");
-  check->add_option("--base", options->urdf.base, "link that the chain begins with; default: the root")
-      ->type_name("LINK");
-  check->add_option("--tip", options->urdf.tip, "flange; default: the end of the longest chain")->type_name("LINK");
-  check
-      ->add_option("--camera-frame", options->urdf.camera,
-                   "the camera's optical frame; default: camera_optical_frame if there is one, else the tip")
-      ->type_name("LINK");
-  check->add_option("--package", options->packages, "where package://NAME/… lies; may be repeated")
-      ->type_name("NAME=FOLDER");
-  check->add_flag("--drop-beyond-tip", options->drop_beyond_tip, "leave out what is fixed behind the tip");
+  add_arm_options(*check, *options)->required();
   check->callback([options, &global, &action] {
-    for (const std::string& package : options->packages) add_package(package, options->urdf);
-    options->urdf.keep_beyond_tip = !options->drop_beyond_tip;
+    check_arm_options(*options);
     action = [options, &global] { return run_check(*options, global); };
   });
+  add_robot_reach(*command, global, action);
 }
 
 }  // namespace saccade::cli

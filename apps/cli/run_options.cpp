@@ -14,6 +14,11 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->type_name("RAYS")
       ->capture_default_str();
   command
+      .add_option("--good-enough", options.run.exploration.good_enough,
+                  "share of the best view's gain at which another is as good, if the robot is there sooner")
+      ->type_name("SHARE")
+      ->capture_default_str();
+  command
       .add_option("--gain-width", options.run.gain_width_px,
                   "pixels across of the virtual sensor that views are chosen with")
       ->check(CLI::Range(1, 100000))

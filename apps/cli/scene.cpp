@@ -37,8 +37,6 @@ struct SceneOptions {
   bool force{false};
 };
 
-json point_json(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
-
 json scene_json(const RayScene& rays) {
   json objects = json::array();
   for (const SceneObject& object : rays.scene().objects) {

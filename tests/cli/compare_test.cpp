@@ -97,10 +97,10 @@ TEST(CompareCommand, HasTheFiguresOfExplore) {
   ASSERT_EQ(compared.status, 0) << compared.err;
   const std::vector<CampaignRun> runs = runs_in(folder / "out");
   ASSERT_EQ(runs.size(), 1U);
-  const Outcome explored = run_program(Arguments{"explore", "clutter:5", "--out", (folder / "run").string(), "--quiet",
-                                                 "--seed", "3", "--strategy", "random", "--max-views", "1",
-                                                 "--min-gain", "1", "--no-pictures", "--json", "-"} +
-                                       kCoarse);
+  const Outcome explored = run_program(
+      Arguments{"explore", "clutter:5", "--out", (folder / "run").string(), "--quiet", "--robot", "free", "--seed", "3",
+                "--strategy", "random", "--max-views", "1", "--min-gain", "1", "--no-pictures", "--json", "-"} +
+      kCoarse);
   ASSERT_EQ(explored.status, 0) << explored.err;
   const nlohmann::json result = explored.json().at("result");
   EXPECT_EQ(runs[0].initial.coverage, result.at("initial").at("coverage").get<double>());

@@ -42,9 +42,19 @@ TEST(ExploreCommand, GoesFromViewToView) {
     EXPECT_GE(view.at("gain").get<std::size_t>(), 5U);
     EXPECT_TRUE(pose_from_json(view.at("T_world_camera")));
     EXPECT_TRUE(view.at("points_at_object").is_boolean());
-    for (const char* phase : {"candidates", "evaluation", "motion", "fusion"})
+    for (const char* phase :
+         {"planner_map", "candidates", "reachability", "evaluation", "planning", "motion", "fusion"}) {
       EXPECT_GE(view.at("ms").at(phase).get<double>(), 0.0);
+    }
+    EXPECT_EQ(view.at("candidates"), 960);
+    EXPECT_GT(view.at("refused").at("no_ik").get<int>(), 0);
+    EXPECT_EQ(view.at("q").size(), 6U);
+    EXPECT_GT(view.at("motion_s").get<double>(), 0.0);
+    EXPECT_GT(view.at("path_m").get<double>(), 0.0);
   }
+  EXPECT_EQ(result.at("robot"), "comau");
+  EXPECT_GT(result.at("phases_s").at("robot").get<double>(), 0.0);
+  EXPECT_GE(result.at("initial").at("views").get<int>(), 1);
   const nlohmann::json& final = result.at("final");
   EXPECT_EQ(final.at("unknown_left"), unknown);
   EXPECT_GT(final.at("coverage").get<double>(), result.at("initial").at("coverage").get<double>());
@@ -91,6 +101,7 @@ TEST(ExploreCommand, TheSeedDecidesAndTheThreadsDoNot) {
 nlohmann::json figures(const fs::path& run) {
   nlohmann::json result = nlohmann::json::parse(text_of(run / "run.json")).at("result");
   result.erase("out");
+  result.erase("phases_s");
   for (nlohmann::json& view : result.at("views")) view.erase("ms");
   return result;
 }
@@ -141,7 +152,7 @@ TEST(ExploreCommand, CtrlCKeepsWhatWasSeen) {
 TEST(ExploreCommand, ADamagedJournalIsAnErrorAndNotACrash) {
   const TempFolder folder;
   const fs::path run = folder / "run";
-  const Arguments options{"--max-views", "2", "--min-gain", "5", "--no-pictures"};
+  const Arguments options{"--robot", "free", "--max-views", "2", "--min-gain", "5", "--no-pictures"};
   ASSERT_EQ(run_program(explore(run, options + Arguments{"--step"}), 0, "y\ny\ny\nq\n").status, 0);
   const std::string good = text_of(run / "journal.json");
   const auto resumed_with = [&](const std::string& journal) {
@@ -167,7 +178,8 @@ TEST(ExploreCommand, ADamagedJournalIsAnErrorAndNotACrash) {
 
 TEST(ExploreCommand, StepAsksBeforeEachMove) {
   const TempFolder folder;
-  const Arguments options{"--max-views", "2", "--min-gain", "5", "--no-pictures", "--step", "--json", "-"};
+  const Arguments options{"--robot", "free",          "--max-views", "2",      "--min-gain",
+                          "5",       "--no-pictures", "--step",      "--json", "-"};
   // The scan has two poses; of the views, one is skipped, one taken, and then the user leaves.
   const Outcome outcome = run_program(explore(folder / "run", options), 0, "y\ny\nwhat?\ns\ny\nq\n");
   EXPECT_EQ(outcome.status, 0) << outcome.err;
@@ -222,7 +234,12 @@ TEST(ExploreCommand, RefusesWhatItCannotDo) {
   };
   const fs::path out = folder / "out";
   refused({"explore", "atrium", "--out", out.string()}, 3, "no such scene");
-  refused(explore(out, {"--robot", "walking"}), 2, "--robot");
+  refused(explore(out, {"--robot", "walking"}), 3, "no such robot");
+  refused(explore(out, {"--planner", "teleport"}), 2, "--planner");
+  refused(explore(out, {"--obstacle-cell", "0"}), 2, "--obstacle-cell");
+  refused(explore(out, {"--fixture", "0,0,0,1,1"}), 2, "--fixture");
+  refused(explore(out, {"--free", "0,0,0,1,1,-1"}), 2, "--free");
+  refused(explore(out, {"--good-enough", "1.5"}), 2, "good enough");
   refused(explore(out, {"--strategy", "best"}), 2, "--strategy");
   refused(explore(out, {"--voxel-size", "-1"}), 2, "--voxel-size");
   EXPECT_FALSE(fs::exists(out));

@@ -15,7 +15,9 @@
 #include "saccade/map/icp.hpp"
 #include "saccade/map/tsdf_grid.hpp"
 #include "saccade/robot/arm_collision.hpp"
+#include "saccade/robot/arm_silhouette.hpp"
 #include "saccade/robot/inverse_kinematics.hpp"
+#include "saccade/robot/motion_planner.hpp"
 #include "saccade/robot/obstacle_map.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
@@ -64,6 +66,11 @@ TEST(Defaults, OfArmsAreDocumented) {
   expect_documented("NumericIkConfig::iterations", {static_cast<double>(ik.numeric.iterations)});
   expect_documented("UrdfConfig::default_speed", {UrdfConfig{}.default_speed});
   expect_documented("UrdfConfig::acceleration_time_s", {UrdfConfig{}.acceleration_time_s});
+  const ArmSilhouetteConfig silhouette;
+  expect_documented("ArmSilhouetteConfig::margin_m", {silhouette.margin_m});
+  expect_documented("ArmSilhouetteConfig::border_px", {silhouette.border_px});
+  expect_documented("ArmSilhouetteConfig::most_share", {silhouette.most_share});
+  expect_documented("ArmSilhouetteConfig::depth_error_per_m", {silhouette.depth_error_per_m});
 }
 
 TEST(Defaults, OfExplorationsAreDocumented) {
@@ -93,6 +100,14 @@ TEST(Defaults, OfObstaclesAreDocumented) {
   const ArmCollisionConfig arm;
   expect_documented("ArmCollisionConfig::max_excess_m", {arm.max_excess_m});
   expect_documented("ArmCollisionConfig::max_step_m", {arm.max_step_m});
+}
+
+TEST(Defaults, OfMotionPlanningAreDocumented) {
+  const MotionPlannerConfig planning;
+  EXPECT_EQ(documented("MotionPlannerConfig::planner"), " " + planning.planner + " ");
+  expect_documented("MotionPlannerConfig::max_motions", {static_cast<double>(planning.max_motions)});
+  expect_documented("MotionPlannerConfig::budget_s", {planning.budget_s});
+  expect_documented("MotionPlannerConfig::shortcut_tries", {static_cast<double>(planning.shortcut_tries)});
 }
 
 TEST(Defaults, OfTrackingAreDocumented) {

@@ -9,6 +9,7 @@
 #include <fcl/geometry/shape/cylinder.h>
 #include <fcl/geometry/shape/sphere.h>
 #include <fcl/narrowphase/collision.h>
+#include <fcl/narrowphase/distance.h>
 #include <limits>
 #include <memory>
 #include <random>
@@ -83,7 +84,7 @@ class FclArm {
     return false;
   }
 
-  /// To the nearest obstacle.
+  /// To the nearest obstacle, or between two links that are held against each other.
   [[nodiscard]] double distance_m(const ArmPoses& poses) {
     place(poses);
     double least_m = std::numeric_limits<double>::infinity();
@@ -92,6 +93,16 @@ class FclArm {
         fcl::DefaultDistanceData<double> data;
         world_.distance(body.object.get(), &data, fcl::DefaultDistanceFunction<double>);
         least_m = std::min(least_m, data.result.min_distance);
+      }
+    }
+    for (const auto& [a, b] : arm_.self_pairs()) {
+      for (const Body& of_a : links_[static_cast<std::size_t>(a)]) {
+        for (const Body& of_b : links_[static_cast<std::size_t>(b)]) {
+          const fcl::DistanceRequestd request;
+          fcl::DistanceResultd result;
+          fcl::distance(of_a.object.get(), of_b.object.get(), request, result);
+          least_m = std::min(least_m, result.min_distance);
+        }
       }
     }
     return least_m;

@@ -11,24 +11,40 @@
 namespace saccade {
 namespace {
 
-/// PerformRobotOscillation: frames from −oscillation to +oscillation about the camera's x axis, each one fused.
-/// Returns their number.
-Result<std::size_t> look(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_view, const ExplorationConfig& config,
-                         const Executor& executor) {
-  std::size_t frames = 0;
+/// Poses of the oscillation about the camera's x axis, from minus to plus. One: the view itself.
+std::vector<Pose> oscillation(const Pose& T_world_view, const ExplorationConfig& config) {
+  std::vector<Pose> poses;
   for (int i = 0; i < config.oscillation_frames; ++i) {
     const double share = config.oscillation_frames > 1 ? 2.0 * i / (config.oscillation_frames - 1) - 1.0 : 0.0;
-    const Pose wanted = T_world_view * Eigen::AngleAxisd{share * config.oscillation_rad, Eigen::Vector3d::UnitX()};
-    SACCADE_TRY(const std::optional<Pose> T_world_robot, cell.robot.move_to(wanted));
-    if (!T_world_robot) continue;
-    SACCADE_TRY(const Frame frame, cell.observe(*T_world_robot));
-    const ColorImage* color = frame.color ? &*frame.color : nullptr;
-    SACCADE_TRY(
-        [[maybe_unused]] const FusionStats stats,
-        map.integrate(cell.camera, frame.depth, frame.T_world_camera.value_or(*T_world_robot), executor, color));
-    ++frames;
+    poses.emplace_back(T_world_view * Eigen::AngleAxisd{share * config.oscillation_rad, Eigen::Vector3d::UnitX()});
   }
-  return frames;
+  return poses;
+}
+
+struct Look {
+  std::size_t frames{0};
+  double motion_s{0.0};
+};
+
+/// PerformRobotOscillation: a frame at each of its poses that the robot can take, each one fused.
+Result<Look> look(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_view, const ExplorationConfig& config,
+                  const Executor& executor) {
+  Look seen;
+  const std::vector<Pose> poses = oscillation(T_world_view, config);
+  for (const Pose& wanted : poses) {
+    SACCADE_TRY(const PlannedMotion planned, cell.robot.plan(std::span{&wanted, 1}, Way::straight));
+    if (!planned.motion) continue;
+    SACCADE_TRY(const std::optional<Arrival> arrival, cell.robot.execute(*planned.motion));
+    if (!arrival) continue;
+    seen.motion_s += arrival->motion_s;
+    SACCADE_TRY(const Frame frame, cell.observe(arrival->T_world_camera));
+    const ColorImage* color = frame.color ? &*frame.color : nullptr;
+    SACCADE_TRY([[maybe_unused]] const FusionStats stats,
+                map.integrate(cell.camera, frame.depth, frame.T_world_camera.value_or(arrival->T_world_camera),
+                              executor, color));
+    ++seen.frames;
+  }
+  return seen;
 }
 
 /// How the exploration of one region ended.
@@ -44,7 +60,7 @@ struct OpenRegion {
 
 /// How trying one view after the other came out: the view that the robot now stands at, if any.
 struct Choice {
-  std::optional<Proposal> view;
+  std::optional<Proposal> view{};
   bool stop{false};  ///< the caller said so
 };
 
@@ -75,39 +91,96 @@ struct Loop {
            });
   }
 
-  /// Tries the views in their order.
-  [[nodiscard]] Result<Choice> move_to_best(const Proposals& proposals, OpenRegion& open) const {
-    for (const Proposal& proposal : proposals.views) {
-      if (proposals.by_gain && !(proposal.gain >= config.min_gain)) continue;
-      if (attempted(proposal.T_world_camera, open)) continue;
-      const Consent consent = hooks.before_move ? hooks.before_move(proposal) : Consent::go;
+  /// Views that gain enough and were not tried, in their order.
+  [[nodiscard]] std::vector<Proposal> worth_trying(const Proposals& proposals, const OpenRegion& open) const {
+    std::vector<Proposal> left;
+    std::copy_if(proposals.views.begin(), proposals.views.end(), std::back_inserter(left), [&](const Proposal& view) {
+      return (!proposals.by_gain || view.gain >= config.min_gain) && !attempted(view.T_world_camera, open);
+    });
+    return left;
+  }
+
+  /// The first one and those behind it that are as good.
+  [[nodiscard]] std::span<const Proposal> best_of(std::span<const Proposal> left, bool by_gain) const {
+    constexpr std::size_t kMost{64};
+    std::size_t count = 1;
+    while (by_gain && count < std::min(kMost, left.size()) && left[count].gain >= config.good_enough * left[0].gain) {
+      ++count;
+    }
+    return left.first(count);
+  }
+
+  /// Tries the views in their order, and says in `view` what that took.
+  [[nodiscard]] Result<Choice> move_to_best(const Proposals& proposals, OpenRegion& open, ExploredView& view) const {
+    std::vector<Proposal> left = worth_trying(proposals, open);
+    while (!left.empty()) {
+      if (progress.cancelled()) return Choice{std::nullopt, true};
+      const std::span<const Proposal> best = best_of(left, proposals.by_gain);
+      std::vector<Pose> poses;
+      for (const Proposal& proposal : best) poses.push_back(proposal.T_world_camera);
+      Stopwatch stopwatch;
+      SACCADE_TRY(const PlannedMotion planned, cell.robot.plan(poses));
+      view.planning_ms += stopwatch.lap_ms();
+      if (!planned.motion) {
+        for (std::size_t i = 0; i < poses.size(); ++i) view.refused.add(planned.refusal.value_or(Refusal::declined));
+        open.out_of_reach = true;
+        open.refused.insert(open.refused.end(), poses.begin(), poses.end());
+        left.erase(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(poses.size()));
+        continue;
+      }
+      const auto chosen = left.begin() + static_cast<std::ptrdiff_t>(planned.motion->goal);
+      const Consent consent = hooks.before_move ? hooks.before_move(*chosen) : Consent::go;
       if (consent == Consent::stop) return Choice{std::nullopt, true};
       if (consent == Consent::go) {
-        SACCADE_TRY(const std::optional<Pose> reached, cell.robot.move_to(proposal.T_world_camera));
-        if (reached) return Choice{proposal};
+        stopwatch.lap_ms();
+        const OnWay on_way = [&view](const CameraSample& sample) {
+          view.path.emplace_back(sample.T_world_camera.translation());
+        };
+        SACCADE_TRY(const std::optional<Arrival> arrival, cell.robot.execute(*planned.motion, on_way));
+        view.motion_ms += stopwatch.lap_ms();
+        if (arrival) {
+          view.motion_s = arrival->motion_s;
+          return Choice{*chosen};
+        }
+        view.refused.add(Refusal::declined);
         open.out_of_reach = true;
       }
-      open.refused.push_back(proposal.T_world_camera);
+      open.refused.push_back(chosen->T_world_camera);
+      left.erase(chosen);
     }
     return Choice{};
   }
 
   /// NextBestView, move, look, until the region is done.
   [[nodiscard]] Result<RegionEnd> explore_region(OpenRegion open) const {
+    const PoseTest test = [this](std::span<const Pose> poses) { return cell.robot.test(poses, executor); };
     while (views.size() < static_cast<std::size_t>(config.max_views)) {
       if (progress.cancelled()) return RegionEnd::cancelled;
+      ExploredView view;
+      view.region = open.index;
       Stopwatch stopwatch;
+      SACCADE_CHECK(cell.robot.follow(map.content(), executor));
+      view.planner_map_ms = stopwatch.lap_ms();
       SACCADE_TRY(const Proposals proposals,
-                  strategy.propose({map.content(), open.region, open.index, views_of(open.index), executor}));
-      const double planning_ms = stopwatch.lap_ms();
-      SACCADE_TRY(const Choice choice, move_to_best(proposals, open));
-      if (choice.stop) return RegionEnd::cancelled;
-      if (!choice.view) return open.out_of_reach ? RegionEnd::out_of_reach : RegionEnd::done;
-      ExploredView view{open.index, choice.view->gain, choice.view->T_world_camera, proposals.views.size()};
+                  strategy.propose({map.content(), open.region, open.index, views_of(open.index), executor, test}));
+      view.candidates = std::max(proposals.candidates, proposals.views.size());
+      view.refused = proposals.refused;
       view.candidates_ms = proposals.candidates_ms;
-      view.evaluation_ms = planning_ms - proposals.candidates_ms;
-      view.motion_ms = stopwatch.lap_ms();
-      SACCADE_TRY(view.frames, look(map, cell, view.T_world_camera, config, executor));
+      view.reachability_ms = proposals.reachability_ms;
+      view.evaluation_ms = stopwatch.lap_ms() - view.candidates_ms - view.reachability_ms;
+      SACCADE_TRY(const Choice choice, move_to_best(proposals, open, view));
+      if (choice.stop) return RegionEnd::cancelled;
+      if (!choice.view) {
+        const bool none_within_reach = proposals.views.empty() && proposals.refused.total() > 0;
+        return open.out_of_reach || none_within_reach ? RegionEnd::out_of_reach : RegionEnd::done;
+      }
+      view.gain = choice.view->gain;
+      view.T_world_camera = choice.view->T_world_camera;
+      view.q = cell.robot.configuration();
+      stopwatch.lap_ms();
+      SACCADE_TRY(const Look seen, look(map, cell, view.T_world_camera, config, executor));
+      view.frames = seen.frames;
+      view.motion_s += seen.motion_s;
       view.fusion_ms = stopwatch.lap_ms();
       views.push_back(view);
       progress.report("exploring", views.size(), static_cast<std::size_t>(config.max_views));
@@ -131,27 +204,52 @@ std::string_view to_string(StopReason reason) {
 Status ExplorationConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "exploration"}; };
   if (std::isnan(min_gain)) return fail("the least gain is not a number");
+  if (!(good_enough > 0.0 && good_enough <= 1.0)) return fail("the share that is good enough is within 0 and 1");
   if (max_views < 0) return fail("the number of views must not be negative");
   if (oscillation_frames < 1) return fail("a view needs one frame at least");
   if (!(oscillation_rad >= 0.0 && oscillation_rad < 1.5)) return fail("the oscillation is within 0 and 85 degrees");
   return {};
 }
 
-Result<bool> scan(TsdfMap& map, ExplorationCell& cell, const std::vector<Pose>& T_world_camera,
-                  const ExplorationConfig& config, const Executor& executor, const ExplorationHooks& hooks,
-                  const Progress& progress) {
+Result<ScanResult> scan(TsdfMap& map, ExplorationCell& cell, const std::vector<Pose>& T_world_camera,
+                        const ExplorationConfig& config, const Executor& executor, const ExplorationHooks& hooks,
+                        const Progress& progress) {
   SACCADE_CHECK(config.validate());
+  ScanResult result;
+  const auto stopped = [&result] {
+    result.complete = false;
+    return result;
+  };
+  std::vector<Pose> way;
+  for (const Pose& pose : T_world_camera) {
+    const std::vector<Pose> around = oscillation(pose, config);
+    way.push_back(pose);
+    way.insert(way.end(), around.begin(), around.end());
+  }
+  SACCADE_CHECK(cell.robot.follow(map.content(), executor));
+  SACCADE_TRY(const std::vector<Box> swept, cell.robot.swept_by(way));
+  for (const Box& box : swept) SACCADE_CHECK(map.free(box));
   for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
     progress.report("initial scan", i, T_world_camera.size());
-    if (progress.cancelled()) return false;
+    if (progress.cancelled()) return stopped();
+    SACCADE_CHECK(cell.robot.follow(map.content(), executor));
+    SACCADE_TRY(const PlannedMotion planned, cell.robot.plan(std::span{&T_world_camera[i], 1}));
+    if (!planned.motion) {
+      result.refused.add(planned.refusal.value_or(Refusal::declined));
+      continue;
+    }
     const Consent consent = hooks.before_move ? hooks.before_move({T_world_camera[i], 0.0}) : Consent::go;
-    if (consent == Consent::stop) return false;
+    if (consent == Consent::stop) return stopped();
     if (consent == Consent::pass_over) continue;
-    SACCADE_TRY(const std::optional<Pose> reached, cell.robot.move_to(T_world_camera[i]));
-    if (!reached) continue;
-    SACCADE_TRY([[maybe_unused]] const std::size_t frames, look(map, cell, T_world_camera[i], config, executor));
+    SACCADE_TRY(const std::optional<Arrival> arrival, cell.robot.execute(*planned.motion));
+    if (!arrival) {
+      result.refused.add(Refusal::declined);
+      continue;
+    }
+    SACCADE_TRY([[maybe_unused]] const Look seen, look(map, cell, T_world_camera[i], config, executor));
+    ++result.views;
   }
-  return true;
+  return result;
 }
 
 Result<ExplorationResult> explore(TsdfMap& map, ExplorationCell& cell, const std::vector<Region>& regions,

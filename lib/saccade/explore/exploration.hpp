@@ -17,6 +17,9 @@ namespace saccade {
 struct ExplorationConfig {
   /// IncTh of Algorithm 1, in the strategy's unit: a region whose best view gains less is done.
   double min_gain{200.0};
+  /// Views that gain at least this share of the best one's are as good as the best: among these the robot goes to the
+  /// one that it reaches soonest. 1: to the best alone.
+  double good_enough{1.0};
   int max_views{12};                             ///< in all
   double oscillation_rad{0.087266462599716474};  ///< 5°: at each view the camera is tilted from minus to plus this
   int oscillation_frames{5};                     ///< frames taken on the way; 1: none but the view itself
@@ -29,18 +32,25 @@ struct ExploredView {
   std::size_t region{0};  ///< index of the region it was chosen for
   double gain{0.0};       ///< as predicted
   Pose T_world_camera{Pose::Identity()};
-  std::size_t candidates{0};  ///< poses it was chosen from
-  std::size_t frames{0};      ///< fused
+  std::size_t candidates{0};   ///< poses it was chosen from, those that the robot cannot take included
+  RefusalCounts refused{};     ///< of those, by reason; with the ones for which no path was found
+  std::size_t frames{0};       ///< fused
+  double planner_map_ms{0.0};  ///< what the robot must not touch brought up to date
   double candidates_ms{0.0};
+  double reachability_ms{0.0};
   double evaluation_ms{0.0};
+  double planning_ms{0.0};  ///< of motions, those to views that were not reached included
   double motion_ms{0.0};
-  double fusion_ms{0.0};  ///< seeing and fusing all frames of the oscillation
+  double fusion_ms{0.0};                ///< seeing and fusing all frames of the oscillation
+  double motion_s{0.0};                 ///< what motion and oscillation take a real arm; 0 where that is not known
+  std::optional<Configuration> q{};     ///< of an arm that stands at the view
+  std::vector<Eigen::Vector3d> path{};  ///< the camera's centre on its way, where the robot knows it
 };
 
 enum class StopReason : std::uint8_t {
-  regions_done,   ///< no view of any region gains min_gain
+  regions_done,   ///< no view of any region that the robot can take gains min_gain
   views_used_up,  ///< max_views
-  no_candidate,   ///< views would gain enough, but none of them can be reached
+  no_candidate,   ///< no view of a region can be reached, or none of those that would gain enough
   cancelled,      ///< the caller's progress, or a hook, said so
 };
 [[nodiscard]] std::string_view to_string(StopReason reason);
@@ -65,18 +75,25 @@ enum class Consent : std::uint8_t { go, pass_over, stop };
 
 /// The caller's part in an exploration; each may be empty.
 struct ExplorationHooks {
-  /// Asked before each move to a view, those of the initial scan included.
+  /// Asked before each move to a view that was found to be possible, those of the initial scan included.
   std::function<Consent(const Proposal& view)> before_move;
   /// Told after each view, with the map as it is then and what the view was chosen from; false stops.
   std::function<bool(const ExploredView& view, const Proposals& proposals)> after_view;
 };
 
-/// Moves to each pose that can be reached, looks, and fuses: the initial scan.
-/// @return whether it went to its end: false when a hook or progress stopped it. Errors: those of robot, camera and
-///         map.
-[[nodiscard]] Result<bool> scan(TsdfMap& map, ExplorationCell& cell, const std::vector<Pose>& T_world_camera,
-                                const ExplorationConfig& config, const Executor& executor,
-                                const ExplorationHooks& hooks = {}, const Progress& progress = {});
+/// What the initial scan came to.
+struct ScanResult {
+  bool complete{true};  ///< false: a hook or progress stopped it
+  std::size_t views{0};
+  RefusalCounts refused{};  ///< poses that were passed over
+};
+
+/// Moves to each pose that can be reached, looks, and fuses: the initial scan. What the robot sweeps on its way through
+/// them is set free before, as nobody would start it otherwise (Robot::swept_by).
+/// Errors: those of robot, camera and map.
+[[nodiscard]] Result<ScanResult> scan(TsdfMap& map, ExplorationCell& cell, const std::vector<Pose>& T_world_camera,
+                                      const ExplorationConfig& config, const Executor& executor,
+                                      const ExplorationHooks& hooks = {}, const Progress& progress = {});
 
 /// Thesis Algorithm 1, lines 4–17, for each region in turn. A pose is attempted once per region; after each view the
 /// strategy is asked anew.

@@ -2,6 +2,7 @@
 #include "saccade/explore/simulated_run.hpp"
 
 #include "saccade/map/mesh.hpp"
+#include "saccade/scene/fixture_boxes.hpp"
 
 namespace saccade {
 
@@ -63,6 +64,18 @@ Result<FreeRobot> flying_camera(const RayScene& scene) {
   }};
 }
 
+Result<SimulatedRobot> simulated_arm(const ArmModel& arm, const Scene& scene, const SimulatedRunConfig& config,
+                                     ArmRobotConfig robot) {
+  if (!scene.objects.empty()) {
+    SACCADE_TRY(const std::vector<FixtureBox> fixtures, fixture_boxes(scene));
+    for (const FixtureBox& fixture : fixtures) robot.obstacles.fixtures.push_back(fixture.box);
+  }
+  robot.first_poses = scene.scan;
+  TsdfConfig map = config.map();
+  map.workspace = scene.workspace;
+  return SimulatedRobot::create(arm, map, robot);
+}
+
 MeasuredMap measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
   return {measure(truth, map, extract_mesh(map, executor), executor),
           count_unknown(map, truth.scene().scene().workspace)};
@@ -88,9 +101,9 @@ Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig&
                        robot};
 
   SimulatedRun run;
-  SACCADE_TRY(const bool scanned, scan(map, cell, scene.scan, config.exploration, executor, {}, progress));
+  SACCADE_TRY(const ScanResult scanned, scan(map, cell, scene.scan, config.exploration, executor, {}, progress));
   run.initial = measure_map(truth, map.content(), executor);
-  if (!scanned) {
+  if (!scanned.complete) {
     run.stopped_because = StopReason::cancelled;
     return run;
   }

@@ -6,6 +6,7 @@
 
 #include "saccade/explore/exploration.hpp"
 #include "saccade/explore/metrics.hpp"
+#include "saccade/robot/arm_robot.hpp"
 #include "saccade/scene/simulated_camera.hpp"
 
 namespace saccade {
@@ -46,6 +47,11 @@ struct SimulatedRunConfig {
 /// A camera that flies, but not into fixtures: its centre stays this far from them.
 constexpr double kCameraClearance_m{0.1};
 [[nodiscard]] Result<FreeRobot> flying_camera(const RayScene& scene);
+
+/// An arm in the scene, as it stands at the first view of the initial scan, if `robot` says nothing else. The scene's
+/// fixture_boxes are added to its fixtures. Errors: those of fixture_boxes and SimulatedRobot::create.
+[[nodiscard]] Result<SimulatedRobot> simulated_arm(const ArmModel& arm, const Scene& scene,
+                                                   const SimulatedRunConfig& config, ArmRobotConfig robot = {});
 
 /// A map as it is after some views, held against the truth.
 struct MeasuredMap {

@@ -10,15 +10,24 @@
 namespace saccade {
 namespace {
 
-/// All candidates in index order, none of them judged.
+/// All candidates that the robot may take in index order, none of them judged.
 Result<Proposals> candidates_of(const Situation& situation, const ViewSphereConfig& sphere) {
   Proposals proposals;
-  const Stopwatch stopwatch;
+  Stopwatch stopwatch;
   const Box around = bounds(situation.region);
   SACCADE_TRY(const std::vector<ViewCandidate> candidates, view_sphere(0.5 * (around.min + around.max), sphere));
-  proposals.views.reserve(candidates.size());
-  for (const ViewCandidate& candidate : candidates) proposals.views.push_back({candidate.T_world_camera, std::nan("")});
-  proposals.candidates_ms = stopwatch.elapsed_ms();
+  const std::vector<Pose> poses = poses_of(candidates);
+  proposals.candidates = poses.size();
+  proposals.candidates_ms = stopwatch.lap_ms();
+  std::vector<std::optional<Refusal>> refusals(poses.size());
+  if (situation.test) refusals = situation.test(poses);
+  SACCADE_EXPECTS(refusals.size() == poses.size());
+  proposals.refused.add(refusals);
+  proposals.views.reserve(poses.size());
+  for (std::size_t i = 0; i < poses.size(); ++i) {
+    if (!refusals[i]) proposals.views.push_back({poses[i], std::nan("")});
+  }
+  proposals.reachability_ms = stopwatch.lap_ms();
   return proposals;
 }
 

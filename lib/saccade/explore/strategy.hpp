@@ -3,11 +3,13 @@
 // Strategy: where to look next; GainFunction: what a view is worth. Those of the library, and the seams for one's own.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/robot/refusal.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -34,9 +36,15 @@ struct Proposal {
 /// Views in the order in which they are to be tried.
 struct Proposals {
   std::vector<Proposal> views;
-  bool by_gain{true};         ///< false: chosen without regard to gain, so that no threshold applies
-  double candidates_ms{0.0};  ///< spent on making candidates, the rest of the time being spent on judging them
+  bool by_gain{true};           ///< false: chosen without regard to gain, so that no threshold applies
+  std::size_t candidates{0};    ///< poses that were thought of, those that the robot cannot take included
+  RefusalCounts refused{};      ///< of those
+  double candidates_ms{0.0};    ///< spent on making candidates,
+  double reachability_ms{0.0};  ///< on asking the robot about them; the rest of the time was spent on judging them
 };
+
+/// For each pose why the robot cannot take it, nullopt where it may: Robot::test.
+using PoseTest = std::function<std::vector<std::optional<Refusal>>(std::span<const Pose> T_world_camera)>;
 
 /// What a strategy decides on.
 struct Situation {
@@ -45,6 +53,9 @@ struct Situation {
   std::size_t region_index{0};
   std::size_t views_of_region{0};  ///< taken so far
   const Executor& executor;
+  /// Asking costs microseconds per pose, less than casting its rays. Empty: every pose may be taken. A strategy need
+  /// not ask: what the robot cannot take is passed over later too.
+  PoseTest test{};
 };
 
 /// Decides where to look next. Asked again after every view; views that were taken or could not be reached are passed
@@ -56,8 +67,8 @@ class Strategy {
   [[nodiscard]] virtual Result<Proposals> propose(const Situation& situation) const = 0;
 };
 
-/// Candidates on a view sphere around the region's centre, by decreasing gain, ties by index: NextBestView of thesis
-/// Algorithm 2.
+/// Candidates on a view sphere around the region's centre that the robot may take, by decreasing gain, ties by index:
+/// NextBestView of thesis Algorithm 2.
 class SphereStrategy final : public Strategy {
  public:
   SphereStrategy(ViewSphereConfig sphere, GainFunction gain) : sphere_{std::move(sphere)}, gain_{std::move(gain)} {}

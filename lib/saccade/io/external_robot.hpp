@@ -24,8 +24,10 @@ class ExternalRobot final : public Robot {
   /// Starts the program and waits until it is ready. Errors as ExternalCamera::start().
   [[nodiscard]] static Result<std::unique_ptr<ExternalRobot>> start(const ExternalRobotConfig& config);
 
+  /// The first pose: the program finds its own way, or declines when it is asked to go.
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) override;
   /// unavailable: the robot reports an error, and may be asked again. Any other error is final.
-  [[nodiscard]] Result<std::optional<Pose>> move_to(const Pose& T_world_camera) override;
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way = {}) override;
   /// Why the last pose was not reached, in the robot's words; empty without any.
   [[nodiscard]] const std::string& why_not_reached() const { return why_not_reached_; }
 

@@ -342,7 +342,9 @@ Result<UrdfArm> read_urdf(const fs::path& path, const UrdfConfig& config) {
 Result<UrdfArm> find_robot(const std::string& name_or_path, const UrdfConfig& config) {
   std::string known;
   for (const BuiltinRobot& builtin : builtin_robots()) {
-    if (builtin.name == name_or_path) return parse_urdf(std::string{builtin.urdf}, {}, config);
+    if (!name_or_path.empty() && builtin.name.starts_with(name_or_path)) {
+      return parse_urdf(std::string{builtin.urdf}, {}, config);
+    }
     known += std::string{builtin.name} + ", ";
   }
   if (fs::exists(name_or_path)) return read_urdf(name_or_path, config);

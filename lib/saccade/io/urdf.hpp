@@ -49,7 +49,7 @@ struct BuiltinRobot {
 /// The files of robots/, in alphabetical order.
 [[nodiscard]] const std::vector<BuiltinRobot>& builtin_robots();
 
-/// A built-in robot by its name, or a file. not_found with the known names.
+/// A built-in robot by the beginning of its name ("comau"), or a file. not_found with the known names.
 [[nodiscard]] Result<UrdfArm> find_robot(const std::string& name_or_path, const UrdfConfig& config = {});
 
 }  // namespace saccade

@@ -90,6 +90,15 @@ void draw_places(Canvas& canvas, const std::vector<Place>& places, double full_g
   }
 }
 
+std::vector<Eigen::Vector3d> corners_of(const Box& box) {
+  std::vector<Eigen::Vector3d> corners;
+  for (unsigned i = 0; i < 8; ++i) {
+    corners.emplace_back((i & 1U) != 0 ? box.max.x() : box.min.x(), (i & 2U) != 0 ? box.max.y() : box.min.y(),
+                         (i & 4U) != 0 ? box.max.z() : box.min.z());
+  }
+  return corners;
+}
+
 }  // namespace
 
 ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_width) {
@@ -123,7 +132,10 @@ ColorImage candidates_picture(const CandidatesScene& scene, const Executor& exec
   box.min.array() -= config.margin_m;
   box.max.array() += config.margin_m;
   const TernaryPictureConfig ternary{.unknown_within = scene.region, .crop = box, .samples = config.samples};
-  Canvas canvas = draw_ternary(scene.map, overview_of(shown, config.overview), executor, ternary);
+  const Eigen::Vector3d middle = 0.5 * (around.min + around.max);
+  Canvas canvas =
+      draw_ternary(scene.map, overview_with(scene.robot, std::move(shown), middle, config.overview), executor, ternary);
+  if (scene.robot != nullptr) draw_robot(canvas, *scene.robot, executor);
 
   double best{0.0};
   for (const Place& place : places) best = place.gain > best ? place.gain : best;  // NaN is not greater
@@ -147,11 +159,18 @@ ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& 
   TernaryPictureConfig ternary;
   ternary.crop = Box{box.min.array() - config.margin_m, box.max.array() + config.margin_m};
   ternary.samples = config.samples;
-  return ternary_picture(map, overview_of(box, config.overview), executor, ternary);
+  const Eigen::Vector3d middle = 0.5 * (box.min + box.max);
+  Canvas canvas =
+      draw_ternary(map, overview_with(config.robot, corners_of(box), middle, config.overview), executor, ternary);
+  if (config.robot != nullptr) draw_robot(canvas, *config.robot, executor);
+  return canvas.finish();
 }
 
-std::vector<CandidateMark> candidate_marks() {
-  return {{kNoGain, "candidates without gain", true}, {kChosen, "the view chosen"}, {kEarlier, "views before it"}};
+std::vector<CandidateMark> candidate_marks(bool with_robot) {
+  std::vector<CandidateMark> marks{
+      {kNoGain, "candidates without gain", true}, {kChosen, "the view chosen"}, {kEarlier, "views before it"}};
+  if (with_robot) marks.push_back({path_color(), "the camera's way to it"});
+  return marks;
 }
 
 }  // namespace saccade

@@ -10,6 +10,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/report/depth_picture.hpp"
+#include "saccade/report/robot_drawing.hpp"
 #include "saccade/report/view_picture.hpp"
 #include "saccade/sensor/camera_source.hpp"
 
@@ -26,6 +27,7 @@ struct CandidatesScene {
   std::span<const ScoredPose> candidates;  ///< in any order; a gain that is NaN: not evaluated
   Pose T_world_chosen{Pose::Identity()};
   std::span<const Pose> T_world_earlier;  ///< views taken before
+  const RobotDrawing* robot{nullptr};     ///< drawn into the map; not owned
 };
 
 struct CandidatesPictureConfig {
@@ -44,12 +46,14 @@ struct CandidatesPictureConfig {
 
 struct MapPictureConfig {
   OverviewConfig overview{.width = 720, .height = 540};
-  double margin_m{0.1};  ///< shown around the box
-  int samples{1};        ///< per pixel and direction
+  double margin_m{0.1};                ///< shown around the box
+  int samples{1};                      ///< per pixel and direction
+  const RobotDrawing* robot{nullptr};  ///< drawn into the map; not owned
 };
 
 /// The map in a box, usually the workspace, as seen from outside; unknown nearly black. The same place for the same
-/// box, so that pictures of a run can be compared. The same picture for every thread count.
+/// box, base and p_world_shown of a robot, so that pictures of a run can be compared. The same picture for every
+/// thread count.
 [[nodiscard]] ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& executor,
                                      const MapPictureConfig& config = {});
 
@@ -59,6 +63,7 @@ struct CandidateMark {
   std::string text;
   bool is_point{false};  ///< else a frustum
 };
-[[nodiscard]] std::vector<CandidateMark> candidate_marks();
+/// @param with_robot  with that of the camera's path.
+[[nodiscard]] std::vector<CandidateMark> candidate_marks(bool with_robot = false);
 
 }  // namespace saccade

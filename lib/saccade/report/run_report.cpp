@@ -108,6 +108,7 @@ std::string view_section(const RunReport& report, const ReportView& view, const 
                 ")");
   facts.add("unknown near objects", view.unknown_near_objects, count_text);
   facts.add("points at an object", view.points_at_object, [](bool yes) { return std::string{yes ? "yes" : "no"}; });
+  for (const auto& [name, value] : view.facts) facts.add(name.c_str(), value);
   if (!view.phases.empty()) facts.add("time", duration_text(total_ms(view)) + phases_text(view));
   return view_html(view_id(view), "View " + std::to_string(view.index), facts, view.pictures);
 }

@@ -36,6 +36,7 @@ struct ReportView {
   std::optional<bool> points_at_object;
   std::vector<ReportPhase> phases;  ///< the same names in the same order for every view, as far as possible
   std::vector<ReportPicture> pictures;
+  std::vector<std::pair<std::string, std::string>> facts{};  ///< further ones, such as the robot's
 };
 
 /// The map after the initial scan.
@@ -68,6 +69,7 @@ struct RunReport {
   std::string scene;
   std::string strategy;
   std::string robot;
+  bool draws_robot{false};  ///< the pictures show an arm and its camera's way
   std::string noise;
   std::uint64_t seed{0};
   std::size_t threads{0};

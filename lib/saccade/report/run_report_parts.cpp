@@ -253,7 +253,7 @@ std::string legend_html(const RunReport& report) {
     items += swatch("background: " + css_color(entry.color), entry.text);
   items += swatch("border-color: " + css_color(region.color), region.text, " ring");
   items += swatch("background: " + gradient + ")", "candidates, by the best gain at each place", " wide");
-  for (const CandidateMark& mark : candidate_marks()) {
+  for (const CandidateMark& mark : candidate_marks(report.draws_robot)) {
     const std::string color = css_color(mark.color);
     items += mark.is_point ? swatch("background: " + color, mark.text, " point")
                            : swatch("border-color: " + color, mark.text, " ring");

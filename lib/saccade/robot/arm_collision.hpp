@@ -4,12 +4,12 @@
 
 #include <memory>
 #include <optional>
+#include <string>
 #include <utility>
 #include <vector>
 
-#include "saccade/robot/kinematics.hpp"
-#include "saccade/robot/obstacle_map.hpp"
-#include "saccade/robot/sphere_tree.hpp"
+#include "saccade/robot/arm_front.hpp"
+#include "saccade/robot/cover_separation.hpp"
 
 namespace saccade {
 
@@ -27,6 +27,9 @@ struct Contact {
   int link{0};
   std::optional<int> other_link;  ///< none: the link touches an obstacle
 };
+
+/// "link "wrist" touches an obstacle".
+[[nodiscard]] std::string describe(const ArmModel& arm, const Contact& contact);
 
 /// Links are solids covered by balls (SphereTree), so what is called free is free, and what misses by less than
 /// max_excess_m may be called a contact. The base does not move and is not held against obstacles, only
@@ -46,8 +49,9 @@ class ArmCollision {
     double share;  ///< of the way from `from` to `to`, in [0, 1]
     Contact contact;
   };
-  /// The straight line between two configurations; none: free all along. Steps are as long as what is free around the
-  /// arm allows. O(length / clearance) contacts.
+  /// The straight line between two configurations, the first contact along it; none: free all along. Halves of halves
+  /// are looked at, as short as what is free around the parts of the arm asks for. O(length / clearance) contacts at
+  /// most.
   [[nodiscard]] std::optional<MotionContact> motion_contact(const Configuration& from, const Configuration& to,
                                                             const ObstacleMap& obstacles) const;
 
@@ -55,45 +59,45 @@ class ArmCollision {
   [[nodiscard]] double travel_bound_m(const Configuration& from, const Configuration& to) const;
 
   [[nodiscard]] const ArmModel& arm() const { return *arm_; }
+  [[nodiscard]] const ArmCollisionConfig& config() const { return config_; }
   /// The covers of the bodies of link i, in its frame.
   [[nodiscard]] const std::vector<SphereTree>& cover(int link) const { return covers_[static_cast<std::size_t>(link)]; }
   /// Pairs of links that are held against each other, lower number first.
   [[nodiscard]] const std::vector<std::pair<int, int>>& self_pairs() const { return self_pairs_; }
 
  private:
-  /// Balls that cover the whole arm are asked about together; only where one is not clear, those below it.
-  struct FrontBall {
-    std::size_t link;
-    std::size_t body;
-    std::uint32_t index;  ///< in the body's cover
-    TreeBall ball;
-  };
+  static constexpr std::size_t kMostPairs{kMaxJoints * (kMaxJoints - 1) / 2};
+  class Motion;
 
-  /// A box around a body, or around all of a link, in the link's frame.
-  struct BodyBox {
-    Pose T_link_box;
-    Eigen::Vector3d half_m;
+  /// How far a ball of a link moves at most when joints do: fixed_m + turn_rad · (its farthest point from the link's
+  /// origin).
+  struct Travel {
+    double fixed_m{0.0};
+    double turn_rad{0.0};
   };
 
   explicit ArmCollision(const ArmModel& arm, const ArmCollisionConfig& config)
       : arm_{std::make_shared<const ArmModel>(arm)}, config_{config} {}
-  void choose_front();
-  void find_travel();
+  [[nodiscard]] std::optional<Contact> contact(const ArmFront::Placed& placed, const ObstacleMap& obstacles) const;
+  void find_levers();
   void find_self_pairs();
-  /// Calls visit(front ball, lower bound of its clearance in metres) until it returns false; whether it never did.
-  template <class Visit>
-  bool visit_front(const ArmPoses& poses, const ObstacleMap& obstacles, const Visit& visit) const;
-  [[nodiscard]] double clearance_m(const ArmPoses& poses, const ObstacleMap& obstacles) const;
-  [[nodiscard]] double separation_m(const ArmPoses& poses, int a, int b, double enough_m) const;
+  [[nodiscard]] bool touches_obstacle(const ArmFront::Ball& of_front, const ArmFront::Placed& placed,
+                                      const ObstacleMap& obstacles) const;
+  /// Of two links, at least; looked for until it is more than enough_m.
+  [[nodiscard]] double separation_m(const ArmFront::Placed& placed, int a, int b, double enough_m) const;
+  [[nodiscard]] double separation_m(const Pose& T_world_a, const Pose& T_world_b, int a, int b, double enough_m) const;
+  /// Of a link, seen from link `first`: the joints between them count.
+  [[nodiscard]] Travel travel_of(std::size_t first, std::size_t link, const Configuration& from,
+                                 const Configuration& to) const;
 
   std::shared_ptr<const ArmModel> arm_;
   ArmCollisionConfig config_;
   std::vector<std::vector<SphereTree>> covers_;  ///< per link
   std::vector<std::vector<BodyBox>> boxes_;      ///< the same bodies
-  std::vector<BodyBox> link_boxes_;              ///< per link
-  std::vector<FrontBall> front_;                 ///< links that move, hand first
   std::vector<std::pair<int, int>> self_pairs_;
-  std::vector<double> travel_m_;  ///< per joint: no point behind it is farther from its axis; 1 for prismatic joints
+  std::shared_ptr<const ArmFront> front_;
+  std::vector<double> reach_m_;    ///< per link, of its bodies from its origin
+  std::vector<double> offsets_m_;  ///< [joint · links + link]: at most, from the joint's origin to that of the link
 };
 
 }  // namespace saccade

@@ -2,6 +2,7 @@
 #include "saccade/robot/numeric_ik.hpp"
 
 #include <Eigen/Cholesky>
+#include <Eigen/SVD>
 #include <algorithm>
 #include <cmath>
 #include <kdl/chain.hpp>
@@ -12,6 +13,11 @@
 
 #include "saccade/robot/joint_turns.hpp"
 #include "saccade/robot/kinematics.hpp"
+
+// KDL's solver and OMPL's library both carry this decomposition as a weak symbol, Debian 12's OMPL that of an older
+// Eigen with another layout: whichever is loaded first serves both, and KDL aborts with OMPL's. A program that has its
+// own, that of the headers which KDL was built with, gives it to all.
+template class Eigen::JacobiSVD<Eigen::MatrixXd>;
 
 namespace saccade {
 namespace {
@@ -102,6 +108,15 @@ void put_on_limits(const ArmModel& arm, Configuration& q) {
   }
 }
 
+/// Whether the last link's origin, which the pose settles, is no farther from the first joint than the links stretched
+/// out. Most poses that cannot be reached are told by that, without a start.
+bool may_reach(const ArmModel& arm, const Pose& T_world_camera) {
+  constexpr double kSlack_m{1e-6};
+  const Eigen::Vector3d last = T_world_camera * (arm.T_link_camera().inverse(Eigen::Isometry).translation());
+  const Eigen::Vector3d first = arm.T_world_base() * arm.joint(0).T_parent_joint.translation();
+  return !((last - first).norm() > reach_bound_m(arm) - arm.T_link_camera().translation().norm() + kSlack_m);
+}
+
 bool differs(const Configuration& a, const Configuration& b, double by) {
   return (a - b).lpNorm<Eigen::Infinity>() > by;
 }
@@ -124,6 +139,7 @@ Result<NumericIk> NumericIk::create(std::shared_ptr<const ArmModel> arm, const N
 
 std::vector<Configuration> NumericIk::solve(const Pose& T_world_camera, const Configuration& reference) const {
   SACCADE_EXPECTS(reference.size() == arm_->dof());
+  if (!may_reach(*arm_, T_world_camera)) return {};
   const KDL::Frame goal = to_kdl(T_world_camera);
   Lma lma{*arm_, config_.iterations};
   Starts starts{*arm_, config_.seed};

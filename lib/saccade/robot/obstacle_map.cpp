@@ -153,6 +153,17 @@ void ObstacleMap::clearance_bounds(const SphereSpans& spheres, std::span<float> 
   obstacle::clearances(view(), spheres.arrays(0), out.size(), out.data());
 }
 
+void ObstacleMap::perhaps_touching(const SphereSpans& spheres, std::span<std::uint64_t> out) const {
+  constexpr std::size_t kAtOnce{64};
+  const std::size_t count = spheres.x_m.size();
+  SACCADE_EXPECTS(spheres.same_length() && out.size() == (count + kAtOnce - 1) / kAtOnce);
+  const obstacle::FieldView field = view();
+  for (std::size_t word = 0; word < out.size(); ++word) {
+    const std::size_t first = word * kAtOnce;
+    out[word] = obstacle::perhaps_touching(field, spheres.arrays(first), std::min(kAtOnce, count - first));
+  }
+}
+
 std::size_t ObstacleMap::first_touching(const SphereSpans& spheres) const {
   SACCADE_EXPECTS(spheres.same_length());
   const std::size_t count = spheres.x_m.size();

@@ -69,6 +69,10 @@ class ObstacleMap {
   /// about, so the most endangered ones belong in front.
   [[nodiscard]] std::size_t first_touching(const SphereSpans& spheres) const;
 
+  /// Bit i of `out`: sphere i is not known to be clear. One look at one cell for each, so it may be clear nevertheless;
+  /// clear() knows. `out` has a word for every 64 spheres begun.
+  void perhaps_touching(const SphereSpans& spheres, std::span<std::uint64_t> out) const;
+
   /// For each sphere distance_bound_m of its centre less its radius, but for rounding; never more than the true
   /// clearance. -∞ where a coordinate or radius is not finite. `out` has the spheres' number.
   void clearance_bounds(const SphereSpans& spheres, std::span<float> out) const;

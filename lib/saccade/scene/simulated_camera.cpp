@@ -6,6 +6,19 @@
 #include <numbers>
 
 namespace saccade {
+namespace {
+
+constexpr double kNearest_m{1e-4};
+constexpr Rgb8 kBeforeColor{70, 72, 76};
+
+/// Sees as far as anything shows that the space before it is free.
+PinholeCamera far_sighted(const SimulatedCameraConfig& config) {
+  PinholeCamera camera = config.camera;
+  camera.max_range_m = std::max(config.reach_m, config.camera.max_range_m);
+  return camera;
+}
+
+}  // namespace
 
 DepthNoise kinect_v1_noise(std::uint64_t seed) {
   DepthNoise noise;
@@ -27,9 +40,32 @@ Result<SimulatedCamera> SimulatedCamera::create(RayScene scene, const SimulatedC
 }
 
 Frame SimulatedCamera::capture(const Pose& T_world_camera, const Executor& executor) {
-  PinholeCamera far_sighted = config_.camera;
-  far_sighted.max_range_m = std::max(config_.reach_m, config_.camera.max_range_m);
-  ExactFrame exact = scene_.render(far_sighted, T_world_camera, executor);
+  return frame_of(scene_.render(far_sighted(config_), T_world_camera, executor), T_world_camera);
+}
+
+Frame SimulatedCamera::capture(const Pose& T_world_camera, const DepthImage& before, const Executor& executor) {
+  SACCADE_EXPECTS(before.width() == config_.camera.width && before.height() == config_.camera.height);
+  PinholeCamera all_seeing = far_sighted(config_);
+  all_seeing.min_range_m = kNearest_m;  // what is too near to be measured hides things too
+  ExactFrame exact = scene_.render(all_seeing, T_world_camera, executor);
+  const auto min_range_m = static_cast<float>(config_.camera.min_range_m);
+  for (std::size_t i = 0; i < before.size(); ++i) {
+    float& z = exact.depth.data()[i];
+    const float z_before = before.data()[i];
+    if (z_before > 0.0F && !(z > 0.0F && z <= z_before)) {
+      z = z_before;
+      exact.color.data()[i] = kBeforeColor;
+      exact.incidence_cosine.data()[i] = 1.0F;
+    }
+    if (z < min_range_m) {
+      z = 0.0F;
+      exact.color.data()[i] = {};
+    }
+  }
+  return frame_of(std::move(exact), T_world_camera);
+}
+
+Frame SimulatedCamera::frame_of(ExactFrame exact, const Pose& T_world_camera) {
   Frame frame;
   frame.index = frames_;
   frame.name = "frame " + std::to_string(frames_);

@@ -38,9 +38,15 @@ class SimulatedCamera {
 
   /// The next frame, from a pose. Expects a finite pose. Cost: RayScene::render.
   [[nodiscard]] Frame capture(const Pose& T_world_camera, const Executor& executor = {});
+  /// The same with something before the scene, such as the arm that holds the camera (ArmSilhouette::depth): `before`
+  /// is its exact depth along z, of the camera's size (a contract), 0 where it is not. What is nearer is seen; nearer
+  /// than the camera's minimum range it gives no return and hides what is behind it. It is dark grey, and loses no
+  /// return for grazing. Noise falls on what is seen.
+  [[nodiscard]] Frame capture(const Pose& T_world_camera, const DepthImage& before, const Executor& executor = {});
 
  private:
   SimulatedCamera(RayScene scene, const SimulatedCameraConfig& config) : scene_{std::move(scene)}, config_{config} {}
+  [[nodiscard]] Frame frame_of(ExactFrame exact, const Pose& T_world_camera);
 
   RayScene scene_;
   SimulatedCameraConfig config_;

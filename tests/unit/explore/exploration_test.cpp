@@ -59,7 +59,7 @@ class Explore : public ::testing::Test {
   /// Scans, then explores the whole workspace.
   ExplorationResult run(TsdfMap& map, Robot& robot, const Strategy& strategy, const ExplorationHooks& hooks = {}) {
     ExplorationCell here = cell(robot);
-    EXPECT_TRUE(*scan(map, here, {rays().scene().scan.front()}, exploration_, Executor{}, hooks));
+    EXPECT_TRUE(scan(map, here, {rays().scene().scan.front()}, exploration_, Executor{}, hooks)->complete);
     auto result = explore(map, here, {rays().scene().workspace}, strategy, exploration_, Executor{}, hooks);
     EXPECT_TRUE(result) << result.error().to_string();
     return *result;
@@ -174,7 +174,7 @@ TEST_F(Explore, TheCallerMayPassOverViewsOrStopBeforeAMove) {
   hooks.before_move = [](const Proposal&) { return Consent::stop; };
   TsdfMap untouched = empty_map();
   ExplorationCell here = cell(robot);
-  EXPECT_FALSE(*scan(untouched, here, rays().scene().scan, exploration_, Executor{}, hooks));
+  EXPECT_FALSE(scan(untouched, here, rays().scene().scan, exploration_, Executor{}, hooks)->complete);
   EXPECT_EQ(count_unknown(untouched.content(), rays().scene().workspace),
             count_unknown(empty_map().content(), rays().scene().workspace));
   const auto stopped = explore(untouched, here, {rays().scene().workspace}, sphere(), exploration_, Executor{}, hooks);
@@ -214,10 +214,16 @@ TEST_F(Explore, RegionsAreTakenInTurn) {
 class FencedRobot final : public Robot {
  public:
   explicit FencedRobot(double max_y_m) : max_y_m_{max_y_m} {}
-  [[nodiscard]] Result<std::optional<Pose>> move_to(const Pose& T_world_camera) override {
-    if (T_world_camera.translation().y() > max_y_m_) return std::optional<Pose>{};
-    positions.push_back(T_world_camera.translation());
-    return std::optional{T_world_camera};
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way /*way*/) override {
+    for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
+      if (T_world_camera[i].translation().y() > max_y_m_) continue;
+      return PlannedMotion{Motion{i, T_world_camera[i], {}}, {}, ""};
+    }
+    return PlannedMotion{{}, Refusal::no_path, "a fence"};
+  }
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& /*on_way*/) override {
+    positions.push_back(motion.T_world_camera.translation());
+    return std::optional{Arrival{motion.T_world_camera, 0.0}};
   }
   std::vector<Eigen::Vector3d> positions;
 

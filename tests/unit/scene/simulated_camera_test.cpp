@@ -120,6 +120,43 @@ TEST(SimulatedCamera, SeedsAndFrameNumbersDecideTheNoise) {
   EXPECT_EQ(second.depth, same.capture(above(2.0)).depth);
 }
 
+TEST(SimulatedCamera, SeesWhatStandsBeforeTheSceneAndNotWhatStandsBehind) {
+  SimulatedCamera camera = camera_with(std::nullopt);
+  DepthImage before{160, 120};
+  before(10, 10) = 0.9F;
+  before(11, 10) = 1.7F;   // below the plate
+  before(12, 10) = 0.15F;  // nearer than the minimum range, 0.2 m
+  const Frame frame = camera.capture(above(1.5), before);
+  EXPECT_EQ(frame.depth(10, 10), 0.9F);
+  EXPECT_NEAR(frame.depth(11, 10), 1.5, 1e-5);
+  EXPECT_EQ(frame.depth(12, 10), 0.0F);
+  EXPECT_NEAR(frame.depth(13, 10), 1.5, 1e-5);
+  EXPECT_NE((*frame.color)(10, 10), (*frame.color)(11, 10));
+  EXPECT_EQ((*frame.color)(12, 10), (Rgb8{0, 0, 0}));
+  EXPECT_EQ((*frame.color)(13, 10), (*frame.color)(11, 10));
+  EXPECT_EQ(camera.frames(), 1U);
+  EXPECT_THROW((void)camera.capture(above(1.5), DepthImage{80, 60}), ContractViolation);
+}
+
+TEST(SimulatedCamera, ASceneTooNearToBeMeasuredHidesWhatIsBehindIt) {
+  SimulatedCamera camera = camera_with(std::nullopt);
+  const DepthImage before{160, 120, 0.5F};
+  EXPECT_EQ(camera.capture(above(0.1), before).depth, (DepthImage{160, 120}));
+  EXPECT_EQ(camera.capture(above(0.8), before).depth, before);
+}
+
+TEST(SimulatedCamera, NoiseFallsOnWhatStandsBeforeToo) {
+  SimulatedCamera camera = camera_with(kinect_v1_noise(7));
+  SimulatedCamera same = camera_with(kinect_v1_noise(7));
+  EXPECT_EQ(camera.capture(above(2.0), DepthImage{160, 120}).depth, same.capture(above(2.0)).depth) << "nothing before";
+  const DepthImage before{160, 120, 1.0F};
+  const DepthImage depth = camera.capture(above(2.0), before).depth;
+  double squares = 0.0;
+  for (const float z : depth.pixels()) squares += (z - 1.0) * (z - 1.0);
+  EXPECT_NEAR(std::sqrt(squares / static_cast<double>(depth.size())), DepthNoise{}.sigma_m(1.0), 5e-4);
+  EXPECT_EQ(same.capture(above(2.0), before, Executor::with_threads(3)).depth, depth);
+}
+
 TEST(SimulatedCamera, RefusesABadCameraOrNoise) {
   SimulatedCameraConfig config;
   config.noise->dropout = 2.0;

@@ -1,0 +1,213 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "robot_reach.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
+#include <iostream>
+#include <memory>
+#include <numbers>
+
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "options.hpp"
+#include "progress_bar.hpp"
+#include "robot_reach_output.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/scene_yaml.hpp"
+#include "saccade/map/tsdf_map.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using std::numbers::pi;
+
+constexpr double kStep_m{0.05};
+constexpr double kNumericStep_m{0.1};
+/// 224 poses around a point instead of 960.
+constexpr double kNumericRollStep_rad{0.5 * pi};
+constexpr double kNumericLongitudeStep_rad{0.25 * pi};
+constexpr double kNumericLatitudeStep_rad{pi / 12.0};
+/// Ten times fewer than elsewhere: most poses of a map cannot be reached, and every one of those takes all of them.
+constexpr int kNumericRestarts{10};
+constexpr double kAboveSupport_m{0.1};
+/// Size of the cells of the free space: nothing is in them, so they need not be small.
+constexpr double kFreeCell_m{0.04};
+
+/// The highest top of a support that lies below the middle of the workspace's area and reaches into it.
+std::optional<double> support_height_m(const std::vector<FixtureBox>& fixtures, const Box& workspace) {
+  const Eigen::Vector3d middle = 0.5 * (workspace.min + workspace.max);
+  std::optional<double> height_m;
+  for (const FixtureBox& fixture : fixtures) {
+    const double top_m = fixture.box.max.z();
+    const Eigen::Vector3d inside{middle.x(), middle.y(), 0.5 * (fixture.box.min.z() + top_m)};
+    const bool within = top_m >= workspace.min.z() && top_m < workspace.max.z();
+    if (fixture.support && within && contains(fixture.box, inside))
+      height_m = std::max(height_m.value_or(top_m), top_m);
+  }
+  return height_m;
+}
+
+Result<double> points_height_m(const ReachOptions& options, const std::vector<FixtureBox>& fixtures,
+                               const Box& workspace) {
+  const double height_m =
+      options.height_m.value_or(support_height_m(fixtures, workspace).value_or(workspace.min.z()) + kAboveSupport_m);
+  if (height_m >= workspace.min.z() && height_m <= workspace.max.z()) return height_m;
+  return Error{Errc::invalid_argument,
+               "the points, at z = " + std::to_string(height_m) + " m, lie outside the workspace; it reaches from " +
+                   std::to_string(workspace.min.z()) + " to " + std::to_string(workspace.max.z()) + " m",
+               "--height"};
+}
+
+Result<UrdfArm> read_arm(const ReachOptions& options) {
+  SACCADE_TRY(UrdfArm robot, find_robot(options.arm.robot, options.arm.urdf));
+  if (!options.T_world_base) return robot;
+  ArmDescription description = robot.arm.description();
+  description.T_world_base = *options.T_world_base;
+  SACCADE_TRY(ArmModel arm, ArmModel::create(std::move(description)));
+  return UrdfArm{std::move(arm), std::move(robot.notes)};
+}
+
+Result<ReachTask> make_task(const ReachOptions& options) {
+  SACCADE_TRY(UrdfArm robot, read_arm(options));
+  SACCADE_TRY(const Scene scene, find_scene(options.scene));
+  SACCADE_TRY(std::vector<FixtureBox> fixtures, fixture_boxes(scene));
+  SACCADE_TRY(const ArmCollision collision, ArmCollision::create(robot.arm));
+  IkConfig ik;
+  ik.numeric.restarts = kNumericRestarts;
+  SACCADE_TRY(Reachability reachability, Reachability::create(collision, ik));
+  const bool numeric = reachability.ik().method() == IkMethod::numeric;
+  ReachMapConfig config;
+  config.workspace = options.workspace.value_or(scene.workspace);
+  SACCADE_TRY(config.height_m, points_height_m(options, fixtures, config.workspace));
+  config.step_m = options.step_m.value_or(numeric ? kNumericStep_m : kStep_m);
+  config.sphere.radii_m = options.radii_m;
+  if (numeric) {
+    config.sphere.longitude_step_rad = kNumericLongitudeStep_rad;
+    config.sphere.latitude_step_rad = kNumericLatitudeStep_rad;
+    config.sphere.roll_step_rad = kNumericRollStep_rad;
+  }
+  SACCADE_CHECK(config.validate());
+  return ReachTask{std::move(robot), std::move(reachability), scene.name, std::move(fixtures), std::move(config)};
+}
+
+/// Free space and the fixtures.
+Result<ObstacleMap> obstacles_of(const ReachTask& task, const Executor& executor) {
+  TsdfConfig config;
+  config.voxel_size_m = kFreeCell_m;
+  config.workspace = task.config.workspace;
+  SACCADE_TRY(TsdfMap map, TsdfMap::create(config));
+  SACCADE_CHECK(map.free(*config.workspace));
+  ObstacleConfig obstacles;
+  obstacles.cell_size_m = kFreeCell_m;
+  for (const FixtureBox& fixture : task.fixtures) obstacles.fixtures.push_back(fixture.box);
+  return ObstacleMap::create(map.snapshot(), obstacles, executor);
+}
+
+int finish(const ReachMap& map) {
+  if (map.points_done < map.points.size()) {
+    print_error("robot", "interrupted after " + std::to_string(map.points_done) + " of " +
+                             std::to_string(map.points.size()) + " points; the results hold those");
+    return interrupt_status();
+  }
+  if (map.total().reachable > 0) return static_cast<int>(ExitStatus::done);
+  print_error("robot", "not one pose can be reached; is the arm where it should be (--base-at), and the radius right?");
+  return static_cast<int>(ExitStatus::no_result);
+}
+
+Result<int> run_reach(const ReachOptions& options, const GlobalOptions& global) {
+  const Stopwatch total;
+  Stopwatch stopwatch;
+  TimingsMs timings_ms;
+  const Executor executor = global.executor();
+  SACCADE_CHECK(check_json_output(global));
+  SACCADE_TRY(const ReachTask task, make_task(options));
+  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, kReachFiles, "reach.json", options.force));
+  SACCADE_TRY(const ObstacleMap obstacles, obstacles_of(task, executor));
+  timings_ms["prepare"] = stopwatch.lap_ms();
+
+  ProgressBar bar{global.quiet};
+  if (task.reachability.ik().method() == IkMethod::numeric) {
+    bar.note("no closed form for this arm: its inverse kinematics iterates, which takes milliseconds a pose");
+  }
+  Progress progress{
+      [&bar](std::string_view stage, std::size_t done, std::size_t all) { bar.update(stage, done, all); }};
+  const CancelOnInterrupt cancel{progress};
+  SACCADE_TRY(const ReachMap map,
+              reach_map(task.reachability, task.robot.arm.middle(), obstacles, task.config, executor, progress));
+  if (map.points_done == 0) return Error{Errc::cancelled, "no point was done", ""};
+  timings_ms["test"] = stopwatch.lap_ms();
+  timings_ms["total"] = total.elapsed_ms();
+  bar.finish();
+  const nlohmann::json document = json_envelope("robot", global, executor, timings_ms, reach_json(task, map));
+  SACCADE_CHECK(write_reach(out, task, map, document));
+  SACCADE_CHECK(write_json_output(global, document));
+  if (!global.json_to_stdout()) {
+    print_reach(task, map, timings_ms["test"]);
+    std::cout << "\nresults: " << options.out.string() << '\n';
+  }
+  return finish(map);
+}
+
+Pose parse_base(const std::string& text) {
+  const std::vector<double> n = parse_numbers("--base-at", text, 0);
+  if (n.size() != 3 && n.size() != 4) usage_error("--base-at", "needs X,Y,Z or X,Y,Z,DEGREES, not '" + text + "'");
+  const double turn_rad = n.size() == 4 ? n[3] * pi / 180.0 : 0.0;
+  return Eigen::Translation3d{n[0], n[1], n[2]} * Eigen::AngleAxisd{turn_rad, Eigen::Vector3d::UnitZ()};
+}
+
+void add_grid_options(CLI::App& command, ReachOptions& options) {
+  command
+      .add_option("--scene", options.scene,
+                  "gives workspace and obstacles (its fixtures and supports, as boxes): a built-in scene, clutter:SEED "
+                  "or a YAML file")
+      ->type_name("SCENE")
+      ->capture_default_str();
+  command
+      .add_option_function<std::string>(
+          "--workspace", [&options](const std::string& text) { options.workspace = parse_box("--workspace", text); },
+          "where the points of interest lie, instead of the scene's workspace")
+      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  command
+      .add_option("--height", options.height_m,
+                  "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)")
+      ->type_name("METRES");
+  command.add_option("--step", options.step_m, "between points (default: 0.05; 0.1 for arms without a closed form)")
+      ->type_name("METRES");
+  command
+      .add_option_function<std::string>(
+          "--radius",
+          [&options](const std::string& text) {
+            options.radii_m = parse_numbers("--radius", text, 0);
+            for (const double radius_m : options.radii_m) require_positive(radius_m, "--radius");
+          },
+          "of the view sphere around each point; several separated by commas (default: 0.8)")
+      ->type_name("METRES");
+}
+
+}  // namespace
+
+void add_robot_reach(CLI::App& robot, const GlobalOptions& global, Action& action) {
+  auto options = std::make_shared<ReachOptions>();
+  CLI::App* command = robot.add_subcommand("reach", "draws where in a workspace an arm can take view poses");
+  add_arm_options(*command, options->arm)->capture_default_str();
+  command
+      ->add_option_function<std::string>(
+          "--base-at", [options](const std::string& text) { options->T_world_base = parse_base(text); },
+          "where the chain's first link (--base) stands, turned about z by DEGREES (default: the world's origin)")
+      ->type_name("X,Y,Z[,DEGREES]");
+  add_grid_options(*command, *options);
+  command->add_option("--out", options->out, "folder for reach.png, reach.csv and reach.json")
+      ->required()
+      ->type_name("DIR");
+  command->add_flag("--force", options->force, "write into a folder that holds other files");
+  command->callback([options, &global, &action] {
+    check_arm_options(options->arm);
+    if (options->step_m) require_positive(*options->step_m, "--step");
+    if (options->height_m && !std::isfinite(*options->height_m)) usage_error("--height", "must be a number");
+    action = [options, &global] { return run_reach(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,56 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Refusal: why a robot does not bring the camera to a pose; RefusalCounts: how often.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <span>
+#include <string_view>
+
+namespace saccade {
+
+enum class Refusal : std::uint8_t {
+  no_ik,               ///< no configuration of the arm has the camera there
+  outside_limits,      ///< some have, each with a joint outside its limits
+  goal_in_collision,   ///< some are within the limits, each touches something
+  start_in_collision,  ///< the arm touches something where it stands
+  no_path,             ///< none was found from where the arm stands
+  declined,            ///< the robot itself said no
+};
+inline constexpr std::array kRefusals{
+    Refusal::no_ik,   Refusal::outside_limits, Refusal::goal_in_collision, Refusal::start_in_collision,
+    Refusal::no_path, Refusal::declined};
+
+/// As in the enumeration.
+[[nodiscard]] constexpr std::string_view to_string(Refusal refusal) {
+  switch (refusal) {
+    case Refusal::no_ik: return "no_ik";
+    case Refusal::outside_limits: return "outside_limits";
+    case Refusal::goal_in_collision: return "goal_in_collision";
+    case Refusal::start_in_collision: return "start_in_collision";
+    case Refusal::no_path: return "no_path";
+    default: return "declined";
+  }
+}
+
+/// Per reason.
+class RefusalCounts {
+ public:
+  void add(Refusal refusal) { ++counts_[static_cast<std::size_t>(refusal)]; }
+  /// Those that have one.
+  void add(std::span<const std::optional<Refusal>> refusals) {
+    for (const std::optional<Refusal>& refusal : refusals) {
+      if (refusal) add(*refusal);
+    }
+  }
+  [[nodiscard]] std::size_t of(Refusal refusal) const { return counts_[static_cast<std::size_t>(refusal)]; }
+  [[nodiscard]] std::size_t total() const { return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}); }
+
+ private:
+  std::array<std::size_t, kRefusals.size()> counts_{};
+};
+
+}  // namespace saccade
