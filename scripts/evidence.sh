@@ -77,7 +77,7 @@ echo "Motions of the arm beside FCL: ten seeds, all built-in scenes"
 step motion_planning env SACCADE_PLANNING_SEEDS=10 build/release/tests/parity '--gtest_filter=MotionPlanning*'
 
 echo "Fuzzing"
-scripts/build_fuzzers.sh >"$out/build_fuzzers.log" || failed=1
+{ configure asan-ubsan && compile asan-ubsan tests/fuzz/all; } >"$out/build_fuzzers.log" || failed=1
 for source in tests/fuzz/fuzz_*.cpp; do
   [[ -f $source ]] || continue
   target="$(basename "$source" .cpp)"

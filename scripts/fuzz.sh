@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Runs every fuzz target of build/fuzz for a bounded time on a copy of its seeds: scripts/fuzz.sh [SECONDS [TARGET…]]
+# Builds and runs every fuzz target of build/asan-ubsan for a bounded time on a copy of its seeds: scripts/fuzz.sh [SECONDS [TARGET…]]
 # A crash, leak, hang or undefined behaviour fails, and the input that shows it stays under out/fuzz/TARGET.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -8,7 +8,8 @@ source scripts/common.sh
 seconds="${1:-10}"
 shift || true
 
-scripts/build_fuzzers.sh
+configure asan-ubsan
+compile asan-ubsan tests/fuzz/all
 targets=("$@")
 if ((${#targets[@]} == 0)); then
   for source in tests/fuzz/fuzz_*.cpp; do targets+=("$(basename "$source" .cpp)"); done
@@ -24,7 +25,7 @@ fuzz_one() {  # TARGET: leaves its exit status in $work/TARGET.rc
   mkdir -p "$seeds" "$artifacts"
   if [[ -d tests/fuzz/corpus/${target#fuzz_} ]]; then cp -r "tests/fuzz/corpus/${target#fuzz_}/." "$seeds"; fi
   local status=0
-  "build/fuzz/tests/fuzz/$target" "$seeds" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 \
+  "build/asan-ubsan/tests/fuzz/$target" "$seeds" -max_total_time="$seconds" -timeout=20 -rss_limit_mb=4096 \
     -artifact_prefix="$artifacts" -print_final_stats=1 >"$work/$target.log" 2>&1 || status=$?
   echo "$status" >"$work/$target.rc"
 }
@@ -43,7 +44,7 @@ report() {
     mkdir -p "out/fuzz/$target"
     cp "$work/$target.log" "out/fuzz/$target/log.txt"
     tail -n 40 "$work/$target.log"
-    echo "  $target FAILED after ${executions:-0} inputs; to see it again: build/fuzz/tests/fuzz/$target $(sed -n 's/.*Test unit written to //p' "$work/$target.log" | tail -n 1)"
+    echo "  $target FAILED after ${executions:-0} inputs; to see it again: build/asan-ubsan/tests/fuzz/$target $(sed -n 's/.*Test unit written to //p' "$work/$target.log" | tail -n 1)"
     failed=$((failed + 1))
   fi
 }

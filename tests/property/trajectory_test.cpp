@@ -155,9 +155,9 @@ TEST(TrajectoryProperty, StatesAreThoseOfSummedAccelerations) {
     Configuration speed = Configuration::Zero(q.size());
     double t_s = 0.0;
     for (const Trajectory::Piece& piece : turning.pieces()) {
-      constexpr int kSteps{50};
-      const double dt_s = piece.duration_s / kSteps;
-      for (int step = 0; step < kSteps; ++step) {
+      constexpr int kStepsOfPiece{50};
+      const double dt_s = piece.duration_s / kStepsOfPiece;
+      for (int step = 0; step < kStepsOfPiece; ++step) {
         q += dt_s * (speed + 0.5 * dt_s * piece.acceleration);
         speed += dt_s * piece.acceleration;
         t_s += dt_s;
