@@ -6,6 +6,7 @@
 #include <iostream>
 #include <map>
 #include <memory>
+#include <numbers>
 #include <optional>
 
 #include "exit_status.hpp"
@@ -84,6 +85,24 @@ std::string refused_text(const json& views) {
   return text.empty() ? "" : text + " of " + std::to_string(candidates) + " candidates";
 }
 
+/// Views at which the arm could not tilt the camera all the way; empty: it could everywhere.
+std::string tilts_text(const json& views, const ExplorationConfig& config) {
+  if (config.oscillation_frames < 2) return "";
+  std::size_t narrow = 0;
+  std::size_t left_out = 0;
+  for (const json& view : views) {
+    left_out += static_cast<std::size_t>(config.oscillation_frames) - view["frames"].get<std::size_t>();
+    if (!view.contains("tilt_rad")) continue;  // a run that an older version began
+    const double least_rad = view["tilt_rad"][0].get<double>();
+    const double greatest_rad = view["tilt_rad"][1].get<double>();
+    narrow += least_rad > -config.oscillation_rad || greatest_rad < config.oscillation_rad ? 1 : 0;
+  }
+  if (narrow + left_out == 0) return "";
+  return std::to_string(narrow) + " of " + std::to_string(views.size()) + " views tilted less than ±" +
+         fixed(config.oscillation_rad * 180.0 / std::numbers::pi, 0) + "°, " + std::to_string(left_out) +
+         " frames left out";
+}
+
 void print_summary(const ExploreOptions& options, const json& result) {
   const auto percent = [](const json& coverage) { return 100.0 * coverage.get<double>(); };
   std::cout << std::fixed << std::setprecision(1);
@@ -105,6 +124,8 @@ void print_summary(const ExploreOptions& options, const json& result) {
   }
   const std::string refused = refused_text(result["views"]);
   if (!refused.empty()) std::cout << "refused   " << refused << '\n';
+  const std::string tilts = tilts_text(result["views"], options.run.exploration);
+  if (!tilts.empty()) std::cout << "tilts     " << tilts << '\n';
   std::cout << "time      " << phases_text(result["phases_s"]) << '\n'
             << "stopped   " << result["stopped_because"].get<std::string>() << '\n'
             << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';

@@ -237,6 +237,7 @@ Status ExploreRun::record_view(const ExploredView& view, const Proposals& propos
               {"candidates", view.candidates},
               {"refused", refused_json(view.refused)},
               {"frames", view.frames},
+              {"tilt_rad", {view.tilt.least_rad, view.tilt.greatest_rad}},
               {"T_world_camera", pose_to_json(view.T_world_camera)},
               {"unknown_left", measured.unknown_left},
               {"unknown_near_objects", nullptr},

@@ -11,27 +11,50 @@
 namespace saccade {
 namespace {
 
-/// Poses of the oscillation about the camera's x axis, from minus to plus. One: the view itself.
-std::vector<Pose> oscillation(const Pose& T_world_view, const ExplorationConfig& config) {
-  std::vector<Pose> poses;
-  for (int i = 0; i < config.oscillation_frames; ++i) {
-    const double share = config.oscillation_frames > 1 ? 2.0 * i / (config.oscillation_frames - 1) - 1.0 : 0.0;
-    poses.emplace_back(T_world_view * Eigen::AngleAxisd{share * config.oscillation_rad, Eigen::Vector3d::UnitX()});
+Pose tilted(const Pose& T_world_view, double tilt_rad) {
+  return T_world_view * Eigen::AngleAxisd{tilt_rad, Eigen::Vector3d::UnitX()};
+}
+
+/// One frame is taken from the view itself.
+double oscillation_rad(const ExplorationConfig& config) {
+  return config.oscillation_frames > 1 ? config.oscillation_rad : 0.0;
+}
+
+/// Tilts that are tried for one end of an oscillation, the farthest first: halves of halves.
+std::vector<double> tilts_towards(double farthest_rad) {
+  constexpr int kHalvings{3};
+  std::vector<double> tilts_rad;
+  for (int i = 0; farthest_rad != 0.0 && i <= kHalvings; ++i) tilts_rad.push_back(std::ldexp(farthest_rad, -i));
+  return tilts_rad;
+}
+
+/// How far the robot can tilt the camera at a view, of the tilts that are tried; 0: not at all.
+Result<double> farthest_tilt_rad(Robot& robot, const Pose& T_world_view, double wanted_rad) {
+  for (const double tilt_rad : tilts_towards(wanted_rad)) {
+    const Pose pose = tilted(T_world_view, tilt_rad);
+    SACCADE_TRY(const PlannedMotion planned, robot.plan(std::span{&pose, 1}, Way::straight));
+    if (planned.motion) return tilt_rad;
   }
-  return poses;
+  return 0.0;
 }
 
 struct Look {
   std::size_t frames{0};
+  Tilt tilt;
   double motion_s{0.0};
 };
 
-/// PerformRobotOscillation: a frame at each of its poses that the robot can take, each one fused.
+/// PerformRobotOscillation about the camera's x axis: frames evenly from the least tilt to the greatest, each one fused.
 Result<Look> look(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_view, const ExplorationConfig& config,
                   const Executor& executor) {
   Look seen;
-  const std::vector<Pose> poses = oscillation(T_world_view, config);
-  for (const Pose& wanted : poses) {
+  SACCADE_TRY(seen.tilt.least_rad, farthest_tilt_rad(cell.robot, T_world_view, -oscillation_rad(config)));
+  SACCADE_TRY(seen.tilt.greatest_rad, farthest_tilt_rad(cell.robot, T_world_view, oscillation_rad(config)));
+  const double middle_rad = 0.5 * (seen.tilt.least_rad + seen.tilt.greatest_rad);
+  const double half_rad = 0.5 * (seen.tilt.greatest_rad - seen.tilt.least_rad);
+  for (int i = 0; i < config.oscillation_frames; ++i) {
+    const double share = config.oscillation_frames > 1 ? 2.0 * i / (config.oscillation_frames - 1) - 1.0 : 0.0;
+    const Pose wanted = tilted(T_world_view, middle_rad + share * half_rad);
     SACCADE_TRY(const PlannedMotion planned, cell.robot.plan(std::span{&wanted, 1}, Way::straight));
     if (!planned.motion) continue;
     SACCADE_TRY(const std::optional<Arrival> arrival, cell.robot.execute(*planned.motion));
@@ -180,6 +203,7 @@ struct Loop {
       stopwatch.lap_ms();
       SACCADE_TRY(const Look seen, look(map, cell, view.T_world_camera, config, executor));
       view.frames = seen.frames;
+      view.tilt = seen.tilt;
       view.motion_s += seen.motion_s;
       view.fusion_ms = stopwatch.lap_ms();
       views.push_back(view);
@@ -222,9 +246,10 @@ Result<ScanResult> scan(TsdfMap& map, ExplorationCell& cell, const std::vector<P
   };
   std::vector<Pose> way;
   for (const Pose& pose : T_world_camera) {
-    const std::vector<Pose> around = oscillation(pose, config);
     way.push_back(pose);
-    way.insert(way.end(), around.begin(), around.end());
+    for (const double end_rad : {-oscillation_rad(config), oscillation_rad(config)}) {
+      for (const double tilt_rad : tilts_towards(end_rad)) way.push_back(tilted(pose, tilt_rad));
+    }
   }
   SACCADE_CHECK(cell.robot.follow(map.content(), executor));
   SACCADE_TRY(const std::vector<Box> swept, cell.robot.swept_by(way));

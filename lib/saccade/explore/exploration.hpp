@@ -27,6 +27,12 @@ struct ExplorationConfig {
   [[nodiscard]] Status validate() const;
 };
 
+/// How far the camera was tilted at a view, about its x axis.
+struct Tilt {
+  double least_rad{0.0};
+  double greatest_rad{0.0};
+};
+
 /// One view that was taken.
 struct ExploredView {
   std::size_t region{0};  ///< index of the region it was chosen for
@@ -35,6 +41,7 @@ struct ExploredView {
   std::size_t candidates{0};   ///< poses it was chosen from, those that the robot cannot take included
   RefusalCounts refused{};     ///< of those, by reason; with the ones for which no path was found
   std::size_t frames{0};       ///< fused
+  Tilt tilt{};                 ///< ±oscillation_rad, or as far towards either end as the robot could
   double planner_map_ms{0.0};  ///< what the robot must not touch brought up to date
   double candidates_ms{0.0};
   double reachability_ms{0.0};

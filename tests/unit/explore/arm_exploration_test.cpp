@@ -124,6 +124,8 @@ TEST(ArmExploration, SaysWhatItRefusedAndHowItMoved) {
     EXPECT_EQ(view.candidates, 480U);
     EXPECT_GT(view.refused.of(Refusal::no_ik) + view.refused.of(Refusal::outside_limits), 0U);
     EXPECT_LT(view.refused.total(), view.candidates);
+    EXPECT_EQ(view.frames, 3U);
+    EXPECT_GE(view.tilt.greatest_rad - view.tilt.least_rad, ExplorationConfig{}.oscillation_rad);
     ASSERT_TRUE(view.q);
     EXPECT_LT((camera_pose(find_robot("comau").value().arm, *view.q).matrix() - view.T_world_camera.matrix()).norm(),
               1e-6);

@@ -83,6 +83,8 @@ TEST_F(Explore, EveryViewLeavesLessUnknownAndTheObjectsGetCovered) {
     EXPECT_GT(view.candidates, 50U);
     EXPECT_EQ(proposals.views.size(), view.candidates);
     EXPECT_EQ(view.frames, 3U);
+    EXPECT_EQ(view.tilt.least_rad, -exploration_.oscillation_rad);
+    EXPECT_EQ(view.tilt.greatest_rad, exploration_.oscillation_rad);
     unknown = left;
     return true;
   };
@@ -230,6 +232,54 @@ class FencedRobot final : public Robot {
  private:
   double max_y_m_;
 };
+
+/// Tilts the camera upwards less than it is asked to.
+class StiffRobot final : public Robot {
+ public:
+  explicit StiffRobot(double max_tilt_rad) : max_tilt_rad_{max_tilt_rad} {}
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way) override {
+    const Pose& wanted = T_world_camera.front();
+    if (way == Way::any) {
+      T_world_view_ = wanted;
+      tilts_rad.clear();
+    } else if (tilt_rad(wanted) > max_tilt_rad_) {
+      return PlannedMotion{{}, Refusal::outside_limits, "a stiff joint"};
+    }
+    return PlannedMotion{Motion{0, wanted, {}}, {}, ""};
+  }
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way) override {
+    if (!on_way) tilts_rad.push_back(tilt_rad(motion.T_world_camera));
+    return std::optional{Arrival{motion.T_world_camera, 0.0}};
+  }
+  std::vector<double> tilts_rad;  ///< of the frames of the last view
+
+ private:
+  [[nodiscard]] double tilt_rad(const Pose& pose) const {
+    const Eigen::AngleAxisd turn{T_world_view_.linear().transpose() * pose.linear()};
+    return turn.angle() * turn.axis().x();
+  }
+  double max_tilt_rad_;
+  Pose T_world_view_{Pose::Identity()};
+};
+
+TEST_F(Explore, FramesAreSpreadOverTheTiltsThatTheRobotCanTake) {
+  const double whole_rad = exploration_.oscillation_rad;
+  exploration_.max_views = 1;
+  for (const auto& [most_rad, greatest_rad] :
+       {std::pair{0.3 * whole_rad, 0.25 * whole_rad}, {0.01 * whole_rad, 0.0}, {1.01 * whole_rad, whole_rad}}) {
+    StiffRobot robot{most_rad};
+    TsdfMap map = empty_map();
+    const ExplorationResult result = run(map, robot, sphere());
+    ASSERT_EQ(result.views.size(), 1U);
+    EXPECT_EQ(result.views[0].frames, 3U);
+    EXPECT_EQ(result.views[0].tilt.least_rad, -whole_rad);
+    EXPECT_EQ(result.views[0].tilt.greatest_rad, greatest_rad);
+    ASSERT_EQ(robot.tilts_rad.size(), 3U);
+    EXPECT_NEAR(robot.tilts_rad[0], -whole_rad, 1e-9);
+    EXPECT_NEAR(robot.tilts_rad[1], 0.5 * (greatest_rad - whole_rad), 1e-9);
+    EXPECT_NEAR(robot.tilts_rad[2], greatest_rad, 1e-9);
+  }
+}
 
 TEST_F(Explore, PosesOutOfReachArePassedOver) {
   FencedRobot front{-0.2};
