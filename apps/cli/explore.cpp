@@ -4,7 +4,6 @@
 #include <array>
 #include <iomanip>
 #include <iostream>
-#include <map>
 #include <memory>
 #include <numbers>
 #include <optional>
@@ -70,18 +69,24 @@ std::string phases_text(const json& phases) {
   return text.empty() ? "-" : text;
 }
 
+/// Poses of the scan that were passed over; empty: none.
+std::string scan_text(const json& initial) {
+  if (initial.is_null() || initial["refused"].empty()) return "";
+  return std::to_string(initial["views"].get<std::size_t>()) +
+         " taken, passed over: " + refused_text(initial["refused"]);
+}
+
 /// Why views were not taken, over all views; empty: none was refused.
-std::string refused_text(const json& views) {
-  std::map<std::string, std::size_t> counts;
+std::string refused_in(const json& views) {
+  json counts = json::object();
   std::size_t candidates = 0;
   for (const json& view : views) {
     candidates += view["candidates"].get<std::size_t>();
-    for (const auto& [reason, count] : view["refused"].items()) counts[reason] += count.get<std::size_t>();
+    for (const auto& [reason, count] : view["refused"].items()) {
+      counts[reason] = counts.value(reason, std::size_t{0}) + count.get<std::size_t>();
+    }
   }
-  std::string text;
-  for (const auto& [reason, count] : counts) {
-    text += (text.empty() ? "" : ", ") + std::to_string(count) + " " + reason;
-  }
+  const std::string text = refused_text(counts);
   return text.empty() ? "" : text + " of " + std::to_string(candidates) + " candidates";
 }
 
@@ -106,6 +111,7 @@ std::string tilts_text(const json& views, const ExplorationConfig& config) {
 void print_summary(const ExploreOptions& options, const json& result) {
   const auto percent = [](const json& coverage) { return 100.0 * coverage.get<double>(); };
   std::cout << std::fixed << std::setprecision(1);
+  if (const std::string scan = scan_text(result["initial"]); !scan.empty()) std::cout << "scan      " << scan << '\n';
   for (const json& view : result["views"]) {
     std::cout << "view " << std::setw(2) << view["index"].get<std::size_t>() + 1 << "  gain " << std::setw(7)
               << view["gain"].dump();
@@ -122,7 +128,7 @@ void print_summary(const ExploreOptions& options, const json& result) {
               << 1e3 * final["chamfer_m"].get<double>() << " mm, F-score at 5 mm " << std::setprecision(3)
               << final["f_score"].get<double>() << '\n';
   }
-  const std::string refused = refused_text(result["views"]);
+  const std::string refused = refused_in(result["views"]);
   if (!refused.empty()) std::cout << "refused   " << refused << '\n';
   const std::string tilts = tilts_text(result["views"], options.run.exploration);
   if (!tilts.empty()) std::cout << "tilts     " << tilts << '\n';

@@ -60,11 +60,9 @@ ReportView view_of(const RunFolder& out, const json& view) {
     shown.facts.emplace_back(
         "robot", fixed(motion_s, 1) + " s, camera's way " + fixed(view.at("path_m").get<double>(), 2) + " m");
   }
-  std::string refused;
-  for (const auto& [reason, count] : view.at("refused").items()) {
-    refused += (refused.empty() ? "" : ", ") + std::to_string(count.get<std::size_t>()) + " " + reason;
+  if (const std::string refused = refused_text(view.at("refused")); !refused.empty()) {
+    shown.facts.emplace_back("refused", refused);
   }
-  if (!refused.empty()) shown.facts.emplace_back("refused", refused);
   shown.pictures = pictures_of(
       out, shown.index,
       {{{}, "The chosen view among its candidates", "The candidates around the region and the chosen view", "choice"},
@@ -111,6 +109,14 @@ Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& works
   return write_png(out / picture_name(0, "map"), map_picture(map, workspace, executor, config));
 }
 
+std::string refused_text(const json& refused) {
+  std::string text;
+  for (const auto& [reason, count] : refused.items()) {
+    text += (text.empty() ? "" : ", ") + std::to_string(count.get<std::size_t>()) + " " + reason;
+  }
+  return text;
+}
+
 bool is_view_picture(const std::string& file_name) {
   return file_name.starts_with("view-") && file_name.ends_with(".png");
 }
@@ -137,6 +143,8 @@ Status write_report(const RunFolder& out, const json& document, const ExploreOpt
   if (const json& initial = result.at("initial"); !initial.is_null()) {
     report.initial.coverage = optional_of<double>(initial.at("coverage"));
     report.initial.unknown_left = initial.at("unknown_left").get<std::size_t>();
+    const std::string refused = refused_text(initial.at("refused"));
+    if (!refused.empty()) report.initial.facts.emplace_back("poses passed over", refused);
   }
   report.initial.pictures =
       pictures_of(out, 0, {{{}, "The map after the scan, unknown in black", "The map from outside", "map"}});

@@ -20,7 +20,7 @@ struct ViewScenes {
   const ExploredView& view;
   const Proposals& proposals;
   std::vector<Pose> T_world_earlier;
-  const std::vector<Frame>& frames;  ///< of the oscillation, the view itself in the middle
+  const std::vector<Frame>& frames;  ///< of the oscillation
   const Box& workspace;
   PinholeCamera camera;
   const RobotDrawing* robot{nullptr};  ///< drawn at the view; none: the camera flies
@@ -32,6 +32,9 @@ struct ViewScenes {
 [[nodiscard]] Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace,
                                const Executor& executor, const RobotDrawing* robot = nullptr);
 [[nodiscard]] bool is_view_picture(const std::string& file_name);
+
+/// "2 no_ik, 1 no_path": the counts of `refused` in the document; empty: none.
+[[nodiscard]] std::string refused_text(const nlohmann::json& refused);
 
 /// Writes report.html from the document that goes to run.json and the pictures in the folder; pictures that are not
 /// there are left out. io_failure.

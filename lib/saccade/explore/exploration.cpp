@@ -44,7 +44,8 @@ struct Look {
   double motion_s{0.0};
 };
 
-/// PerformRobotOscillation about the camera's x axis: frames evenly from the least tilt to the greatest, each one fused.
+/// PerformRobotOscillation about the camera's x axis: frames evenly from the least tilt to the greatest, each one
+/// fused.
 Result<Look> look(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_view, const ExplorationConfig& config,
                   const Executor& executor) {
   Look seen;

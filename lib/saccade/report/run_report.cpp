@@ -84,6 +84,7 @@ std::string scan_section(const RunReport& report) {
   facts.add("coverage", report.initial.coverage, percent_text);
   facts.add("unknown left", grouped(report.initial.unknown_left) + " voxels");
   facts.add("unknown near objects", report.initial.unknown_near_objects, count_text);
+  for (const auto& [name, value] : report.initial.facts) facts.add(name.c_str(), value);
   return view_html("scan", "Initial scan", facts, report.initial.pictures);
 }
 

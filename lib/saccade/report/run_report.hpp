@@ -45,6 +45,7 @@ struct ReportScan {
   std::size_t unknown_left{0};
   std::optional<std::size_t> unknown_near_objects;
   std::vector<ReportPicture> pictures;
+  std::vector<std::pair<std::string, std::string>> facts{};  ///< further ones, such as poses that were passed over
 };
 
 /// The map at the end, against the truth.

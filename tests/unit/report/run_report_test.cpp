@@ -43,7 +43,11 @@ RunReport example() {
   report.facts = {{"voxel size", "5.8 mm"}, {"camera", "640×480"}};
   report.min_gain = 30.0;
   report.stop_reason = "views_used_up";
-  report.initial = {0.709, 273794, 12134, {{png_header(720, 540), "after the scan", "the map", "map"}}};
+  report.initial = {0.709,
+                    273794,
+                    12134,
+                    {{png_header(720, 540), "after the scan", "the map", "map"}},
+                    {{"poses passed over", "1 no_ik"}}};
   report.views = {{1, 5581.0, 960, 0.932, 162586, 4606, false, {{"evaluation", 931.0}, {"fusion", 357.0}}, {}},
                   {2, 1590.5, 959, 0.941, 132342, 3132, true, {{"evaluation", 877.0}, {"fusion", 371.0}}, {}}};
   report.views[0].pictures = {{png_header(720, 592), "the choice", "candidates", "choice"},
@@ -104,6 +108,7 @@ TEST(RunReport, IsWellFormedAndSelfContained) {
 TEST(RunReport, SaysEveryFigure) {
   const std::string page = run_report_html(example());
   for (const std::string& text : {std::string{"Exploration of tabletop-2"},
+                                  std::string{"poses passed over"},
                                   std::string{"sphere"},
                                   std::string{"Kinect v1"},
                                   std::string{"4711"},
