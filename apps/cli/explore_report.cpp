@@ -60,6 +60,9 @@ ReportView view_of(const RunFolder& out, const json& view) {
     shown.facts.emplace_back(
         "robot", fixed(motion_s, 1) + " s, camera's way " + fixed(view.at("path_m").get<double>(), 2) + " m");
   }
+  if (const double retreat_s = view.value("retreat_s", 0.0); retreat_s > 0.0) {
+    shown.facts.emplace_back("backed out of a contact for", fixed(retreat_s, 1) + " s");
+  }
   if (const std::string refused = refused_text(view.at("refused")); !refused.empty()) {
     shown.facts.emplace_back("refused", refused);
   }

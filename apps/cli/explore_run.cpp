@@ -245,6 +245,7 @@ Status ExploreRun::record_view(const ExploredView& view, const Proposals& propos
               {"coverage", nullptr},
               {"q", configuration_json(view.q)},
               {"motion_s", view.motion_s},
+              {"retreat_s", view.retreat_s},
               {"path_m", length_m(view.path)},
               {"ms",
                {{"planner_map", view.planner_map_ms},

@@ -51,10 +51,17 @@ TEST(ExploreCommand, GoesFromViewToView) {
     EXPECT_EQ(view.at("q").size(), 6U);
     EXPECT_GT(view.at("motion_s").get<double>(), 0.0);
     EXPECT_GT(view.at("path_m").get<double>(), 0.0);
+    EXPECT_EQ(view.at("frames"), 5);
+    ASSERT_EQ(view.at("tilt_rad").size(), 2U);
+    EXPECT_LE(view.at("tilt_rad")[0].get<double>(), 0.0);
+    EXPECT_GE(view.at("tilt_rad")[1].get<double>(), 0.0);
+    EXPECT_EQ(view.at("retreat_s"), 0.0);
   }
   EXPECT_EQ(result.at("robot"), "comau");
   EXPECT_GT(result.at("phases_s").at("robot").get<double>(), 0.0);
-  EXPECT_GE(result.at("initial").at("views").get<int>(), 1);
+  EXPECT_EQ(result.at("initial").at("views"), 1);
+  EXPECT_EQ(result.at("initial").at("refused"), (nlohmann::json{{"outside_limits", 1}}));
+  EXPECT_NE(text_of(run / "report.html").find("poses passed over"), std::string::npos);
   const nlohmann::json& final = result.at("final");
   EXPECT_EQ(final.at("unknown_left"), unknown);
   EXPECT_GT(final.at("coverage").get<double>(), result.at("initial").at("coverage").get<double>());

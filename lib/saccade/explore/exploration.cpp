@@ -164,6 +164,7 @@ struct Loop {
         view.motion_ms += stopwatch.lap_ms();
         if (arrival) {
           view.motion_s = arrival->motion_s;
+          view.retreat_s = planned.motion->retreat_s;
           return Choice{*chosen};
         }
         view.refused.add(Refusal::declined);

@@ -50,6 +50,7 @@ struct ExploredView {
   double motion_ms{0.0};
   double fusion_ms{0.0};                ///< seeing and fusing all frames of the oscillation
   double motion_s{0.0};                 ///< what motion and oscillation take a real arm; 0 where that is not known
+  double retreat_s{0.0};                ///< of these, backing out of what was seen where an arm stood
   std::optional<Configuration> q{};     ///< of an arm that stands at the view
   std::vector<Eigen::Vector3d> path{};  ///< the camera's centre on its way, where the robot knows it
 };

@@ -62,13 +62,28 @@ Result<ArmRobot::Parts> ArmRobot::make_parts(const ArmModel& arm, const TsdfConf
 
 Status ArmRobot::place(const Configuration& q) {
   SACCADE_CHECK(check_configuration(arm(), q));
-  q_ = q;
+  stand(q);
   return {};
 }
 
+void ArmRobot::arrive(const Motion& motion, const Configuration& q) {
+  way_.add(motion.trajectory);
+  q_ = q;
+  retreat_.reset();
+}
+
+void ArmRobot::stand(const Configuration& q) {
+  way_.clear();
+  q_ = q;
+  retreat_.reset();
+}
+
 Status ArmRobot::follow(const TsdfSnapshot& map, const Executor& executor) {
-  const auto update = obstacles_.update(map, executor);
-  return update ? Status{} : Status{update.error()};
+  SACCADE_TRY([[maybe_unused]] const ObstacleUpdate update, obstacles_.update(map, executor));
+  const ArmCollision& collision = reachability_.collision();
+  retreat_.reset();
+  if (collision.contact(q_, obstacles_)) retreat_ = way_.back_from(q_, collision, obstacles_);
+  return {};
 }
 
 Result<std::vector<Box>> ArmRobot::swept_by(std::span<const Pose> T_world_camera) {
@@ -90,7 +105,15 @@ std::vector<std::optional<Refusal>> ArmRobot::test(std::span<const Pose> T_world
 }
 
 Result<PlannedMotion> ArmRobot::plan(std::span<const Pose> T_world_camera, Way way) {
-  return plan_among(T_world_camera, way, q_, obstacles_);
+  if (!retreat_ || way == Way::straight) return plan_among(T_world_camera, way, q_, obstacles_);
+  SACCADE_TRY(PlannedMotion planned, plan_among(T_world_camera, way, retreat_->end(), obstacles_));
+  if (!planned.motion) return planned;
+  std::vector<Trajectory::Piece> pieces = retreat_->pieces();
+  const std::vector<Trajectory::Piece>& onwards = planned.motion->trajectory.pieces();
+  pieces.insert(pieces.end(), onwards.begin(), onwards.end());
+  planned.motion->trajectory = Trajectory{std::move(pieces)};
+  planned.motion->retreat_s = retreat_->duration_s();
+  return planned;
 }
 
 Result<PlannedMotion> ArmRobot::plan_among(std::span<const Pose> T_world_camera, Way way, const Configuration& from,
@@ -127,7 +150,6 @@ Result<SimulatedRobot> SimulatedRobot::create(const ArmModel& arm, const TsdfCon
 }
 
 Result<std::optional<Arrival>> SimulatedRobot::execute(const Motion& motion, const OnWay& on_way) {
-  constexpr double kSample_s{0.02};
   SACCADE_CHECK(check_start(motion));
   const Trajectory& trajectory = motion.trajectory;
   if (on_way) {
@@ -137,7 +159,7 @@ Result<std::optional<Arrival>> SimulatedRobot::execute(const Motion& motion, con
       on_way({t_s, camera_pose(arm(), trajectory.at(t_s).q)});
     }
   }
-  stand(trajectory.end());
+  arrive(motion, trajectory.end());
   moved_s_ += trajectory.duration_s();
   return std::optional{Arrival{T_world_camera(), trajectory.duration_s()}};
 }

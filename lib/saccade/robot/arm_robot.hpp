@@ -2,6 +2,7 @@
 #pragma once
 // ArmRobot: an arm that finds its own way through the map; SimulatedRobot: one that moves in simulated time.
 
+#include "saccade/robot/driven_way.hpp"
 #include "saccade/robot/motion_planner.hpp"
 #include "saccade/robot/reachability.hpp"
 #include "saccade/robot/robot.hpp"
@@ -26,7 +27,8 @@ struct ArmRobotConfig {
 class ArmRobot : public Robot {
  public:
   [[nodiscard]] std::optional<Configuration> configuration() const override { return q_; }
-  /// ObstacleMap::update.
+  /// ObstacleMap::update. Where the arm then touches something as it stands, the next plan begins with
+  /// DrivenWay::back_from, if there is a way back.
   [[nodiscard]] Status follow(const TsdfSnapshot& map, const Executor& executor) override;
   /// The unknown cells of the planner's map that the arm comes within 5 mm of.
   [[nodiscard]] Result<std::vector<Box>> swept_by(std::span<const Pose> T_world_camera) override;
@@ -63,7 +65,10 @@ class ArmRobot : public Robot {
                                                 const ArmRobotConfig& config);
   /// Whether a motion begins where the arm stands.
   [[nodiscard]] Status check_start(const Motion& motion) const;
-  void stand(const Configuration& q) { q_ = q; }
+  /// The motion was made, and the arm stands like this now.
+  void arrive(const Motion& motion, const Configuration& q);
+  /// The arm stands like this; how it came there is not known.
+  void stand(const Configuration& q);
 
  private:
   [[nodiscard]] Result<PlannedMotion> plan_among(std::span<const Pose> T_world_camera, Way way,
@@ -74,18 +79,22 @@ class ArmRobot : public Robot {
   ObstacleMap fixtures_;  ///< without the map
   ObstacleMap obstacles_;
   Configuration q_;
+  DrivenWay way_;
+  std::optional<Trajectory> retreat_;  ///< out of the contact in which the arm stands
 };
 
 /// Moves exactly as planned, in no time, and says how long the real arm would take.
 class SimulatedRobot final : public ArmRobot {
  public:
+  static constexpr double kSample_s{0.02};
+
   /// invalid_argument: a bad configuration, a map without a workspace, a start outside the limits or of another number
   /// of joints, or one that touches a fixture or itself; errors of ArmCollision, InverseKinematics and ObstacleMap.
   [[nodiscard]] static Result<SimulatedRobot> create(const ArmModel& arm, const TsdfConfig& map,
                                                      const ArmRobotConfig& config = {});
 
-  /// on_way is called every 20 ms of simulated time, and at the end. invalid_argument for a motion that does not begin
-  /// where the arm stands.
+  /// on_way is called every kSample_s of simulated time, and at the end. invalid_argument for a motion that does not
+  /// begin where the arm stands.
   [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way = {}) override;
   /// Of all motions so far.
   [[nodiscard]] double moved_s() const { return moved_s_; }

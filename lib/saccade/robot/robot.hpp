@@ -24,6 +24,7 @@ struct Motion {
   std::size_t goal{0};                    ///< which of the poses that were asked for
   Pose T_world_camera{Pose::Identity()};  ///< that pose
   Trajectory trajectory;                  ///< of an arm; empty for robots that find their own way
+  double retreat_s{0.0};                  ///< its beginning, in which an arm backs out of a contact
 };
 
 /// A motion, or why there is none.

@@ -28,8 +28,8 @@ void for_each_cell(const IndexBox& box, const Visit& visit) {
 
 }  // namespace
 
-SweptCells::SweptCells(const ArmCollision& collision, const ObstacleMap& obstacles)
-    : collision_{collision}, obstacles_{obstacles} {
+SweptCells::SweptCells(const ArmCollision& collision, const ObstacleMap& obstacles, double margin_m)
+    : collision_{collision}, obstacles_{obstacles}, margin_m_{margin_m} {
   const Index3 size = obstacles.cells().size();
   swept_.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
 }
@@ -43,7 +43,7 @@ void SweptCells::add(const Configuration& q) {
       for (std::uint32_t i = 0; i < balls.size();) {
         const TreeBall& ball = balls[i];
         const Eigen::Vector3d center = T_world_link * ball.center.cast<double>();
-        const double radius_m = static_cast<double>(ball.radius_m) + kMargin_m;
+        const double radius_m = static_cast<double>(ball.radius_m) + margin_m_;
         if (obstacles_.distance_bound_m(center) > radius_m) {
           i = ball.next;
           continue;
@@ -86,7 +86,10 @@ void SweptCells::add_cells(const Eigen::Vector3d& center_world, double radius_m)
     if (!cells.is_obstacle(cell)) return;
     const Box box = cells.bounds_of(cell);
     const Eigen::Vector3d nearest = center_world.cwiseMax(box.min).cwiseMin(box.max);
-    if ((nearest - center_world).norm() <= radius_m) swept_[number_of(cell, cells)] = true;
+    if ((nearest - center_world).norm() > radius_m) return;
+    auto swept = swept_[number_of(cell, cells)];
+    count_ += swept ? 0 : 1;
+    swept = true;
   });
 }
 

@@ -12,21 +12,24 @@ namespace saccade {
 /// Gathers cells of the map, not fixtures. Both arguments outlive it.
 class SweptCells {
  public:
-  SweptCells(const ArmCollision& collision, const ObstacleMap& obstacles);
+  static constexpr double kMargin_m{0.005};
 
-  /// The cells that the arm comes within kMargin_m of: were they free, the arm would touch no cell.
+  SweptCells(const ArmCollision& collision, const ObstacleMap& obstacles, double margin_m = kMargin_m);
+
+  /// The cells that the arm comes within the margin of: were they free, the arm would touch no cell.
   void add(const Configuration& q);
   /// The same all along, in steps in which no point of the arm moves farther than kMargin_m.
   void add(const Trajectory& trajectory);
 
+  [[nodiscard]] std::size_t count() const { return count_; }
   [[nodiscard]] std::vector<Box> boxes() const;
-
-  static constexpr double kMargin_m{0.005};
 
  private:
   void add_cells(const Eigen::Vector3d& center_world, double radius_m);
   const ArmCollision& collision_;
   const ObstacleMap& obstacles_;
+  double margin_m_;
+  std::size_t count_{0};
   std::vector<bool> swept_;  ///< per cell of the map's box, x fastest
 };
 

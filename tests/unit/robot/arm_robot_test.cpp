@@ -154,6 +154,95 @@ TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
   EXPECT_EQ(moving.execute(*planned.motion).error().code, Errc::invalid_argument);
 }
 
+/// What was seen beside the hand of an arm that has come to the second of two poses: `ahead_m` on from where it came.
+class BackingOut : public SimulatedArm {
+ protected:
+  SimulatedRobot at_second(double ahead_m, double radius_m) {
+    SimulatedRobot moving = robot();
+    EXPECT_TRUE(map_.free(*map_config().workspace).ok());
+    EXPECT_TRUE(moving.follow(map_.content(), Executor{}).ok());
+    EXPECT_TRUE(*moving.move_to(poses(3)[0]));
+    const Configuration first = *moving.configuration();
+    EXPECT_TRUE(*moving.move_to(poses(3)[1]));
+    const Configuration second = *moving.configuration();
+    const auto hand = [](const Configuration& q) -> Eigen::Vector3d {
+      return forward_kinematics(arm(), q).T_world_link[6].translation();
+    };
+    const Eigen::Vector3d on = hand(second) - hand(second + 0.05 * (first - second));
+    EXPECT_TRUE(map_.forget(Sphere{hand(second) + ahead_m * on.normalized(), radius_m}).ok());
+    EXPECT_TRUE(moving.follow(map_.content(), Executor{}).ok());
+    EXPECT_TRUE(moving.reachability().collision().contact(second, moving.obstacles()));
+    return moving;
+  }
+  TsdfMap map_{TsdfMap::create(map_config()).value()};
+  std::vector<Pose> third_{poses(3)[2]};
+};
+
+TEST_F(BackingOut, AnArmLeavesTheWayItCameAndGoesOn) {
+  SimulatedRobot moving = at_second(0.07, 0.02);
+  const ArmCollision& collision = moving.reachability().collision();
+  const Configuration stood = *moving.configuration();
+  EXPECT_EQ(moving.plan(third_, Way::straight)->refusal, Refusal::start_in_collision) << "no detour was wanted";
+  const PlannedMotion planned = moving.plan(third_).value();
+  ASSERT_TRUE(planned.motion);
+  const Motion& motion = *planned.motion;
+  ASSERT_GT(motion.retreat_s, 0.0);
+  ASSERT_GT(motion.trajectory.duration_s(), motion.retreat_s);
+  EXPECT_LT(test::distance(motion.trajectory.at(0.0).q, stood), 1e-9);
+  EXPECT_LT(motion.trajectory.at(motion.retreat_s).speed.norm(), 1e-6) << "it stops before it goes on";
+  EXPECT_FALSE(collision.contact(motion.trajectory.at(motion.retreat_s).q, moving.obstacles()));
+  const std::vector<double> at_first_m = obstacle_depths_m(stood, collision, moving.obstacles());
+  for (double t_s = 0.0; t_s <= motion.trajectory.duration_s(); t_s += 0.01) {
+    const std::vector<double> depths_m = obstacle_depths_m(motion.trajectory.at(t_s).q, collision, moving.obstacles());
+    for (std::size_t link = 0; link < depths_m.size(); ++link) EXPECT_LE(depths_m[link], at_first_m[link] + 1e-3);
+  }
+  ASSERT_TRUE(moving.execute(motion).value());
+  EXPECT_LT(test::miss(moving.T_world_camera(), third_[0]), 1e-6);
+  const PlannedMotion next = moving.plan(std::vector{poses(3)[0]}).value();
+  ASSERT_TRUE(next.motion);
+  EXPECT_EQ(next.motion->retreat_s, 0.0);
+}
+
+TEST_F(BackingOut, NeverDeeper) {
+  SimulatedRobot moving = at_second(-0.05, 0.08);  // across the way back
+  const PlannedMotion planned = moving.plan(third_).value();
+  EXPECT_FALSE(planned.motion);
+  EXPECT_EQ(planned.refusal, Refusal::start_in_collision);
+}
+
+TEST_F(BackingOut, AnArmThatWasPutThereKnowsNoWayBack) {
+  SimulatedRobot moving = at_second(0.07, 0.02);
+  ASSERT_TRUE(moving.place(*moving.configuration()).ok());
+  ASSERT_TRUE(moving.follow(map_.content(), Executor{}).ok());
+  EXPECT_EQ(moving.plan(third_)->refusal, Refusal::start_in_collision);
+}
+
+TEST_F(SimulatedArm, AWayBackBeginsWhereTheArmStands) {
+  const ArmCollision collision = ArmCollision::create(arm()).value();
+  const ObstacleMap unseen =
+      ObstacleMap::create(TsdfMap::create(map_config()).value().content(), {}, Executor{}).value();
+  const Configuration from = Configuration::Zero(6);
+  const Configuration to = 0.2 * Configuration::Ones(6);
+  DrivenWay way;
+  EXPECT_FALSE(way.back_from(to, collision, unseen)) << "nothing was driven";
+  way.add(parametrise(arm(), {from, to}));
+  EXPECT_FALSE(way.back_from(to, collision, unseen)) << "all is unknown";
+  TsdfMap map = TsdfMap::create(map_config()).value();
+  ASSERT_TRUE(map.free(*map_config().workspace).ok());
+  const ObstacleMap free = ObstacleMap::create(map.content(), {}, Executor{}).value();
+  const Configuration nearly = to + 0.005 * Configuration::Ones(6);
+  const auto back = way.back_from(nearly, collision, free);
+  ASSERT_TRUE(back);
+  EXPECT_LT(test::distance(back->at(0.0).q, nearly), 1e-12);
+  EXPECT_LT(test::distance(back->end(), from), 1e-9);
+  EXPECT_FALSE(way.back_from(to + 0.02 * Configuration::Ones(6), collision, free));
+  EXPECT_FALSE(way.back_from(Configuration::Zero(5), collision, free));
+  for (std::size_t i = 0; i < DrivenWay::kMostPieces; ++i) way.add(parametrise(arm(), {to, to}));
+  const auto forgotten = way.back_from(to, collision, free);
+  ASSERT_TRUE(forgotten);
+  EXPECT_LT(test::distance(forgotten->end(), to), 1e-9);
+}
+
 TEST_F(SimulatedArm, RefusalsHaveReasons) {
   ArmRobotConfig config;
   config.obstacles.unknown_is_obstacle = false;
