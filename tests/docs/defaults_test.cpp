@@ -19,6 +19,7 @@
 #include "saccade/robot/inverse_kinematics.hpp"
 #include "saccade/robot/motion_planner.hpp"
 #include "saccade/robot/obstacle_map.hpp"
+#include "saccade/robot/swept_cells.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -78,6 +79,7 @@ TEST(Defaults, OfExplorationsAreDocumented) {
   expect_documented("SimulatedRunConfig::truncation_vox", {run.truncation_vox});
   expect_documented("SimulatedRunConfig::gain_width_px", {static_cast<double>(run.gain_width_px)});
   expect_documented("ExplorationConfig::min_gain", {run.exploration.min_gain});
+  expect_documented("ExplorationConfig::good_enough", {run.exploration.good_enough});
   expect_documented("ExplorationConfig::max_views", {static_cast<double>(run.exploration.max_views)});
   expect_documented("ExplorationConfig::oscillation_frames", {static_cast<double>(run.exploration.oscillation_frames)});
   expect_documented("ExplorationConfig::oscillation_rad", {degrees(run.exploration.oscillation_rad)});
@@ -100,6 +102,8 @@ TEST(Defaults, OfObstaclesAreDocumented) {
   const ArmCollisionConfig arm;
   expect_documented("ArmCollisionConfig::max_excess_m", {arm.max_excess_m});
   expect_documented("ArmCollisionConfig::max_step_m", {arm.max_step_m});
+  expect_documented("SweptCells::kMargin_m", {SweptCells::kMargin_m});
+  expect_documented("SimulatedRobot::kSample_s", {SimulatedRobot::kSample_s});
 }
 
 TEST(Defaults, OfMotionPlanningAreDocumented) {
