@@ -125,28 +125,30 @@ def compare_section(folder, lines):
     return held
 
 
-def arm_section(folder, lines):
-    log = folder / "arm_collision.log"
+def log_section(folder, lines, name, title, text, shown_line):
+    """The lines of a test's output that are worth showing."""
+    log = folder / f"{name}.log"
     if not log.exists():
         return
-    lines += ["## Arm collisions", "", f"`{command_of(folder, 'arm_collision')}`", "",
-              "Beside FCL with a box per obstacle cell: random configurations anywhere, and as many apart that are within 5 cm",
-              "of contact. The step fails where an arm is called free and FCL finds a contact, or where more than 5 % of the",
-              "free ones anywhere are called contacts.", ""]
-    lines += ["- " + line for line in log.read_text().splitlines() if " configurations, " in line] + [""]
+    lines += [f"## {title}", "", f"`{command_of(folder, name)}`", "", *text, ""]
+    lines += ["- " + line for line in log.read_text().splitlines() if shown_line(line)] + [""]
+
+
+def arm_section(folder, lines):
+    log_section(folder, lines, "arm_collision", "Arm collisions", [
+        "Beside FCL with a box per obstacle cell: random configurations anywhere, and as many apart that are within 5 cm",
+        "of contact. The step fails where an arm is called free and FCL finds a contact, or where more than 5 % of the",
+        "free ones anywhere are called contacts."], lambda line: " configurations, " in line)
 
 
 def planning_section(folder, lines):
-    log = folder / "motion_planning.log"
-    if not log.exists():
-        return
-    lines += ["## Motion planning", "", f"`{command_of(folder, 'motion_planning')}`", "",
-              "The built-in arm in the built-in scenes as they are known after the scan and four views; supports and fixtures",
-              "are boxes. A quarter of the pairs goes to a view by any of its configurations, the others to one",
-              "configuration that no straight motion leads to. FCL looks at every trajectory each 2 ms, or oftener, so that",
-              "no point of the arm moves farther than 2 mm; the step fails where it finds a collision. One thread.", ""]
     shown = ("scenes ", "configurations looked at", "straight: ", "search: ", "duration: ")
-    lines += ["- " + line for line in log.read_text().splitlines() if line.startswith(shown)] + [""]
+    log_section(folder, lines, "motion_planning", "Motion planning", [
+        "The built-in arm in the built-in scenes as they are known after the scan and four views; supports and fixtures",
+        "are boxes. A quarter of the pairs goes to a view by any of its configurations, the others to one",
+        "configuration that no straight motion leads to. FCL looks at every trajectory each 2 ms, or oftener, so that",
+        "no point of the arm moves farther than 2 mm; the step fails where it finds a collision. One thread."],
+        lambda line: line.startswith(shown))
 
 
 def fuzz_section(folder, lines):

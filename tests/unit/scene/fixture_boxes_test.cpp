@@ -5,16 +5,12 @@
 
 #include <numbers>
 
+#include "support/placed_object.hpp"
+
 namespace saccade {
 namespace {
 
-SceneObject placed(const char* name, const Shape& shape, const Eigen::Vector3d& at) {
-  SceneObject made;
-  made.name = name;
-  made.shape = shape;
-  made.T_world_object.translation() = at;
-  return made;
-}
+using test::placed;
 
 TEST(FixtureBoxes, EncloseWhatIsFixedAndWhatSupports) {
   Scene scene;

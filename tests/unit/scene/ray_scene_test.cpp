@@ -8,19 +8,12 @@
 #include <set>
 
 #include "saccade/sensor/analytic_scene.hpp"
+#include "support/placed_object.hpp"
 
 namespace saccade {
 namespace {
 
 using Eigen::Vector3d;
-
-SceneObject object(const std::string& name, Shape shape, const Vector3d& p_world) {
-  SceneObject made;
-  made.name = name;
-  made.shape = std::move(shape);
-  made.T_world_object.translation() = p_world;
-  return made;
-}
 
 Scene scene_of(std::vector<SceneObject> objects) {
   Scene scene;
@@ -66,28 +59,28 @@ void expect_equal(const Scene& scene, const AnalyticScene& truth, double least_c
 TEST(RayScene, APlaneIsExact) {
   AnalyticScene truth;
   truth.objects = {{"plane", HalfSpace{Vector3d::UnitZ(), 0.0}}};
-  expect_equal(scene_of({object("plane", BoxShape{{40.0, 40.0, 1.0}}, {0.0, 0.0, -1.0})}), truth, 0.0);
+  expect_equal(scene_of({test::placed("plane", BoxShape{{40.0, 40.0, 1.0}}, {0.0, 0.0, -1.0})}), truth, 0.0);
 }
 
 TEST(RayScene, ABoxIsExact) {
   AnalyticScene truth;
   truth.objects = {{"box", Box{{-0.1, -0.15, 0.0}, {0.1, 0.15, 0.25}}}};
-  expect_equal(scene_of({object("box", BoxShape{{0.2, 0.3, 0.25}}, Vector3d::Zero())}), truth, 0.0);
+  expect_equal(scene_of({test::placed("box", BoxShape{{0.2, 0.3, 0.25}}, Vector3d::Zero())}), truth, 0.0);
 }
 
 TEST(RayScene, ASphereIsExactAwayFromItsSilhouette) {
   AnalyticScene truth;
   truth.objects = {{"ball", Sphere{{0.05, 0.0, 0.2}, 0.2}}};
-  Scene scene = scene_of({object("ball", SphereShape{0.2}, {0.05, 0.0, 0.0})});
+  Scene scene = scene_of({test::placed("ball", SphereShape{0.2}, {0.05, 0.0, 0.0})});
   scene.max_deviation_m = 2e-6;
   expect_equal(scene, truth, 0.3);
 }
 
 TEST(RayScene, PosesTurnObjectsAndTheNearestOneCounts) {
-  SceneObject turned = object("turned", BoxShape{{0.1, 0.1, 0.4}}, {0.0, 0.0, 0.0});
+  SceneObject turned = test::placed("turned", BoxShape{{0.1, 0.1, 0.4}}, {0.0, 0.0, 0.0});
   turned.T_world_object.linear() =
       Eigen::AngleAxisd{0.5 * M_PI, Vector3d::UnitY()}.toRotationMatrix();  // lies along +x
-  const RayScene rays = built(scene_of({turned, object("behind", BoxShape{{1.0, 1.0, 0.1}}, {0.0, 0.0, -0.5})}));
+  const RayScene rays = built(scene_of({turned, test::placed("behind", BoxShape{{1.0, 1.0, 0.1}}, {0.0, 0.0, -0.5})}));
   const auto hit = rays.cast({0.3, 0.0, 1.0}, {0.0, 0.0, -1.0});
   ASSERT_TRUE(hit);
   EXPECT_EQ(hit->object, 0U);
@@ -101,13 +94,13 @@ TEST(RayScene, PosesTurnObjectsAndTheNearestOneCounts) {
 }
 
 TEST(RayScene, TexturesAndVertexColoursAreSeen) {
-  SceneObject box = object("box", BoxShape{{0.4, 0.4, 0.1}}, Vector3d::Zero());
+  SceneObject box = test::placed("box", BoxShape{{0.4, 0.4, 0.1}}, Vector3d::Zero());
   box.texture.kind = Texture::Kind::checker;
   MeshShape leaf;
   leaf.mesh.vertices = {{1.0F, 0.0F, 0.0F}, {2.0F, 0.0F, 0.0F}, {1.0F, 1.0F, 0.0F}};
   leaf.mesh.colors = {{255, 0, 0}, {0, 255, 0}, {0, 0, 255}};
   leaf.mesh.triangles = {{0, 1, 2}};
-  const RayScene rays = built(scene_of({box, object("leaf", leaf, Vector3d::Zero())}));
+  const RayScene rays = built(scene_of({box, test::placed("leaf", leaf, Vector3d::Zero())}));
   const ExactFrame top = rays.render(small_camera(), look_at({0.0, 0.001, 0.8}, {0.0, 0.0, 0.0}));
   std::set<Rgb8> colors{top.color.pixels().begin(), top.color.pixels().end()};
   EXPECT_EQ(colors.size(), 3U);  // background, light and dark squares
@@ -118,7 +111,7 @@ TEST(RayScene, TexturesAndVertexColoursAreSeen) {
 }
 
 TEST(RayScene, ThreadsDoNotChangeAPixel) {
-  const RayScene rays = built(scene_of({object("ball", SphereShape{0.2}, {0.0, 0.0, 0.0})}));
+  const RayScene rays = built(scene_of({test::placed("ball", SphereShape{0.2}, {0.0, 0.0, 0.0})}));
   const Pose T_world_camera = sample_trajectory(1).front();
   const ExactFrame one = rays.render(small_camera(), T_world_camera, Executor::with_threads(1));
   const ExactFrame four = rays.render(small_camera(), T_world_camera, Executor::with_threads(4));
@@ -134,12 +127,12 @@ TEST(Scene, SaysWhichObjectIsWrong) {
     EXPECT_EQ(rays.error().code, Errc::invalid_argument);
     EXPECT_NE(rays.error().to_string().find(part), std::string::npos) << rays.error().to_string();
   };
-  const Scene good = scene_of({object("ball", SphereShape{0.2}, Vector3d::Zero())});
+  const Scene good = scene_of({test::placed("ball", SphereShape{0.2}, Vector3d::Zero())});
   refused(scene_of({}), "no objects to see");
-  refused(scene_of({object("flat", BoxShape{{1.0, 0.0, 1.0}}, Vector3d::Zero())}), "object flat");
+  refused(scene_of({test::placed("flat", BoxShape{{1.0, 0.0, 1.0}}, Vector3d::Zero())}), "object flat");
   refused(scene_of({good.objects[0], good.objects[0]}), "two objects of this name");
-  refused(scene_of({object("sun", SphereShape{1e300}, Vector3d::Zero())}), "object sun");
-  refused(scene_of({object("moon", SphereShape{0.1}, {1e200, 0.0, 0.0})}), "farther than a kilometre");
+  refused(scene_of({test::placed("sun", SphereShape{1e300}, Vector3d::Zero())}), "object sun");
+  refused(scene_of({test::placed("moon", SphereShape{0.1}, {1e200, 0.0, 0.0})}), "farther than a kilometre");
   Scene skewed = good;
   skewed.objects[0].T_world_object.linear()(0, 0) = 2.0;
   refused(skewed, "no rigid motion");

@@ -3,16 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "support/placed_object.hpp"
+
 namespace saccade {
 namespace {
-
-SceneObject object(const char* name, const Shape& shape, const Eigen::Vector3d& at) {
-  SceneObject made;
-  made.name = name;
-  made.shape = shape;
-  made.T_world_object.translation() = at;
-  return made;
-}
 
 Solids solids_of(const std::vector<SceneObject>& objects) {
   Scene scene;
@@ -24,9 +18,9 @@ Solids solids_of(const std::vector<SceneObject>& objects) {
 
 TEST(Solids, KnowInsideFromOutsideAndFromHollow) {
   const RevolutionShape cup{{{0.05, 0.0}, {0.05, 0.1}}, 0.01};
-  const Solids solids = solids_of({object("cup", cup, Eigen::Vector3d::Zero()),
-                                   object("block", BoxShape{{0.1, 0.1, 0.1}}, {0.0, 0.0, -0.1}),
-                                   object("ghost", SphereShape{0.1}, {0.5, 0.0, 0.0})});
+  const Solids solids = solids_of({test::placed("cup", cup, Eigen::Vector3d::Zero()),
+                                   test::placed("block", BoxShape{{0.1, 0.1, 0.1}}, {0.0, 0.0, -0.1}),
+                                   test::placed("ghost", SphereShape{0.1}, {0.5, 0.0, 0.0})});
   EXPECT_TRUE(solids.contain({0.0451, 0.001, 0.05}));   // the wall
   EXPECT_TRUE(solids.contain({0.011, 0.001, 0.005}));   // the floor
   EXPECT_FALSE(solids.contain({0.011, 0.001, 0.05}));   // the hollow
@@ -46,14 +40,14 @@ TEST(Solids, PartsOfOneBodyMayRunIntoEachOther) {
     for (const auto& [a, b, c] : box.triangles) cross.mesh.triangles.push_back({a + offset, b + offset, c + offset});
   }
   for (Eigen::Vector3f& vertex : cross.mesh.vertices) vertex.z() += vertex.x() > 0.1F ? 0.013F : 0.0F;
-  const Solids solids = solids_of({object("cross", cross, Eigen::Vector3d::Zero())});
+  const Solids solids = solids_of({test::placed("cross", cross, Eigen::Vector3d::Zero())});
   EXPECT_TRUE(solids.contain({0.011, 0.012, 0.05}));  // in both bars
   EXPECT_TRUE(solids.contain({0.011, 0.121, 0.05}));  // in one
   EXPECT_FALSE(solids.contain({0.111, 0.121, 0.05}));
 }
 
 TEST(Solids, MayBeEmpty) {
-  const Solids nothing = solids_of({object("ghost", SphereShape{0.1}, Eigen::Vector3d::Zero())});
+  const Solids nothing = solids_of({test::placed("ghost", SphereShape{0.1}, Eigen::Vector3d::Zero())});
   EXPECT_FALSE(nothing.contain(Eigen::Vector3d::Zero()));
   EXPECT_EQ(nothing.distance_m(Eigen::Vector3d::Zero(), 0.3), 0.3);
 }
