@@ -167,6 +167,21 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"stopped_because", to_string(reason)}};
 }
 
+/// Where there is a journal, an error loses nothing.
+Error kept(Error error, const RunFolder& out) {
+  if (has_journal(out.path())) error.message += "; what was seen until then is kept, add --resume to go on";
+  return error;
+}
+
+Status write_map(const RunFolder& out, const ExploreRun& run, const Box& workspace, const Executor& executor) {
+  SACCADE_CHECK(save_map(run.map(), out / "map.sacmap", executor));
+  SACCADE_CHECK(write_mesh(out / "mesh.ply", extract_mesh(run.map(), executor)));
+  TernaryVolumeConfig states;
+  states.box = workspace;
+  const auto written = write_ternary_volume(run.map(), out / "ternary.npy", states);
+  return written ? Status{} : Status{written.error()};
+}
+
 Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& global) {
   const Stopwatch total;
   const Executor executor = global.executor();
@@ -187,19 +202,10 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   if (saved) SACCADE_CHECK(run.resume(std::move(*saved)));
 
   const auto ended = run.run();
-  if (!ended) {
-    Error error = ended.error();
-    if (has_journal(out.path())) error.message += "; what was seen until then is kept, add --resume to go on";
-    return error;
-  }
+  if (!ended) return kept(ended.error(), out);
   const StopReason reason = *ended;
-  SACCADE_CHECK(save_map(run.map(), out / "map.sacmap", executor));
-  SACCADE_CHECK(write_mesh(out / "mesh.ply", extract_mesh(run.map(), executor)));
-  TernaryVolumeConfig states;
-  states.box = subject.scene.workspace;
-  if (const auto written = write_ternary_volume(run.map(), out / "ternary.npy", states); !written) {
-    return written.error();
-  }
+  const Status written = write_map(out, run, subject.scene.workspace, executor);
+  if (!written) return kept(written.error(), out);
   const json result = result_json(options, subject, devices, run, reason);
   progress.finish();
   const json document = json_envelope("explore", global, executor, {{"total", total.elapsed_ms()}}, result);

@@ -4,6 +4,8 @@
 #include <CLI/CLI.hpp>
 #include <set>
 
+#include "robot_options.hpp"
+
 namespace saccade::cli {
 
 namespace {
@@ -90,6 +92,7 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
     options.arm.obstacles.fixtures.push_back(parse_box("--fixture", text));
   }
   options.arm.planner.seed = global.seed;
+  options.arm.ik.numeric.restarts = kNumericRestarts;
   require_positive(options.arm.obstacles.cell_size_m, "--obstacle-cell");
   require_ok(options.arm.validate(), "--obstacle-cell, --fixture");
   static_cast<void>(options.free_boxes());

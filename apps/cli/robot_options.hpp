@@ -15,6 +15,10 @@ class Option;
 
 namespace saccade::cli {
 
+/// Ten times fewer than elsewhere: most poses that are tried cannot be reached, and every one of those takes all of
+/// them.
+constexpr int kNumericRestarts{10};
+
 struct ArmOptions {
   std::string robot;
   UrdfConfig urdf;

@@ -29,8 +29,6 @@ constexpr double kNumericStep_m{0.1};
 constexpr double kNumericRollStep_rad{0.5 * pi};
 constexpr double kNumericLongitudeStep_rad{0.25 * pi};
 constexpr double kNumericLatitudeStep_rad{pi / 12.0};
-/// Ten times fewer than elsewhere: most poses of a map cannot be reached, and every one of those takes all of them.
-constexpr int kNumericRestarts{10};
 constexpr double kAboveSupport_m{0.1};
 /// Size of the cells of the free space: nothing is in them, so they need not be small.
 constexpr double kFreeCell_m{0.04};
