@@ -132,8 +132,10 @@ void print_summary(const ExploreOptions& options, const json& result) {
   if (!refused.empty()) std::cout << "refused   " << refused << '\n';
   const std::string tilts = tilts_text(result["views"], options.run.exploration);
   if (!tilts.empty()) std::cout << "tilts     " << tilts << '\n';
+  const std::string at_end = refused_text(result["refused_at_end"]);
   std::cout << "time      " << phases_text(result["phases_s"]) << '\n'
-            << "stopped   " << result["stopped_because"].get<std::string>() << '\n'
+            << "stopped   " << result["stopped_because"].get<std::string>() << (at_end.empty() ? "" : ": " + at_end)
+            << '\n'
             << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
 }
 
@@ -164,6 +166,7 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"views", run.views()},
           {"phases_s", phases_json(run.views())},
           {"final", run.final()},
+          {"refused_at_end", run.refused_at_end()},
           {"stopped_because", to_string(reason)}};
 }
 
@@ -215,8 +218,10 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   if (!global.json_to_stdout()) print_summary(options, result);
   if (reason != StopReason::cancelled) {
     SACCADE_CHECK(remove_journal(out.path()));
-    const bool nothing = run.views().empty() && reason == StopReason::no_candidate;
-    return static_cast<int>(nothing ? ExitStatus::no_result : ExitStatus::done);
+    if (!run.views().empty() || reason != StopReason::no_candidate) return static_cast<int>(ExitStatus::done);
+    print_error("explore", "not one view could be taken (" + refused_text(run.refused_at_end()) +
+                               "); does the robot stand where it should?");
+    return static_cast<int>(ExitStatus::no_result);
   }
   print_error("explore", "stopped after " + std::to_string(run.views().size()) + " views; what they gave is in " +
                              options.out.string() + (run.initial().is_null() ? "" : "; to go on, add --resume"));

@@ -183,6 +183,7 @@ Result<StopReason> ExploreRun::run() {
   SACCADE_TRY(const ExplorationResult explored,
               explore(map_, cell, regions, *strategy, config, executor_, hooks, {}, std::move(so_far)));
   if (!recorded.ok()) return recorded.error();
+  refused_at_end_ = refused_json(explored.refused_at_end);
   return explored.stopped_because;
 }
 

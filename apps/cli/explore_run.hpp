@@ -24,6 +24,8 @@ class ExploreRun {
   [[nodiscard]] const TsdfSnapshot& map() const { return map_.content(); }
   [[nodiscard]] const nlohmann::json& initial() const { return journal_.initial; }
   [[nodiscard]] const nlohmann::json& views() const { return journal_.views; }
+  /// `result.refused_at_end` of the JSON.
+  [[nodiscard]] const nlohmann::json& refused_at_end() const { return refused_at_end_; }
   /// `result.final` of the JSON.
   [[nodiscard]] nlohmann::json final() const;
 
@@ -46,6 +48,7 @@ class ExploreRun {
   TsdfMap map_;
   TsdfSnapshot before_;  // the map as it was before the view that is being taken
   ExploreJournal journal_;
+  nlohmann::json refused_at_end_ = nlohmann::json::object();
 };
 
 }  // namespace saccade::cli

@@ -96,7 +96,8 @@ struct Loop {
   const Executor& executor;
   const ExplorationHooks& hooks;
   const Progress& progress;
-  std::vector<ExploredView>& views;
+  ExplorationResult& result;
+  std::vector<ExploredView>& views{result.views};
 
   [[nodiscard]] std::size_t views_of(std::size_t region) const {
     return static_cast<std::size_t>(std::count_if(
@@ -197,7 +198,9 @@ struct Loop {
       if (choice.stop) return RegionEnd::cancelled;
       if (!choice.view) {
         const bool none_within_reach = proposals.views.empty() && proposals.refused.total() > 0;
-        return open.out_of_reach || none_within_reach ? RegionEnd::out_of_reach : RegionEnd::done;
+        if (!open.out_of_reach && !none_within_reach) return RegionEnd::done;
+        result.refused_at_end = view.refused;
+        return RegionEnd::out_of_reach;
       }
       view.gain = choice.view->gain;
       view.T_world_camera = choice.view->T_world_camera;
@@ -286,7 +289,7 @@ Result<ExplorationResult> explore(TsdfMap& map, ExplorationCell& cell, const std
   SACCADE_CHECK(config.validate());
   ExplorationResult result;
   result.views = std::move(so_far);
-  const Loop loop{map, cell, strategy, config, executor, hooks, progress, result.views};
+  const Loop loop{map, cell, strategy, config, executor, hooks, progress, result};
   // What an earlier call was done with stays done.
   for (std::size_t i = result.views.empty() ? 0 : result.views.back().region; i < regions.size(); ++i) {
     SACCADE_TRY(const RegionEnd end, loop.explore_region({i, regions[i]}));

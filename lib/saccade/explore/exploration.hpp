@@ -66,6 +66,7 @@ enum class StopReason : std::uint8_t {
 struct ExplorationResult {
   std::vector<ExploredView> views;
   StopReason stopped_because{StopReason::regions_done};
+  RefusalCounts refused_at_end{};  ///< no_candidate: why no view was left, of the last region of which that is so
 };
 
 /// Takes a picture from where the camera is.

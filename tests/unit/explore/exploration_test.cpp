@@ -292,6 +292,8 @@ TEST_F(Explore, PosesOutOfReachArePassedOver) {
   const ExplorationResult none = run(untouched, nowhere, sphere());
   EXPECT_TRUE(none.views.empty());
   EXPECT_EQ(none.stopped_because, StopReason::no_candidate);
+  EXPECT_GT(none.refused_at_end.of(Refusal::no_path), 0U);
+  EXPECT_EQ(none.refused_at_end.total(), none.refused_at_end.of(Refusal::no_path));
 }
 
 TEST_F(Explore, TheFlyingCameraKeepsClearOfFixtures) {
