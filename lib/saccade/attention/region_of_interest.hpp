@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// RegionOfInterest: what attracts the robot, whatever it came from.
+
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/core/region.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+/// What drew the attention.
+enum class AttentionOrigin {
+  hand_action,
+};
+
+/// The one currency between attention and planning: everything after it works on regions and does not know where they
+/// came from.
+struct RegionOfInterest {
+  Region bounds{};
+  double saliency{0.0};  ///< comparable among regions of one origin; larger draws more
+  AttentionOrigin origin{AttentionOrigin::hand_action};
+  std::string why;  ///< one line for people
+};
+
+/// A sphere around each action, in their order. Thesis §2.2.2: radius 0.2 m.
+/// @return invalid_argument for a radius that is not positive or a position that is not finite.
+[[nodiscard]] Result<std::vector<RegionOfInterest>> regions_of_interest(std::span<const HandAction> actions,
+                                                                        double radius_m = 0.2);
+
+}  // namespace saccade
