@@ -15,14 +15,15 @@ namespace {
 
 constexpr std::size_t kFewest{8};  // samples that a trajectory with an action has at least
 constexpr double kShortest_s{1e-6};
-constexpr int kRounds{3};  // mean speed and kernel width depend on each other
+constexpr int kRounds{3};             // mean speed and kernel width depend on each other
+constexpr double kFirstKernel{16.0};  // sampling intervals: wide enough for noise, narrow enough for actions
 
-/// Chooses the kernel, starting from the widest: the speed needs a kernel, and the kernel the speed.
+/// The speed needs a kernel, and the kernel the speed. 0 where the hand does not move.
 double choose_kernel_s(const std::vector<TimedPoint>& samples, const DipConfig& config, DipResult& result) {
   const double duration_s = samples.back().time_s - samples.front().time_s;
   const double sampling_s = interval_s(samples);
   const double widest_s = config.max_kernel_share * duration_s;
-  double kernel_s = widest_s;
+  double kernel_s = std::min(widest_s, kFirstKernel * sampling_s);
   for (int round = 0; round < kRounds; ++round) {
     result.mean_speed_mps = path_speed_mps(smooth(samples, kernel_s, result.noise_m));
     if (!(result.mean_speed_mps > 0.0)) return 0.0;
@@ -87,11 +88,14 @@ Result<DipResult> detect_dips(const HandTrajectory& trajectory, const DipConfig&
     return result;
   }
   result.kernel_s = choose_kernel_s(samples, config, result);
-  if (!(result.kernel_s > 0.0)) {
+  if (result.kernel_s > 0.0) result.motion = smooth(samples, result.kernel_s, result.noise_m);
+  const double noise_left_m = position_noise_m(result.noise_m, interval_s(samples), result.kernel_s);
+  PositionSpread spread;
+  for (const SmoothedPoint& point : result.motion) spread.add(point.position_m, noise_left_m);
+  if (!spread.exceeds_noise()) {
     result.why = "the hand did not move by more than its noise";
     return result;
   }
-  result.motion = smooth(samples, result.kernel_s, result.noise_m);
   result.dips = find_dips(result.motion, config.prominence, config.speed_floor_share * result.mean_speed_mps);
   std::transform(result.dips.begin(), result.dips.end(), std::back_inserter(result.actions), action_of);
   result.why = in_words(result);

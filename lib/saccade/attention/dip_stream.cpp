@@ -17,6 +17,7 @@ constexpr double kIntervalMemory{64.0};  // samples
 constexpr std::size_t kJudged{4};        // of the window, the sample that is checked for being an outlier
 constexpr double kReach{3.2};            // kernel widths to where the kernel is cut off
 constexpr double kPast{2.5};             // kernel widths that must lie behind the first speed judged
+constexpr double kSignificant{3.0};      // velocity noises above which the mean speed takes note of a speed
 constexpr double kStepsPerKernel{4.0};   // in gaps
 constexpr int kStepsAtEnd{32};           // of a gap
 
@@ -112,17 +113,20 @@ SmoothedPoint DipStream::motion_at(double time_s) const {
 }
 
 std::vector<HandAction> DipStream::judge_until(double time_s) {
+  const double noise_mps = velocity_noise_mps(noise_m_, interval_s_, kernel_s_);
   std::vector<HandAction> actions;
   for (const double at_s : times_within(judged_s_.value_or(time_s), time_s, kernel_s_)) {
     const SmoothedPoint now = motion_at(at_s);
-    const double way_m = now.speed_mps * (at_s - judged_s_.value_or(at_s));
-    path_m_ += way_m;
-    weighted_path_ += now.speed_mps * way_m;
-    judged_s_ = at_s;
-    if (!judging_) continue;
-    if (const auto dip = dips_.put(now, config_.speed_floor_share * mean_speed_mps())) {
-      actions.push_back(action_of(*dip));
+    if (now.speed_mps > kSignificant * noise_mps) {
+      const double way_m = now.speed_mps * (at_s - judged_s_.value_or(at_s));
+      path_m_ += way_m;
+      weighted_path_ += now.speed_mps * way_m;
     }
+    judged_s_ = at_s;
+    spread_.add(now.position_m, position_noise_m(noise_m_, interval_s_, kernel_s_));
+    if (!judging_) continue;
+    const auto dip = dips_.put(now, config_.speed_floor_share * mean_speed_mps());
+    if (dip && spread_.exceeds_noise()) actions.push_back(action_of(*dip));
   }
   return actions;
 }
@@ -130,15 +134,12 @@ std::vector<HandAction> DipStream::judge_until(double time_s) {
 Result<std::vector<HandAction>> DipStream::put(const HandSample& sample) {
   SACCADE_CHECK(validate(sample));
   const TimedPoint point{sample.time_s, sample.position_m};
-  if (!fresh_.empty()) {
-    if (point.time_s < newest_s_) {
-      return Error{Errc::invalid_argument, "a time of the hand lies before the one before", ""};
-    }
-    newest_s_ = point.time_s;
-    const TimedPoint& last = fresh_.back();
-    if (point.position_m == last.position_m || point.time_s == last.time_s) return std::vector<HandAction>{};
+  if (!fresh_.empty() && point.time_s < newest_s_) {
+    return Error{Errc::invalid_argument, "a time of the hand lies before the one before", ""};
   }
+  const bool new_time = fresh_.empty() || point.time_s > newest_s_;
   newest_s_ = point.time_s;
+  if (!new_time || (!fresh_.empty() && point.position_m == fresh_.back().position_m)) return std::vector<HandAction>{};
   fresh_.push_back(point);
   if (fresh_.size() < kOutlierWindow) return std::vector<HandAction>{};
   return advance();

@@ -68,6 +68,7 @@ class DipStream {
   double newest_s_{0.0};              ///< of all that came
   std::array<TimedPoint, 4> last_{};  ///< accepted ones alone
   std::size_t accepted_{0};
+  PositionSpread spread_{};
   double interval_s_{0.0};  ///< mean, gaps left out
   bool begun_{false};
   bool judging_{false};  ///< once enough came for the kernel

@@ -214,6 +214,14 @@ double noise_of_third_differences_m(std::vector<double> lengths_m) {
   return lengths_m.empty() ? 0.0 : upper_median(lengths_m) / kMedianOfChi3;
 }
 
+void PositionSpread::add(const Eigen::Vector3d& position_m, double noise_m) {
+  count_ += 1.0;
+  const Eigen::Vector3d step_m = position_m - mean_m_;
+  mean_m_ += step_m / count_;
+  squares_m2_ += step_m.dot(position_m - mean_m_);
+  noise_squares_m2_ += 3.0 * noise_m * noise_m;
+}
+
 bool is_outlier(std::span<const TimedPoint, kOutlierWindow> window, std::size_t index, double noise_m, double limit) {
   WindowDistances distances_m{};
   for (std::size_t a = 0; a < kOutlierWindow; ++a) {
@@ -294,6 +302,14 @@ double path_speed_mps(std::span<const SmoothedPoint> motion) {
     weighted += point.speed_mps * point.speed_mps;
   }
   return path > 0.0 ? weighted / path : 0.0;
+}
+
+double position_noise_m(double noise_m, double interval_s, double kernel_s) {
+  return noise_m * std::sqrt(interval_s / (2.0 * std::sqrt(std::numbers::pi) * kernel_s));
+}
+
+double velocity_noise_mps(double noise_m, double interval_s, double kernel_s) {
+  return noise_m * std::sqrt(interval_s / (4.0 * std::sqrt(std::numbers::pi) * kernel_s * kernel_s * kernel_s));
 }
 
 double kernel_width_s(const KernelConfig& config, double speed_mps, double noise_m, double interval_s) {

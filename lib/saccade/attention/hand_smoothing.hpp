@@ -35,6 +35,21 @@ struct TimedPoint {
 [[nodiscard]] double third_difference_m(std::span<const TimedPoint, 4> samples);
 [[nodiscard]] double noise_of_third_differences_m(std::vector<double> lengths_m);
 
+/// How far apart positions lie, summed up one by one.
+class PositionSpread {
+ public:
+  /// @param noise_m  expected standard deviation of the position on each axis.
+  void add(const Eigen::Vector3d& position_m, double noise_m);
+  /// Whether their variance is more than four times what such noise makes: whether anything moved.
+  [[nodiscard]] bool exceeds_noise() const { return squares_m2_ > 4.0 * noise_squares_m2_; }
+
+ private:
+  double count_{0.0};
+  Eigen::Vector3d mean_m_{Eigen::Vector3d::Zero()};
+  double squares_m2_{0.0};
+  double noise_squares_m2_{0.0};
+};
+
 /// Samples among which one is checked for being an outlier.
 inline constexpr std::size_t kOutlierWindow{7};
 
@@ -89,8 +104,13 @@ struct KernelConfig {
   double speed_noise_share{0.06};  ///< what noise may leave on the smoothed velocity (each axis), of the mean speed
 };
 
+/// Standard deviation on each axis that a kernel of width h leaves of noise: of the position σ √(Δt / (2 √π h)), of the
+/// velocity σ √(Δt / (4 √π h³)).
+[[nodiscard]] double position_noise_m(double noise_m, double interval_s, double kernel_s);
+[[nodiscard]] double velocity_noise_mps(double noise_m, double interval_s, double kernel_s);
+
 /// Standard deviation of the kernel, s: root of the sum of the squares of length_m / v and of the width h at which the
-/// noise of the slope, σ √(Δt / (4 √π h³)), is that share of the speed v. Expects v > 0.
+/// velocity noise is that share of the speed v. Expects v > 0.
 [[nodiscard]] double kernel_width_s(const KernelConfig& config, double speed_mps, double noise_m, double interval_s);
 
 }  // namespace saccade
