@@ -7,11 +7,12 @@
 #include <cmath>
 #include <filesystem>
 #include <fstream>
-#include <limits>
 #include <random>
 #include <string>
+#include <utility>
 #include <vector>
 
+#include "saccade/attention/dip_stream.hpp"
 #include "saccade/attention/hand_trajectory.hpp"
 
 namespace saccade::test {
@@ -76,7 +77,7 @@ struct HandCondition {
   double repeat_share{0.0};       ///< of the samples, replaced by the one before
 };
 
-/// At 100 Hz, from time 0. Not the standard's distributions where libraries differ: good enough for one machine.
+/// At 100 Hz, from time 0. The same on every machine with the same standard library. Expects two positions or more.
 inline HandTrajectory disturbed(const std::vector<Eigen::Vector3d>& recorded, const HandCondition& condition,
                                 std::mt19937_64& random) {
   const std::size_t n = recorded.size();
@@ -109,6 +110,16 @@ inline HandTrajectory disturbed(const std::vector<Eigen::Vector3d>& recorded, co
   return made;
 }
 
+/// Whether a condition needs several seeds.
+inline bool is_random(const HandCondition& condition) {
+  return condition.noise_m > 0.0 || condition.outlier_share > 0.0 || condition.repeat_share > 0.0;
+}
+
+/// Of its own for each seed and each trajectory.
+inline std::mt19937_64 hand_random(int seed, std::size_t trajectory) {
+  return std::mt19937_64{static_cast<std::uint64_t>(seed) * 100003 + trajectory};
+}
+
 /// Labels with a report near enough, reports with none, and labels.
 struct DetectionScore {
   std::size_t found{0};
@@ -134,5 +145,42 @@ struct DetectionScore {
     }));
   }
 };
+
+/// What a stream reports, and the times of the samples with which it did.
+struct StreamedActions {
+  std::vector<HandAction> actions;
+  std::vector<double> reported_s;
+};
+
+/// Expects a valid trajectory.
+inline StreamedActions streamed_actions(const HandTrajectory& hand) {
+  StreamedActions streamed;
+  DipStream stream = DipStream::create().value();
+  for (const HandSample& sample : hand) {
+    const std::vector<HandAction> actions = stream.put(sample).value();
+    for (const HandAction& action : actions) {
+      streamed.actions.push_back(action);
+      streamed.reported_s.push_back(sample.time_s);
+    }
+  }
+  return streamed;
+}
+
+/// For each label that was found within 0.2 m: from the sample nearest to it to the first such report.
+inline std::vector<double> latencies_s(const StreamedActions& streamed, const HandTrajectory& hand,
+                                       const std::vector<Eigen::Vector3d>& labels_m) {
+  std::vector<double> found_s;
+  for (const Eigen::Vector3d& label : labels_m) {
+    const auto nearest = std::min_element(hand.begin(), hand.end(), [&](const HandSample& a, const HandSample& b) {
+      return (a.position_m - label).squaredNorm() < (b.position_m - label).squaredNorm();
+    });
+    for (std::size_t i = 0; i < streamed.actions.size(); ++i) {
+      if ((streamed.actions[i].position_m - label).norm() > 0.2) continue;
+      found_s.push_back(streamed.reported_s[i] - nearest->time_s);
+      break;
+    }
+  }
+  return found_s;
+}
 
 }  // namespace saccade::test

@@ -15,6 +15,7 @@ namespace {
 
 constexpr double kMedianOfChi3{1.5381722544};  // median length of a Gaussian vector in space, unit variance per axis
 constexpr double kLeastSpread_m{0.02};
+constexpr double kTie{1e-7};      // so that rounding decides neither bins nor medoids
 constexpr double kLargest{1e12};  // of times and positions, so that no sum overflows
 constexpr int kStepsPerKernel{5};
 constexpr int kReach{16};  // steps to where the kernel is cut off, 3.2 standard deviations
@@ -31,7 +32,10 @@ bool is_outlier(const WindowDistances& distances_m, std::size_t index, double no
       sums_m[b] += distances_m[a][b];
     }
   }
-  const auto medoid = static_cast<std::size_t>(std::min_element(sums_m.begin(), sums_m.end()) - sums_m.begin());
+  std::size_t medoid{0};
+  for (std::size_t a = 1; a < kOutlierWindow; ++a) {
+    if (sums_m[a] < (1.0 - kTie) * sums_m[medoid]) medoid = a;
+  }
   double nearest_m{std::numeric_limits<double>::infinity()};
   for (std::size_t other = 0; other < kOutlierWindow; ++other) {
     if (other != medoid) nearest_m = std::min(nearest_m, distance_m(medoid, other));
@@ -91,7 +95,7 @@ class Bins {
   void add(const TimedPoint& sample) {
     const double at = (sample.time_s - begin_s_) / step_s_;
     const auto last = static_cast<double>(columns_[0].size() - 2 * kReach - 1);
-    const double bin = std::clamp(std::round(at), 0.0, last);
+    const double bin = std::clamp(std::floor(at + 0.5 + kTie), 0.0, last);
     const std::size_t i = static_cast<std::size_t>(bin) + kReach;
     const double time = at - bin;
     const Eigen::Vector3d position = sample.position_m - origin_m_;
@@ -105,8 +109,8 @@ class Bins {
   }
   void fill_gap(const TimedPoint& from, const TimedPoint& to) {
     const double gap = (to.time_s - from.time_s) / step_s_;
-    if (gap <= kStepsPerKernel) return;
-    for (double step = 1.0; step < gap; step += 1.0) {
+    if (gap <= kStepsPerKernel + kTie) return;
+    for (double step = 1.0; step < gap - kTie; step += 1.0) {
       const double share = step / gap;
       add({from.time_s + step * step_s_, (1.0 - share) * from.position_m + share * to.position_m});
     }
@@ -276,14 +280,14 @@ SmoothedPoint solve(const LocalLinearSums& sums, double time_s, double noise_m) 
 std::vector<SmoothedPoint> smooth(std::span<const TimedPoint> samples, double kernel_s, double noise_m) {
   const double duration_s = samples.back().time_s - samples.front().time_s;
   const auto most = static_cast<double>(8 * samples.size() + 4096);
-  const double steps = std::clamp(std::ceil(duration_s * kStepsPerKernel / kernel_s), 1.0, most);
+  const double steps = std::clamp(std::ceil(duration_s * kStepsPerKernel / kernel_s - kTie), 1.0, most);
   return Bins{samples, duration_s / steps, static_cast<std::size_t>(steps) + 1}.smoothed(noise_m);
 }
 
 double interval_s(std::span<const TimedPoint> samples) {
   std::vector<double> intervals_s(samples.size() - 1);
   for (std::size_t i = 0; i < intervals_s.size(); ++i) intervals_s[i] = samples[i + 1].time_s - samples[i].time_s;
-  const double longest_s = 8.0 * upper_median(intervals_s);
+  const double longest_s = 8.5 * upper_median(intervals_s);
   double sum_s{0.0};
   double count{0.0};
   for (const double interval_s : intervals_s) {

@@ -91,7 +91,7 @@ struct SmoothedPoint {
 /// Expects two samples or more, of increasing times, and kernel_s > 0. O(n)
 [[nodiscard]] std::vector<SmoothedPoint> smooth(std::span<const TimedPoint> samples, double kernel_s, double noise_m);
 
-/// Mean time between samples, s, without intervals of more than eight times the median one. Expects two samples or
+/// Mean time between samples, s, without intervals of more than 8.5 times the median one. Expects two samples or
 /// more.
 [[nodiscard]] double interval_s(std::span<const TimedPoint> samples);
 
