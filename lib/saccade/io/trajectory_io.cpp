@@ -8,42 +8,15 @@
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/json_io.hpp"
-#include "saccade/io/text_scan.hpp"
+#include "saccade/io/number_lines.hpp"
 
 namespace saccade {
 namespace {
-
-/// Numbers of one line; the lines of a list that matter are neither blank nor comments.
-struct NumberLine {
-  std::size_t line{0};
-  std::vector<double> values;
-};
 
 Error at_line(Error error, std::size_t line) {
   const std::string where = "line " + std::to_string(line);
   error.context = error.context.empty() ? where : where + ", " + error.context;
   return error;
-}
-
-Error bad_line(std::size_t line, std::string what) {
-  return {Errc::corrupt_data, std::move(what), "line " + std::to_string(line)};
-}
-
-Result<std::vector<NumberLine>> number_lines(std::string_view text) {
-  std::vector<NumberLine> lines;
-  LineScanner scanner{text};
-  while (const auto line = scanner.next()) {
-    NumberLine numbers{scanner.line(), {}};
-    TokenScanner tokens{*line};
-    while (const auto token = tokens.next()) {
-      if (token->front() == '#') break;
-      const auto value = parse_number(*token);
-      if (!value) return bad_line(scanner.line(), in_quotes(*token) + " is not a number");
-      numbers.values.push_back(*value);
-    }
-    if (!numbers.values.empty()) lines.push_back(std::move(numbers));
-  }
-  return lines;
 }
 
 PoseEntry entry_of(Result<Pose> pose, std::optional<double> time_s, std::size_t line) {

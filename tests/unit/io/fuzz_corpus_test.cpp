@@ -6,6 +6,7 @@
 
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/file_io.hpp"
+#include "saccade/io/hand_trajectory_io.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/io/pcd_io.hpp"
 #include "saccade/io/ply_io.hpp"
@@ -48,6 +49,14 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
                           return parse_intrinsics(content).ok();
                         }),
             6U);
+  EXPECT_GE(check_seeds("hand_trajectory",
+                        [](const std::string& content, const std::string&) {
+                          const int format = content[0] % 4;
+                          const std::string text = content.substr(1);
+                          if (format == 3) return parse_hand_labels(text).ok();
+                          return parse_hand_trajectory(text, static_cast<HandFormat>(format)).ok();
+                        }),
+            5U);
   EXPECT_GE(check_seeds("scene", [](const auto& content, const auto&) { return parse_scene(content).ok(); }), 3U);
   EXPECT_GE(check_seeds("urdf", [](const auto& content, const auto&) { return parse_urdf(content).ok(); }), 3U);
   EXPECT_GE(check_seeds("process_message",

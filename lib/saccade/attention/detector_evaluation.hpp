@@ -1,0 +1,80 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// evaluate_detector: precision, recall and location error of a detector of hand actions on labelled trajectories.
+
+#include <cstdint>
+#include <functional>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+/// A trajectory with the places where the hand is known to have acted.
+struct LabelledTrajectory {
+  std::string name;
+  HandTrajectory trajectory;
+  std::vector<Eigen::Vector3d> labels_m;
+};
+
+/// Whether a label lies farther than `distance_m` from every sample, so that it cannot be where the hand acted.
+[[nodiscard]] bool is_mislabelled(const LabelledTrajectory& labelled, double distance_m = 0.2);
+
+/// Counts of thesis §2.4.2; those of several trajectories add up.
+struct DetectionCounts {
+  std::size_t labels{0};
+  std::size_t true_positives{0};   ///< labels with a point of interest within the match radius
+  std::size_t false_positives{0};  ///< points of interest with no label within it
+  [[nodiscard]] std::size_t false_negatives() const { return labels - true_positives; }
+  /// TP / (TP + FP); none where nothing was found.
+  [[nodiscard]] std::optional<double> precision() const;
+  /// TP / labels; none without labels.
+  [[nodiscard]] std::optional<double> recall() const;
+  DetectionCounts& operator+=(const DetectionCounts& other);
+};
+
+/// What became of the labels of one trajectory.
+struct TrajectoryScore {
+  DetectionCounts counts;
+  std::vector<double> location_errors_m;  ///< of each true positive: to the nearest point of interest
+};
+
+[[nodiscard]] TrajectoryScore score(std::span<const HandAction> actions, std::span<const Eigen::Vector3d> labels_m,
+                                    double match_radius_m = 0.2);
+
+/// What is done to trajectories before they are given to the detector: speed first, then noise.
+struct EvaluationConditions {
+  double speed{1.0};    ///< see at_speed
+  double sigma_m{0.0};  ///< see with_noise
+  std::uint64_t seed{1};
+  double match_radius_m{0.2};
+  bool exclude_mislabelled{false};  ///< leave out whole trajectories in which a label is_mislabelled
+};
+
+struct DetectorEvaluation {
+  DetectionCounts counts;
+  std::size_t trajectories{0};
+  std::size_t excluded{0};
+  std::vector<double> location_errors_m;
+  std::vector<double> ms;  ///< wall time of the detector per trajectory
+
+  /// Of several evaluations: other conditions, seeds or trajectories.
+  DetectorEvaluation& operator+=(const DetectorEvaluation& other);
+  [[nodiscard]] std::optional<double> median_location_error_m() const;
+  [[nodiscard]] std::optional<double> median_ms() const;
+};
+
+using HandActionDetector = std::function<Result<std::vector<HandAction>>(const HandTrajectory&)>;
+
+/// Runs the detector over all trajectories, one after the other on this thread. Noise differs between trajectories and
+/// seeds; the same conditions give the same result.
+/// @return invalid_argument for conditions out of range; what the detector returns, with the trajectory's name.
+[[nodiscard]] Result<DetectorEvaluation> evaluate_detector(const HandActionDetector& detector,
+                                                           std::span<const LabelledTrajectory> trajectories,
+                                                           const EvaluationConditions& conditions = {});
+
+}  // namespace saccade

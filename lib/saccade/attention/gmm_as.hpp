@@ -1,0 +1,59 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// detect_by_gmm: GMM-AS (Gaussian mixture models, activity saliency). Where a hand acted, by the shape of a mixture.
+
+#include <optional>
+#include <vector>
+
+#include "saccade/attention/gmm_em.hpp"
+#include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+/// How the shape of a Gaussian becomes a saliency; see docs/attention.md.
+enum class SaliencyFormula {
+  cubed,  ///< σ1 σ2 σ3 / (σ1 + σ2 + σ3)³ · π c*: without unit; gives the figures of the thesis' Tables 2.5, 2.6
+  as_printed,  ///< σ1 σ2 σ3 / (σ1 + σ2 + σ3) · π c*: eq. 2.13
+};
+
+/// Defaults as measured to give the thesis' Tables 2.2–2.4.
+struct GmmAsConfig {
+  double bic_threshold{50.0};  ///< BICTh: the search ends at a BIC that exceeds the least by more
+  int max_gaussians{30};       ///< and at so many
+  double poi_threshold{2.2};   ///< POITh: times the mean saliency of the neighbours
+  int neighbours{2};           ///< Λ, on either side
+  SaliencyFormula saliency{SaliencyFormula::cubed};
+  GmmEmConfig em{};
+
+  /// What the thesis prints: eq. 2.13 and POITh = 2.5; what it leaves open is as above.
+  [[nodiscard]] static GmmAsConfig as_printed();
+  /// invalid_argument for a value out of range.
+  [[nodiscard]] Status validate() const;
+};
+
+/// A Gaussian of the best mixture, with what Algorithm 3 finds about it.
+struct SalientGaussian {
+  double weight{0.0};
+  Eigen::Vector3d mean_m{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d covariance_m2{Eigen::Matrix3d::Zero()};  ///< over Cartesian coordinates
+  double time_s{0.0};
+  double saliency{0.0};
+  std::optional<double> threshold;  ///< none for the first and the last, which are never points of interest
+  bool is_poi{false};
+};
+
+struct GmmAsResult {
+  std::vector<HandAction> actions;         ///< points of interest by increasing time
+  std::vector<SalientGaussian> gaussians;  ///< by increasing time
+  std::vector<double> bic;                 ///< of mixtures with 1, 2, … Gaussians, as far as the search went
+  int em_iterations{0};                    ///< of all of them together
+};
+
+/// Algorithm 3, eq. 2.12 and 2.13. Time is counted in mean sampling intervals. A trajectory with no or too few samples
+/// gives no action.
+/// @return invalid_argument for a bad configuration or a bad sample (see usable_samples). One thread; deterministic.
+/// O(iterations · samples · Gaussians) for each number of Gaussians tried; about 1 ms for a task of 8 s at 100 Hz.
+[[nodiscard]] Result<GmmAsResult> detect_by_gmm(const HandTrajectory& trajectory, const GmmAsConfig& config = {});
+
+}  // namespace saccade

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// HandRecorder: cuts the stream of a motion sensor into tasks, from the hand's entering the workspace to its leaving.
+
+#include <optional>
+
+#include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/core/region.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+struct HandRecorderConfig {
+  Box workspace{};                     ///< world frame, metres
+  double margin_m{0.02};               ///< a hand that entered has left when it is outside by more than this
+  double dropout_s{0.5};               ///< so long without a good sample, or outside, the task goes on
+  std::size_t min_samples{2};          ///< shorter tasks are passed over: a hand that only brushed the border
+  std::size_t max_samples{1'000'000};  ///< a task that lasts longer ends there
+
+  /// invalid_argument for an empty box or a value out of range.
+  [[nodiscard]] Status validate() const;
+};
+
+/// Thesis §2.2.4, Fig. 2.6. A task begins with the first good sample inside the workspace and ends with the last one
+/// before the hand was outside, or nothing was heard of it, for longer than `dropout_s`. Samples that are not finite,
+/// or whose time does not increase, are counted and left out.
+class HandRecorder {
+ public:
+  /// invalid_argument as validate().
+  [[nodiscard]] static Result<HandRecorder> create(HandRecorderConfig config);
+
+  /// Takes the next sample of the stream; a finished task if this sample ended one. Amortised O(1).
+  [[nodiscard]] std::optional<HandTrajectory> push(const HandSample& sample);
+
+  /// The stream has ended: the task that was under way, if there is one.
+  [[nodiscard]] std::optional<HandTrajectory> finish();
+
+  /// Samples of the task under way so far; those after its last one inside may yet be dropped.
+  [[nodiscard]] const HandTrajectory& under_way() const { return task_; }
+  [[nodiscard]] std::size_t bad_samples() const { return bad_samples_; }
+
+ private:
+  explicit HandRecorder(HandRecorderConfig config) : config_{std::move(config)} {}
+  [[nodiscard]] bool is_inside(const HandSample& sample) const;
+
+  HandRecorderConfig config_;
+  HandTrajectory task_;
+  std::size_t inside_{0};  ///< samples of task_ up to the last one inside
+  std::optional<double> last_time_s_;
+  std::size_t bad_samples_{0};
+};
+
+}  // namespace saccade

@@ -1,0 +1,96 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/attention/trajectory_changes.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "saccade/attention/made_up_task.hpp"
+
+namespace saccade {
+namespace {
+
+HandTrajectory straight_way(int samples) {
+  HandTrajectory trajectory;
+  for (int i = 0; i < samples; ++i) {
+    const Eigen::Quaterniond turned{Eigen::AngleAxisd{0.005 * i, Eigen::Vector3d::UnitZ()}};
+    trajectory.push_back({5.0 + 0.01 * i, {0.02 * i, 1.0, 0.0}, turned});
+  }
+  return trajectory;
+}
+
+TEST(TrajectoryChanges, SpeedMultipliesSamplesAndKeepsTheInterval) {
+  const HandTrajectory trajectory = straight_way(401);
+  for (const double multiplier : {0.25, 0.5, 2.0, 4.0}) {
+    const HandTrajectory changed = at_speed(trajectory, multiplier).value();
+    ASSERT_EQ(changed.size(), static_cast<std::size_t>(400 * multiplier) + 1);
+    EXPECT_EQ(changed.front().position_m, trajectory.front().position_m);
+    EXPECT_NEAR((changed.back().position_m - trajectory.back().position_m).norm(), 0.0, 1e-12);
+    for (std::size_t i = 0; i < changed.size(); ++i) {
+      const double original = static_cast<double>(i) / multiplier;
+      EXPECT_NEAR(changed[i].time_s, 5.0 + 0.01 * static_cast<double>(i), 1e-9);
+      EXPECT_NEAR(changed[i].position_m.x(), 0.02 * original, 1e-9);
+      EXPECT_NEAR(Eigen::AngleAxisd{*changed[i].R_world_hand}.angle(), 0.005 * original, 1e-9);
+    }
+  }
+}
+
+TEST(TrajectoryChanges, OrientationsThatAreMissingStayMissing) {
+  HandTrajectory trajectory = straight_way(5);
+  trajectory[2].R_world_hand.reset();
+  const HandTrajectory changed = at_speed(trajectory, 2.0).value();
+  ASSERT_EQ(changed.size(), 9U);
+  EXPECT_TRUE(changed[1].R_world_hand.has_value());
+  EXPECT_FALSE(changed[3].R_world_hand.has_value());
+  EXPECT_FALSE(changed[5].R_world_hand.has_value());
+  EXPECT_TRUE(changed[7].R_world_hand.has_value());
+}
+
+TEST(TrajectoryChanges, ShortTrajectoriesAndBadMultipliers) {
+  EXPECT_TRUE(at_speed({}, 4.0).value().empty());
+  EXPECT_EQ(at_speed(straight_way(1), 4.0).value().size(), 1U);
+  EXPECT_EQ(at_speed(straight_way(9), 0.01).value().size(), 2U);
+  for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL, 1e12}) EXPECT_FALSE(at_speed(straight_way(9), bad));
+}
+
+TEST(TrajectoryChanges, NoiseHasItsDeviationAndFollowsTheSeed) {
+  const HandTrajectory still(20000, HandSample{});
+  const HandTrajectory noisy = with_noise(still, 0.05, 7).value();
+  Eigen::Vector3d mean = Eigen::Vector3d::Zero();
+  Eigen::Matrix3d squares = Eigen::Matrix3d::Zero();
+  for (const HandSample& sample : noisy) {
+    mean += sample.position_m / 20000.0;
+    squares += sample.position_m * sample.position_m.transpose() / 20000.0;
+  }
+  EXPECT_LT(mean.norm(), 0.002);
+  EXPECT_LT((squares - 0.0025 * Eigen::Matrix3d::Identity()).cwiseAbs().maxCoeff(), 1e-4);
+  EXPECT_EQ(with_noise(still, 0.05, 7).value()[99].position_m, noisy[99].position_m);
+  EXPECT_NE(with_noise(still, 0.05, 8).value()[99].position_m, noisy[99].position_m);
+  EXPECT_EQ(with_noise(still, 0.0, 7).value()[99].position_m, still[99].position_m);
+  EXPECT_FALSE(with_noise(still, -0.1, 7));
+  EXPECT_FALSE(with_noise(still, HUGE_VAL, 7));
+}
+
+TEST(MadeUpTask, GoesWhereItSaysAndFollowsTheSeed) {
+  for (std::uint64_t seed = 0; seed < 50; ++seed) {
+    const int actions = 1 + static_cast<int>(seed % 4);
+    const MadeUpTask task = made_up_task(seed, {.actions = actions});
+    ASSERT_EQ(task.actions_m.size(), static_cast<std::size_t>(actions));
+    for (const Eigen::Vector3d& place : task.actions_m) {
+      int near{0};
+      for (const HandSample& sample : task.trajectory) near += (sample.position_m - place).norm() < 0.05 ? 1 : 0;
+      EXPECT_GT(near, 40) << "seed " << seed;
+    }
+    double longest_m{0.0};
+    for (std::size_t i = 1; i < task.trajectory.size(); ++i) {
+      EXPECT_NEAR(task.trajectory[i].time_s - task.trajectory[i - 1].time_s, 0.01, 1e-9);
+      longest_m = std::max(longest_m, (task.trajectory[i].position_m - task.trajectory[i - 1].position_m).norm());
+    }
+    EXPECT_LT(longest_m, 0.15) << "seed " << seed;  // 3 m/s, and repeats before it
+  }
+  EXPECT_EQ(made_up_task(4).trajectory.back().position_m, made_up_task(4).trajectory.back().position_m);
+  EXPECT_NE(made_up_task(4).trajectory.back().position_m, made_up_task(5).trajectory.back().position_m);
+}
+
+}  // namespace
+}  // namespace saccade
