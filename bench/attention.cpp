@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// GMM-AS and the ZVC-like detector on the recorded hands of the thesis' data set, or on made-up tasks without it: median
-// time per trajectory, one thread. The baseline is EM without vectors of samples, straight from the formulas.
+// GMM-AS and the ZVC-like detector on the recorded hands of the thesis' data set, or on made-up tasks without it:
+// median time per trajectory, one thread. The baseline is EM without vectors of samples, straight from the formulas.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -66,7 +66,9 @@ constexpr int kGaussians{8};
 constexpr int kSteps{10};
 
 /// Ten steps of EM with eight Gaussians on a task of 8 s: vectors of samples, and the plain formulas.
-std::vector<Eigen::Vector4d> em_samples() { return test::augmented_samples(made_up_task(1, {.actions = 4}).trajectory); }
+std::vector<Eigen::Vector4d> em_samples() {
+  return test::augmented_samples(made_up_task(1, {.actions = 4}).trajectory);
+}
 
 void em_steps(benchmark::State& state) {
   const auto samples = em_samples();

@@ -61,6 +61,7 @@ int run(int argc, char** argv, CLI::App& program) {
   program.fallthrough();
   program.footer(kFooter);
   add_global_options(program, global);
+  saccade::cli::add_attend(program, global, action);
   saccade::cli::add_compare(program, global, action);
   saccade::cli::add_explore(program, global, action);
   saccade::cli::add_fuse(program, global, action);
@@ -75,7 +76,8 @@ int run(int argc, char** argv, CLI::App& program) {
     program.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
     if (!program.get_subcommands().empty()) return usage(program, error.what());
-    return usage(program, "name what to do: compare, explore, fuse, nbv, reproduce, robot, scene, info or sample");
+    return usage(program,
+                 "name what to do: attend, compare, explore, fuse, nbv, reproduce, robot, scene, info or sample");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
     return usage(program, error.what());

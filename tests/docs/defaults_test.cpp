@@ -9,6 +9,10 @@
 #include <string>
 #include <vector>
 
+#include "saccade/attention/detector_evaluation.hpp"
+#include "saccade/attention/gmm_as.hpp"
+#include "saccade/attention/hand_recorder.hpp"
+#include "saccade/attention/zvc.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/explore/simulated_run.hpp"
 #include "saccade/io/urdf.hpp"
@@ -84,6 +88,26 @@ TEST(Defaults, OfExplorationsAreDocumented) {
   expect_documented("ExplorationConfig::oscillation_frames", {static_cast<double>(run.exploration.oscillation_frames)});
   expect_documented("ExplorationConfig::oscillation_rad", {degrees(run.exploration.oscillation_rad)});
   expect_documented("kCameraClearance_m", {kCameraClearance_m});
+}
+
+TEST(Defaults, OfAttentionAreDocumented) {
+  const GmmAsConfig gmm;
+  expect_documented("GmmAsConfig::bic_threshold", {gmm.bic_threshold});
+  expect_documented("GmmAsConfig::max_gaussians", {static_cast<double>(gmm.max_gaussians)});
+  expect_documented("GmmAsConfig::poi_threshold", {gmm.poi_threshold});
+  expect_documented("GmmAsConfig::neighbours", {static_cast<double>(gmm.neighbours)});
+  expect_documented("GmmEmConfig::covariance_floor", {gmm.em.covariance_floor});
+  expect_documented("GmmEmConfig::relative_stop", {gmm.em.relative_stop});
+  expect_documented("GmmEmConfig::max_iterations", {static_cast<double>(gmm.em.max_iterations)});
+  const ZvcConfig zvc;
+  expect_documented("ZvcConfig::half_window", {static_cast<double>(zvc.half_window)});
+  expect_documented("ZvcConfig::near_m", {zvc.near_m});
+  expect_documented("ZvcConfig::far_m", {zvc.far_m});
+  expect_documented("ZvcConfig::threshold", {zvc.threshold});
+  expect_documented("EvaluationConditions::match_radius_m", {EvaluationConditions{}.match_radius_m});
+  const HandRecorderConfig recorder;
+  expect_documented("HandRecorderConfig::margin_m", {recorder.margin_m});
+  expect_documented("HandRecorderConfig::dropout_s", {recorder.dropout_s});
 }
 
 TEST(Defaults, OfViewsAreDocumented) {

@@ -43,9 +43,9 @@ struct ThesisRow {
   Rates zvc;
 };
 constexpr ThesisRow kRows[] = {
-    {0.25, 0.0, {98.0, 86.1}, {96.6, 93.0}}, {0.5, 0.0, {97.0, 95.9}, {95.7, 97.7}},
-    {1.0, 0.0, {96.6, 96.6}, {95.5, 97.7}},  {2.0, 0.0, {96.8, 92.5}, {95.7, 97.7}},
-    {4.0, 0.0, {97.0, 80.7}, {96.4, 97.7}},  {1.0, 0.001, {97.5, 98.4}, {95.4, 97.7}},
+    {0.25, 0.0, {98.0, 86.1}, {96.6, 93.0}},  {0.5, 0.0, {97.0, 95.9}, {95.7, 97.7}},
+    {1.0, 0.0, {96.6, 96.6}, {95.5, 97.7}},   {2.0, 0.0, {96.8, 92.5}, {95.7, 97.7}},
+    {4.0, 0.0, {97.0, 80.7}, {96.4, 97.7}},   {1.0, 0.001, {97.5, 98.4}, {95.4, 97.7}},
     {1.0, 0.025, {97.0, 80.2}, {95.1, 12.5}}, {1.0, 0.05, {98.6, 56.8}, {97.5, 0.5}},
 };
 
@@ -143,11 +143,11 @@ void expect_rows(const HandActionDetector& detector, Rates ThesisRow::*thesis_of
     near += std::abs(all.precision - thesis.precision) <= kPoints && std::abs(all.recall - thesis.recall) <= kPoints;
     EXPECT_LE(outside(thesis.recall, {all.recall, user1.recall, user2.recall, sound.recall}), kPoints)
         << "speed " << row.speed << ", noise " << row.sigma_m;
-    if (all.recall < 1.0) continue;  // no precision without points
+    if (all.recall < 1.0) continue;  // a precision of two or three points says nothing
     EXPECT_LE(outside(thesis.precision, {all.precision, user1.precision, user2.precision, sound.precision}), kPoints)
         << "speed " << row.speed << ", noise " << row.sigma_m;
   }
-  if (!test::kSanitized) EXPECT_GE(near, near_rows);
+  EXPECT_TRUE(test::kSanitized || near >= near_rows) << near << " rows within 3 points";
 }
 
 TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ThesisRow::gmm, 5); }

@@ -15,12 +15,12 @@ std::optional<double> share(std::size_t part, std::size_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// The lower of the two middle values where their number is even.
+/// The mean of the two middle values where their number is even.
 std::optional<double> median(std::vector<double> values) {
   if (values.empty()) return std::nullopt;
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>((values.size() - 1) / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
 }
 
 void append(std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); }
@@ -96,8 +96,8 @@ Result<DetectorEvaluation> evaluate_detector(const HandActionDetector& detector,
     }
     constexpr std::uint64_t kSeedsApart{0x9E3779B97F4A7C15U};
     SACCADE_TRY(HandTrajectory slower, at_speed(labelled.trajectory, conditions.speed));
-    SACCADE_TRY(const HandTrajectory given,
-                with_noise(std::move(slower), conditions.sigma_m, conditions.seed * kSeedsApart + i));
+    SACCADE_TRY(const HandTrajectory given, with_noise(std::move(slower), conditions.sigma_m,
+                                                       conditions.seed * kSeedsApart + conditions.first_index + i));
     const Stopwatch watch;
     auto actions = detector(given);
     evaluation.ms.push_back(watch.elapsed_ms());

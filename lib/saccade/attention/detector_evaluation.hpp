@@ -52,6 +52,7 @@ struct EvaluationConditions {
   double sigma_m{0.0};  ///< see with_noise
   std::uint64_t seed{1};
   double match_radius_m{0.2};
+  std::size_t first_index{0};  ///< of the first trajectory, where they are a part of a larger set: noise goes by it
   bool exclude_mislabelled{false};  ///< leave out whole trajectories in which a label is_mislabelled
 };
 

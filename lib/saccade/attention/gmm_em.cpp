@@ -116,10 +116,11 @@ std::vector<Gaussian4> GmmEm::start(std::size_t gaussians) const {
   };
   const std::vector<double>& times = samples_.planes[3];
   const auto [first, last] = std::minmax_element(times.begin(), times.end());
-  const double span = *last - *first;
+  const double begin = *first;
+  const double span = *last - begin;
   const auto count = static_cast<double>(gaussians);
   const auto segment_of = [&](std::size_t i) {
-    const double at = span > 0.0 ? (times[i] - *first) / span * count : 0.0;
+    const double at = span > 0.0 ? (times[i] - begin) / span * count : 0.0;
     return std::min(static_cast<std::size_t>(at), gaussians - 1);
   };
   std::vector<Gaussian4> mixture(gaussians);
@@ -136,7 +137,7 @@ std::vector<Gaussian4> GmmEm::start(std::size_t gaussians) const {
   for (std::size_t k = 0; k < gaussians; ++k) {
     Gaussian4& gaussian = mixture[k];
     if (gaussian.weight == 0.0) {  // a gap: start from the nearest sample, as if it were the only one
-      const double middle = *first + (static_cast<double>(k) + 0.5) / count * span;
+      const double middle = begin + (static_cast<double>(k) + 0.5) / count * span;
       const auto end = times.begin() + static_cast<std::ptrdiff_t>(samples_.count);
       const auto nearest = std::min_element(
           times.begin(), end, [middle](double a, double b) { return std::abs(a - middle) < std::abs(b - middle); });

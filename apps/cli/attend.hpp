@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What `saccade attend` was asked for and what it found, for its output.
+
+#include <filesystem>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "attend_methods.hpp"
+#include "command.hpp"
+#include "json_output.hpp"
+#include "saccade/attention/detector_evaluation.hpp"
+#include "saccade/attention/trajectory_check.hpp"
+#include "saccade/io/hand_trajectory_io.hpp"
+
+namespace saccade::cli {
+
+struct AttendOptions {
+  std::vector<std::filesystem::path> files;  ///< trajectories, and folders of .traj files
+  std::optional<HandFormat> format;
+  const AttendMethod* method{nullptr};
+  bool as_printed{false};
+  bool evaluate{false};
+  EvaluationConditions conditions;
+  std::filesystem::path out;
+  bool force{false};
+};
+
+/// One trajectory: as it was given to the detector, and what came of it.
+struct AttendedTrajectory {
+  std::filesystem::path file;
+  SampleReport report;
+  HandTrajectory given;
+  AttentionFindings findings;
+  double ms{0.0};
+  std::optional<TrajectoryScore> score;  ///< with --evaluate
+};
+
+struct AttendResult {
+  std::vector<AttendedTrajectory> trajectories;
+  std::vector<std::filesystem::path> excluded;  ///< with a mislabelled position
+  [[nodiscard]] std::size_t actions() const;
+  [[nodiscard]] double median_ms() const;
+  [[nodiscard]] DetectorEvaluation evaluation() const;
+};
+
+[[nodiscard]] nlohmann::json attend_json(const AttendOptions& options, const AttendResult& result);
+void print_attend(const AttendOptions& options, const AttendResult& result);
+/// Name of a trajectory's picture, from its number.
+[[nodiscard]] std::string attend_picture_name(std::size_t index);
+[[nodiscard]] ColorImage attend_picture(const AttendOptions& options, const AttendedTrajectory& trajectory);
+
+}  // namespace saccade::cli

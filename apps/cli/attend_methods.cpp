@@ -1,0 +1,61 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "attend_methods.hpp"
+
+#include <algorithm>
+#include <array>
+#include <utility>
+
+#include "saccade/attention/gmm_as.hpp"
+#include "saccade/attention/zvc.hpp"
+
+namespace saccade::cli {
+namespace {
+
+AttendDetector gmm_as(bool as_printed) {
+  return [config = as_printed ? GmmAsConfig::as_printed()
+                              : GmmAsConfig{}](const HandTrajectory& trajectory) -> Result<AttentionFindings> {
+    SACCADE_TRY(GmmAsResult result, detect_by_gmm(trajectory, config));
+    AttentionFindings findings;
+    findings.actions = std::move(result.actions);
+    for (const SalientGaussian& gaussian : result.gaussians) {
+      findings.gaussians.push_back({gaussian.mean_m, gaussian.covariance_m2, gaussian.is_poi});
+    }
+    return findings;
+  };
+}
+
+AttendDetector zvc(bool as_printed) {
+  return [config = as_printed ? ZvcConfig::as_printed()
+                              : ZvcConfig{}](const HandTrajectory& trajectory) -> Result<AttentionFindings> {
+    SACCADE_TRY(ZvcResult result, detect_by_zvc(trajectory, config));
+    AttentionFindings findings;
+    findings.actions = std::move(result.actions);
+    return findings;
+  };
+}
+
+constexpr std::array kMethods{
+    AttendMethod{"gmm-as", gmm_as, true},
+    AttendMethod{"zvc", zvc, true},
+};
+
+}  // namespace
+
+std::span<const AttendMethod> attend_methods() { return kMethods; }
+
+std::string attend_method_names() {
+  std::string names;
+  for (const AttendMethod& method : kMethods) {
+    if (!names.empty()) names += '|';
+    names += method.name;
+  }
+  return names;
+}
+
+const AttendMethod* find_attend_method(std::string_view name) {
+  const auto found = std::find_if(kMethods.begin(), kMethods.end(),
+                                  [name](const AttendMethod& method) { return method.name == name; });
+  return found == kMethods.end() ? nullptr : &*found;
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// AttendMethod: the detectors of hand actions that `saccade attend` offers, by name.
+
+#include <functional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/report/attention_picture.hpp"
+
+namespace saccade::cli {
+
+/// What a detector found, with what there is to draw of its way there.
+using AttendDetector = std::function<Result<AttentionFindings>(const HandTrajectory&)>;
+
+struct AttendMethod {
+  std::string_view name;
+  AttendDetector (*make)(bool as_printed);
+  bool has_printed{false};  ///< whether the thesis prints values of its own for it
+};
+
+/// The first is the default.
+[[nodiscard]] std::span<const AttendMethod> attend_methods();
+
+/// Their names, "a|b".
+[[nodiscard]] std::string attend_method_names();
+
+/// nullptr for a name that none has.
+[[nodiscard]] const AttendMethod* find_attend_method(std::string_view name);
+
+}  // namespace saccade::cli

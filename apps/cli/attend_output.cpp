@@ -1,0 +1,150 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <array>
+#include <cstdio>
+#include <iomanip>
+#include <iostream>
+
+#include "attend.hpp"
+#include "summary.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
+
+json action_json(const HandAction& action) {
+  return {{"position_m", point_json(action.position_m)},
+          {"time_s", action.time_s},
+          {"saliency", action.saliency},
+          {"why", action.why}};
+}
+
+json trajectory_json(const AttendedTrajectory& trajectory) {
+  const SampleReport& report = trajectory.report;
+  json actions = json::array();
+  for (const HandAction& action : trajectory.findings.actions) actions.push_back(action_json(action));
+  json entry{{"file", trajectory.file.string()},
+             {"samples",
+              {{"total", report.samples},
+               {"not_finite", report.not_finite},
+               {"not_increasing", report.not_increasing},
+               {"repeats", report.repeats},
+               {"gaps", report.gaps}}},
+             {"ms", trajectory.ms},
+             {"actions", std::move(actions)}};
+  if (trajectory.score) {
+    const DetectionCounts& counts = trajectory.score->counts;
+    entry["ground_truth"] = counts.labels;
+    entry["true_positives"] = counts.true_positives;
+    entry["false_positives"] = counts.false_positives;
+  }
+  return entry;
+}
+
+void print_actions(const AttendedTrajectory& trajectory) {
+  std::cout << trajectory.file.string() << ": " << trajectory.report.to_string() << '\n';
+  for (const HandAction& action : trajectory.findings.actions) {
+    std::cout << std::setw(8) << fixed(action.time_s, 2) << " s ";
+    for (Eigen::Index axis = 0; axis < 3; ++axis) std::cout << std::setw(8) << fixed(action.position_m[axis], 3);
+    std::cout << " m  " << action.why << '\n';
+  }
+  if (trajectory.findings.actions.empty()) std::cout << "  no action\n";
+}
+
+void print_evaluation(const AttendResult& result) {
+  const DetectorEvaluation evaluation = result.evaluation();
+  const DetectionCounts& counts = evaluation.counts;
+  const auto share = [](const std::optional<double>& value) { return value ? percent(*value) : std::string{"none"}; };
+  const Summary summary{std::cout};
+  summary.line("trajectories", std::to_string(evaluation.trajectories) +
+                                   (result.excluded.empty() ? ""
+                                                            : ", " + std::to_string(result.excluded.size()) +
+                                                                  " with a mislabelled position left out"));
+  summary.line("ground truth", std::to_string(counts.labels) + " labels");
+  summary.line("found", std::to_string(counts.true_positives) + ", missed " + std::to_string(counts.false_negatives()) +
+                            ", false " + std::to_string(counts.false_positives));
+  summary.line("precision", share(counts.precision()));
+  summary.line("recall", share(counts.recall()));
+  const auto error_m = evaluation.median_location_error_m();
+  summary.line("location error", error_m ? millimetres(*error_m) + " median" : "none");
+  summary.line("time", fixed(result.median_ms(), 2) + " ms per trajectory, median");
+}
+
+}  // namespace
+
+std::size_t AttendResult::actions() const {
+  std::size_t sum{0};
+  for (const AttendedTrajectory& trajectory : trajectories) sum += trajectory.findings.actions.size();
+  return sum;
+}
+
+double AttendResult::median_ms() const {
+  std::vector<double> values;
+  for (const AttendedTrajectory& trajectory : trajectories) values.push_back(trajectory.ms);
+  return median_of(values);
+}
+
+DetectorEvaluation AttendResult::evaluation() const {
+  DetectorEvaluation sum;
+  sum.excluded = excluded.size();
+  for (const AttendedTrajectory& trajectory : trajectories) {
+    sum.counts += trajectory.score->counts;
+    const std::vector<double>& errors_m = trajectory.score->location_errors_m;
+    sum.location_errors_m.insert(sum.location_errors_m.end(), errors_m.begin(), errors_m.end());
+    ++sum.trajectories;
+  }
+  return sum;
+}
+
+json attend_json(const AttendOptions& options, const AttendResult& result) {
+  const EvaluationConditions& conditions = options.conditions;
+  json details = json::array();
+  for (const AttendedTrajectory& trajectory : result.trajectories) details.push_back(trajectory_json(trajectory));
+  json document{{"method", options.method->name},
+                {"as_printed", options.as_printed},
+                {"speed", conditions.speed},
+                {"noise_m", conditions.sigma_m},
+                {"trajectories", result.trajectories.size()},
+                {"actions", result.actions()},
+                {"ms_per_trajectory", {{"median", result.median_ms()}}},
+                {"details", std::move(details)}};
+  if (!options.evaluate) return document;
+  const DetectorEvaluation evaluation = result.evaluation();
+  const DetectionCounts& counts = evaluation.counts;
+  json excluded = json::array();
+  for (const auto& file : result.excluded) excluded.push_back(file.string());
+  document["match_radius_m"] = conditions.match_radius_m;
+  document["excluded"] = std::move(excluded);
+  document["ground_truth"] = counts.labels;
+  document["true_positives"] = counts.true_positives;
+  document["false_positives"] = counts.false_positives;
+  document["false_negatives"] = counts.false_negatives();
+  document["precision"] = optional_json(counts.precision());
+  document["recall"] = optional_json(counts.recall());
+  document["location_error_m"] = {{"median", optional_json(evaluation.median_location_error_m())}};
+  return document;
+}
+
+void print_attend(const AttendOptions& options, const AttendResult& result) {
+  if (options.evaluate) return print_evaluation(result);
+  for (const AttendedTrajectory& trajectory : result.trajectories) print_actions(trajectory);
+}
+
+std::string attend_picture_name(std::size_t index) {
+  std::array<char, 40> name{};
+  std::snprintf(name.data(), name.size(), "trajectory-%03zu.png", index);
+  return name.data();
+}
+
+ColorImage attend_picture(const AttendOptions& options, const AttendedTrajectory& trajectory) {
+  AttentionPictureConfig config;
+  config.title = trajectory.file.stem().string();
+  const std::size_t actions = trajectory.findings.actions.size();
+  config.note = std::string{options.method->name} + ": " + std::to_string(actions) +
+                (actions == 1 ? " point" : " points") + " of interest; " + trajectory.report.to_string();
+  return attention_picture(trajectory.given, trajectory.findings, config);
+}
+
+}  // namespace saccade::cli

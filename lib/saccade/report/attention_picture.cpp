@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/report/attention_picture.hpp"
+
+#include <Eigen/Eigenvalues>
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+#include <optional>
+
+#include "saccade/core/region.hpp"
+#include "saccade/report/canvas.hpp"
+#include "saccade/report/color_map.hpp"
+#include "saccade/report/sheet.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr Rgb8 kBackground{255, 255, 255};
+constexpr Rgb8 kPoiColor{214, 28, 92};
+constexpr Rgb8 kLabelColor{20, 20, 24};
+constexpr Rgb8 kGaussianColor{150, 156, 168};
+
+/// Three ellipses through the principal axes at two standard deviations.
+void draw_gaussian(Canvas& canvas, const DrawnGaussian& gaussian) {
+  constexpr int kSegments{48};
+  const Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver{gaussian.covariance_m2};
+  const Eigen::Matrix3d axes = solver.eigenvectors() * (2.0 * solver.eigenvalues().cwiseAbs().cwiseSqrt()).asDiagonal();
+  const LineStyle style{gaussian.is_poi ? kPoiColor : kGaussianColor, gaussian.is_poi ? 2.0 : 1.2, 0.5};
+  for (int axis = 0; axis < 3; ++axis) {
+    const Eigen::Vector3d x = axes.col(axis);
+    const Eigen::Vector3d y = axes.col((axis + 1) % 3);
+    const auto at = [&](int i) {
+      const double angle_rad = 2.0 * std::numbers::pi * i / kSegments;
+      return Eigen::Vector3d{gaussian.mean_m + std::cos(angle_rad) * x + std::sin(angle_rad) * y};
+    };
+    for (int i = 0; i < kSegments; ++i) canvas.line(at(i), at(i + 1), style);
+  }
+}
+
+void draw_way(Canvas& canvas, std::span<const HandSample> trajectory, double start_s, double duration_s) {
+  for (std::size_t i = 1; i < trajectory.size(); ++i) {
+    const double share = (trajectory[i].time_s - start_s) / duration_s;
+    canvas.line(trajectory[i - 1].position_m, trajectory[i].position_m, {depth_colors()(share), 2.2, 1.0});
+  }
+}
+
+/// Everything that is to be in the picture.
+std::vector<Eigen::Vector3d> shown_points(std::span<const HandSample> trajectory, const AttentionFindings& findings,
+                                          double radius_m) {
+  std::vector<Eigen::Vector3d> points;
+  for (const HandSample& sample : trajectory) points.push_back(sample.position_m);
+  points.insert(points.end(), findings.labels_m.begin(), findings.labels_m.end());
+  for (const HandAction& action : findings.actions) {
+    const Box around = bounds(Region{Sphere{action.position_m, radius_m}});
+    points.push_back(around.min);
+    points.push_back(around.max);
+  }
+  if (points.empty()) points.emplace_back(Eigen::Vector3d::Zero());
+  return points;
+}
+
+}  // namespace
+
+ColorImage attention_picture(std::span<const HandSample> trajectory, const AttentionFindings& findings,
+                             const AttentionPictureConfig& config) {
+  Canvas canvas{overview_of(shown_points(trajectory, findings, config.region_radius_m), config.overview), kBackground};
+  std::vector<LegendEntry> legend;
+  std::optional<ColorBar> bar;
+  if (trajectory.size() > 1) {
+    const double start_s = trajectory.front().time_s;
+    const double duration_s = trajectory.back().time_s - start_s;
+    draw_way(canvas, trajectory, start_s, duration_s);
+    bar = ColorBar{0.0, duration_s, "time since the start [s]"};
+  }
+  for (const DrawnGaussian& gaussian : findings.gaussians) draw_gaussian(canvas, gaussian);
+  if (!findings.gaussians.empty()) legend.push_back({kGaussianColor, "Gaussians, two standard deviations"});
+  for (const Eigen::Vector3d& label : findings.labels_m) canvas.point(label, 11.0, kLabelColor, 0.6);
+  if (!findings.labels_m.empty()) legend.push_back({kLabelColor, "labels: where the hand acted"});
+  for (std::size_t i = 0; i < findings.actions.size(); ++i) {
+    const Eigen::Vector3d& p = findings.actions[i].position_m;
+    canvas.outline(Region{Sphere{p, config.region_radius_m}}, {kPoiColor, 1.0, 0.4});
+    canvas.point(p, 9.0, kPoiColor, 0.7);
+    canvas.label(p, std::to_string(i + 1), kPoiColor, 13.0);
+  }
+  if (!findings.actions.empty()) legend.push_back({kPoiColor, "points of interest and their regions"});
+
+  Panel panel{canvas.finish(), {}, bar, {}, std::move(legend)};
+  if (bar) panel.colors = depth_colors();
+  return compose({config.title, {std::move(panel)}, trajectory.empty() ? "no samples" : config.note});
+}
+
+}  // namespace saccade

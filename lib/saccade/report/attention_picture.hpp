@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// attention_picture: the way of a hand, what a detector made of it, and where it found the hand to have acted.
+
+#include <Eigen/Core>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/report/viewpoint.hpp"
+#include "saccade/sensor/image.hpp"
+
+namespace saccade {
+
+/// A Gaussian as an ellipsoid of two standard deviations.
+struct DrawnGaussian {
+  Eigen::Vector3d mean_m{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d covariance_m2{Eigen::Matrix3d::Zero()};
+  bool is_poi{false};
+};
+
+/// What there is to draw besides the trajectory; any part may be empty.
+struct AttentionFindings {
+  std::vector<DrawnGaussian> gaussians;
+  std::vector<HandAction> actions;        ///< points of interest, numbered in their order
+  std::vector<Eigen::Vector3d> labels_m;  ///< where the hand is known to have acted
+};
+
+struct AttentionPictureConfig {
+  std::string title{"Trajectory of the hand"};
+  std::string note;  ///< one line at the bottom
+  double region_radius_m{0.2};
+  OverviewConfig overview{};
+};
+
+/// The trajectory coloured by time, with a sphere of the region's radius around each point of interest. An empty
+/// trajectory gives a picture that says so in its note. One thread.
+[[nodiscard]] ColorImage attention_picture(std::span<const HandSample> trajectory, const AttentionFindings& findings,
+                                           const AttentionPictureConfig& config = {});
+
+}  // namespace saccade

@@ -1,0 +1,37 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/report/attention_picture.hpp"
+
+#include <gtest/gtest.h>
+
+#include "saccade/attention/made_up_task.hpp"
+#include "unit/report/pixels.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr Rgb8 kPoiColor{214, 28, 92};
+constexpr Rgb8 kLabelColor{20, 20, 24};
+
+TEST(AttentionPicture, ShowsWhatThereIs) {
+  const MadeUpTask task = made_up_task(1);
+  const ColorImage plain = attention_picture(task.trajectory, {});
+  AttentionFindings findings;
+  findings.labels_m = task.actions_m;
+  const ColorImage labelled = attention_picture(task.trajectory, findings);
+  EXPECT_EQ(test::count(plain, kLabelColor), 0U);
+  EXPECT_GT(test::count(labelled, kLabelColor), 100U);
+  findings.actions.push_back({task.actions_m.front(), 1.0, 1.0, {}});
+  findings.gaussians.push_back({task.actions_m.front(), 1e-3 * Eigen::Matrix3d::Identity(), true});
+  const ColorImage found = attention_picture(task.trajectory, findings);
+  EXPECT_EQ(test::count(labelled, kPoiColor), 0U);
+  EXPECT_GT(test::count(found, kPoiColor), 200U);
+}
+
+TEST(AttentionPicture, NothingAndASinglePointHaveAPicture) {
+  EXPECT_GT(attention_picture({}, {}).width(), 100);
+  const HandTrajectory one(1, HandSample{});
+  EXPECT_GT(attention_picture(one, {}).width(), 100);
+}
+
+}  // namespace
+}  // namespace saccade
