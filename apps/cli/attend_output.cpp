@@ -58,17 +58,17 @@ void print_evaluation(const AttendResult& result) {
   const DetectionCounts& counts = evaluation.counts;
   const auto share = [](const std::optional<double>& value) { return value ? percent(*value) : std::string{"none"}; };
   const Summary summary{std::cout};
-  summary.line("trajectories", std::to_string(evaluation.trajectories) +
-                                   (result.excluded.empty() ? ""
-                                                            : ", " + std::to_string(result.excluded.size()) +
-                                                                  " with a mislabelled position left out"));
-  summary.line("ground truth", std::to_string(counts.labels) + " labels");
+  summary.line("files", std::to_string(evaluation.trajectories) + (result.excluded.empty()
+                                                                       ? ""
+                                                                       : ", " + std::to_string(result.excluded.size()) +
+                                                                             " with a mislabelled position left out"));
+  summary.line("labels", std::to_string(counts.labels));
   summary.line("found", std::to_string(counts.true_positives) + ", missed " + std::to_string(counts.false_negatives()) +
                             ", false " + std::to_string(counts.false_positives));
   summary.line("precision", share(counts.precision()));
   summary.line("recall", share(counts.recall()));
   const auto error_m = evaluation.median_location_error_m();
-  summary.line("location error", error_m ? millimetres(*error_m) + " median" : "none");
+  summary.line("off by", error_m ? millimetres(*error_m) + ", median" : "none");
   summary.line("time", fixed(result.median_ms(), 2) + " ms per trajectory, median");
 }
 
