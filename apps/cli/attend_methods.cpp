@@ -5,11 +5,21 @@
 #include <array>
 #include <utility>
 
+#include "saccade/attention/dip_detector.hpp"
 #include "saccade/attention/gmm_as.hpp"
 #include "saccade/attention/zvc.hpp"
 
 namespace saccade::cli {
 namespace {
+
+AttendDetector ours(bool /*as_printed*/) {
+  return [](const HandTrajectory& trajectory) -> Result<AttentionFindings> {
+    SACCADE_TRY(DipResult result, detect_dips(trajectory));
+    AttentionFindings findings;
+    findings.actions = std::move(result.actions);
+    return findings;
+  };
+}
 
 AttendDetector gmm_as(bool as_printed) {
   return [config = as_printed ? GmmAsConfig::as_printed()
@@ -35,6 +45,7 @@ AttendDetector zvc(bool as_printed) {
 }
 
 constexpr std::array kMethods{
+    AttendMethod{"ours", ours, false},
     AttendMethod{"gmm-as", gmm_as, true},
     AttendMethod{"zvc", zvc, true},
 };

@@ -75,7 +75,7 @@ HandAction action_of(const Dip& dip) {
 
 Result<DipResult> detect_dips(const HandTrajectory& trajectory, const DipConfig& config) {
   SACCADE_CHECK(config.validate());
-  SACCADE_CHECK(validate(trajectory));
+  SACCADE_CHECK(check_order(trajectory));
   DipResult result;
   const std::vector<TimedPoint> fresh = fresh_samples(trajectory);
   result.repeated_samples = trajectory.size() - fresh.size();

@@ -132,7 +132,7 @@ std::vector<HandAction> DipStream::judge_until(double time_s) {
 }
 
 Result<std::vector<HandAction>> DipStream::put(const HandSample& sample) {
-  SACCADE_CHECK(validate(sample));
+  SACCADE_CHECK(check_order(sample));
   const TimedPoint point{sample.time_s, sample.position_m};
   if (!fresh_.empty() && point.time_s < newest_s_) {
     return Error{Errc::invalid_argument, "a time of the hand lies before the one before", ""};

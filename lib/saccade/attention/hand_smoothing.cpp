@@ -151,7 +151,7 @@ class Bins {
 
 }  // namespace
 
-Status validate(const HandSample& sample) {
+Status check_order(const HandSample& sample) {
   const auto usable = [](double value) { return std::abs(value) <= kLargest; };
   if (!usable(sample.time_s)) return Error{Errc::invalid_argument, "a time of the hand is not finite, or huge", ""};
   for (const double coordinate : sample.position_m) {
@@ -160,9 +160,9 @@ Status validate(const HandSample& sample) {
   return {};
 }
 
-Status validate(std::span<const HandSample> trajectory) {
+Status check_order(std::span<const HandSample> trajectory) {
   for (std::size_t i = 0; i < trajectory.size(); ++i) {
-    Status status = validate(trajectory[i]);
+    Status status = check_order(trajectory[i]);
     if (status && i > 0 && trajectory[i].time_s < trajectory[i - 1].time_s) {
       status = Error{Errc::invalid_argument, "a time of the hand lies before the one before", ""};
     }

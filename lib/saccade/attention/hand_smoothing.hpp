@@ -19,8 +19,8 @@ struct TimedPoint {
 
 /// Times and positions that are finite (at most 1e12 s and m), of a trajectory also times that never decrease.
 /// @return invalid_argument, of a trajectory naming the first sample that is not so. O(n)
-[[nodiscard]] Status validate(const HandSample& sample);
-[[nodiscard]] Status validate(std::span<const HandSample> trajectory);
+[[nodiscard]] Status check_order(const HandSample& sample);
+[[nodiscard]] Status check_order(std::span<const HandSample> trajectory);
 
 /// The samples that say something new: without those equal to the one before, samples of one time as their mean.
 /// Expects a valid trajectory. O(n)
