@@ -17,8 +17,8 @@ constexpr double kMedianOfChi3{1.5381722544};  // median length of a Gaussian ve
 constexpr double kLeastSpread_m{0.02};
 constexpr double kTie{1e-7};      // so that rounding decides neither bins nor medoids
 constexpr double kLargest{1e12};  // of times and positions, so that no sum overflows
-constexpr int kStepsPerKernel{5};
-constexpr int kReach{16};  // steps to where the kernel is cut off, 3.2 standard deviations
+constexpr int kBinsPerKernel{5};
+constexpr int kReach_bins{16};  // to where the kernel is cut off, 3.2 standard deviations
 
 /// Distances among the samples of a window, [a][b] for a < b.
 using WindowDistances = std::array<std::array<double, kOutlierWindow>, kOutlierWindow>;
@@ -50,13 +50,13 @@ double upper_median(std::span<double> values) {
   return *middle;
 }
 
-/// Samples summed up by the step nearest to them, with kReach empty bins on both sides. Times are in steps, from the
-/// middle of the bin.
+/// Samples summed up by the step nearest to them, with kReach_bins empty bins on both sides. Times are in steps, from
+/// the middle of the bin.
 class Bins {
  public:
   Bins(std::span<const TimedPoint> samples, double step_s, std::size_t count)
       : begin_s_{samples.front().time_s}, step_s_{step_s}, origin_m_{samples.front().position_m} {
-    for (auto& column : columns_) column.assign(count + 2 * kReach, 0.0);
+    for (auto& column : columns_) column.assign(count + 2 * kReach_bins, 0.0);
     for (std::size_t i = 0; i < samples.size(); ++i) {
       if (i > 0) fill_gap(samples[i - 1], samples[i]);
       add(samples[i]);
@@ -64,10 +64,10 @@ class Bins {
   }
 
   [[nodiscard]] std::vector<SmoothedPoint> smoothed(double noise_m) const {
-    const std::size_t count = columns_[0].size() - 2 * kReach;
+    const std::size_t count = columns_[0].size() - 2 * kReach_bins;
     Columns<kSums> sums;
     for (auto& column : sums) column.assign(count, 0.0);
-    for (int offset = -kReach; offset <= kReach; ++offset) add_bins_at(offset, sums);
+    for (int offset = -kReach_bins; offset <= kReach_bins; ++offset) add_bins_at(offset, sums);
     std::vector<SmoothedPoint> motion;
     motion.reserve(count);
     for (std::size_t i = 0; i < count; ++i) {
@@ -94,9 +94,9 @@ class Bins {
 
   void add(const TimedPoint& sample) {
     const double at = (sample.time_s - begin_s_) / step_s_;
-    const auto last = static_cast<double>(columns_[0].size() - 2 * kReach - 1);
+    const auto last = static_cast<double>(columns_[0].size() - 2 * kReach_bins - 1);
     const double bin = std::clamp(std::floor(at + 0.5 + kTie), 0.0, last);
-    const std::size_t i = static_cast<std::size_t>(bin) + kReach;
+    const std::size_t i = static_cast<std::size_t>(bin) + kReach_bins;
     const double time = at - bin;
     const Eigen::Vector3d position = sample.position_m - origin_m_;
     columns_[0][i] += 1.0;
@@ -109,7 +109,7 @@ class Bins {
   }
   void fill_gap(const TimedPoint& from, const TimedPoint& to) {
     const double gap = (to.time_s - from.time_s) / step_s_;
-    if (gap <= kStepsPerKernel + kTie) return;
+    if (gap <= kBinsPerKernel + kTie) return;
     for (double step = 1.0; step < gap - kTie; step += 1.0) {
       const double share = step / gap;
       add({from.time_s + step * step_s_, (1.0 - share) * from.position_m + share * to.position_m});
@@ -117,9 +117,9 @@ class Bins {
   }
   void add_bins_at(int offset, Columns<kSums>& sums) const {
     const double o = offset;
-    const double w = std::exp(-0.5 * o * o / (kStepsPerKernel * kStepsPerKernel));
+    const double w = std::exp(-0.5 * o * o / (kBinsPerKernel * kBinsPerKernel));
     const std::size_t count = sums[0].size();
-    const auto shift = static_cast<std::size_t>(offset + kReach);
+    const auto shift = static_cast<std::size_t>(offset + kReach_bins);
     const double* const n = columns_[0].data() + shift;
     const double* const t = columns_[1].data() + shift;
     const double* const tt = columns_[2].data() + shift;
@@ -280,7 +280,7 @@ SmoothedPoint solve(const LocalLinearSums& sums, double time_s, double noise_m) 
 std::vector<SmoothedPoint> smooth(std::span<const TimedPoint> samples, double kernel_s, double noise_m) {
   const double duration_s = samples.back().time_s - samples.front().time_s;
   const auto most = static_cast<double>(8 * samples.size() + 4096);
-  const double steps = std::clamp(std::ceil(duration_s * kStepsPerKernel / kernel_s - kTie), 1.0, most);
+  const double steps = std::clamp(std::ceil(duration_s * kBinsPerKernel / kernel_s - kTie), 1.0, most);
   return Bins{samples, duration_s / steps, static_cast<std::size_t>(steps) + 1}.smoothed(noise_m);
 }
 
