@@ -1,15 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// GMM-AS and the ZVC-like detector on the recorded hands of the thesis' data set, or on made-up tasks without it:
+// The detectors of hand actions on the recorded hands of the thesis' data set, or on made-up tasks without it:
 // median time per trajectory, one thread. The baseline is EM without vectors of samples, straight from the formulas.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/attention/gmm_as.hpp"
 #include "saccade/attention/made_up_task.hpp"
-#include "saccade/attention/zvc.hpp"
 #include "saccade/core/clock.hpp"
+#include "support/hand_detectors.hpp"
 #include "support/recorded_hands.hpp"
 #include "support/reference_em.hpp"
 
@@ -46,21 +45,14 @@ void run(benchmark::State& state, const HandActionDetector& detector) {
   state.counters["ms_longest"] = *std::max_element(sum.ms.begin(), sum.ms.end());
 }
 
-void gmm_as(benchmark::State& state) {
-  run(state, [](const HandTrajectory& trajectory) -> Result<std::vector<HandAction>> {
-    SACCADE_TRY(GmmAsResult result, detect_by_gmm(trajectory));
-    return std::move(result.actions);
-  });
-}
+void gmm_as(benchmark::State& state) { run(state, test::by_gmm); }
 BENCHMARK(gmm_as)->Unit(benchmark::kMillisecond);
 
-void zvc(benchmark::State& state) {
-  run(state, [](const HandTrajectory& trajectory) -> Result<std::vector<HandAction>> {
-    SACCADE_TRY(ZvcResult result, detect_by_zvc(trajectory));
-    return std::move(result.actions);
-  });
-}
+void zvc(benchmark::State& state) { run(state, test::by_zvc); }
 BENCHMARK(zvc)->Unit(benchmark::kMillisecond);
+
+void ours(benchmark::State& state) { run(state, test::by_dips); }
+BENCHMARK(ours)->Unit(benchmark::kMillisecond);
 
 constexpr int kGaussians{8};
 constexpr int kSteps{10};

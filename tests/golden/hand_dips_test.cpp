@@ -6,18 +6,27 @@
 
 #include <algorithm>
 
-#include "saccade/attention/dip_detector.hpp"
+#include "support/bad_samples.hpp"
+#include "support/dip_reports.hpp"
 #include "support/effort.hpp"
-#include "support/hand_data.hpp"
+#include "support/hand_detectors.hpp"
+#include "support/recorded_hands.hpp"
 
 namespace saccade {
 namespace {
 
-std::filesystem::path hands_folder() { return std::filesystem::path{SACCADE_SHARED_DATA} / "hand_polhemus"; }
+/// Without the trajectories that have a mislabelled place; empty where there are none.
+std::vector<LabelledTrajectory> sound_hands() {
+  std::vector<LabelledTrajectory> hands = test::recorded_hands(SACCADE_SHARED_DATA).all();
+  std::erase_if(hands, [](const LabelledTrajectory& hand) { return is_mislabelled(hand); });
+  return hands;
+}
 
 struct HeldFigures {
   const char* name;
-  test::HandCondition condition;
+  double speed;
+  double sigma_m;
+  test::BadSamples bad;
   double at_20_cm;  ///< precision and recall are at least this
   double at_5_cm;
 };
@@ -27,20 +36,25 @@ class RecordedHandDips : public testing::TestWithParam<HeldFigures> {};
 
 TEST_P(RecordedHandDips, AreWhereThingsWereMoved) {
   const HeldFigures& held = GetParam();
-  const std::vector<test::RecordedHand> hands = test::recorded_hands(hands_folder());
-  if (hands.empty()) GTEST_SKIP() << "no " << hands_folder();
+  const std::vector<LabelledTrajectory> hands = sound_hands();
+  if (hands.empty()) GTEST_SKIP() << "no recorded hands in " << SACCADE_SHARED_DATA;
   ASSERT_EQ(hands.size(), 192U);
-  const int seeds = test::is_random(held.condition) ? test::scaled_cases(4) : 1;
-  test::DetectionScore wide;
-  test::DetectionScore near;
-  for (int seed = 0; seed < seeds; ++seed) {
-    for (std::size_t i = 0; i < hands.size(); ++i) {
-      std::mt19937_64 random = test::hand_random(seed, i);
-      const auto result = detect_dips(test::disturbed(hands[i].positions_m, held.condition, random));
-      ASSERT_TRUE(result.ok());
-      wide.add(hands[i].labels_m, result->actions, 0.2);
-      near.add(hands[i].labels_m, result->actions, 0.05);
-    }
+  const int seeds = held.sigma_m > 0.0 || held.bad.any() ? test::scaled_cases(4) : 1;
+  DetectionCounts wide;
+  DetectionCounts near;
+  for (int seed = 1; seed <= seeds; ++seed) {
+    std::uint64_t index{0};
+    const HandActionDetector detector = [&](const HandTrajectory& given) {
+      auto actions =
+          test::by_dips(test::with_bad_samples(given, held.bad, 1000 * static_cast<std::uint64_t>(seed) + index));
+      if (actions) near += score(*actions, hands[index++].labels_m, 0.05).counts;
+      return actions;
+    };
+    const EvaluationConditions conditions{
+        .speed = held.speed, .sigma_m = held.sigma_m, .seed = static_cast<std::uint64_t>(seed)};
+    const auto evaluation = evaluate_detector(detector, hands, conditions);
+    ASSERT_TRUE(evaluation.ok());
+    wide += evaluation->counts;
   }
   ASSERT_EQ(wide.labels, 249U * static_cast<std::size_t>(seeds));
   EXPECT_GE(wide.precision(), held.at_20_cm);
@@ -51,33 +65,28 @@ TEST_P(RecordedHandDips, AreWhereThingsWereMoved) {
 
 INSTANTIATE_TEST_SUITE_P(
     Golden, RecordedHandDips,
-    testing::Values(HeldFigures{"clean", {}, 0.99, 0.96}, HeldFigures{"quarter", {.speed = 0.25}, 0.99, 0.96},
-                    HeldFigures{"four times", {.speed = 4.0}, 0.99, 0.96},
-                    HeldFigures{"quarter, 5 cm", {.speed = 0.25, .noise_m = 0.05}, 0.985, 0.80},
-                    HeldFigures{"5 cm", {.noise_m = 0.05}, 0.99, 0.88},
-                    HeldFigures{"four times, 5 cm", {.speed = 4.0, .noise_m = 0.05}, 0.99, 0.88},
-                    HeldFigures{"10 cm", {.noise_m = 0.10}, 0.98, 0.80},
-                    HeldFigures{"outliers and repeats", {.outlier_share = 0.05, .repeat_share = 0.5}, 0.98, 0.96},
-                    HeldFigures{"farthest outliers and repeats",
-                                {.outlier_share = 0.05, .farthest_outliers = true, .repeat_share = 0.5},
-                                0.98,
-                                0.96}));
+    testing::Values(HeldFigures{"clean", 1.0, 0.0, {}, 0.99, 0.96}, HeldFigures{"quarter", 0.25, 0.0, {}, 0.99, 0.96},
+                    HeldFigures{"four times", 4.0, 0.0, {}, 0.99, 0.96},
+                    HeldFigures{"quarter, 5 cm", 0.25, 0.05, {}, 0.985, 0.80},
+                    HeldFigures{"5 cm", 1.0, 0.05, {}, 0.99, 0.88},
+                    HeldFigures{"four times, 5 cm", 4.0, 0.05, {}, 0.99, 0.88},
+                    HeldFigures{"10 cm", 1.0, 0.10, {}, 0.98, 0.80},
+                    HeldFigures{"outliers and repeats", 1.0, 0.0, {0.05, false, 0.5}, 0.98, 0.96},
+                    HeldFigures{"farthest outliers and repeats", 1.0, 0.0, {0.05, true, 0.5}, 0.98, 0.96}));
 
 TEST(RecordedHandDipStream, ReportsWithoutNoiseSoonAndNothingWrong) {
-  const std::vector<test::RecordedHand> hands = test::recorded_hands(hands_folder());
-  if (hands.empty()) GTEST_SKIP() << "no " << hands_folder();
-  test::DetectionScore score;
+  const std::vector<LabelledTrajectory> hands = sound_hands();
+  if (hands.empty()) GTEST_SKIP() << "no recorded hands in " << SACCADE_SHARED_DATA;
+  DetectionCounts counts;
   std::vector<double> latencies_s;
-  std::mt19937_64 random{0};
-  for (const test::RecordedHand& hand : hands) {
-    const HandTrajectory samples = test::disturbed(hand.positions_m, {}, random);
-    const test::StreamedActions streamed = test::streamed_actions(samples);
-    score.add(hand.labels_m, streamed.actions, 0.2);
-    const std::vector<double> of_hand_s = test::latencies_s(streamed, samples, hand.labels_m);
+  for (const LabelledTrajectory& hand : hands) {
+    const std::vector<test::DipReport> reports = test::dip_reports(hand.trajectory);
+    counts += score(test::actions_of(reports), hand.labels_m).counts;
+    const std::vector<double> of_hand_s = test::latencies_s(reports, hand.trajectory, hand.labels_m);
     latencies_s.insert(latencies_s.end(), of_hand_s.begin(), of_hand_s.end());
   }
-  EXPECT_GE(score.recall(), 0.99);
-  EXPECT_GE(score.precision(), 0.99);
+  EXPECT_GE(counts.recall(), 0.99);
+  EXPECT_GE(counts.precision(), 0.99);
   ASSERT_GT(latencies_s.size(), 240U);
   std::sort(latencies_s.begin(), latencies_s.end());
   EXPECT_LE(latencies_s[latencies_s.size() / 2], 0.2);

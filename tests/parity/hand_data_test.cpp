@@ -8,46 +8,22 @@
 #include <cstdlib>
 #include <iostream>
 
-#include "saccade/attention/gmm_as.hpp"
-#include "saccade/attention/zvc.hpp"
 #include "support/effort.hpp"
+#include "support/hand_detectors.hpp"
 #include "support/recorded_hands.hpp"
 
 namespace saccade {
 namespace {
 
-Result<std::vector<HandAction>> by_gmm(const HandTrajectory& trajectory) {
-  SACCADE_TRY(GmmAsResult result, detect_by_gmm(trajectory));
-  return std::move(result.actions);
-}
-
-Result<std::vector<HandAction>> by_zvc(const HandTrajectory& trajectory) {
-  SACCADE_TRY(ZvcResult result, detect_by_zvc(trajectory));
-  return std::move(result.actions);
-}
-
-struct Rates {
-  double precision;  ///< %
-  double recall;     ///< %
-};
+using test::by_gmm;
+using test::by_zvc;
+using test::kThesisHandRows;
+using test::Rates;
+using test::ThesisHandRow;
 
 Rates rates_of(const DetectorEvaluation& evaluation) {
   return {100.0 * evaluation.counts.precision().value_or(0.0), 100.0 * evaluation.counts.recall().value_or(0.0)};
 }
-
-/// A row of Table 2.3 or 2.4.
-struct ThesisRow {
-  double speed;
-  double sigma_m;
-  Rates gmm;
-  Rates zvc;
-};
-constexpr ThesisRow kRows[] = {
-    {0.25, 0.0, {98.0, 86.1}, {96.6, 93.0}},  {0.5, 0.0, {97.0, 95.9}, {95.7, 97.7}},
-    {1.0, 0.0, {96.6, 96.6}, {95.5, 97.7}},   {2.0, 0.0, {96.8, 92.5}, {95.7, 97.7}},
-    {4.0, 0.0, {97.0, 80.7}, {96.4, 97.7}},   {1.0, 0.001, {97.5, 98.4}, {95.4, 97.7}},
-    {1.0, 0.025, {97.0, 80.2}, {95.1, 12.5}}, {1.0, 0.05, {98.6, 56.8}, {97.5, 0.5}},
-};
 
 constexpr double kPoints{3.0};
 constexpr std::size_t kEvery{test::kSanitized ? 20 : 1};
@@ -70,7 +46,7 @@ const Parts& parts() {
 }
 
 DetectorEvaluation evaluate(const HandActionDetector& detector, const std::vector<LabelledTrajectory>& hands,
-                            const ThesisRow& row, bool exclude_mislabelled = false) {
+                            const ThesisHandRow& row, bool exclude_mislabelled = false) {
   DetectorEvaluation sum;
   const std::uint64_t seeds = row.sigma_m > 0.0 && !test::kSanitized ? 5 : 1;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -116,10 +92,10 @@ TEST_F(RecordedHands, Table2_2) {
   };
   const auto& single = hands.placements_and_removals;
   const auto& both = hands.pick_and_place;
-  expect_near("GMM-AS, placements and removals", evaluate_detector(by_gmm, single).value(), {95.4, 95.9});
-  expect_near("ZVC, placements and removals", evaluate_detector(by_zvc, single).value(), {96.4, 97.3});
-  expect_near("GMM-AS, pick and place", evaluate_detector(by_gmm, both).value(), {97.7, 97.3});
-  expect_near("ZVC, pick and place", evaluate_detector(by_zvc, both).value(), {94.5, 98.2});
+  expect_near("GMM-AS, placements and removals", evaluate_detector(by_gmm, single).value(), test::kThesisPlacementsGmm);
+  expect_near("ZVC, placements and removals", evaluate_detector(by_zvc, single).value(), test::kThesisPlacementsZvc);
+  expect_near("GMM-AS, pick and place", evaluate_detector(by_gmm, both).value(), test::kThesisPickAndPlaceGmm);
+  expect_near("ZVC, pick and place", evaluate_detector(by_zvc, both).value(), test::kThesisPickAndPlaceZvc);
 }
 
 /// How far a figure of the thesis lies outside what the parts span.
@@ -129,9 +105,9 @@ double outside(double thesis, std::initializer_list<double> ours) {
 
 /// Where users 1 and 2 agree, ours is within 3 points of the thesis; where they do not, the thesis' figure, which is
 /// over them and two more, lies between theirs, give or take 3 points.
-void expect_rows(const HandActionDetector& detector, Rates ThesisRow::*thesis_of, int near_rows) {
+void expect_rows(const HandActionDetector& detector, Rates ThesisHandRow::*thesis_of, int near_rows) {
   int near{0};
-  for (const ThesisRow& row : kRows) {
+  for (const ThesisHandRow& row : kThesisHandRows) {
     const Rates thesis = row.*thesis_of;
     const DetectorEvaluation of_user1 = evaluate(detector, parts().user1, row);
     DetectorEvaluation of_both = evaluate(detector, parts().user2, row);
@@ -152,12 +128,12 @@ void expect_rows(const HandActionDetector& detector, Rates ThesisRow::*thesis_of
   EXPECT_TRUE(test::kSanitized || near >= near_rows) << near << " rows within 3 points";
 }
 
-TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ThesisRow::gmm, 5); }
+TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ThesisHandRow::gmm, 5); }
 
-TEST_F(RecordedHands, Tables2_3And2_4OfZvc) { expect_rows(by_zvc, &ThesisRow::zvc, 5); }
+TEST_F(RecordedHands, Tables2_3And2_4OfZvc) { expect_rows(by_zvc, &ThesisHandRow::zvc, 5); }
 
 TEST_F(RecordedHands, WithoutWrongLabelsBothDetectorsMissNextToNothing) {
-  const ThesisRow plain{1.0, 0.0, {}, {}};
+  const ThesisHandRow plain{1.0, 0.0, {}, {}};
   for (const auto& detector : {HandActionDetector{by_gmm}, HandActionDetector{by_zvc}}) {
     const Rates rates = rates_of(evaluate(detector, parts().all, plain, true));
     EXPECT_GE(rates.precision, 98.0);

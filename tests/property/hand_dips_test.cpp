@@ -6,8 +6,9 @@
 #include <numbers>
 
 #include "saccade/attention/dip_detector.hpp"
+#include "saccade/attention/trajectory_changes.hpp"
+#include "support/bad_samples.hpp"
 #include "support/effort.hpp"
-#include "support/hand_data.hpp"
 #include "support/made_hands.hpp"
 
 namespace saccade {
@@ -18,16 +19,14 @@ constexpr std::uint64_t kHandSeed{61};
 /// Never quite without noise: rounding decides which of evenly spaced samples is the medoid.
 HandTrajectory random_hand(std::mt19937_64& random) {
   std::uniform_real_distribution<double> unit{0.0, 1.0};
-  std::vector<Eigen::Vector3d> positions_m;
   const test::HandPace pace{0.4 + unit(random), 0.3 * unit(random), 0.01};
-  for (const HandSample& sample : test::hand_through(test::places_on_table(3 + random() % 4, random), pace)) {
-    positions_m.push_back(sample.position_m);
-  }
-  const test::HandCondition condition{.speed = std::exp2(4.0 * unit(random) - 2.0),
-                                      .noise_m = 1e-4 + (random() % 2 == 0 ? 0.0 : 0.05 * unit(random)),
-                                      .outlier_share = random() % 2 == 0 ? 0.0 : 0.05,
-                                      .repeat_share = random() % 2 == 0 ? 0.0 : 0.5};
-  return test::disturbed(positions_m, condition, random);
+  const HandTrajectory hand = test::hand_through(test::places_on_table(3 + random() % 4, random), pace);
+  const double noise_m = 1e-4 + (random() % 2 == 0 ? 0.0 : 0.05 * unit(random));
+  const test::BadSamples bad{.outlier_share = random() % 2 == 0 ? 0.0 : 0.05,
+                             .repeat_share = random() % 2 == 0 ? 0.0 : 0.5};
+  const HandTrajectory at_pace = at_speed(hand, std::exp2(4.0 * unit(random) - 2.0)).value();
+  const HandTrajectory noisy = with_noise(at_pace, noise_m, random()).value();
+  return test::with_bad_samples(noisy, bad, random());
 }
 
 Eigen::Isometry3d random_motion(std::mt19937_64& random) {

@@ -5,7 +5,7 @@
 
 #include <limits>
 
-#include "support/hand_data.hpp"
+#include "support/bad_samples.hpp"
 #include "support/made_hands.hpp"
 
 namespace saccade {
@@ -77,12 +77,9 @@ TEST(DipDetector, FindsThemUnderFiveCentimetresOfNoise) {
 }
 
 TEST(DipDetector, FindsThemAmongOutliersAndRepeats) {
-  std::mt19937_64 random{8};
-  std::vector<Vector3d> positions_m;
-  for (const HandSample& sample : test::hand_through(kPlaces)) positions_m.push_back(sample.position_m);
-  for (int seed = 0; seed < 20; ++seed) {
-    const test::HandCondition condition{.outlier_share = 0.05, .repeat_share = 0.5};
-    const DipResult result = dips_in(test::disturbed(positions_m, condition, random));
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const test::BadSamples bad{.outlier_share = 0.05, .repeat_share = 0.5};
+    const DipResult result = dips_in(test::with_bad_samples(test::hand_through(kPlaces), bad, seed));
     expect_actions(result, kPlaces, 0.05);
     EXPECT_GT(result.outliers, 2U);
   }

@@ -5,8 +5,9 @@
 
 #include <limits>
 
-#include "saccade/attention/dip_detector.hpp"
-#include "support/hand_data.hpp"
+#include "saccade/attention/detector_evaluation.hpp"
+#include "support/bad_samples.hpp"
+#include "support/dip_reports.hpp"
 #include "support/made_hands.hpp"
 
 namespace saccade {
@@ -17,22 +18,7 @@ using Eigen::Vector3d;
 const std::vector<Vector3d> kStreamPlaces{
     {0.8, 0.0, 0.3}, {0.3, 0.2, 0.05}, {-0.3, 0.1, 0.1}, {-0.2, -0.6, 0.0}, {0.8, 0.0, 0.4}};
 
-struct Report {
-  HandAction action;
-  double at_s;
-};
-
-std::vector<Report> reports_of(const HandTrajectory& hand) {
-  DipStream stream = DipStream::create().value();
-  std::vector<Report> reports;
-  for (const HandSample& sample : hand) {
-    const auto actions = stream.put(sample);
-    EXPECT_TRUE(actions.ok());
-    if (!actions) break;
-    for (const HandAction& action : *actions) reports.push_back({action, sample.time_s});
-  }
-  return reports;
-}
+using Report = test::DipReport;
 
 void expect_reports(const std::vector<Report>& reports, const std::vector<Vector3d>& places_m, double within_m) {
   ASSERT_EQ(reports.size() + 2, places_m.size());
@@ -43,8 +29,8 @@ void expect_reports(const std::vector<Report>& reports, const std::vector<Vector
 
 TEST(DipStream, ReportsEveryStopBeforeTheNext) {
   for (const double slower : {0.25, 1.0, 4.0, 100.0}) {
-    const std::vector<Report> reports =
-        reports_of(test::hand_through(kStreamPlaces, {0.8 * slower, 0.2 * slower, 0.01 * std::max(1.0, slower / 8.0)}));
+    const std::vector<Report> reports = test::dip_reports(
+        test::hand_through(kStreamPlaces, {0.8 * slower, 0.2 * slower, 0.01 * std::max(1.0, slower / 8.0)}));
     expect_reports(reports, kStreamPlaces, 0.02);
     for (std::size_t i = 0; i < reports.size(); ++i) {
       const double left_s = slower * (1.0 + static_cast<double>(i));  // when the hand leaves the place
@@ -59,38 +45,35 @@ TEST(DipStream, ReportsEveryStopBeforeTheNext) {
 TEST(DipStream, ReportsThemUnderNoiseAndNothingElsewhere) {
   std::mt19937_64 random{17};
   const std::vector<Vector3d> inner(kStreamPlaces.begin() + 1, kStreamPlaces.end() - 1);
-  test::DetectionScore score;
+  DetectionCounts counts;
   std::size_t reports{0};
   for (int seed = 0; seed < 20; ++seed) {
     HandTrajectory hand = test::hand_through(kStreamPlaces);
     test::add_noise(hand, 0.02, random);
-    std::vector<HandAction> actions;
-    for (const Report& report : reports_of(hand)) actions.push_back(report.action);
-    score.add(inner, actions, 0.1);
+    const std::vector<HandAction> actions = test::actions_of(test::dip_reports(hand));
+    counts += score(actions, inner, 0.1).counts;
     reports += actions.size();
   }
-  EXPECT_EQ(score.found, score.labels);
-  EXPECT_EQ(score.false_reports, 0U);
+  EXPECT_EQ(counts.false_negatives(), 0U);
+  EXPECT_EQ(counts.false_positives, 0U);
   EXPECT_LT(reports, 80U);  // 60 places; now and then one comes twice
 }
 
 TEST(DipStream, ReportsThemAmongOutliersAndRepeats) {
-  std::mt19937_64 random{18};
-  std::vector<Vector3d> positions_m;
-  for (const HandSample& sample : test::hand_through(kStreamPlaces)) positions_m.push_back(sample.position_m);
-  for (int seed = 0; seed < 20; ++seed) {
-    expect_reports(reports_of(test::disturbed(positions_m, {.outlier_share = 0.05, .repeat_share = 0.5}, random)),
-                   kStreamPlaces, 0.05);
+  for (std::uint64_t seed = 0; seed < 20; ++seed) {
+    const test::BadSamples bad{.outlier_share = 0.05, .repeat_share = 0.5};
+    const HandTrajectory hand = test::with_bad_samples(test::hand_through(kStreamPlaces), bad, seed);
+    expect_reports(test::dip_reports(hand), kStreamPlaces, 0.05);
   }
 }
 
 TEST(DipStream, WhatItReportsDependsOnNoSampleThatComesLater) {
   const HandTrajectory hand = test::hand_through(kStreamPlaces);
-  const std::vector<Report> all = reports_of(hand);
+  const std::vector<Report> all = test::dip_reports(hand);
   ASSERT_EQ(all.size(), 3U);
   const auto last =
       std::find_if(hand.begin(), hand.end(), [&](const HandSample& s) { return s.time_s == all[1].at_s; });
-  const std::vector<Report> begun = reports_of({hand.begin(), last + 1});
+  const std::vector<Report> begun = test::dip_reports({hand.begin(), last + 1});
   ASSERT_EQ(begun.size(), 2U);
   EXPECT_EQ(begun[1].action.position_m, all[1].action.position_m);
   EXPECT_EQ(begun[1].action.saliency, all[1].action.saliency);
@@ -103,15 +86,15 @@ TEST(DipStream, ReportsNothingWhereNothingHappens) {
     constant.push_back({0.01 * i, {0.1, 0.2, 0.3}, {}});
     straight.push_back({0.01 * i, {0.01 * i, 0.02 * i, 0.3}, {}});
   }
-  EXPECT_TRUE(reports_of(constant).empty());
-  EXPECT_TRUE(reports_of(straight).empty());
-  EXPECT_TRUE(reports_of(test::hand_through(std::vector<Vector3d>{{0, 0, 0}, {1, 0, 0}})).empty());
+  EXPECT_TRUE(test::dip_reports(constant).empty());
+  EXPECT_TRUE(test::dip_reports(straight).empty());
+  EXPECT_TRUE(test::dip_reports(test::hand_through(std::vector<Vector3d>{{0, 0, 0}, {1, 0, 0}})).empty());
   std::mt19937_64 random{19};
   for (const double noise_m : {0.0002, 0.01, 0.1}) {
     for (int seed = 0; seed < 20; ++seed) {
       HandTrajectory noisy = constant;
       test::add_noise(noisy, noise_m, random);
-      EXPECT_TRUE(reports_of(noisy).empty()) << noise_m;
+      EXPECT_TRUE(test::dip_reports(noisy).empty()) << noise_m;
     }
   }
 }
@@ -131,7 +114,7 @@ TEST(DipStream, LeavesOutABadSampleAndGoesOn) {
     EXPECT_TRUE(stream.put(sample).ok());  // the same time again
     EXPECT_TRUE(stream.put({sample.time_s, {0, 0, 0}, {}}).ok());
   }
-  const std::vector<Report> undisturbed = reports_of(hand);
+  const std::vector<Report> undisturbed = test::dip_reports(hand);
   ASSERT_EQ(reports.size(), undisturbed.size());
   for (std::size_t i = 0; i < reports.size(); ++i) {
     EXPECT_EQ(reports[i].action.position_m, undisturbed[i].action.position_m);
@@ -150,11 +133,11 @@ TEST(DipStream, ALongRestIsOneActionAndSoIsALongGap) {
       }
     }
   }
-  expect_reports(reports_of(with_repeats), kStreamPlaces, 0.03);
+  expect_reports(test::dip_reports(with_repeats), kStreamPlaces, 0.03);
   for (HandSample& sample : rest) {
     if (sample.time_s > 1.9) sample.time_s += 60.0;
   }
-  expect_reports(reports_of(rest), kStreamPlaces, 0.03);
+  expect_reports(test::dip_reports(rest), kStreamPlaces, 0.03);
 }
 
 TEST(DipStream, GoesOnForAHundredThousandSamples) {
@@ -162,7 +145,7 @@ TEST(DipStream, GoesOnForAHundredThousandSamples) {
   const std::vector<Vector3d> places = test::places_on_table(1002, random);
   const HandTrajectory hand = test::hand_through(places);
   ASSERT_GT(hand.size(), 100000U);
-  expect_reports(reports_of(hand), places, 0.05);
+  expect_reports(test::dip_reports(hand), places, 0.05);
 }
 
 TEST(DipStream, RefusesABadConfig) {
