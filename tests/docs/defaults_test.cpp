@@ -10,6 +10,8 @@
 #include <vector>
 
 #include "saccade/attention/detector_evaluation.hpp"
+#include "saccade/attention/dip_detector.hpp"
+#include "saccade/attention/dip_stream.hpp"
 #include "saccade/attention/gmm_as.hpp"
 #include "saccade/attention/hand_recorder.hpp"
 #include "saccade/attention/zvc.hpp"
@@ -104,6 +106,18 @@ TEST(Defaults, OfAttentionAreDocumented) {
   expect_documented("ZvcConfig::near_m", {zvc.near_m});
   expect_documented("ZvcConfig::far_m", {zvc.far_m});
   expect_documented("ZvcConfig::threshold", {zvc.threshold});
+  const DipConfig dips;
+  expect_documented("DipConfig::kernel", {dips.kernel.length_m, dips.kernel.speed_noise_share});
+  expect_documented("DipConfig::max_kernel_share", {dips.max_kernel_share});
+  expect_documented("DipConfig::prominence", {dips.prominence.drop, dips.prominence.rise});
+  expect_documented("DipConfig::speed_floor_share", {dips.speed_floor_share});
+  expect_documented("DipConfig::outlier_limit", {dips.outlier_limit});
+  const DipStreamConfig stream;
+  expect_documented("DipStreamConfig::kernel", {stream.kernel.length_m, stream.kernel.speed_noise_share});
+  expect_documented("DipStreamConfig::delay", {stream.delay});
+  expect_documented("DipStreamConfig::prominence", {stream.prominence.drop, stream.prominence.rise});
+  expect_documented("DipStreamConfig::speed_floor_share", {stream.speed_floor_share});
+  expect_documented("DipStreamConfig::outlier_limit", {stream.outlier_limit});
   expect_documented("EvaluationConditions::match_radius_m", {EvaluationConditions{}.match_radius_m});
   const HandRecorderConfig recorder;
   expect_documented("HandRecorderConfig::margin_m", {recorder.margin_m});
