@@ -15,6 +15,7 @@
 #include "run_folder.hpp"
 #include "saccade/attention/trajectory_changes.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/io/atomic_file.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/io/json_io.hpp"
@@ -90,6 +91,13 @@ Status write_outputs(const RunFolder& out, const AttendOptions& options, const A
     if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
     bar.update("drawing", i, result.trajectories.size());
     SACCADE_CHECK(write_png(out / attend_picture_name(i), attend_picture(options, result.trajectories[i])));
+    const std::string speed_name = attend_speed_name(i);
+    const std::string speed_plot = attend_speed_plot(options, result.trajectories[i]);
+    if (speed_plot.empty()) {
+      SACCADE_CHECK(out.remove(std::array<std::string_view, 1>{speed_name}));  // what another method left
+    } else {
+      SACCADE_CHECK(write_file_atomically(out / speed_name, speed_plot));
+    }
   }
   return write_json(out / kAttendFiles.front(), document);
 }
@@ -191,7 +199,9 @@ void add_attend(CLI::App& program, const GlobalOptions& global, Action& action) 
       ->type_name("FILE...");
   add_method_options(*command, *options);
   add_condition_options(*command, *options);
-  command->add_option("--out", options->out, "folder for attend.json and a picture of each trajectory")
+  command
+      ->add_option("--out", options->out,
+                   "folder for attend.json, a picture of each trajectory, and for --method ours its speed")
       ->type_name("DIR");
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {

@@ -47,8 +47,11 @@ struct AttendResult {
 
 [[nodiscard]] nlohmann::json attend_json(const AttendOptions& options, const AttendResult& result);
 void print_attend(const AttendOptions& options, const AttendResult& result);
-/// Name of a trajectory's picture, from its number.
+/// Names of a trajectory's picture and of the plot of its speed, from its number.
 [[nodiscard]] std::string attend_picture_name(std::size_t index);
+[[nodiscard]] std::string attend_speed_name(std::size_t index);
 [[nodiscard]] ColorImage attend_picture(const AttendOptions& options, const AttendedTrajectory& trajectory);
+/// Empty where the method looks for no dips of the speed.
+[[nodiscard]] std::string attend_speed_plot(const AttendOptions& options, const AttendedTrajectory& trajectory);
 
 }  // namespace saccade::cli

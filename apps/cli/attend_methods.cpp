@@ -17,6 +17,8 @@ AttendDetector ours(bool /*as_printed*/) {
     SACCADE_TRY(DipResult result, detect_dips(trajectory));
     AttentionFindings findings;
     findings.actions = std::move(result.actions);
+    findings.motion = std::move(result.motion);
+    findings.dips = std::move(result.dips);
     return findings;
   };
 }

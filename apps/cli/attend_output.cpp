@@ -72,6 +72,18 @@ void print_evaluation(const AttendResult& result) {
   summary.line("time", fixed(result.median_ms(), 2) + " ms per trajectory, median");
 }
 
+std::string numbered_name(std::size_t index, const char* ending) {
+  std::array<char, 48> name{};
+  std::snprintf(name.data(), name.size(), "trajectory-%03zu%s", index, ending);
+  return name.data();
+}
+
+std::string points_text(const AttendOptions& options, const AttendedTrajectory& trajectory) {
+  const std::size_t actions = trajectory.findings.actions.size();
+  return std::string{options.method->name} + ": " + std::to_string(actions) + (actions == 1 ? " point" : " points") +
+         " of interest";
+}
+
 }  // namespace
 
 std::size_t AttendResult::actions() const {
@@ -132,19 +144,19 @@ void print_attend(const AttendOptions& options, const AttendResult& result) {
   for (const AttendedTrajectory& trajectory : result.trajectories) print_actions(trajectory);
 }
 
-std::string attend_picture_name(std::size_t index) {
-  std::array<char, 40> name{};
-  std::snprintf(name.data(), name.size(), "trajectory-%03zu.png", index);
-  return name.data();
-}
+std::string attend_picture_name(std::size_t index) { return numbered_name(index, ".png"); }
+
+std::string attend_speed_name(std::size_t index) { return numbered_name(index, "-speed.svg"); }
 
 ColorImage attend_picture(const AttendOptions& options, const AttendedTrajectory& trajectory) {
   AttentionPictureConfig config;
   config.title = trajectory.file.stem().string();
-  const std::size_t actions = trajectory.findings.actions.size();
-  config.note = std::string{options.method->name} + ": " + std::to_string(actions) +
-                (actions == 1 ? " point" : " points") + " of interest; " + trajectory.report.to_string();
+  config.note = points_text(options, trajectory) + "; " + trajectory.report.to_string();
   return attention_picture(trajectory.given, trajectory.findings, config);
+}
+
+std::string attend_speed_plot(const AttendOptions& options, const AttendedTrajectory& trajectory) {
+  return speed_plot(trajectory.findings, trajectory.file.stem().string() + ", " + points_text(options, trajectory));
 }
 
 }  // namespace saccade::cli

@@ -119,7 +119,12 @@ TEST_F(Attend, DrawsEveryTrajectory) {
   EXPECT_EQ(names_in(out), (std::vector<std::string>{"attend.json", "trajectory-000.png", "trajectory-001.png",
                                                      "trajectory-002.png", "trajectory-003.png"}));
   EXPECT_GT(read_color(out / "trajectory-000.png").value().width(), 300);
-  EXPECT_EQ(run_program(attend({"--out", out.string()})).status, 0);
+
+  ASSERT_EQ(run_program(attend({"--out", out.string()})).status, 0);
+  EXPECT_EQ(names_in(out).size(), 1U + 2U * kTasks);
+  EXPECT_TRUE(fs::exists(out / "trajectory-003-speed.svg"));
+  ASSERT_EQ(run_program(attend({"--out", out.string(), "--method", "zvc"})).status, 0);
+  EXPECT_EQ(names_in(out).size(), 1U + kTasks);  // no speeds of another method
 }
 
 TEST_F(Attend, FoldersStandForTheirTrajectories) {

@@ -4,12 +4,14 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 #include <optional>
 
 #include "saccade/core/region.hpp"
 #include "saccade/report/canvas.hpp"
 #include "saccade/report/color_map.hpp"
+#include "saccade/report/plot.hpp"
 #include "saccade/report/sheet.hpp"
 
 namespace saccade {
@@ -87,6 +89,30 @@ ColorImage attention_picture(std::span<const HandSample> trajectory, const Atten
   Panel panel{canvas.finish(), {}, bar, {}, std::move(legend)};
   if (bar) panel.colors = depth_colors();
   return compose({config.title, {std::move(panel)}, trajectory.empty() ? "no samples" : config.note});
+}
+
+std::string speed_plot(const AttentionFindings& findings, const std::string& title) {
+  if (findings.motion.empty()) return {};
+  const double start_s = findings.motion.front().time_s;
+  PlotSeries speed{"speed", {}, {}};
+  for (const SmoothedPoint& point : findings.motion) {
+    speed.x.push_back(point.time_s - start_s);
+    speed.y.push_back(point.speed_mps);
+  }
+  PlotSeries dips{"dips", {}, {}};
+  constexpr double kPenUp{std::numeric_limits<double>::quiet_NaN()};
+  for (const Dip& dip : findings.dips) {
+    const double time_s = dip.at.time_s - start_s;
+    dips.x.insert(dips.x.end(), {time_s, time_s, time_s});
+    dips.y.insert(dips.y.end(), {dip.speed_mps, std::min(dip.before_mps, dip.after_mps), kPenUp});
+  }
+  Plot plot;
+  plot.title = title;
+  plot.x_label = "time since the start, s";
+  plot.y_label = "smoothed speed, m/s";
+  plot.series.push_back(std::move(speed));
+  if (!findings.dips.empty()) plot.series.push_back(std::move(dips));
+  return plot_svg(plot);
 }
 
 }  // namespace saccade

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// attention_picture: the way of a hand, what a detector made of it, and where it found the hand to have acted.
+// attention_picture, speed_plot: the way of a hand, what a detector made of it, and where it found the hand to have
+// acted.
 
 #include <Eigen/Core>
 #include <span>
@@ -8,6 +9,7 @@
 #include <vector>
 
 #include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/attention/speed_dips.hpp"
 #include "saccade/report/viewpoint.hpp"
 #include "saccade/sensor/image.hpp"
 
@@ -23,6 +25,8 @@ struct DrawnGaussian {
 /// What there is to draw besides the trajectory; any part may be empty.
 struct AttentionFindings {
   std::vector<DrawnGaussian> gaussians;
+  std::vector<SmoothedPoint> motion;  ///< in which dips were looked for
+  std::vector<Dip> dips;
   std::vector<HandAction> actions;        ///< points of interest, numbered in their order
   std::vector<Eigen::Vector3d> labels_m;  ///< where the hand is known to have acted
 };
@@ -38,5 +42,9 @@ struct AttentionPictureConfig {
 /// trajectory gives a picture that says so in its note. One thread.
 [[nodiscard]] ColorImage attention_picture(std::span<const HandSample> trajectory, const AttentionFindings& findings,
                                            const AttentionPictureConfig& config = {});
+
+/// The speed of findings.motion over the time since its start as SVG, with a stroke for each dip: from its bottom to
+/// the lower of the two peaks beside it, which is how deep it is. Empty without motion.
+[[nodiscard]] std::string speed_plot(const AttentionFindings& findings, const std::string& title);
 
 }  // namespace saccade

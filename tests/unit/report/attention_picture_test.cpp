@@ -3,8 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include "saccade/attention/dip_detector.hpp"
 #include "saccade/attention/made_up_task.hpp"
 #include "unit/report/pixels.hpp"
+#include "unit/report/well_formed.hpp"
 
 namespace saccade {
 namespace {
@@ -32,6 +34,25 @@ TEST(AttentionPicture, NothingAndASinglePointHaveAPicture) {
   const HandTrajectory one(1, HandSample{});
   EXPECT_GT(attention_picture(one, {}).width(), 100);
 }
+
+TEST(SpeedPlot, MarksBothEndsOfEveryDip) {
+  const DipResult result = detect_dips(made_up_task(3, {.actions = 3}).trajectory).value();
+  ASSERT_EQ(result.dips.size(), 3U);
+  ASSERT_GT(result.motion.size(), 60U);  // a curve without markers
+  AttentionFindings findings;
+  findings.motion = result.motion;
+  const std::string plain = speed_plot(findings, "a <task>");
+  findings.dips = result.dips;
+  const std::string svg = speed_plot(findings, "a <task>");
+  EXPECT_EQ(test::well_formed(svg).problem, "");
+  EXPECT_NE(svg.find("a &lt;task&gt;"), std::string::npos);
+  EXPECT_EQ(plain.find(">dips<"), std::string::npos);
+  EXPECT_NE(svg.find(">dips<"), std::string::npos);
+  EXPECT_EQ(test::count(svg, "<rect x="), 2 * result.dips.size() + 1);  // and the one of the legend
+  EXPECT_EQ(test::count(plain, "<rect x="), 0U);
+}
+
+TEST(SpeedPlot, IsEmptyWithoutMotion) { EXPECT_TRUE(speed_plot({}, "title").empty()); }
 
 }  // namespace
 }  // namespace saccade

@@ -8,15 +8,12 @@
 #include <string_view>
 
 #include "saccade/core/result.hpp"
+#include "unit/report/well_formed.hpp"
 
 namespace saccade {
 namespace {
 
-std::size_t count(std::string_view text, std::string_view part) {
-  std::size_t found = 0;
-  for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + part.size())) ++found;
-  return found;
-}
+using test::count;
 
 /// Every opening tag has its closing one, in order; no stray markup.
 bool is_well_formed(const std::string& svg) {

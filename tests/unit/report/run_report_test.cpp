@@ -13,6 +13,7 @@
 namespace saccade {
 namespace {
 
+using test::count;
 using test::Markup;
 using test::well_formed;
 
@@ -72,12 +73,6 @@ RunReport without_truth() {
 }
 
 bool has(const std::string& page, const std::string& text) { return page.find(text) != std::string::npos; }
-
-std::size_t count(const std::string& page, const std::string& text) {
-  std::size_t n{0};
-  for (std::size_t i = page.find(text); i != std::string::npos; i = page.find(text, i + 1)) ++n;
-  return n;
-}
 
 TEST(WellFormed, RefusesWhatAnXmlParserRefuses) {
   EXPECT_EQ(well_formed("<!DOCTYPE html>\n<p class=\"a\">x &amp; y<br/></p>\n").problem, "");

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// well_formed: a small check of what an XML parser would refuse, for pages written here.
+// well_formed: a small check of what an XML parser would refuse, for pages written here; count: of parts of a text.
 
 #include <cctype>
 #include <set>
@@ -92,6 +92,13 @@ inline Markup well_formed(std::string_view text) {
     if (!empty) open.push_back(name);
   }
   return open.empty() ? page : fail("<" + open.back() + "> stays open");
+}
+
+/// How often a text has a part.
+inline std::size_t count(std::string_view text, std::string_view part) {
+  std::size_t found = 0;
+  for (std::size_t at = text.find(part); at != std::string_view::npos; at = text.find(part, at + part.size())) ++found;
+  return found;
 }
 
 }  // namespace saccade::test
