@@ -138,11 +138,12 @@ TEST(ArmSilhouetteProperty, WhatLiesWithinTheMarginIsMasked) {
             (1.0 - s) * triangles.p_camera[a] + s * (1.0 - t) * triangles.p_camera[b] + s * t * triangles.p_camera[c];
         const Vector3d away = Vector3d{unit(random) - 0.5, unit(random) - 0.5, unit(random) - 0.5}.normalized();
         const Vector3d p = on_body + silhouette.config().margin_m * away;
-        if (p.z() < 0.15 || triangles.cast(on_body) == 0.0) continue;  // of faces seen from within, or less widened
+        if (p.z() < 0.15) continue;
         const Eigen::Vector2d at = camera.project(p);
         const auto u = static_cast<int>(std::lround(at.x()));
         const auto v = static_cast<int>(std::lround(at.y()));
         if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
+        if (triangles.cast(on_body) == 0.0) continue;  // of faces seen from within, or less widened
         ++points;
         missed += depth(u, v) == 0.0F ? 0 : 1;
       }
