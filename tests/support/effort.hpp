@@ -4,9 +4,18 @@
 
 namespace saccade::test {
 
+#if defined(__has_feature)  // of clang; g++ has macros
+#if __has_feature(address_sanitizer)
+#define SACCADE_TEST_SANITIZES_ADDRESSES
+#endif
+#endif
+#if defined(__SANITIZE_ADDRESS__)
+#define SACCADE_TEST_SANITIZES_ADDRESSES
+#endif
+
 #if defined(__SANITIZE_THREAD__)
 constexpr int kEffortDivisor{12};
-#elif defined(__SANITIZE_ADDRESS__)
+#elif defined(SACCADE_TEST_SANITIZES_ADDRESSES)
 constexpr int kEffortDivisor{4};
 #else
 constexpr int kEffortDivisor{1};
