@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <sstream>
 #include <vector>
 
 namespace saccade {
@@ -10,13 +11,11 @@ namespace {
 
 bool is_finite(const HandSample& sample) { return std::isfinite(sample.time_s) && sample.position_m.allFinite(); }
 
-/// In whole milliseconds where that says enough, otherwise with two digits after the point.
+/// With the six digits that say enough of any time.
 std::string milliseconds(double time_s) {
-  const double hundredths = std::round(1e5 * time_s);
-  std::string text = std::to_string(static_cast<long long>(hundredths / 100.0));
-  const auto rest = static_cast<int>(std::fmod(hundredths, 100.0));
-  if (rest != 0) text += '.' + std::string(rest < 10 ? 1 : 0, '0') + std::to_string(rest);
-  return text + " ms";
+  std::ostringstream text;
+  text << 1e3 * time_s << " ms";
+  return text.str();
 }
 
 }  // namespace

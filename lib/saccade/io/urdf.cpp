@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "saccade/io/file_io.hpp"
+#include "saccade/io/readable_text.hpp"
 #include "saccade/io/scene_yaml.hpp"
 #include "saccade/io/urdf_document.hpp"
 
@@ -22,6 +23,8 @@ using LinkPtr = urdf::LinkConstSharedPtr;
 Error wrong(Errc code, const std::string& what, const std::string& where) { return {code, what, where}; }
 
 Eigen::Vector3d to_eigen(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
+
+constexpr std::size_t kMessageBytes{1000};
 
 bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
 
@@ -328,8 +331,12 @@ class Builder {
 Result<UrdfArm> parse_urdf(const std::string& urdf, const fs::path& folder, const UrdfConfig& config) {
   if (!(config.default_speed > 0.0) || !(config.acceleration_time_s > 0.0))
     return Error{Errc::invalid_argument, "the default speed and the time to reach a speed must be positive", ""};
-  SACCADE_TRY(const UrdfDocument document, parse_urdf_document(urdf));
-  return Builder{document, folder, config}.build();
+  const auto document = parse_urdf_document(urdf);
+  auto arm = document ? Builder{*document, folder, config}.build() : Result<UrdfArm>{document.error()};
+  if (arm) return arm;
+  // Names in the file may be anything.
+  return Error{arm.error().code, readable(arm.error().message, kMessageBytes),
+               readable(arm.error().context, kMessageBytes)};
 }
 
 Result<UrdfArm> read_urdf(const fs::path& path, const UrdfConfig& config) {

@@ -33,9 +33,11 @@ TEST(TrajectoryCheck, CountsWhatIsWrong) {
 
 TEST(TrajectoryCheck, GoodSamplesAreSaidToBeGood) {
   const HandTrajectory good{sample_at(0.0, 0.0), sample_at(0.0125, 0.1), sample_at(0.025, 0.2)};
-  EXPECT_EQ(check_samples(good).to_string(), "3 samples, 12.50 ms apart");
+  EXPECT_EQ(check_samples(good).to_string(), "3 samples, 12.5 ms apart");
   EXPECT_EQ(check_samples({}).to_string(), "0 samples");
   EXPECT_EQ(check_samples(HandTrajectory{sample_at(0.0, 0.0)}).to_string(), "1 sample");
+  EXPECT_EQ(check_samples(HandTrajectory{sample_at(0.0, 0.0), sample_at(1e300, 0.1)}).to_string(),
+            "2 samples, 1e+303 ms apart");
   EXPECT_TRUE(validate(good));
   EXPECT_TRUE(validate(HandTrajectory{}));
 }

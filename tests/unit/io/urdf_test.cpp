@@ -136,6 +136,7 @@ TEST(Urdf, SaysWhatIsWrongAndWhere) {
   expect_bad_urdf(chain + "</robot>", "too many links before it");
   expect_bad_urdf("<robot name='a'/>", "no URDF that can be read");
   expect_bad_urdf("<robot name='a'><link name='b'/></robot>", "no joint moves behind b");
+  expect_bad_urdf("<robot name='a'><link name='b\nc'/></robot>", "no joint moves behind b c");
   expect_bad_urdf(with("<link name='lost'/>"), "root link");
   expect_bad_urdf(with(R"(<joint name="back" type="fixed"><parent link="flange"/><child link="arm"/></joint>)"),
                   "link arm: has two joints above it, back and turn; the joints must form a tree");
