@@ -38,6 +38,15 @@ Result<double> farthest_tilt_rad(Robot& robot, const Pose& T_world_view, double 
   return 0.0;
 }
 
+/// Takes a picture where the camera is, and fuses it.
+Status fuse_frame(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_camera, const Executor& executor) {
+  SACCADE_TRY(const Frame frame, cell.observe(T_world_camera));
+  const ColorImage* color = frame.color ? &*frame.color : nullptr;
+  SACCADE_TRY([[maybe_unused]] const FusionStats stats,
+              map.integrate(cell.camera, frame.depth, frame.T_world_camera.value_or(T_world_camera), executor, color));
+  return {};
+}
+
 struct Look {
   std::size_t frames{0};
   Tilt tilt;
@@ -61,25 +70,28 @@ Result<Look> look(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_view,
     SACCADE_TRY(const std::optional<Arrival> arrival, cell.robot.execute(*planned.motion));
     if (!arrival) continue;
     seen.motion_s += arrival->motion_s;
-    SACCADE_TRY(const Frame frame, cell.observe(arrival->T_world_camera));
-    const ColorImage* color = frame.color ? &*frame.color : nullptr;
-    SACCADE_TRY([[maybe_unused]] const FusionStats stats,
-                map.integrate(cell.camera, frame.depth, frame.T_world_camera.value_or(arrival->T_world_camera),
-                              executor, color));
+    SACCADE_CHECK(fuse_frame(map, cell, arrival->T_world_camera, executor));
     ++seen.frames;
   }
   return seen;
 }
 
-/// How the exploration of one region ended.
-enum class RegionEnd : std::uint8_t { done, out_of_reach, views_used_up, cancelled };
+/// A pose that was written to a file and read again is the same.
+bool is_same(const Pose& a, const Pose& b) {
+  constexpr double kSame{1e-9};
+  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kSame;
+}
+
+bool is_among(const std::vector<Pose>& poses, const Pose& pose) {
+  return std::any_of(poses.begin(), poses.end(), [&](const Pose& other) { return is_same(other, pose); });
+}
 
 /// The region that is being explored, and the poses that were tried in it without success.
 struct OpenRegion {
   std::size_t index{0};
   const Region& region;
-  std::vector<Pose> refused{};
-  bool out_of_reach{false};  ///< some of them would have gained enough
+  std::vector<Pose> passed_over{};  ///< as the caller said
+  std::vector<Pose> unreached{};
 };
 
 /// How trying one view after the other came out: the view that the robot now stands at, if any.
@@ -106,21 +118,29 @@ struct Loop {
 
   /// Whether the pose was gone to, or tried, for this region.
   [[nodiscard]] bool attempted(const Pose& pose, const OpenRegion& open) const {
-    constexpr double kSame{1e-9};  // a pose that was written to a file and read again
-    const auto same = [&pose](const Pose& other) {
-      return (other.matrix() - pose.matrix()).cwiseAbs().maxCoeff() <= kSame;
-    };
-    return std::any_of(open.refused.begin(), open.refused.end(), same) ||
+    return is_among(open.unreached, pose) || is_among(open.passed_over, pose) ||
            std::any_of(views.begin(), views.end(), [&](const ExploredView& view) {
-             return view.region == open.index && same(view.T_world_camera);
+             return view.region == open.index && is_same(view.T_world_camera, pose);
            });
+  }
+
+  [[nodiscard]] bool gains_enough(const Proposal& view, bool by_gain) const {
+    return !by_gain || view.gain >= config.min_gain;
+  }
+
+  /// Whether the robot could not take a view that would still gain enough, or not a single one.
+  [[nodiscard]] bool is_out_of_reach(const Proposals& proposals, const OpenRegion& open) const {
+    if (proposals.views.empty()) return proposals.refused.total() > 0;
+    return std::any_of(proposals.views.begin(), proposals.views.end(), [&](const Proposal& view) {
+      return gains_enough(view, proposals.by_gain) && is_among(open.unreached, view.T_world_camera);
+    });
   }
 
   /// Views that gain enough and were not tried, in their order.
   [[nodiscard]] std::vector<Proposal> worth_trying(const Proposals& proposals, const OpenRegion& open) const {
     std::vector<Proposal> left;
     std::copy_if(proposals.views.begin(), proposals.views.end(), std::back_inserter(left), [&](const Proposal& view) {
-      return (!proposals.by_gain || view.gain >= config.min_gain) && !attempted(view.T_world_camera, open);
+      return gains_enough(view, proposals.by_gain) && !attempted(view.T_world_camera, open);
     });
     return left;
   }
@@ -133,6 +153,37 @@ struct Loop {
       ++count;
     }
     return left.first(count);
+  }
+
+  /// Of the best view that was not attempted.
+  [[nodiscard]] double gain_left(const Proposals& proposals, const OpenRegion& open) const {
+    double gain = 0.0;
+    for (const Proposal& view : proposals.views) {
+      if (view.gain > gain && !attempted(view.T_world_camera, open)) gain = view.gain;
+    }
+    return gain;
+  }
+
+  /// Makes the motion, and looks on the way where that is wanted.
+  [[nodiscard]] Result<std::optional<Arrival>> move(const Motion& motion, ExploredView& view) const {
+    Status fused;
+    double fusing_ms = 0.0;
+    double next_s = config.frame_on_way_s;
+    const OnWay on_way = [&](const CameraSample& sample) {
+      view.path.emplace_back(sample.T_world_camera.translation());
+      if (config.frame_on_way_s <= 0.0 || sample.t_s < next_s || !fused.ok() || progress.cancelled()) return;
+      next_s += config.frame_on_way_s;
+      const Stopwatch stopwatch;
+      fused = fuse_frame(map, cell, sample.T_world_camera, executor);
+      fusing_ms += stopwatch.elapsed_ms();
+      ++view.frames_on_way;
+    };
+    Stopwatch stopwatch;
+    auto arrival = cell.robot.execute(motion, on_way);
+    view.motion_ms += stopwatch.lap_ms() - fusing_ms;
+    view.fusion_ms += fusing_ms;
+    if (!fused.ok()) return fused.error();
+    return arrival;
   }
 
   /// Tries the views in their order, and says in `view` what that took.
@@ -148,8 +199,7 @@ struct Loop {
       view.planning_ms += stopwatch.lap_ms();
       if (!planned.motion) {
         for (std::size_t i = 0; i < poses.size(); ++i) view.refused.add(planned.refusal.value_or(Refusal::declined));
-        open.out_of_reach = true;
-        open.refused.insert(open.refused.end(), poses.begin(), poses.end());
+        open.unreached.insert(open.unreached.end(), poses.begin(), poses.end());
         left.erase(left.begin(), left.begin() + static_cast<std::ptrdiff_t>(poses.size()));
         continue;
       }
@@ -157,31 +207,27 @@ struct Loop {
       const Consent consent = hooks.before_move ? hooks.before_move(*chosen) : Consent::go;
       if (consent == Consent::stop) return Choice{std::nullopt, true};
       if (consent == Consent::go) {
-        stopwatch.lap_ms();
-        const OnWay on_way = [&view](const CameraSample& sample) {
-          view.path.emplace_back(sample.T_world_camera.translation());
-        };
-        SACCADE_TRY(const std::optional<Arrival> arrival, cell.robot.execute(*planned.motion, on_way));
-        view.motion_ms += stopwatch.lap_ms();
+        SACCADE_TRY(const std::optional<Arrival> arrival, move(*planned.motion, view));
         if (arrival) {
           view.motion_s = arrival->motion_s;
           view.retreat_s = planned.motion->retreat_s;
           return Choice{*chosen};
         }
         view.refused.add(Refusal::declined);
-        open.out_of_reach = true;
       }
-      open.refused.push_back(chosen->T_world_camera);
+      (consent == Consent::go ? open.unreached : open.passed_over).push_back(chosen->T_world_camera);
       left.erase(chosen);
     }
     return Choice{};
   }
 
   /// NextBestView, move, look, until the region is done.
-  [[nodiscard]] Result<RegionEnd> explore_region(OpenRegion open) const {
+  [[nodiscard]] Result<StopReason> explore_region(OpenRegion open) const {
+    RegionOutcome& outcome = result.regions[open.index];
+    outcome.end = RegionEnd::interrupted;
     const PoseTest test = [this](std::span<const Pose> poses) { return cell.robot.test(poses, executor); };
     while (views.size() < static_cast<std::size_t>(config.max_views)) {
-      if (progress.cancelled()) return RegionEnd::cancelled;
+      if (progress.cancelled()) return StopReason::cancelled;
       ExploredView view;
       view.region = open.index;
       Stopwatch stopwatch;
@@ -195,12 +241,13 @@ struct Loop {
       view.reachability_ms = proposals.reachability_ms;
       view.evaluation_ms = stopwatch.lap_ms() - view.candidates_ms - view.reachability_ms;
       SACCADE_TRY(const Choice choice, move_to_best(proposals, open, view));
-      if (choice.stop) return RegionEnd::cancelled;
+      outcome.gain_left = gain_left(proposals, open);
+      if (choice.stop) return StopReason::cancelled;
       if (!choice.view) {
-        const bool none_within_reach = proposals.views.empty() && proposals.refused.total() > 0;
-        if (!open.out_of_reach && !none_within_reach) return RegionEnd::done;
-        result.refused_at_end = view.refused;
-        return RegionEnd::out_of_reach;
+        outcome.end = is_out_of_reach(proposals, open) ? RegionEnd::out_of_reach : RegionEnd::done;
+        if (outcome.end == RegionEnd::done) return StopReason::regions_done;
+        outcome.refused = result.refused_at_end = view.refused;
+        return StopReason::no_candidate;
       }
       view.gain = choice.view->gain;
       view.T_world_camera = choice.view->T_world_camera;
@@ -210,12 +257,12 @@ struct Loop {
       view.frames = seen.frames;
       view.tilt = seen.tilt;
       view.motion_s += seen.motion_s;
-      view.fusion_ms = stopwatch.lap_ms();
+      view.fusion_ms += stopwatch.lap_ms();
       views.push_back(view);
       progress.report("exploring", views.size(), static_cast<std::size_t>(config.max_views));
-      if (hooks.after_view && !hooks.after_view(view, proposals)) return RegionEnd::cancelled;
+      if (hooks.after_view && !hooks.after_view(view, proposals)) return StopReason::cancelled;
     }
-    return RegionEnd::views_used_up;
+    return StopReason::views_used_up;
   }
 };
 
@@ -230,6 +277,15 @@ std::string_view to_string(StopReason reason) {
   }
 }
 
+std::string_view to_string(RegionEnd end) {
+  switch (end) {
+    case RegionEnd::not_begun: return "not_begun";
+    case RegionEnd::done: return "done";
+    case RegionEnd::out_of_reach: return "out_of_reach";
+    default: return "interrupted";
+  }
+}
+
 Status ExplorationConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "exploration"}; };
   if (std::isnan(min_gain)) return fail("the least gain is not a number");
@@ -237,6 +293,7 @@ Status ExplorationConfig::validate() const {
   if (max_views < 0) return fail("the number of views must not be negative");
   if (oscillation_frames < 1) return fail("a view needs one frame at least");
   if (!(oscillation_rad >= 0.0 && oscillation_rad < 1.5)) return fail("the oscillation is within 0 and 85 degrees");
+  if (!(frame_on_way_s >= 0.0 && std::isfinite(frame_on_way_s))) return fail("frames on the way need a time between");
   return {};
 }
 
@@ -289,15 +346,14 @@ Result<ExplorationResult> explore(TsdfMap& map, ExplorationCell& cell, const std
   SACCADE_CHECK(config.validate());
   ExplorationResult result;
   result.views = std::move(so_far);
+  result.regions.resize(regions.size());
   const Loop loop{map, cell, strategy, config, executor, hooks, progress, result};
   // What an earlier call was done with stays done.
   for (std::size_t i = result.views.empty() ? 0 : result.views.back().region; i < regions.size(); ++i) {
-    SACCADE_TRY(const RegionEnd end, loop.explore_region({i, regions[i]}));
-    if (end == RegionEnd::out_of_reach) result.stopped_because = StopReason::no_candidate;
-    if (end == RegionEnd::views_used_up || end == RegionEnd::cancelled) {
-      result.stopped_because = end == RegionEnd::cancelled ? StopReason::cancelled : StopReason::views_used_up;
-      break;
-    }
+    SACCADE_TRY(const StopReason reason, loop.explore_region({i, regions[i]}));
+    if (hooks.after_region) hooks.after_region(i, result.regions[i]);
+    if (reason != StopReason::regions_done) result.stopped_because = reason;
+    if (reason == StopReason::views_used_up || reason == StopReason::cancelled) break;
   }
   return result;
 }

@@ -23,6 +23,9 @@ struct ExplorationConfig {
   int max_views{12};                             ///< in all
   double oscillation_rad{0.087266462599716474};  ///< 5°: at each view the camera is tilted from minus to plus this
   int oscillation_frames{5};                     ///< frames taken on the way; 1: none but the view itself
+  /// Seconds of motion between frames that are fused on the way to a view (KFOM of thesis §2.2); 0: none are, the map
+  /// learns at views alone (KFOVP). For robots that know their way.
+  double frame_on_way_s{0.0};
 
   [[nodiscard]] Status validate() const;
 };
@@ -38,9 +41,10 @@ struct ExploredView {
   std::size_t region{0};  ///< index of the region it was chosen for
   double gain{0.0};       ///< as predicted
   Pose T_world_camera{Pose::Identity()};
-  std::size_t candidates{0};   ///< poses it was chosen from, those that the robot cannot take included
-  RefusalCounts refused{};     ///< of those, by reason; with the ones for which no path was found
-  std::size_t frames{0};       ///< fused
+  std::size_t candidates{0};  ///< poses it was chosen from, those that the robot cannot take included
+  RefusalCounts refused{};    ///< of those, by reason; with the ones for which no path was found
+  std::size_t frames{0};      ///< fused at the view
+  std::size_t frames_on_way{0};
   Tilt tilt{};                 ///< ±oscillation_rad, or as far towards either end as the robot could
   double planner_map_ms{0.0};  ///< what the robot must not touch brought up to date
   double candidates_ms{0.0};
@@ -48,7 +52,7 @@ struct ExploredView {
   double evaluation_ms{0.0};
   double planning_ms{0.0};  ///< of motions, those to views that were not reached included
   double motion_ms{0.0};
-  double fusion_ms{0.0};                ///< seeing and fusing all frames of the oscillation
+  double fusion_ms{0.0};                ///< seeing and fusing all frames
   double motion_s{0.0};                 ///< what motion and oscillation take a real arm; 0 where that is not known
   double retreat_s{0.0};                ///< of these, backing out of what was seen where an arm stood
   std::optional<Configuration> q{};     ///< of an arm that stands at the view
@@ -63,8 +67,25 @@ enum class StopReason : std::uint8_t {
 };
 [[nodiscard]] std::string_view to_string(StopReason reason);
 
+/// How the exploration of one region ended.
+enum class RegionEnd : std::uint8_t {
+  not_begun,
+  done,          ///< no view that was not attempted gains min_gain
+  out_of_reach,  ///< some would gain as much, but the robot could not take them
+  interrupted,   ///< max_views, or cancelled
+};
+[[nodiscard]] std::string_view to_string(RegionEnd end);
+
+/// What became of one region.
+struct RegionOutcome {
+  RegionEnd end{RegionEnd::not_begun};
+  double gain_left{0.0};    ///< of the best view that was not attempted, when it was asked for last; 0: there was none
+  RefusalCounts refused{};  ///< out_of_reach: why
+};
+
 struct ExplorationResult {
   std::vector<ExploredView> views;
+  std::vector<RegionOutcome> regions;  ///< one for each
   StopReason stopped_because{StopReason::regions_done};
   RefusalCounts refused_at_end{};  ///< no_candidate: why no view was left, of the last region of which that is so
 };
@@ -86,6 +107,8 @@ enum class Consent : std::uint8_t { go, pass_over, stop };
 struct ExplorationHooks {
   /// Asked before each move to a view that was found to be possible, those of the initial scan included.
   std::function<Consent(const Proposal& view)> before_move;
+  /// Told when a region is left, however it ended.
+  std::function<void(std::size_t region, const RegionOutcome& outcome)> after_region{};
   /// Told after each view, with the map as it is then and what the view was chosen from; false stops.
   std::function<bool(const ExploredView& view, const Proposals& proposals)> after_view;
 };

@@ -141,4 +141,14 @@ bool ArmModel::within_limits(const Configuration& q, double tolerance) const {
   return true;
 }
 
+ArmModel slowed(const ArmModel& arm, double share) {
+  SACCADE_EXPECTS(share > 0.0 && share <= 1.0);
+  ArmDescription description = arm.description();
+  for (ArmJoint& joint : description.joints) {
+    joint.limits.speed *= share;
+    joint.limits.acceleration *= share * share;
+  }
+  return ArmModel::create(std::move(description)).value();
+}
+
 }  // namespace saccade

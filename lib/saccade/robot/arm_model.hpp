@@ -130,4 +130,8 @@ class ArmModel {
   Configuration middle_;
 };
 
+/// The same arm with this share of its speeds, and accelerations such that every path takes 1 / share as long. Expects
+/// a share in (0, 1].
+[[nodiscard]] ArmModel slowed(const ArmModel& arm, double share);
+
 }  // namespace saccade

@@ -105,15 +105,27 @@ std::vector<std::optional<Refusal>> ArmRobot::test(std::span<const Pose> T_world
 }
 
 Result<PlannedMotion> ArmRobot::plan(std::span<const Pose> T_world_camera, Way way) {
-  if (!retreat_ || way == Way::straight) return plan_among(T_world_camera, way, q_, obstacles_);
-  SACCADE_TRY(PlannedMotion planned, plan_among(T_world_camera, way, retreat_->end(), obstacles_));
-  if (!planned.motion) return planned;
-  std::vector<Trajectory::Piece> pieces = retreat_->pieces();
-  const std::vector<Trajectory::Piece>& onwards = planned.motion->trajectory.pieces();
-  pieces.insert(pieces.end(), onwards.begin(), onwards.end());
-  planned.motion->trajectory = Trajectory{std::move(pieces)};
-  planned.motion->retreat_s = retreat_->duration_s();
+  if (way == Way::straight) return plan_among(T_world_camera, way, q_, obstacles_);
+  SACCADE_TRY(PlannedMotion planned, plan_among(T_world_camera, way, planned_from(), obstacles_));
+  if (planned.motion) begin_with_retreat(*planned.motion);
   return planned;
+}
+
+Result<PlannedMotion> ArmRobot::plan_to_stand_by() {
+  SACCADE_TRY(PlanOutcome outcome, planner_.plan(planned_from(), std::span{&stand_by_, 1}, obstacles_));
+  if (!outcome.plan) return PlannedMotion{std::nullopt, outcome.refusal, std::move(outcome.why)};
+  Motion motion{0, camera_pose(arm(), stand_by_), std::move(outcome.plan->trajectory)};
+  begin_with_retreat(motion);
+  return PlannedMotion{std::move(motion), std::nullopt, ""};
+}
+
+void ArmRobot::begin_with_retreat(Motion& motion) const {
+  if (!retreat_) return;
+  std::vector<Trajectory::Piece> pieces = retreat_->pieces();
+  const std::vector<Trajectory::Piece>& onwards = motion.trajectory.pieces();
+  pieces.insert(pieces.end(), onwards.begin(), onwards.end());
+  motion.trajectory = Trajectory{std::move(pieces)};
+  motion.retreat_s = retreat_->duration_s();
 }
 
 Result<PlannedMotion> ArmRobot::plan_among(std::span<const Pose> T_world_camera, Way way, const Configuration& from,
@@ -156,7 +168,8 @@ Result<std::optional<Arrival>> SimulatedRobot::execute(const Motion& motion, con
     const auto samples = static_cast<int>(std::ceil(trajectory.duration_s() / kSample_s));
     for (int i = 0; i <= samples; ++i) {
       const double t_s = std::min(i * kSample_s, trajectory.duration_s());
-      on_way({t_s, camera_pose(arm(), trajectory.at(t_s).q)});
+      pass(trajectory.at(t_s).q);
+      on_way({t_s, T_world_camera()});
     }
   }
   arrive(motion, trajectory.end());

@@ -14,8 +14,8 @@ struct ArmRobotConfig {
   ArmCollisionConfig collision;
   MotionPlannerConfig planner;
   ObstacleConfig obstacles;  ///< with the fixtures around the arm
-  /// How the arm stands in the beginning. Empty: as at the first of `first_poses` that it can take without touching a
-  /// fixture, nearest to its middle; if there is none, in its middle.
+  /// How the arm stands in the beginning, its stand-by. Empty: as at the first of `first_poses` that it can take
+  /// without touching a fixture, nearest to its middle; if there is none, in its middle.
   std::optional<Configuration> start;
   std::vector<Pose> first_poses;  ///< camera poses, as of the initial scan
 
@@ -37,6 +37,8 @@ class ArmRobot : public Robot {
   /// To whichever configuration of whichever pose is the nearest: MotionPlanner.
   [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) override;
 
+  [[nodiscard]] Result<PlannedMotion> plan_to_stand_by() override;
+
   /// The arm was put there by other means, such as in an earlier run. invalid_argument outside its limits.
   [[nodiscard]] Status place(const Configuration& q);
 
@@ -46,13 +48,6 @@ class ArmRobot : public Robot {
   [[nodiscard]] Pose T_world_camera() const { return camera_pose(arm(), q_); }
 
  protected:
-  ArmRobot(Reachability reachability, MotionPlanner planner, ObstacleMap fixtures, ObstacleMap obstacles)
-      : reachability_{std::move(reachability)},
-        planner_{std::move(planner)},
-        fixtures_{std::move(fixtures)},
-        obstacles_{std::move(obstacles)},
-        q_{reachability_.arm().middle()} {}
-
   /// The parts of an ArmRobot for a map of this configuration, in which nothing has been seen.
   struct Parts {
     Reachability reachability;
@@ -61,16 +56,28 @@ class ArmRobot : public Robot {
     ObstacleMap obstacles;
     Configuration start;
   };
+  explicit ArmRobot(Parts parts)
+      : reachability_{std::move(parts.reachability)},
+        planner_{std::move(parts.planner)},
+        fixtures_{std::move(parts.fixtures)},
+        obstacles_{std::move(parts.obstacles)},
+        stand_by_{parts.start},
+        q_{parts.start} {}
   [[nodiscard]] static Result<Parts> make_parts(const ArmModel& arm, const TsdfConfig& map,
                                                 const ArmRobotConfig& config);
   /// Whether a motion begins where the arm stands.
   [[nodiscard]] Status check_start(const Motion& motion) const;
+  /// The arm is on its way.
+  void pass(const Configuration& q) { q_ = q; }
   /// The motion was made, and the arm stands like this now.
   void arrive(const Motion& motion, const Configuration& q);
   /// The arm stands like this; how it came there is not known.
   void stand(const Configuration& q);
 
  private:
+  [[nodiscard]] Configuration planned_from() const { return retreat_ ? retreat_->end() : q_; }
+  /// With the retreat before it, if there is one.
+  void begin_with_retreat(Motion& motion) const;
   [[nodiscard]] Result<PlannedMotion> plan_among(std::span<const Pose> T_world_camera, Way way,
                                                  const Configuration& from, const ObstacleMap& obstacles) const;
 
@@ -78,6 +85,7 @@ class ArmRobot : public Robot {
   MotionPlanner planner_;
   ObstacleMap fixtures_;  ///< without the map
   ObstacleMap obstacles_;
+  Configuration stand_by_;
   Configuration q_;
   DrivenWay way_;
   std::optional<Trajectory> retreat_;  ///< out of the contact in which the arm stands
@@ -100,11 +108,7 @@ class SimulatedRobot final : public ArmRobot {
   [[nodiscard]] double moved_s() const { return moved_s_; }
 
  private:
-  explicit SimulatedRobot(Parts parts)
-      : ArmRobot{std::move(parts.reachability), std::move(parts.planner), std::move(parts.fixtures),
-                 std::move(parts.obstacles)} {
-    stand(parts.start);
-  }
+  explicit SimulatedRobot(Parts parts) : ArmRobot{std::move(parts)} {}
   double moved_s_{0.0};
 };
 

@@ -12,6 +12,10 @@ std::vector<std::optional<Refusal>> Robot::test(std::span<const Pose> T_world_ca
   return std::vector<std::optional<Refusal>>(T_world_camera.size());
 }
 
+Result<PlannedMotion> Robot::plan_to_stand_by() {
+  return PlannedMotion{std::nullopt, Refusal::declined, "the robot has no stand-by"};
+}
+
 Result<std::optional<Pose>> Robot::move_to(const Pose& T_world_camera, Way way) {
   SACCADE_TRY(const PlannedMotion planned, plan(std::span{&T_world_camera, 1}, way));
   if (!planned.motion) return std::optional<Pose>{};

@@ -75,8 +75,11 @@ class Robot {
   /// Error means that the robot itself failed.
   [[nodiscard]] virtual Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) = 0;
 
+  /// A motion back to where the robot stood in the beginning; a refusal where it does not know the way, or the place.
+  [[nodiscard]] virtual Result<PlannedMotion> plan_to_stand_by();
+
   /// Makes the motion that was planned last. `on_way` is called at every sample of the camera's path, for robots that
-  /// know it.
+  /// know it; configuration() is then that of the sample.
   /// @return nullopt when the robot declines after all, and has not moved. An Error means that its pose is not known.
   [[nodiscard]] virtual Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way = {}) = 0;
 
