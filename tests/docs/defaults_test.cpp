@@ -17,6 +17,7 @@
 #include "saccade/attention/zvc.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/explore/simulated_run.hpp"
+#include "saccade/explore/simulated_task.hpp"
 #include "saccade/io/urdf.hpp"
 #include "saccade/map/icp.hpp"
 #include "saccade/map/tsdf_grid.hpp"
@@ -120,6 +121,8 @@ TEST(Defaults, OfAttentionAreDocumented) {
   expect_documented("DipStreamConfig::outlier_limit", {stream.outlier_limit});
   expect_documented("EvaluationConditions::match_radius_m", {EvaluationConditions{}.match_radius_m});
   const HandRecorderConfig recorder;
+  expect_documented("SimulatedHandConfig::grip_share",
+                    {SimulatedHandConfig{}.grip_share, SimulatedHandConfig{}.wrist_m});
   expect_documented("HandRecorderConfig::margin_m", {recorder.margin_m});
   expect_documented("HandRecorderConfig::dropout_s", {recorder.dropout_s});
 }
