@@ -132,29 +132,10 @@ Result<int> run_attend(const AttendOptions& options, const GlobalOptions& global
 }
 
 void add_method_options(CLI::App& command, AttendOptions& options) {
-  options.method = &attend_methods().front();
-  command
-      .add_option_function<std::string>(
-          "--method",
-          [&options](const std::string& name) {
-            options.method = find_attend_method(name);
-            if (options.method == nullptr) usage_error("--method", "must be one of " + attend_method_names());
-          },
-          "detector of actions (default: " + std::string{options.method->name} + ")")
-      ->type_name(attend_method_names());
+  add_method_option(command, options.method);
   command.add_flag("--as-printed", options.as_printed,
                    "formula and thresholds as the thesis prints them, which do not give its tables");
-  command
-      .add_option_function<std::string>(
-          "--format",
-          [&options](const std::string& name) {
-            if (name == "matrices") options.format = HandFormat::matrices;
-            if (name == "csv") options.format = HandFormat::csv;
-            if (name == "tum") options.format = HandFormat::tum;
-            if (!options.format) usage_error("--format", "must be matrices, csv or tum");
-          },
-          "format of the files (default: by extension; .traj, .csv, .tum or .txt)")
-      ->type_name("matrices|csv|tum");
+  add_hand_format_option(command, options.format);
 }
 
 void add_condition_options(CLI::App& command, AttendOptions& options) {

@@ -45,6 +45,8 @@ struct AttendResult {
   [[nodiscard]] DetectorEvaluation evaluation() const;
 };
 
+[[nodiscard]] nlohmann::json action_json(const HandAction& action);
+[[nodiscard]] nlohmann::json sample_report_json(const SampleReport& report);
 [[nodiscard]] nlohmann::json attend_json(const AttendOptions& options, const AttendResult& result);
 void print_attend(const AttendOptions& options, const AttendResult& result);
 /// Names of a trajectory's picture and of the plot of its speed, from its number.

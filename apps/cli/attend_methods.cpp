@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "attend_methods.hpp"
 
+#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <utility>
 
+#include "options.hpp"
 #include "saccade/attention/dip_detector.hpp"
 #include "saccade/attention/gmm_as.hpp"
 #include "saccade/attention/zvc.hpp"
@@ -69,6 +71,33 @@ const AttendMethod* find_attend_method(std::string_view name) {
   const auto found = std::find_if(kMethods.begin(), kMethods.end(),
                                   [name](const AttendMethod& method) { return method.name == name; });
   return found == kMethods.end() ? nullptr : &*found;
+}
+
+void add_method_option(CLI::App& command, const AttendMethod*& method) {
+  method = &attend_methods().front();
+  command
+      .add_option_function<std::string>(
+          "--method",
+          [&method](const std::string& name) {
+            method = find_attend_method(name);
+            if (method == nullptr) usage_error("--method", "must be one of " + attend_method_names());
+          },
+          "detector of actions (default: " + std::string{method->name} + ")")
+      ->type_name(attend_method_names());
+}
+
+void add_hand_format_option(CLI::App& command, std::optional<HandFormat>& format) {
+  command
+      .add_option_function<std::string>(
+          "--format",
+          [&format](const std::string& name) {
+            if (name == "matrices") format = HandFormat::matrices;
+            if (name == "csv") format = HandFormat::csv;
+            if (name == "tum") format = HandFormat::tum;
+            if (!format) usage_error("--format", "must be matrices, csv or tum");
+          },
+          "format of the files of hands (default: by extension; .traj, .csv, .tum or .txt)")
+      ->type_name("matrices|csv|tum");
 }
 
 }  // namespace saccade::cli

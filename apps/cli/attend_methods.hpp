@@ -3,13 +3,19 @@
 // AttendMethod: the detectors of hand actions that `saccade attend` offers, by name.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <string>
 #include <string_view>
 
 #include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/io/hand_trajectory_io.hpp"
 #include "saccade/report/attention_picture.hpp"
+
+namespace CLI {
+class App;
+}
 
 namespace saccade::cli {
 
@@ -24,6 +30,11 @@ struct AttendMethod {
 
 /// The first is the default.
 [[nodiscard]] std::span<const AttendMethod> attend_methods();
+
+/// Adds --method, which sets `method`, the default at once.
+void add_method_option(CLI::App& command, const AttendMethod*& method);
+/// Adds --format, of the files of hands.
+void add_hand_format_option(CLI::App& command, std::optional<HandFormat>& format);
 
 /// Their names, "a|b".
 [[nodiscard]] std::string attend_method_names();

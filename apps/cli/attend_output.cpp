@@ -14,24 +14,11 @@ using nlohmann::json;
 
 json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
-json action_json(const HandAction& action) {
-  return {{"position_m", point_json(action.position_m)},
-          {"time_s", action.time_s},
-          {"saliency", action.saliency},
-          {"why", action.why}};
-}
-
 json trajectory_json(const AttendedTrajectory& trajectory) {
-  const SampleReport& report = trajectory.report;
   json actions = json::array();
   for (const HandAction& action : trajectory.findings.actions) actions.push_back(action_json(action));
   json entry{{"file", trajectory.file.string()},
-             {"samples",
-              {{"total", report.samples},
-               {"not_finite", report.not_finite},
-               {"not_increasing", report.not_increasing},
-               {"repeats", report.repeats},
-               {"gaps", report.gaps}}},
+             {"samples", sample_report_json(trajectory.report)},
              {"ms", trajectory.ms},
              {"actions", std::move(actions)}};
   if (trajectory.score) {
@@ -85,6 +72,21 @@ std::string points_text(const AttendOptions& options, const AttendedTrajectory& 
 }
 
 }  // namespace
+
+json action_json(const HandAction& action) {
+  return {{"position_m", point_json(action.position_m)},
+          {"time_s", action.time_s},
+          {"saliency", action.saliency},
+          {"why", action.why}};
+}
+
+json sample_report_json(const SampleReport& report) {
+  return {{"total", report.samples},
+          {"not_finite", report.not_finite},
+          {"not_increasing", report.not_increasing},
+          {"repeats", report.repeats},
+          {"gaps", report.gaps}};
+}
 
 std::size_t AttendResult::actions() const {
   std::size_t sum{0};

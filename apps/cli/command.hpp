@@ -40,5 +40,6 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
 void add_robot(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_scene(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_sample(CLI::App& program, const GlobalOptions& global, Action& action);
+void add_update(CLI::App& program, const GlobalOptions& global, Action& action);
 
 }  // namespace saccade::cli

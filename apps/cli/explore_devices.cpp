@@ -93,6 +93,14 @@ Result<Frame> ExploreDevices::observe(const Pose& T_world_camera) {
   return frame;
 }
 
+Status ExploreDevices::change_scene(const RayScene& scene, const SimulatedRunConfig& config) {
+  SACCADE_EXPECTS(std::holds_alternative<SimulatedCamera>(camera_));
+  SACCADE_TRY(SimulatedCamera camera, simulated_camera(scene, config));
+  camera.resume_at(frames_);
+  camera_ = std::move(camera);
+  return {};
+}
+
 Status ExploreDevices::place_arm(const Configuration& q) {
   auto* arm = dynamic_cast<ArmRobot*>(robot_.get());
   if (arm == nullptr) return Error{Errc::invalid_argument, "there is no arm to be placed", "explore"};

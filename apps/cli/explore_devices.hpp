@@ -34,6 +34,13 @@ class ExploreDevices {
 
   [[nodiscard]] const PinholeCamera& camera() const;
   [[nodiscard]] Robot& robot() { return *robot_; }
+  /// The same, as it moves in simulation.
+  [[nodiscard]] const SimulatedRobot* simulated_arm() const {
+    return dynamic_cast<const SimulatedRobot*>(robot_.get());
+  }
+  /// What a simulated camera sees from now on; the fixtures that an arm keeps clear of stay. Errors: those of
+  /// simulated_camera.
+  [[nodiscard]] Status change_scene(const RayScene& scene, const SimulatedRunConfig& config);
   /// The arm, if it is one that we move ourselves.
   [[nodiscard]] const ArmModel* arm() const { return silhouette_ ? &silhouette_->arm() : nullptr; }
   /// Takes a frame, without the arm where that stands in its own picture, and remembers it.

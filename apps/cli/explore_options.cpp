@@ -8,8 +8,6 @@
 
 namespace saccade::cli {
 
-namespace {
-
 void add_arm_options(CLI::App& command, ExploreOptions& options) {
   command
       .add_option("--fixture", options.fixtures,
@@ -33,7 +31,16 @@ void add_arm_options(CLI::App& command, ExploreOptions& options) {
       ->capture_default_str();
 }
 
-}  // namespace
+void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
+  for (const std::string& text : options.fixtures) {
+    options.arm.obstacles.fixtures.push_back(parse_box("--fixture", text));
+  }
+  options.arm.planner.seed = global.seed;
+  options.arm.ik.numeric.restarts = kNumericRestarts;
+  require_positive(options.arm.obstacles.cell_size_m, "--obstacle-cell");
+  require_ok(options.arm.validate(), "--obstacle-cell, --fixture");
+  static_cast<void>(options.free_boxes());
+}
 
 std::vector<Box> ExploreOptions::free_boxes() const {
   std::vector<Box> boxes;
@@ -88,14 +95,7 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   options.run.strategy = *strategy;
   options.run.seed = global.seed;
   if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";
-  for (const std::string& text : options.fixtures) {
-    options.arm.obstacles.fixtures.push_back(parse_box("--fixture", text));
-  }
-  options.arm.planner.seed = global.seed;
-  options.arm.ik.numeric.restarts = kNumericRestarts;
-  require_positive(options.arm.obstacles.cell_size_m, "--obstacle-cell");
-  require_ok(options.arm.validate(), "--obstacle-cell, --fixture");
-  static_cast<void>(options.free_boxes());
+  check_arm_options(options, global);
 }
 
 }  // namespace saccade::cli

@@ -33,6 +33,11 @@ struct ExploreOptions : RunOptions {
   [[nodiscard]] std::vector<Box> free_boxes() const;
 };
 
+/// Adds --fixture, --free, --obstacle-cell, --unknown-is-free and --planner.
+void add_arm_options(CLI::App& command, ExploreOptions& options);
+/// After parsing: fills `arm`. Throws a usage error for what makes no sense.
+void check_arm_options(ExploreOptions& options, const GlobalOptions& global);
+
 /// Adds the options to the command.
 void add_explore_options(CLI::App& command, ExploreOptions& options);
 /// After parsing: fills `run`, and throws a usage error for what makes no sense.

@@ -13,8 +13,8 @@
 #include "interrupt.hpp"
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/json_io.hpp"
-#include "saccade/robot/arm_mesh.hpp"
 #include "saccade/scene/scene_hash.hpp"
+#include "view_json.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -22,40 +22,6 @@ namespace {
 using nlohmann::json;
 
 json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
-/// Gains are counts as a rule, and read better as such.
-json gain_json(double gain) {
-  constexpr double kExact{9007199254740992.0};
-  return gain >= 0.0 && gain < kExact && gain == std::floor(gain) ? json(static_cast<std::uint64_t>(gain)) : json(gain);
-}
-
-json configuration_json(const std::optional<Configuration>& q) {
-  return q ? json(std::vector<double>(q->begin(), q->end())) : json(nullptr);
-}
-
-/// Reasons that occurred.
-json refused_json(const RefusalCounts& refused) {
-  json counts = json::object();
-  for (const Refusal refusal : kRefusals) {
-    if (refused.of(refusal) > 0) counts[std::string{to_string(refusal)}] = refused.of(refusal);
-  }
-  return counts;
-}
-
-double length_m(const std::vector<Eigen::Vector3d>& path) {
-  double sum_m = 0.0;
-  for (std::size_t i = 1; i < path.size(); ++i) sum_m += (path[i] - path[i - 1]).norm();
-  return sum_m;
-}
-
-/// The arm at the end of its camera's path; none where there is no arm.
-std::optional<RobotDrawing> drawing_of(const ArmModel* arm, const std::optional<Configuration>& q,
-                                       const std::vector<Eigen::Vector3d>& path) {
-  if (arm == nullptr || !q) return std::nullopt;
-  constexpr double kTall_m{0.9};  // an arm rises about so far above its first joint
-  const Eigen::Vector3d p_base = (arm->T_world_base() * arm->joint(0).T_parent_joint).translation();
-  return RobotDrawing{arm_mesh(*arm, *q), path, p_base, {p_base + kTall_m * Eigen::Vector3d::UnitZ()}};
-}
 
 /// All that decides how a run goes on.
 json settings_of(const ExploreOptions& options, const ExploreCase& subject, const PinholeCamera& camera) {
@@ -232,30 +198,8 @@ Status ExploreRun::record_scan(const ScanResult& scanned) {
 
 Status ExploreRun::record_view(const ExploredView& view, const Proposals& proposals) {
   const MeasuredMap measured = measure_now();
-  json record{{"index", journal_.views.size()},
-              {"region", view.region},
-              {"gain", gain_json(view.gain)},
-              {"candidates", view.candidates},
-              {"refused", refused_json(view.refused)},
-              {"frames", view.frames},
-              {"tilt_rad", {view.tilt.least_rad, view.tilt.greatest_rad}},
-              {"T_world_camera", pose_to_json(view.T_world_camera)},
-              {"unknown_left", measured.unknown_left},
-              {"unknown_near_objects", nullptr},
-              {"points_at_object", nullptr},
-              {"coverage", nullptr},
-              {"q", configuration_json(view.q)},
-              {"motion_s", view.motion_s},
-              {"retreat_s", view.retreat_s},
-              {"path_m", length_m(view.path)},
-              {"ms",
-               {{"planner_map", view.planner_map_ms},
-                {"candidates", view.candidates_ms},
-                {"reachability", view.reachability_ms},
-                {"evaluation", view.evaluation_ms},
-                {"planning", view.planning_ms},
-                {"motion", view.motion_ms},
-                {"fusion", view.fusion_ms}}}};
+  json record = view_json(view, journal_.views.size());
+  record["unknown_left"] = measured.unknown_left;
   if (subject_.truth) {
     record["unknown_near_objects"] = measured.metrics.unknown_near_objects;
     record["points_at_object"] = newly_known(*subject_.truth, before_, map(), executor_).points_at_object();

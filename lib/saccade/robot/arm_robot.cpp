@@ -173,7 +173,7 @@ Result<std::optional<Arrival>> SimulatedRobot::execute(const Motion& motion, con
     }
   }
   arrive(motion, trajectory.end());
-  moved_s_ += trajectory.duration_s();
+  motions_.push_back(trajectory);
   return std::optional{Arrival{T_world_camera(), trajectory.duration_s()}};
 }
 

@@ -104,12 +104,12 @@ class SimulatedRobot final : public ArmRobot {
   /// on_way is called every kSample_s of simulated time, and at the end. invalid_argument for a motion that does not
   /// begin where the arm stands.
   [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way = {}) override;
-  /// Of all motions so far.
-  [[nodiscard]] double moved_s() const { return moved_s_; }
+  /// All so far.
+  [[nodiscard]] const std::vector<Trajectory>& motions() const { return motions_; }
 
  private:
   explicit SimulatedRobot(Parts parts) : ArmRobot{std::move(parts)} {}
-  double moved_s_{0.0};
+  std::vector<Trajectory> motions_;
 };
 
 }  // namespace saccade

@@ -96,7 +96,7 @@ TEST_F(SimulatedArm, WhatTheScanSweepsIsEnoughToGoThroughItAndNoMore) {
     EXPECT_LT(test::miss(moving.T_world_camera(), pose), 1e-6);
   }
   EXPECT_EQ(reached, scan.size());
-  EXPECT_GT(moving.moved_s(), 0.5);
+  EXPECT_GT(moving.motions().back().duration_s(), 0.5);
   // Nothing is swept twice.
   EXPECT_TRUE(moving.swept_by({}).value().empty());
 }

@@ -1,0 +1,100 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade update: a hand changes a scene, and the robot looks again at what it may have changed.
+#include "update.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <iostream>
+#include <memory>
+
+#include "exit_status.hpp"
+#include "explore_report.hpp"
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/json_io.hpp"
+#include "saccade/io/ply_io.hpp"
+#include "saccade/io/sacmap.hpp"
+#include "saccade/map/mesh.hpp"
+#include "update_report.hpp"
+#include "view_json.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+Status write_maps(const RunFolder& out, const UpdateFigures& figures, const WatchedTask& task,
+                  const Executor& executor) {
+  SACCADE_CHECK(save_map(figures.before, out / "before.sacmap", executor));
+  SACCADE_CHECK(save_map(figures.after, out / "map.sacmap", executor));
+  SACCADE_CHECK(write_mesh(out / "mesh.ply", extract_mesh(figures.after, executor)));
+  return write_hand_csv(out / "hand.csv", task.trajectory);
+}
+
+/// Why there is no result; nullopt where there is one.
+std::optional<std::string> without_result(const WatchedTask& task, const UpdateFigures& figures) {
+  if (task.trajectory.empty()) return "the trajectory is empty; nothing was updated";
+  if (task.regions.empty()) return "the hand did not act anywhere; nothing was updated";
+  const ExplorationResult& explored = figures.update.exploration;
+  if (!explored.views.empty()) return std::nullopt;
+  const UnknownOfRegions& unknown = figures.update.unknown_after_task;
+  if (std::all_of(unknown.begin(), unknown.end(), [](std::size_t count) { return count == 0; })) {
+    return "the hand acted outside the workspace; nothing was updated";
+  }
+  return "not one view of a region could be taken (" + refused_text(refused_json(explored.refused_at_end)) +
+         "); does the hand's trajectory lie in the scene's frame, within the robot's reach?";
+}
+
+Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions& global) {
+  const Stopwatch total;
+  const Executor executor = global.executor();
+  ProgressBar progress{global.quiet};
+  SACCADE_CHECK(check_json_output(global));
+  SACCADE_TRY(const UpdateCase subject, open_update_case(options));
+  SACCADE_TRY(const WatchedTask task, watch_task(options, subject));
+  SACCADE_TRY(ExploreDevices devices, open_update_devices(options, subject, executor));
+  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));
+  SACCADE_CHECK(remove_update_pictures(out));
+
+  const UpdatePictures pictures{options, subject, task, devices, out, executor};
+  std::function<Status(const TakenView&)> draw_view;
+  if (options.write_pictures) draw_view = [&](const TakenView& view) { return pictures.draw_view(view); };
+  SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress, draw_view));
+  progress.update("measuring", 0, 0);
+  SACCADE_CHECK(write_maps(out, figures, task, executor));
+  SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor));
+  const json document = json_envelope("update", global, executor, {{"total", total.elapsed_ms()}}, result);
+  SACCADE_CHECK(write_json(out / "update.json", document));
+  if (options.write_pictures) {
+    SACCADE_CHECK(pictures.draw_maps(figures));
+    SACCADE_CHECK(write_update_report(options, task, out, document));
+  }
+  progress.finish();
+  SACCADE_CHECK(write_json_output(global, document));
+  if (!global.json_to_stdout()) print_update(options, result);
+  if (figures.interrupted) {
+    print_error("update", "stopped after " + std::to_string(figures.update.exploration.views.size()) +
+                              " views; what they gave is in " + options.out.string());
+    return interrupt_status();
+  }
+  const std::optional<std::string> without = without_result(task, figures);
+  if (!without) return static_cast<int>(ExitStatus::done);
+  print_error("update", *without);
+  return static_cast<int>(ExitStatus::no_result);
+}
+
+}  // namespace
+
+void add_update(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command =
+      program.add_subcommand("update", "looks again at the places of a scene where a hand has changed something");
+  auto options = std::make_shared<UpdateOptions>();
+  add_update_options(*command, *options);
+  command->callback([options, &global, &action] {
+    check_update_options(*options, global);
+    action = [options, &global] { return run_update_command(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli

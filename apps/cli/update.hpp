@@ -1,0 +1,18 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The output of `saccade update`: JSON, summary, pictures and page.
+
+#include <nlohmann/json.hpp>
+
+#include "run_folder.hpp"
+#include "update_run.hpp"
+
+namespace saccade::cli {
+
+/// `result` of the JSON: the figures, held against the truth.
+[[nodiscard]] Result<nlohmann::json> update_json(const UpdateOptions& options, const UpdateCase& subject,
+                                                 const WatchedTask& task, const UpdateFigures& figures,
+                                                 const ExploreDevices& devices, const Executor& executor);
+void print_update(const UpdateOptions& options, const nlohmann::json& result);
+
+}  // namespace saccade::cli

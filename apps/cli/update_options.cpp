@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "update_options.hpp"
+
+#include <CLI/CLI.hpp>
+
+namespace saccade::cli {
+namespace {
+
+void add_hand_options(CLI::App& command, UpdateOptions& options) {
+  options.trajectory = "simulated";
+  command
+      .add_option("--trajectory", options.trajectory,
+                  "how the hand moved in the task: a file (docs/formats.md), in the scene's frame, or simulated")
+      ->type_name("FILE|simulated")
+      ->capture_default_str();
+  add_hand_format_option(command, options.format);
+  add_method_option(command, options.method);
+  command
+      .add_option("--region-radius", options.region_radius_m,
+                  "radius of what is forgotten around each action of the hand, metres")
+      ->type_name("METRES")
+      ->capture_default_str();
+}
+
+}  // namespace
+
+void add_update_options(CLI::App& command, UpdateOptions& options) {
+  constexpr int kMaxViews{30};      // the thesis' three regions took five
+  constexpr double kMinGain{50.0};  // a region of 0.2 m is small beside a scene
+  options.run.exploration.max_views = kMaxViews;
+  options.run.exploration.min_gain = kMinGain;
+  command
+      .add_option("--scene", options.scene,
+                  "the scene after the task: bottle, jug, another built-in one or a YAML file")
+      ->required()
+      ->type_name("SCENE");
+  command.add_option("--before", options.before, "the scene before the task (default: SCENE-before)")
+      ->type_name("SCENE");
+  command.add_option("--out", options.out, "folder for the results (default: update-SCENE)")->type_name("DIR");
+  add_hand_options(command, options);
+  command
+      .add_option_function<std::string>(
+          "--fuse-when",
+          [&options](const std::string& when) {
+            options.fuse_when = when == "motion" ? FuseWhen::motion : FuseWhen::viewpoints;
+          },
+          "when the camera's frames are fused: at viewpoints alone (the thesis' KFOVP; default), or also in motion, "
+          "which is slower then (KFOM)")
+      ->check(CLI::IsMember({"viewpoints", "motion"}))
+      ->type_name("viewpoints|motion");
+  add_run_options(command, options);
+  options.robot = "comau";
+  command.add_option("--robot", options.robot, "what carries the camera: comau, a URDF file, or free, which flies")
+      ->type_name("ROBOT")
+      ->capture_default_str();
+  add_arm_options(command, options);
+  command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
+  command.add_flag("--force", options.force, "write into a folder that holds other files");
+}
+
+void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
+  check_run_options(options);
+  check_arm_options(options, global);
+  require_positive(options.region_radius_m, "--region-radius");
+  options.run.seed = global.seed;
+  if (options.fuse_when == FuseWhen::motion) {
+    if (!options.has_arm())
+      usage_error("--fuse-when", "a camera that flies is at the next view at once; motion needs an arm");
+    options.run.exploration.frame_on_way_s = kFrameOnWay_s;
+  }
+  const bool is_file = std::filesystem::path{options.scene}.has_extension();
+  if (options.before.empty() && is_file) usage_error("--before", "is needed where --scene is a file");
+  if (options.before.empty()) options.before = options.scene + "-before";
+  if (options.out.empty()) options.out = "update-" + std::filesystem::path{options.scene}.stem().string();
+}
+
+}  // namespace saccade::cli

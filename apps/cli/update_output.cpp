@@ -1,0 +1,195 @@
+// SPDX-License-Identifier: Apache-2.0
+// The figures of an update as JSON and as a summary.
+#include <algorithm>
+#include <iomanip>
+#include <iostream>
+
+#include "attend.hpp"
+#include "explore_report.hpp"
+#include "saccade/io/camera_io.hpp"
+#include "saccade/map/mesh.hpp"
+#include "summary.hpp"
+#include "update.hpp"
+#include "view_json.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+json share_json(const std::optional<double>& share) { return share ? json(*share) : json(nullptr); }
+
+json task_json(const UpdateOptions& options, const WatchedTask& task) {
+  json actions = json::array();
+  for (const HandAction& action : task.findings.actions) actions.push_back(action_json(action));
+  json places = json::array();
+  for (const Eigen::Vector3d& place : task.findings.labels_m) places.push_back(point_json(place));
+  return {{"trajectory", options.trajectory}, {"samples", sample_report_json(task.report)},
+          {"method", options.method->name},   {"ms", task.ms},
+          {"actions", std::move(actions)},    {"true_places_m", std::move(places)}};
+}
+
+json return_json(const Return& back) {
+  return {{"at_stand_by", back.at_stand_by},
+          {"refused", back.refusal ? json(to_string(*back.refusal)) : json(nullptr)},
+          {"motion_s", back.motion_s}};
+}
+
+/// Unknown voxels of one region: after the task, and after each view.
+json unknown_json(const UpdateResult& update, std::size_t region) {
+  json counts = json::array();
+  if (region < update.unknown_after_task.size()) counts.push_back(update.unknown_after_task[region]);
+  for (const UnknownOfRegions& after : update.unknown_after_view) counts.push_back(after.at(region));
+  return counts;
+}
+
+Result<json> region_json(const UpdateCase& subject, const WatchedTask& task, const UpdateFigures& figures,
+                         const TriangleMesh& mesh, std::size_t i, const Executor& executor) {
+  const RegionOfInterest& region = task.regions[i];
+  const auto& sphere = std::get<Sphere>(region.bounds);
+  const auto& outcomes = figures.update.exploration.regions;
+  const RegionOutcome outcome = i < outcomes.size() ? outcomes[i] : RegionOutcome{};
+  SACCADE_TRY(const RegionSurface surface,
+              observable_in(*subject.after.rays, region.bounds, kTruthSpacing_m, executor));
+  const RegionCoverage coverage = measure_coverage(surface, mesh, figures.after.config.voxel_size_m, executor);
+  const auto& views = figures.update.exploration.views;
+  const auto taken =
+      std::count_if(views.begin(), views.end(), [i](const ExploredView& view) { return view.region == i; });
+  return json{{"center_m", point_json(sphere.center)},
+              {"radius_m", sphere.radius_m},
+              {"saliency", region.saliency},
+              {"why", region.why},
+              {"end", to_string(outcome.end)},
+              {"views", taken},
+              {"gain_left", outcome.gain_left},
+              {"refused", refused_json(outcome.refused)},
+              {"unknown", unknown_json(figures.update, i)},
+              {"coverage", {{"objects", share_json(coverage.objects)}, {"surfaces", share_json(coverage.surfaces)}}}};
+}
+
+json shape_json(const ObjectShape& shape) {
+  return {{"height_m", shape.height_m}, {"major_m", shape.major_m}, {"minor_m", shape.minor_m}};
+}
+
+/// The objects that the task put somewhere.
+Result<json> objects_json(const UpdateCase& subject, const TriangleMesh& mesh, const Executor& executor) {
+  SACCADE_TRY(const ObjectShapes shapes, ObjectShapes::build(*subject.after.rays));
+  json objects = json::array();
+  for (const std::size_t object : shapes.objects()) {
+    const std::string& name = subject.after.scene.objects.at(object).name;
+    const auto changed = std::find_if(subject.changes.begin(), subject.changes.end(),
+                                      [&](const SceneChange& change) { return change.object == name; });
+    if (changed == subject.changes.end()) continue;
+    const ObjectShape& truth = shapes.true_shape(object);
+    json entry{{"name", name}, {"true", shape_json(truth)}, {"measured", nullptr}, {"error", nullptr}};
+    if (const std::optional<ObjectShape> measured = shapes.measure(object, mesh, executor)) {
+      entry["measured"] = shape_json(*measured);
+      entry["error"] = shape_json(shape_error(*measured, truth));
+    }
+    objects.push_back(std::move(entry));
+  }
+  return objects;
+}
+
+/// Seconds of all views per phase, as in Table 2.8.
+json phases_json(const UpdateResult& update) {
+  json phases{{"forgetting", 1e-3 * update.forgetting_ms}};
+  double robot_s = update.back.motion_s;
+  for (const ExploredView& view : update.exploration.views) {
+    const json record = view_json(view, 0);
+    for (const auto& [phase, ms] : record.at("ms").items()) {
+      phases[phase] = phases.value(phase, 0.0) + 1e-3 * ms.get<double>();
+    }
+    robot_s += view.motion_s;
+  }
+  phases["robot"] = robot_s;
+  return phases;
+}
+
+std::string region_text(const json& region) {
+  const json& unknown = region["unknown"];
+  std::string text = region["end"].get<std::string>() + ", " + std::to_string(region["views"].get<std::size_t>()) +
+                     (region["views"] == 1 ? " view" : " views");
+  if (!unknown.empty()) {
+    text += ", unknown voxels " + std::to_string(unknown.front().get<std::size_t>()) + " -> " +
+            std::to_string(unknown.back().get<std::size_t>());
+  }
+  if (const json& share = region["coverage"]["surfaces"]; !share.is_null()) {
+    text += ", " + percent(share.get<double>()) + " of the surface";
+  }
+  const std::string refused = refused_text(region["refused"]);
+  return text + (refused.empty() ? "" : "; refused " + refused);
+}
+
+std::string object_text(const json& object) {
+  if (object["error"].is_null()) return "too little of it was seen";
+  const auto off = [&](const char* what) { return fixed(1e3 * object["error"][what].get<double>(), 1); };
+  return "height " + off("height_m") + " mm, major axis " + off("major_m") + " mm, minor axis " + off("minor_m") +
+         " mm off the truth";
+}
+
+std::string arm_text(const json& result) {
+  const json& back = result["back"];
+  const auto touching = result["contacts"]["touching"].get<std::size_t>();
+  std::string text = back["at_stand_by"].get<bool>() ? "back at its stand-by" : "not at its stand-by";
+  if (!back["refused"].is_null()) text += " (" + back["refused"].get<std::string>() + ")";
+  return text +
+         (touching == 0 ? ", touched nothing" : ", touched something at " + std::to_string(touching) + " instants");
+}
+
+}  // namespace
+
+Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
+                         const UpdateFigures& figures, const ExploreDevices& devices, const Executor& executor) {
+  const TriangleMesh mesh = extract_mesh(figures.after, executor);
+  json regions = json::array();
+  for (std::size_t i = 0; i < task.regions.size(); ++i) {
+    SACCADE_TRY(json region, region_json(subject, task, figures, mesh, i, executor));
+    regions.push_back(std::move(region));
+  }
+  SACCADE_TRY(json objects, objects_json(subject, mesh, executor));
+  json views = json::array();
+  for (const ExploredView& view : figures.update.exploration.views) views.push_back(view_json(view, views.size()));
+  return json{{"scene", subject.after.scene.name},
+              {"before", subject.before.scene.name},
+              {"out", options.out.string()},
+              {"robot", options.robot},
+              {"fuse_when", to_string(options.fuse_when)},
+              {"noise", options.run.noise},
+              {"camera", camera_to_json(devices.camera())},
+              {"voxel_size_m", options.run.voxel_size_m},
+              {"scan", {{"views", figures.scan.views}, {"refused", refused_json(figures.scan.refused)}}},
+              {"task", task_json(options, task)},
+              {"regions", std::move(regions)},
+              {"views", std::move(views)},
+              {"objects", std::move(objects)},
+              {"back", return_json(figures.update.back)},
+              {"contacts", {{"instants", figures.instants}, {"touching", figures.contacts}}},
+              {"phases_s", phases_json(figures.update)},
+              {"interrupted", figures.interrupted},
+              {"stopped_because", to_string(figures.update.exploration.stopped_because)}};
+}
+
+void print_update(const UpdateOptions& options, const json& result) {
+  const Summary summary{std::cout};
+  const json& scan = result["scan"];
+  const std::string refused = refused_text(scan["refused"]);
+  summary.line("scan", std::to_string(scan["views"].get<std::size_t>()) + " views" +
+                           (refused.empty() ? "" : ", passed over: " + refused));
+  for (const json& action : result["task"]["actions"]) {
+    summary.line("action", fixed(action["time_s"].get<double>(), 2) + " s  " + action["why"].get<std::string>());
+  }
+  std::size_t number = 0;
+  for (const json& region : result["regions"]) summary.line("region " + std::to_string(++number), region_text(region));
+  for (const json& object : result["objects"]) summary.line(object["name"].get<std::string>(), object_text(object));
+  const json& phases = result["phases_s"];
+  const auto s = [&](const char* phase) { return fixed(phases.value(phase, 0.0), 2) + " s"; };
+  summary.line("time", "forgetting " + s("forgetting") + ", evaluation " + s("evaluation") + ", planner's map " +
+                           s("planner_map") + ", motion planning " + s("planning") + ", fusion " + s("fusion") +
+                           ", robot's motion (simulated) " + s("robot"));
+  if (options.has_arm()) summary.line("arm", arm_text(result));
+  summary.line("stopped", result["stopped_because"].get<std::string>());
+  summary.line("results", (options.write_pictures ? options.out / "report.html" : options.out).string());
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,40 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The pictures of an update, and the page that shows them. Thesis Figs. 2.16 to 2.20.
+
+#include <nlohmann/json.hpp>
+
+#include "run_folder.hpp"
+#include "update_run.hpp"
+
+namespace saccade::cli {
+
+/// Draws into the folder of a run. The references outlive it.
+class UpdatePictures {
+ public:
+  UpdatePictures(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
+                 const ExploreDevices& devices, const RunFolder& out, const Executor& executor)
+      : options_{options}, subject_{subject}, task_{task}, devices_{devices}, out_{out}, executor_{executor} {}
+
+  /// view-NN-choice.png, view-NN-seen.png and view-NN-map.png. io_failure.
+  [[nodiscard]] Status draw_view(const TakenView& view) const;
+  /// before.png, hand.png, regions.png and after.png. io_failure.
+  [[nodiscard]] Status draw_maps(const UpdateFigures& figures) const;
+
+ private:
+  const UpdateOptions& options_;
+  const UpdateCase& subject_;
+  const WatchedTask& task_;
+  const ExploreDevices& devices_;
+  const RunFolder& out_;
+  Executor executor_;
+};
+
+/// What an earlier run drew. io_failure.
+[[nodiscard]] Status remove_update_pictures(const RunFolder& out);
+
+/// report.html from the document that goes to update.json and the pictures in the folder. io_failure.
+[[nodiscard]] Status write_update_report(const UpdateOptions& options, const WatchedTask& task, const RunFolder& out,
+                                         const nlohmann::json& document);
+
+}  // namespace saccade::cli

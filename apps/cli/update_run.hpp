@@ -1,0 +1,69 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// UpdateRun: one user-driven update of a simulated scene, from the scan before the task to the figures after it.
+
+#include "explore_devices.hpp"
+#include "progress_bar.hpp"
+#include "saccade/explore/object_shape.hpp"
+#include "saccade/explore/region_coverage.hpp"
+#include "saccade/explore/simulated_task.hpp"
+#include "update_options.hpp"
+
+namespace saccade::cli {
+
+/// The scene that a user changes.
+struct UpdateCase {
+  ExploreCase before;
+  ExploreCase after;
+  std::vector<SceneChange> changes;
+};
+/// Errors: those of find_scene, RayScene::build and scene_changes.
+[[nodiscard]] Result<UpdateCase> open_update_case(const UpdateOptions& options);
+
+/// What the hand did, as the detector has it.
+struct WatchedTask {
+  HandTrajectory trajectory;
+  SampleReport report;
+  AttentionFindings findings;  ///< with the true places of a simulated hand
+  std::vector<RegionOfInterest> regions;
+  double ms{0.0};  ///< of the detector
+};
+/// Reads or simulates the hand. Errors: those of reader, detector and simulated_hand; a hand without an action has no
+/// regions.
+[[nodiscard]] Result<WatchedTask> watch_task(const UpdateOptions& options, const UpdateCase& subject);
+
+/// An update as far as it came.
+struct UpdateFigures {
+  TsdfSnapshot before;  ///< after the scan
+  ScanResult scan;
+  TsdfSnapshot forgotten;  ///< the regions are unknown
+  UpdateResult update;     ///< without regions the robot came back from the scan
+  TsdfSnapshot after;
+  bool interrupted{false};
+  std::size_t instants{0};  ///< of all motions, at which contacts were looked for
+  std::size_t contacts{0};  ///< with what was really there
+};
+
+/// What there is of a view that was just taken, to be drawn.
+struct TakenView {
+  std::size_t number{1};  ///< 1 for the first
+  const TsdfSnapshot& before;
+  const TsdfSnapshot& after;
+  const ExploredView& view;
+  const Proposals& proposals;
+  std::vector<Pose> T_world_earlier;
+  std::vector<Frame> frames;
+};
+
+/// Scans the scene before the task, returns to stand-by, lets the user change the scene, and runs Algorithm 1.
+/// @param after_view  may be empty; an error of it ends the run
+[[nodiscard]] Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase& subject,
+                                               const WatchedTask& task, ExploreDevices& devices,
+                                               const Executor& executor, ProgressBar& progress,
+                                               const std::function<Status(const TakenView& view)>& after_view = {});
+
+/// The devices of the case, as they are before the task.
+[[nodiscard]] Result<ExploreDevices> open_update_devices(const UpdateOptions& options, const UpdateCase& subject,
+                                                         const Executor& executor);
+
+}  // namespace saccade::cli

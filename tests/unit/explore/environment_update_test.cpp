@@ -1,0 +1,322 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/explore/environment_update.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <random>
+
+#include "saccade/explore/simulated_run.hpp"
+#include "saccade/io/urdf.hpp"
+#include "saccade/scene/random_clutter.hpp"
+#include "support/effort.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr double kVoxelOfUpdate_m{0.012};
+
+std::vector<RegionOfInterest> spheres(const std::vector<Eigen::Vector3d>& centers, double radius_m = 0.15) {
+  std::vector<HandAction> actions;
+  for (const Eigen::Vector3d& center : centers) actions.push_back({center, 0.0, 1.0, "a test"});
+  return regions_of_interest(actions, radius_m).value();
+}
+
+/// Reaches what lies on one side alone.
+class OneSidedRobot final : public Robot {
+ public:
+  explicit OneSidedRobot(double least_x_m) : least_x_m_{least_x_m} {}
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way /*way*/) override {
+    for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
+      if (T_world_camera[i].translation().x() < least_x_m_) continue;
+      return PlannedMotion{Motion{i, T_world_camera[i], {}}, {}, ""};
+    }
+    return PlannedMotion{{}, Refusal::no_path, "the other side"};
+  }
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& /*on_way*/) override {
+    return std::optional{Arrival{motion.T_world_camera, 0.0}};
+  }
+
+ private:
+  double least_x_m_;
+};
+
+/// A clutter of four objects that a small camera has seen from above, before something may have changed.
+class EnvironmentUpdate : public ::testing::Test {
+ protected:
+  EnvironmentUpdate() {
+    SimulatedCameraConfig config;
+    config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.4, 3.0};
+    camera_.emplace(*SimulatedCamera::create(rays(), config));
+    sphere_.longitude_step_rad = 1.0471975511965976;
+    sphere_.latitude_step_rad = 0.52359877559829887;
+    sphere_.roll_step_rad = 1.5707963267948966;
+    gain_.sensor = config.camera;
+    exploration_.min_gain = 30;
+    exploration_.max_views = 12;
+    exploration_.oscillation_frames = 3;
+  }
+
+  static const RayScene& rays() {
+    static const RayScene built = *RayScene::build(random_clutter(5, 4));
+    return built;
+  }
+  static TsdfConfig map_config() {
+    TsdfConfig config;
+    config.voxel_size_m = kVoxelOfUpdate_m;
+    config.workspace = rays().scene().workspace;
+    return config;
+  }
+
+  ExplorationCell cell(Robot& robot) {
+    return {camera_->camera(),
+            [this](const Pose& pose) -> Result<Frame> {
+              seen_from_.push_back(pose);
+              return camera_->capture(pose);
+            },
+            robot};
+  }
+  SphereStrategy strategy() const { return {sphere_, ray_gain(gain_)}; }
+
+  TsdfMap scanned() {
+    TsdfMap map = *TsdfMap::create(map_config());
+    FreeRobot robot;
+    ExplorationCell here = cell(robot);
+    std::vector<Pose> around;
+    for (const double x : {-0.8, 0.0, 0.8}) {
+      for (const double y : {-0.7, 0.7})
+        around.push_back(look_at(Eigen::Vector3d{x, y, 0.9}, Eigen::Vector3d{0, 0, 0}));
+    }
+    EXPECT_TRUE(scan(map, here, around, exploration_, Executor{})->complete);
+    seen_from_.clear();
+    return map;
+  }
+
+  UpdateResult update(TsdfMap& map, Robot& robot, std::span<const RegionOfInterest> regions,
+                      const ExplorationHooks& hooks = {}) {
+    ExplorationCell here = cell(robot);
+    auto result = update_environment(map, here, regions, strategy(), exploration_, Executor{}, hooks);
+    EXPECT_TRUE(result) << result.error().to_string();
+    return *result;
+  }
+
+  /// Whether some frame could have said something about a point.
+  bool in_some_view(const Eigen::Vector3d& p) const {
+    const PinholeCamera& camera = camera_->camera();
+    return std::any_of(seen_from_.begin(), seen_from_.end(), [&](const Pose& T_world_camera) {
+      const Eigen::Vector3d q = T_world_camera.inverse() * p;
+      if (q.z() <= 0.0) return false;
+      const double u = camera.fx * q.x() / q.z() + camera.cx;
+      const double v = camera.fy * q.y() / q.z() + camera.cy;
+      return u >= -1.0 && u <= camera.width && v >= -1.0 && v <= camera.height;
+    });
+  }
+
+  ViewSphereConfig sphere_;
+  GainConfig gain_;
+  ExplorationConfig exploration_;
+  std::optional<SimulatedCamera> camera_;
+  std::vector<Pose> seen_from_;
+};
+
+TEST_F(EnvironmentUpdate, EveryRegionIsForgottenAndLookedAtUntilItIsKnown) {
+  TsdfMap map = scanned();
+  FreeRobot robot;
+  const std::vector<RegionOfInterest> regions = spheres({{-0.3, 0.0, 0.1}, {0.3, 0.1, 0.1}});
+  const UnknownOfRegions before = count_unknown(map.content(), regions);
+  std::vector<std::size_t> left;
+  ExplorationHooks hooks;
+  hooks.after_region = [&](std::size_t region, const RegionOutcome& outcome) {
+    left.push_back(region);
+    EXPECT_EQ(outcome.end, RegionEnd::done);
+  };
+  const UpdateResult result = update(map, robot, regions, hooks);
+  EXPECT_EQ(left, (std::vector<std::size_t>{0, 1}));
+  ASSERT_EQ(result.exploration.regions.size(), 2U);
+  EXPECT_EQ(result.exploration.stopped_because, StopReason::regions_done);
+  ASSERT_EQ(result.unknown_after_view.size(), result.exploration.views.size());
+  for (std::size_t i = 0; i < regions.size(); ++i) {
+    EXPECT_LT(result.exploration.regions[i].gain_left, exploration_.min_gain);
+    EXPECT_GT(result.unknown_after_task[i], 4 * before[i]);
+    EXPECT_LT(result.unknown_after_view.back()[i], result.unknown_after_task[i] / 4);
+  }
+  for (std::size_t i = 1; i < result.unknown_after_view.size(); ++i) {
+    EXPECT_LE(result.unknown_after_view[i][0], result.unknown_after_view[i - 1][0]);
+  }
+}
+
+TEST_F(EnvironmentUpdate, ARegionThatWasSeenOnTheWayIsNotLookedAtAgain) {
+  TsdfMap map = scanned();
+  FreeRobot robot;
+  const UpdateResult result = update(map, robot, spheres({{0.3, 0.1, 0.1}, {0.31, 0.11, 0.1}}));
+  EXPECT_EQ(result.exploration.regions[1].end, RegionEnd::done);
+  const auto& views = result.exploration.views;
+  EXPECT_GT(std::count_if(views.begin(), views.end(), [](const ExploredView& view) { return view.region == 0; }),
+            std::count_if(views.begin(), views.end(), [](const ExploredView& view) { return view.region == 1; }));
+  EXPECT_LT(result.unknown_after_view.front()[1], result.unknown_after_task[1]);
+}
+
+TEST_F(EnvironmentUpdate, OutsideTheRegionsOnlyWhatANewViewLookedAtChanges) {
+  const TsdfMap scanned_map = scanned();
+  std::mt19937 random{7};
+  std::uniform_real_distribution<double> x{-0.5, 0.5};
+  std::uniform_real_distribution<double> y{-0.35, 0.35};
+  exploration_.max_views = 2;
+  for (int i = 0; i < test::scaled_cases(4); ++i) {
+    TsdfMap map{scanned_map.snapshot()};
+    seen_from_.clear();
+    FreeRobot robot;
+    const std::vector<RegionOfInterest> regions = spheres({{x(random), y(random), 0.05}, {x(random), y(random), 0.1}});
+    update(map, robot, regions);
+    ASSERT_FALSE(seen_from_.empty());
+    std::size_t untouched = 0;
+    std::size_t changed = 0;
+    const IndexBox box = voxels_with_center_in(*map_config().workspace, kVoxelOfUpdate_m);
+    for (Index3 voxel{box.lo}; voxel.z < box.hi.z; ++voxel.z) {
+      for (voxel.y = box.lo.y; voxel.y < box.hi.y; ++voxel.y) {
+        for (voxel.x = box.lo.x; voxel.x < box.hi.x; ++voxel.x) {
+          const Eigen::Vector3d p = voxel_center(voxel, kVoxelOfUpdate_m);
+          const Voxel was = scanned_map.content().grid.voxel(voxel);
+          const Voxel is = map.content().grid.voxel(voxel);
+          const bool same = was == is;
+          const bool forgotten = std::any_of(regions.begin(), regions.end(), [&](const RegionOfInterest& region) {
+            return contains(region.bounds, p);
+          });
+          if (in_some_view(p)) {
+            changed += same ? 0 : 1;
+          } else if (forgotten) {
+            EXPECT_EQ(state_of(is), VoxelState::unknown);
+          } else {
+            ASSERT_TRUE(same) << p.transpose();
+            ++untouched;
+          }
+        }
+      }
+    }
+    EXPECT_GT(untouched, 1000U);
+    EXPECT_GT(changed, 1000U);
+  }
+}
+
+TEST_F(EnvironmentUpdate, WhatIsOutOfReachIsSaidAndTheRestIsDone) {
+  TsdfMap map = scanned();
+  OneSidedRobot robot{0.45};
+  sphere_.radii_m = {0.5};
+  const UpdateResult result = update(map, robot, spheres({{-0.45, 0.0, 0.1}, {0.4, 0.0, 0.1}}));
+  const auto& outcomes = result.exploration.regions;
+  EXPECT_EQ(outcomes[0].end, RegionEnd::out_of_reach);
+  EXPECT_GT(outcomes[0].refused.of(Refusal::no_path), 0U);
+  EXPECT_GE(outcomes[0].gain_left, 0.0);
+  EXPECT_NE(outcomes[1].end, RegionEnd::not_begun);
+  EXPECT_EQ(result.exploration.stopped_because, StopReason::no_candidate);
+  ASSERT_FALSE(result.exploration.views.empty());
+  for (const ExploredView& view : result.exploration.views) EXPECT_EQ(view.region, 1U);
+  EXPECT_FALSE(result.back.at_stand_by);
+  EXPECT_EQ(result.back.refusal, Refusal::declined);
+}
+
+TEST_F(EnvironmentUpdate, WithoutRegionsNothingChanges) {
+  TsdfMap map = scanned();
+  const TsdfSnapshot before = map.snapshot();
+  FreeRobot robot;
+  const UpdateResult result = update(map, robot, {});
+  EXPECT_TRUE(result.exploration.views.empty());
+  EXPECT_EQ(result.exploration.stopped_because, StopReason::regions_done);
+  EXPECT_TRUE(map.content().grid == before.grid);
+  EXPECT_TRUE(seen_from_.empty());
+}
+
+TEST_F(EnvironmentUpdate, ABadRegionIsRefused) {
+  TsdfMap map = scanned();
+  FreeRobot robot;
+  ExplorationCell here = cell(robot);
+  const std::vector<RegionOfInterest> bad{{Sphere{{0, 0, 0}, -1.0}, 1.0, AttentionOrigin::hand_action, ""}};
+  const auto result = update_environment(map, here, bad, strategy(), exploration_, Executor{});
+  ASSERT_FALSE(result);
+  EXPECT_EQ(result.error().code, Errc::invalid_argument);
+}
+
+TEST_F(EnvironmentUpdate, WhenItIsStoppedTheRobotStaysAndTheRestIsNotBegun) {
+  TsdfMap map = scanned();
+  FreeRobot robot;
+  ExplorationHooks hooks;
+  hooks.after_view = [](const ExploredView& /*view*/, const Proposals& /*proposals*/) { return false; };
+  const UpdateResult result = update(map, robot, spheres({{-0.3, 0.0, 0.1}, {0.3, 0.1, 0.1}}), hooks);
+  EXPECT_EQ(result.exploration.views.size(), 1U);
+  EXPECT_EQ(result.exploration.stopped_because, StopReason::cancelled);
+  EXPECT_EQ(result.exploration.regions[0].end, RegionEnd::interrupted);
+  EXPECT_EQ(result.exploration.regions[1].end, RegionEnd::not_begun);
+  EXPECT_FALSE(result.back.at_stand_by);
+}
+
+/// The same with the Comau, which fuses on its way or not.
+UpdateResult update_with_arm(FuseWhen when, const Executor& executor, SimulatedRobot& robot, const RayScene& rays) {
+  SimulatedRunConfig config;
+  config.voxel_size_m = kVoxelOfUpdate_m;
+  config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.5, 2.0};
+  config.gain_width_px = 80;
+  config.exploration.min_gain = 20;
+  config.exploration.max_views = 3;
+  config.exploration.oscillation_frames = 3;
+  if (when == FuseWhen::motion) config.exploration.frame_on_way_s = kFrameOnWay_s;
+  TsdfConfig map_config = config.map();
+  map_config.workspace = rays.scene().workspace;
+  TsdfMap map = TsdfMap::create(map_config).value();
+  SimulatedCamera camera = simulated_camera(rays, config).value();
+  std::optional<Configuration> q;
+  ExplorationCell cell{config.camera,
+                       [&](const Pose& pose) -> Result<Frame> {
+                         q = robot.configuration();
+                         EXPECT_LT((camera_pose(robot.arm(), *q).matrix() - pose.matrix()).norm(), 1e-9);
+                         return camera.capture(pose, executor);
+                       },
+                       robot};
+  EXPECT_TRUE(scan(map, cell, rays.scene().scan, config.exploration, executor)->complete);
+  return update_environment(map, cell, spheres({{-0.3, 0.0, 0.1}}), *make_strategy(config, config.camera, 1),
+                            config.exploration, executor)
+      .value();
+}
+
+TEST(EnvironmentUpdateWithArm, ReturnsToItsStandByAndSeesMoreWhenItLooksOnItsWay) {
+  const RayScene rays = RayScene::build(random_clutter(5, 4)).value();
+  const Executor executor = Executor::with_threads(2);
+  SimulatedRunConfig config;
+  config.voxel_size_m = kVoxelOfUpdate_m;
+  const ArmModel fast = find_robot("comau").value().arm;
+  const ArmModel slow = slowed(fast, kSpeedWhileFusing);
+  SimulatedRobot stopping = simulated_arm(fast, rays.scene(), config).value();
+  SimulatedRobot looking = simulated_arm(slow, rays.scene(), config).value();
+  const Configuration start = *looking.configuration();
+  const UpdateResult at_views = update_with_arm(FuseWhen::viewpoints, executor, stopping, rays);
+  const UpdateResult on_way = update_with_arm(FuseWhen::motion, executor, looking, rays);
+  ASSERT_FALSE(at_views.exploration.views.empty());
+  ASSERT_FALSE(on_way.exploration.views.empty());
+  for (const UpdateResult* result : {&at_views, &on_way}) {
+    EXPECT_TRUE(result->back.at_stand_by);
+    EXPECT_GT(result->back.motion_s, 0.1);
+  }
+  EXPECT_LT((*looking.configuration() - start).lpNorm<Eigen::Infinity>(), 1e-6);
+  const ExploredView& first = at_views.exploration.views.front();
+  const ExploredView& first_slow = on_way.exploration.views.front();
+  EXPECT_EQ(first.frames_on_way, 0U);
+  EXPECT_GE(first_slow.frames_on_way, 5U);
+  EXPECT_LE(static_cast<double>(first_slow.frames_on_way), first_slow.motion_s / kFrameOnWay_s + 1.0);
+  EXPECT_LE(on_way.unknown_after_view.front()[0], at_views.unknown_after_view.front()[0]);
+}
+
+TEST(SlowedArm, TakesTheSamePathsInMoreTime) {
+  const ArmModel arm = find_robot("comau").value().arm;
+  const ArmModel slow = slowed(arm, 0.25);
+  const Configuration from = arm.middle();
+  Configuration to = from;
+  for (Eigen::Index i = 0; i < to.size(); ++i) to[i] += 0.1 * static_cast<double>(i + 1);
+  const Trajectory quick = parametrise(arm, {from, to});
+  const Trajectory careful = parametrise(slow, {from, to});
+  EXPECT_NEAR(careful.duration_s(), 4.0 * quick.duration_s(), 1e-9);
+  for (double share = 0.0; share <= 1.0; share += 0.1) {
+    EXPECT_LT((quick.at(share * quick.duration_s()).q - careful.at(share * careful.duration_s()).q).norm(), 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace saccade
