@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// hand_actions DATA [SEEDS]: the tables of docs/attention.md and docs/dip-detector.md as Markdown, from the recorded
-// hands in DATA; 20 seeds by default. Exit status 77 where there are no hands.
+// hand_actions DATA [SEEDS]: the tables of docs/dip-detector.md as Markdown, from the recorded hands in DATA; 20 seeds
+// by default. Exit status 77 where there are no hands. Tables 2.2 to 2.4 of the thesis: saccade reproduce.
 
 #include <algorithm>
 #include <cstdio>
@@ -25,19 +25,13 @@ using Reports = std::vector<test::DipReport>;
 struct Hand {
   LabelledTrajectory labelled;
   bool user1{false};
-  bool pick_and_place{false};
   bool sound{false};  ///< no mislabelled place
 };
 
 using Group = bool (*)(const Hand&);
-bool all(const Hand& /*hand*/) { return true; }
-bool user1(const Hand& hand) { return hand.user1; }
-bool user2(const Hand& hand) { return !hand.user1; }
 bool sound(const Hand& hand) { return hand.sound; }
 bool sound_user1(const Hand& hand) { return hand.sound && hand.user1; }
 bool sound_user2(const Hand& hand) { return hand.sound && !hand.user1; }
-bool pick_and_place(const Hand& hand) { return hand.pick_and_place; }
-bool placements_removals(const Hand& hand) { return !hand.pick_and_place; }
 
 /// In the order of `saccade attend DATA`, so that noise is the same.
 std::vector<Hand> read_hands(const std::filesystem::path& data) {
@@ -48,7 +42,6 @@ std::vector<Hand> read_hands(const std::filesystem::path& data) {
   for (const std::filesystem::path& file : *files) {
     Hand hand{read_labelled_trajectory(file).value()};
     hand.user1 = hand.labelled.name.starts_with("user1");
-    hand.pick_and_place = file.parent_path().filename() == "pick_and_place";
     hand.sound = !is_mislabelled(hand.labelled);
     hands.push_back(std::move(hand));
   }
@@ -58,9 +51,8 @@ std::vector<Hand> read_hands(const std::filesystem::path& data) {
 /// What a detector reports of a hand, the one that takes whole trajectories with the last sample.
 using Detector = Reports (*)(const HandTrajectory&);
 
-template <auto kDetect>
 Reports whole(const HandTrajectory& hand) {
-  std::vector<HandAction> actions = kDetect(hand).value();
+  std::vector<HandAction> actions = test::by_dips(hand).value();
   Reports reports;
   for (HandAction& action : actions) reports.push_back({std::move(action), hand.back().time_s});
   return reports;
@@ -128,86 +120,6 @@ Tally sum_of(const std::vector<Hand>& hands, const std::vector<Tally>& tallies, 
 
 double percent(const std::optional<double>& share) { return 100.0 * share.value_or(0.0); }
 
-/// A precision of nothing is none.
-std::string precision_text(const std::optional<double>& precision) {
-  if (!precision) return "none";
-  char text[16];
-  std::snprintf(text, sizeof text, "%.1f", 100.0 * *precision);
-  return text;
-}
-
-void print_rates(const test::Rates& rates) { std::printf(" %.1f / %.1f |", rates.precision, rates.recall); }
-
-void print_rates(const std::vector<Hand>& hands, const std::vector<Tally>& tallies, Group group) {
-  const DetectionCounts counts = sum_of(hands, tallies, group).wide;
-  std::printf(" %s / %.1f |", precision_text(counts.precision()).c_str(), percent(counts.recall()));
-}
-
-/// Of one row of Tables 2.3 and 2.4.
-struct ThreeDetectors {
-  std::vector<Tally> gmm;
-  std::vector<Tally> zvc;
-  std::vector<Tally> dips;
-};
-
-void print_condition(const test::ThesisHandRow& row) {
-  if (row.sigma_m > 0.0) {
-    std::printf("| noise %g cm |", 100.0 * row.sigma_m);
-  } else {
-    std::printf("| speed %g |", row.speed);
-  }
-}
-
-void print_thesis_tables(const std::vector<Hand>& hands, std::uint64_t seeds) {
-  std::vector<ThreeDetectors> rows;
-  for (const test::ThesisHandRow& row : test::kThesisHandRows) {
-    const Condition condition{.speed = row.speed, .sigma_m = row.sigma_m};
-    rows.push_back({tallies_of(hands, condition, seeds, whole<test::by_gmm>),
-                    tallies_of(hands, condition, seeds, whole<test::by_zvc>),
-                    tallies_of(hands, condition, seeds, whole<test::by_dips>)});
-  }
-  std::printf("### Beside the thesis: Tables 2.3 and 2.4\n\n");
-  std::printf("| condition | GMM-AS: thesis | ours | user 1 | user 2 | sound | ZVC: thesis | ours | user 1 | user 2 ");
-  std::printf("| sound |\n|---|---|---|---|---|---|---|---|---|---|---|\n");
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    const test::ThesisHandRow& row = test::kThesisHandRows[i];
-    print_condition(row);
-    print_rates(row.gmm);
-    for (const Group group : {all, user1, user2, sound}) print_rates(hands, rows[i].gmm, group);
-    print_rates(row.zvc);
-    for (const Group group : {all, user1, user2, sound}) print_rates(hands, rows[i].zvc, group);
-    std::printf("\n");
-  }
-  std::printf("\n### Beside the thesis: Table 2.2\n\n");
-  std::printf("| tasks | GMM-AS: thesis | ours | ZVC: thesis | ours |\n|---|---|---|---|---|\n");
-  const ThreeDetectors& plain = rows[2];
-  struct Tasks {
-    const char* name;
-    Group group;
-    test::Rates gmm;
-    test::Rates zvc;
-  };
-  for (const Tasks& tasks :
-       {Tasks{"placements and removals", placements_removals, test::kThesisPlacementsGmm, test::kThesisPlacementsZvc},
-        Tasks{"pick and place", pick_and_place, test::kThesisPickAndPlaceGmm, test::kThesisPickAndPlaceZvc}}) {
-    std::printf("| %s |", tasks.name);
-    print_rates(tasks.gmm);
-    print_rates(hands, plain.gmm, tasks.group);
-    print_rates(tasks.zvc);
-    print_rates(hands, plain.zvc, tasks.group);
-    std::printf("\n");
-  }
-  std::printf("\n### The three detectors\n\n");
-  std::printf("| condition | all: GMM-AS | ZVC | ours | sound: GMM-AS | ZVC | ours |\n|---|---|---|---|---|---|---|\n");
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    print_condition(test::kThesisHandRows[i]);
-    for (const Group group : {all, sound}) {
-      for (const auto* tallies : {&rows[i].gmm, &rows[i].zvc, &rows[i].dips}) print_rates(hands, *tallies, group);
-    }
-    std::printf("\n");
-  }
-}
-
 struct DipRow {
   const char* disturbance;
   Condition condition;
@@ -249,7 +161,7 @@ void print_dip_tables(const std::vector<Hand>& hands, std::uint64_t seeds) {
   std::vector<std::vector<Tally>> of_whole;
   std::vector<std::vector<Tally>> of_stream;
   for (const DipRow& row : rows) {
-    of_whole.push_back(tallies_of(hands, row.condition, seeds, whole<test::by_dips>));
+    of_whole.push_back(tallies_of(hands, row.condition, seeds, whole));
     of_stream.push_back(tallies_of(hands, row.condition, seeds, test::dip_reports));
   }
   struct Users {
@@ -282,7 +194,6 @@ int main(int count, char** arguments) {
     return 77;
   }
   const auto seeds = static_cast<std::uint64_t>(count > 2 ? std::max(1, std::atoi(arguments[2])) : 20);
-  print_thesis_tables(hands, seeds);
   print_dip_tables(hands, seeds);
   return 0;
 }

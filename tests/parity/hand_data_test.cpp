@@ -11,15 +11,15 @@
 #include "support/effort.hpp"
 #include "support/hand_detectors.hpp"
 #include "support/recorded_hands.hpp"
+#include "thesis/hand_figures.hpp"
 
 namespace saccade {
 namespace {
 
 using test::by_gmm;
 using test::by_zvc;
-using test::kThesisHandRows;
-using test::Rates;
-using test::ThesisHandRow;
+using thesis::ConditionRates;
+using thesis::Rates;
 
 Rates rates_of(const DetectorEvaluation& evaluation) {
   return {100.0 * evaluation.counts.precision().value_or(0.0), 100.0 * evaluation.counts.recall().value_or(0.0)};
@@ -46,7 +46,7 @@ const Parts& parts() {
 }
 
 DetectorEvaluation evaluate(const HandActionDetector& detector, const std::vector<LabelledTrajectory>& hands,
-                            const ThesisHandRow& row, bool exclude_mislabelled = false) {
+                            const ConditionRates& row, bool exclude_mislabelled = false) {
   DetectorEvaluation sum;
   const std::uint64_t seeds = row.sigma_m > 0.0 && !test::kSanitized ? 5 : 1;
   for (std::uint64_t seed = 1; seed <= seeds; ++seed) {
@@ -92,10 +92,12 @@ TEST_F(RecordedHands, Table2_2) {
   };
   const auto& single = hands.placements_and_removals;
   const auto& both = hands.pick_and_place;
-  expect_near("GMM-AS, placements and removals", evaluate_detector(by_gmm, single).value(), test::kThesisPlacementsGmm);
-  expect_near("ZVC, placements and removals", evaluate_detector(by_zvc, single).value(), test::kThesisPlacementsZvc);
-  expect_near("GMM-AS, pick and place", evaluate_detector(by_gmm, both).value(), test::kThesisPickAndPlaceGmm);
-  expect_near("ZVC, pick and place", evaluate_detector(by_zvc, both).value(), test::kThesisPickAndPlaceZvc);
+  expect_near("GMM-AS, placements and removals", evaluate_detector(by_gmm, single).value(),
+              thesis::kTable2_2PlacementsAndRemovals.gmm);
+  expect_near("ZVC, placements and removals", evaluate_detector(by_zvc, single).value(),
+              thesis::kTable2_2PlacementsAndRemovals.zvc);
+  expect_near("GMM-AS, pick and place", evaluate_detector(by_gmm, both).value(), thesis::kTable2_2PickAndPlace.gmm);
+  expect_near("ZVC, pick and place", evaluate_detector(by_zvc, both).value(), thesis::kTable2_2PickAndPlace.zvc);
 }
 
 /// How far a figure of the thesis lies outside what the parts span.
@@ -105,9 +107,11 @@ double outside(double thesis, std::initializer_list<double> ours) {
 
 /// Where users 1 and 2 agree, ours is within 3 points of the thesis; where they do not, the thesis' figure, which is
 /// over them and two more, lies between theirs, give or take 3 points.
-void expect_rows(const HandActionDetector& detector, Rates ThesisHandRow::*thesis_of, int near_rows) {
+void expect_rows(const HandActionDetector& detector, Rates ConditionRates::*thesis_of, int near_rows) {
   int near{0};
-  for (const ThesisHandRow& row : kThesisHandRows) {
+  std::vector<ConditionRates> rows{thesis::kTable2_3.begin(), thesis::kTable2_3.end()};
+  rows.insert(rows.end(), thesis::kTable2_4.begin(), thesis::kTable2_4.end());
+  for (const ConditionRates& row : rows) {
     const Rates thesis = row.*thesis_of;
     const DetectorEvaluation of_user1 = evaluate(detector, parts().user1, row);
     DetectorEvaluation of_both = evaluate(detector, parts().user2, row);
@@ -128,12 +132,12 @@ void expect_rows(const HandActionDetector& detector, Rates ThesisHandRow::*thesi
   EXPECT_TRUE(test::kSanitized || near >= near_rows) << near << " rows within 3 points";
 }
 
-TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ThesisHandRow::gmm, 5); }
+TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ConditionRates::gmm, 5); }
 
-TEST_F(RecordedHands, Tables2_3And2_4OfZvc) { expect_rows(by_zvc, &ThesisHandRow::zvc, 5); }
+TEST_F(RecordedHands, Tables2_3And2_4OfZvc) { expect_rows(by_zvc, &ConditionRates::zvc, 5); }
 
 TEST_F(RecordedHands, WithoutWrongLabelsBothDetectorsMissNextToNothing) {
-  const ThesisHandRow plain{1.0, 0.0, {}, {}};
+  const ConditionRates plain{1.0, 0.0, {}, {}};
   for (const auto& detector : {HandActionDetector{by_gmm}, HandActionDetector{by_zvc}}) {
     const Rates rates = rates_of(evaluate(detector, parts().all, plain, true));
     EXPECT_GE(rates.precision, 98.0);

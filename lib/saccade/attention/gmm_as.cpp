@@ -68,16 +68,6 @@ double saliency_of(const SalientGaussian& gaussian, std::size_t count, SaliencyF
   return sigma.prod() / denominator * gaussian.weight * static_cast<double>(count);
 }
 
-/// Mean saliency of up to Λ neighbours on either side of g, those that exist.
-double neighbour_mean(const std::vector<SalientGaussian>& gaussians, std::size_t g, int neighbours) {
-  const auto reach = static_cast<std::size_t>(neighbours);
-  const std::size_t first = g - std::min(g, reach);
-  const std::size_t last = std::min(g + reach, gaussians.size() - 1);
-  double sum{0.0};
-  for (std::size_t i = first; i <= last; ++i) sum += i == g ? 0.0 : gaussians[i].saliency;
-  return sum / static_cast<double>(last - first);
-}
-
 std::string reason(std::size_t g, std::size_t count, double saliency, double mean) {
   std::array<char, 160> text{};
   std::snprintf(text.data(), text.size(), "Gaussian %zu of %zu: saliency %.4f, %.1f times the mean of its neighbours",
@@ -122,16 +112,33 @@ Result<GmmAsResult> detect_by_gmm(const HandTrajectory& trajectory, const GmmAsC
     gaussian.saliency = saliency_of(gaussian, best.gaussians.size(), config.saliency);
     result.gaussians.push_back(gaussian);
   }
-  for (std::size_t g = 1; g + 1 < result.gaussians.size(); ++g) {
+  std::vector<double> saliencies;
+  for (const SalientGaussian& gaussian : result.gaussians) saliencies.push_back(gaussian.saliency);
+  const auto means = mean_neighbour_saliencies(saliencies, config.neighbours);
+  for (std::size_t g = 0; g < result.gaussians.size(); ++g) {
+    if (!means[g]) continue;
     SalientGaussian& gaussian = result.gaussians[g];
-    const double mean = neighbour_mean(result.gaussians, g, config.neighbours);
-    gaussian.threshold = config.poi_threshold * mean;
+    gaussian.threshold = config.poi_threshold * *means[g];
     gaussian.is_poi = gaussian.saliency > *gaussian.threshold;
     if (!gaussian.is_poi) continue;
     result.actions.push_back({gaussian.mean_m, gaussian.time_s, gaussian.saliency,
-                              reason(g, result.gaussians.size(), gaussian.saliency, mean)});
+                              reason(g, result.gaussians.size(), gaussian.saliency, *means[g])});
   }
   return result;
+}
+
+std::vector<std::optional<double>> mean_neighbour_saliencies(std::span<const double> saliencies, int neighbours) {
+  SACCADE_EXPECTS(neighbours >= 1);
+  const auto reach = static_cast<std::size_t>(neighbours);
+  std::vector<std::optional<double>> means(saliencies.size());
+  for (std::size_t g = 1; g + 1 < saliencies.size(); ++g) {
+    const std::size_t first = g - std::min(g, reach);
+    const std::size_t last = std::min(g + reach, saliencies.size() - 1);
+    double sum{0.0};
+    for (std::size_t i = first; i <= last; ++i) sum += i == g ? 0.0 : saliencies[i];
+    means[g] = sum / static_cast<double>(last - first);
+  }
+  return means;
 }
 
 }  // namespace saccade

@@ -3,6 +3,7 @@
 // detect_by_gmm: GMM-AS (Gaussian mixture models, activity saliency). Where a hand acted, by the shape of a mixture.
 
 #include <optional>
+#include <span>
 #include <vector>
 
 #include "saccade/attention/gmm_em.hpp"
@@ -55,5 +56,10 @@ struct GmmAsResult {
 /// @return invalid_argument for a bad configuration or a bad sample (see usable_samples). One thread; deterministic.
 /// O(iterations · samples · Gaussians) for each number of Gaussians tried; about 1 ms for a task of 8 s at 100 Hz.
 [[nodiscard]] Result<GmmAsResult> detect_by_gmm(const HandTrajectory& trajectory, const GmmAsConfig& config = {});
+
+/// Of each Gaussian, the mean saliency of up to `neighbours` (Λ) on either side, those that exist; none of the first
+/// and the last. POITh times these are Algorithm 3's thresholds. Expects neighbours ≥ 1. O(Gaussians · neighbours).
+[[nodiscard]] std::vector<std::optional<double>> mean_neighbour_saliencies(std::span<const double> saliencies,
+                                                                           int neighbours);
 
 }  // namespace saccade

@@ -7,6 +7,7 @@
 
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/attention/made_up_task.hpp"
+#include "thesis/hand_figures.hpp"
 
 namespace saccade {
 namespace {
@@ -78,6 +79,35 @@ TEST(GmmAs, ThePrintedFormulaHasAUnit) {
     EXPECT_NEAR(printed.gaussians[g].saliency, cubed.gaussians[g].saliency * sum * sum, 1e-9);
   }
   EXPECT_EQ(GmmAsConfig::as_printed().poi_threshold, 2.5);
+}
+
+/// From the saliencies that the thesis prints come the thresholds that it prints, to the last of their six decimals.
+void expect_thresholds(std::span<const thesis::GaussianSaliency> printed) {
+  std::vector<double> saliencies;
+  for (const thesis::GaussianSaliency& gaussian : printed) saliencies.push_back(gaussian.saliency);
+  const auto means = mean_neighbour_saliencies(saliencies, GmmAsConfig{}.neighbours);
+  ASSERT_EQ(means.size(), printed.size());
+  for (std::size_t g = 0; g < printed.size(); ++g) {
+    ASSERT_EQ(means[g].has_value(), printed[g].threshold.has_value()) << g;
+    if (!means[g]) continue;
+    const double threshold = thesis::kTable2_5ThresholdFactor * *means[g];
+    EXPECT_NEAR(threshold, *printed[g].threshold, 1.5e-6) << g;
+    EXPECT_EQ(saliencies[g] > threshold, printed[g].is_poi) << g;
+    EXPECT_EQ(saliencies[g] > GmmAsConfig{}.poi_threshold * *means[g], printed[g].is_poi) << g;
+  }
+}
+
+TEST(GmmAs, ThresholdsOfTheThesisAreOneAndAHalfTimesItsNeighbours) {
+  expect_thresholds(thesis::kTable2_5);
+  expect_thresholds(thesis::kTable2_6);
+}
+
+TEST(GmmAs, TheFirstAndTheLastGaussianHaveNoThreshold) {
+  EXPECT_TRUE(mean_neighbour_saliencies({}, 2).empty());
+  EXPECT_EQ(mean_neighbour_saliencies(std::vector{1.0, 2.0}, 2), (std::vector<std::optional<double>>(2)));
+  const auto means = mean_neighbour_saliencies(std::vector{1.0, 8.0, 3.0, 5.0}, 1);
+  EXPECT_EQ(means, (std::vector<std::optional<double>>{std::nullopt, 2.0, 6.5, std::nullopt}));
+  EXPECT_THROW((void)mean_neighbour_saliencies(std::vector{1.0, 2.0, 3.0}, 0), ContractViolation);
 }
 
 TEST(GmmAs, TimesDoNotDependOnTheClock) {
