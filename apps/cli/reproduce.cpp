@@ -2,9 +2,11 @@
 // saccade reproduce TABLE…: tables of the thesis, ours beside theirs.
 #include <CLI/CLI.hpp>
 #include <algorithm>
+#include <fstream>
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <sstream>
 
 #include "command.hpp"
 #include "exit_status.hpp"
@@ -13,11 +15,14 @@
 #include "options.hpp"
 #include "progress_bar.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/io/atomic_file.hpp"
+#include "tables/hand_data.hpp"
 #include "tables/thesis_table.hpp"
 
 namespace saccade::cli {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 
 Result<int> list_tables(const GlobalOptions& global) {
@@ -41,16 +46,44 @@ json json_of(const std::string& number, const ReproducedTable& table) {
   return entry;
 }
 
+constexpr std::string_view kMarkdownHeading{"# Tables of the thesis, ours beside theirs"};
+
+/// Fails early where --markdown names a file that cannot be written, or one that is none of ours.
+Status check_markdown_output(const fs::path& file) {
+  if (file.empty()) return {};
+  SACCADE_TRY(const AtomicFile probe, AtomicFile::create(file));
+  std::ifstream existing{file};
+  std::string line;
+  if (std::getline(existing, line) && line != kMarkdownHeading) {
+    return Error{Errc::invalid_argument, "holds something else than tables; name another file", file.string()};
+  }
+  return {};
+}
+
+Status write_markdown_output(const fs::path& file, const std::vector<ReproducedTable>& tables,
+                             const GlobalOptions& global, const Executor& executor) {
+  if (file.empty()) return {};
+  std::ostringstream text;
+  text << kMarkdownHeading << "\n\nBy saccade reproduce " << SACCADE_VERSION << ", seed " << global.seed << ", "
+       << executor.threads() << (executor.threads() == 1 ? " thread.\n" : " threads.\n");
+  for (const ReproducedTable& table : tables) {
+    text << "\n## ";
+    print(text, table);
+  }
+  return write_file_atomically(file, text.str());
+}
+
 /// Prints one table after the other as they are done. After a failure `tables` has those before it.
 Status reproduce_each(const std::vector<std::string>& numbers, const ReproduceOptions& options,
-                      const GlobalOptions& global, const Executor& executor, json& tables, TimingsMs& timings_ms) {
+                      const GlobalOptions& global, const Executor& executor, std::vector<ReproducedTable>& tables,
+                      TimingsMs& timings_ms) {
   ProgressBar bar{global.quiet};
   Progress progress{
       [&bar](std::string_view stage, std::size_t done, std::size_t total) { bar.update(stage, done, total); }};
   const CancelOnInterrupt cancel{progress};
   for (const std::string& number : numbers) {
     const Stopwatch of_table;
-    SACCADE_TRY(const ReproducedTable table, find_thesis_table(number)->reproduce(options, executor, progress));
+    SACCADE_TRY(ReproducedTable table, find_thesis_table(number)->reproduce(options, executor, progress));
     timings_ms["table " + number] = of_table.elapsed_ms();
     bar.finish();
     if (!global.json_to_stdout()) {
@@ -58,42 +91,71 @@ Status reproduce_each(const std::vector<std::string>& numbers, const ReproduceOp
       print(std::cout, table);
       std::cout << std::flush;
     }
-    tables.push_back(json_of(number, table));
+    tables.push_back(std::move(table));
   }
   return {};
 }
 
+/// What can be said before the work.
+Status check_reproduce(const std::vector<std::string>& numbers, const ReproduceOptions& options,
+                       const fs::path& markdown, const GlobalOptions& global) {
+  SACCADE_CHECK(check_json_output(global));
+  SACCADE_CHECK(check_markdown_output(markdown));
+  const bool needs_hands = std::any_of(
+      numbers.begin(), numbers.end(), [](const std::string& number) { return find_thesis_table(number)->needs_hands; });
+  return needs_hands ? check_hand_data(options.hands) : Status{};
+}
+
 Result<int> run_reproduce(const std::vector<std::string>& numbers, const ReproduceOptions& options,
-                          const GlobalOptions& global) {
+                          const fs::path& markdown, const GlobalOptions& global) {
   if (numbers.empty()) return list_tables(global);
   const Stopwatch clock;
   const Executor executor = global.executor();
-  SACCADE_CHECK(check_json_output(global));
+  SACCADE_CHECK(check_reproduce(numbers, options, markdown, global));
   TimingsMs timings_ms;
-  json tables = json::array();
-  const Status status = reproduce_each(numbers, options, global, executor, tables, timings_ms);
-  const std::size_t done = tables.size();
-  if (done == 0) return status.error();
+  std::vector<ReproducedTable> done;
+  const Status status = reproduce_each(numbers, options, global, executor, done, timings_ms);
+  if (done.empty()) return status.error();
   timings_ms["total"] = clock.elapsed_ms();
+  json tables = json::array();
+  for (std::size_t i = 0; i < done.size(); ++i) tables.push_back(json_of(numbers[i], done[i]));
+  const Status markdown_status = write_markdown_output(markdown, done, global, executor);
   SACCADE_CHECK(write_json_output(
       global, json_envelope("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}})));
+  SACCADE_CHECK(markdown_status);
   if (status.ok()) return static_cast<int>(ExitStatus::done);
   if (status.error().code != Errc::cancelled) return status.error();
-  const bool in_file = !global.json.empty() && !global.json_to_stdout();
-  print_error("reproduce", "interrupted after " + std::to_string(done) + " of " + std::to_string(numbers.size()) +
-                               " tables; what is done is on standard output" +
-                               (in_file ? " and in " + global.json : ""));
+  std::string where = "on standard output";
+  if (!global.json.empty() && !global.json_to_stdout()) where += ", in " + global.json;
+  if (!markdown.empty()) where += ", in " + markdown.string();
+  print_error("reproduce", "interrupted after " + std::to_string(done.size()) + " of " +
+                               std::to_string(numbers.size()) + " tables; what is done is " + where);
   return interrupt_status();
 }
 
-/// Throws a usage error for a table that is not there, or that is named twice.
-void check_numbers(const std::vector<std::string>& numbers) {
+/// Throws a usage error for a table that is not there, that is named twice, or that lacks its data.
+void check_numbers(const std::vector<std::string>& numbers, const ReproduceOptions& options) {
   for (auto number = numbers.begin(); number != numbers.end(); ++number) {
     if (std::find(numbers.begin(), number, *number) != number) usage_error("TABLE", *number + " is named twice");
-    if (find_thesis_table(*number) != nullptr) continue;
+    if (const ThesisTable* table = find_thesis_table(*number)) {
+      if (!table->needs_hands || !options.hands.empty()) continue;
+      usage_error("--hands", "Table " + *number + " is made from recorded hands: get them from " + kHandDataAddress +
+                                 ", and name their folder with --hands DIR");
+    }
     std::string known;
     for (const ThesisTable& table : thesis_tables()) known += (known.empty() ? "" : ", ") + std::string{table.number};
     usage_error("TABLE", "there is no table \"" + *number + "\"; known: " + known);
+  }
+}
+
+void check_markdown_option(const std::string& markdown, const std::vector<std::string>& numbers,
+                           const GlobalOptions& global) {
+  if (markdown.empty()) return;
+  if (numbers.empty()) usage_error("--markdown", "name tables too");
+  if (markdown == "-") usage_error("--markdown", "needs a file; what is on standard output is Markdown already");
+  std::error_code ignored;
+  if (fs::weakly_canonical(markdown, ignored) == fs::weakly_canonical(global.json, ignored)) {
+    usage_error("--markdown", "needs another file than --json");
   }
 }
 
@@ -103,6 +165,7 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
   CLI::App* command = program.add_subcommand("reproduce", "tables of the thesis, ours beside theirs");
   auto numbers = std::make_shared<std::vector<std::string>>();
   auto options = std::make_shared<ReproduceOptions>();
+  auto markdown = std::make_shared<std::string>();
   command->add_option("tables", *numbers, "tables by their number; none: lists those that there are")
       ->type_name("TABLE");
   command
@@ -111,10 +174,22 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
                    "(default: all)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
-  command->callback([numbers, options, &global, &action] {
-    check_numbers(*numbers);
+  command
+      ->add_option("--hands", options->hands,
+                   std::string{"Tables 2.2 to 2.6: folder of the thesis' recorded hands, from "} + kHandDataAddress)
+      ->type_name("DIR");
+  command
+      ->add_option("--noise-seeds", options->noise_seeds,
+                   "Table 2.4: seeds of the noise that it is averaged over, from --seed on")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+      ->type_name("N")
+      ->capture_default_str();
+  command->add_option("--markdown", *markdown, "write the tables as Markdown to a file")->type_name("FILE");
+  command->callback([numbers, options, markdown, &global, &action] {
+    check_numbers(*numbers, *options);
+    check_markdown_option(*markdown, *numbers, global);
     options->seed = global.seed;
-    action = [numbers, options, &global] { return run_reproduce(*numbers, *options, global); };
+    action = [numbers, options, markdown, &global] { return run_reproduce(*numbers, *options, *markdown, global); };
   });
 }
 

@@ -58,6 +58,6 @@ inline constexpr std::array<GaussianSaliency, 7> kTable2_6{{{0.002341, std::null
                                                             {0.003140, std::nullopt, false}}};
 
 /// Times the neighbours' mean saliency: what the thresholds of Tables 2.5 and 2.6 are.
-inline constexpr double kTable2_5ThresholdFactor{1.5};
+inline constexpr double kThresholdFactor{1.5};
 
 }  // namespace saccade::thesis

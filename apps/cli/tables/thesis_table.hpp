@@ -3,6 +3,7 @@
 // ReproducedTable: a table of the thesis with our figures beside its own; thesis_tables: those that there are.
 // A further table is a source of its own here, with a line in thesis_table.cpp.
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <span>
@@ -19,6 +20,8 @@ namespace saccade::cli {
 struct ReproduceOptions {
   std::size_t poses{0};  ///< view poses that are evaluated, evenly spread; 0: all that the thesis has
   std::uint64_t seed{1};
+  std::filesystem::path hands;  ///< folder of the thesis' recorded hands; see hand_data.hpp
+  std::size_t noise_seeds{20};  ///< that noise on them is averaged over
 };
 
 struct ReproducedTable {
@@ -34,6 +37,7 @@ struct ThesisTable {
   std::string_view number;
   std::string_view title;
   Result<ReproducedTable> (*reproduce)(const ReproduceOptions&, const Executor&, const Progress&);
+  bool needs_hands{false};  ///< ReproduceOptions::hands
 };
 
 /// In the thesis' order.
@@ -44,6 +48,16 @@ struct ThesisTable {
 /// As Markdown: the caption, the table with aligned columns, and the notes as a list.
 void print(std::ostream& out, const ReproducedTable& table);
 
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_2(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_3(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_4(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_5(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_6(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_9(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_10(const ReproduceOptions& options, const Executor& executor,

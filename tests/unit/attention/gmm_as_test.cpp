@@ -90,7 +90,7 @@ void expect_thresholds(std::span<const thesis::GaussianSaliency> printed) {
   for (std::size_t g = 0; g < printed.size(); ++g) {
     ASSERT_EQ(means[g].has_value(), printed[g].threshold.has_value()) << g;
     if (!means[g]) continue;
-    const double threshold = thesis::kTable2_5ThresholdFactor * *means[g];
+    const double threshold = thesis::kThresholdFactor * *means[g];
     EXPECT_NEAR(threshold, *printed[g].threshold, 1.5e-6) << g;
     EXPECT_EQ(saliencies[g] > threshold, printed[g].is_poi) << g;
     EXPECT_EQ(saliencies[g] > GmmAsConfig{}.poi_threshold * *means[g], printed[g].is_poi) << g;
