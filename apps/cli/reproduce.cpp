@@ -122,7 +122,7 @@ Result<int> run_reproduce(const std::vector<std::string>& numbers, const Reprodu
   const Status markdown_status = write_markdown_output(markdown, done, global, executor);
   SACCADE_CHECK(write_json_output(
       global, json_envelope("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}})));
-  SACCADE_CHECK(markdown_status);
+  if (!markdown_status) return markdown_status.error();
   if (status.ok()) return static_cast<int>(ExitStatus::done);
   if (status.error().code != Errc::cancelled) return status.error();
   std::string where = "on standard output";

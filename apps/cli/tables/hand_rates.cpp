@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <cstdlib>
 #include <functional>
 #include <set>
 #include <utility>
@@ -15,7 +16,7 @@ namespace {
 
 using nlohmann::json;
 
-constexpr double kNearPoints{3.0};    ///< figures that differ by more are named in a note
+constexpr long kNearTenths{30};       ///< figures that differ by more tenths of a point are named in a note
 constexpr std::size_t kFewFound{30};  ///< a precision of fewer points of interest says nothing
 constexpr std::size_t kMostUsers{4};
 constexpr std::size_t kThesisTrajectories{330};
@@ -23,7 +24,7 @@ constexpr std::size_t kThesisTrajectories{330};
 using HandFilter = std::function<bool(const RecordedHand&)>;
 
 /// The recorded hands and what belongs to all rows.
-struct HandTask {
+struct RatedHands {
   std::vector<RecordedHand> hands;
   std::vector<std::string> users;  ///< two to four, where the figures of each are worth showing; otherwise none
   std::uint64_t first_seed{1};
@@ -53,13 +54,13 @@ HandActionDetector detector_of(const HandAlgorithm& algorithm) {
 }
 
 /// One seed of one row.
-Status count_detections(const HandTask& task, const HandRatesRow& row, std::uint64_t seed, const Executor& executor,
+Status count_detections(const RatedHands& rated, const HandRatesRow& row, std::uint64_t seed, const Executor& executor,
                         const Progress& progress, HandCounts& counts) {
   const HandActionDetector detector = detector_of(row.algorithm);
-  std::vector<Status> statuses(task.hands.size());
-  executor.parallel_for(task.hands.size(), 1, [&](std::size_t begin, std::size_t end) {
+  std::vector<Status> statuses(rated.hands.size());
+  executor.parallel_for(rated.hands.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const RecordedHand& hand = task.hands[i];
+      const RecordedHand& hand = rated.hands[i];
       if (progress.cancelled() || hand.tasks != row.tasks.value_or(hand.tasks)) continue;
       const EvaluationConditions conditions{.speed = row.speed, .sigma_m = row.sigma_m, .seed = seed, .first_index = i};
       const auto evaluation = evaluate_detector(detector, {&hand.labelled, 1}, conditions);
@@ -75,25 +76,25 @@ Status count_detections(const HandTask& task, const HandRatesRow& row, std::uint
   return {};
 }
 
-Result<std::vector<HandCounts>> count_rows(const HandTask& task, const std::vector<HandRatesRow>& rows,
+Result<std::vector<HandCounts>> count_rows(const RatedHands& rated, const std::vector<HandRatesRow>& rows,
                                            const Executor& executor, const Progress& progress) {
   std::size_t total{0};
   std::size_t done{0};
-  for (const HandRatesRow& row : rows) total += task.seeds(row);
-  std::vector<HandCounts> counts(rows.size(), HandCounts(task.hands.size()));
+  for (const HandRatesRow& row : rows) total += rated.seeds(row);
+  std::vector<HandCounts> counts(rows.size(), HandCounts(rated.hands.size()));
   for (std::size_t r = 0; r < rows.size(); ++r) {
-    for (std::size_t s = 0; s < task.seeds(rows[r]); ++s) {
+    for (std::size_t s = 0; s < rated.seeds(rows[r]); ++s) {
       progress.report("detecting hand actions", done++, total);
-      SACCADE_CHECK(count_detections(task, rows[r], task.first_seed + s, executor, progress, counts[r]));
+      SACCADE_CHECK(count_detections(rated, rows[r], rated.first_seed + s, executor, progress, counts[r]));
     }
   }
   return counts;
 }
 
-DetectionCounts sum_of(const HandTask& task, const HandCounts& counts, const HandFilter& takes) {
+DetectionCounts sum_of(const RatedHands& rated, const HandCounts& counts, const HandFilter& takes) {
   DetectionCounts sum;
   for (std::size_t i = 0; i < counts.size(); ++i) {
-    if (takes(task.hands[i])) sum += counts[i];
+    if (takes(rated.hands[i])) sum += counts[i];
   }
   return sum;
 }
@@ -110,15 +111,17 @@ std::string rates_text(const DetectionCounts& counts) {
   return percent_text(counts.precision()) + " / " + percent_text(counts.recall());
 }
 
-/// Points between the figures as they are shown.
+/// Tenths of a point between the figures as they are shown.
+long tenths_above(double share, double thesis) { return std::lround(1000.0 * share) - std::lround(10.0 * thesis); }
+
 std::string difference_text(const std::optional<double>& share, double thesis) {
   if (!share) return "none";
-  const auto tenths = std::lround(1000.0 * *share) - std::lround(10.0 * thesis);
+  const long tenths = tenths_above(*share, thesis);
   return (tenths > 0 ? "+" : tenths < 0 ? "−" : "") + fixed(0.1 * static_cast<double>(std::abs(tenths)), 1);
 }
 
-std::vector<std::string> cells_of(const HandTask& task, const HandRatesRow& row, const HandCounts& counts) {
-  const DetectionCounts here = sum_of(task, counts, every);
+std::vector<std::string> cells_of(const RatedHands& rated, const HandRatesRow& row, const HandCounts& counts) {
+  const DetectionCounts here = sum_of(rated, counts, every);
   std::vector<std::string> cells{row.condition,
                                  std::string{row.algorithm.name} + (row.algorithm.as_printed ? ", as printed" : "")};
   if (row.thesis) {
@@ -129,8 +132,8 @@ std::vector<std::string> cells_of(const HandTask& task, const HandRatesRow& row,
   } else {
     cells.insert(cells.end(), {"–", rates_text(here), "–"});
   }
-  for (const std::string& user : task.users) cells.push_back(rates_text(sum_of(task, counts, of_user(user))));
-  cells.push_back(rates_text(sum_of(task, counts, sound)));
+  for (const std::string& user : rated.users) cells.push_back(rates_text(sum_of(rated, counts, of_user(user))));
+  cells.push_back(rates_text(sum_of(rated, counts, sound)));
   return cells;
 }
 
@@ -148,16 +151,16 @@ json difference_json(const std::optional<double>& share, double thesis) {
   return share ? json(100.0 * *share - thesis) : json(nullptr);
 }
 
-json json_of(const HandTask& task, const HandRatesRow& row, const HandCounts& counts) {
-  const DetectionCounts here = sum_of(task, counts, every);
+json json_of(const RatedHands& rated, const HandRatesRow& row, const HandCounts& counts) {
+  const DetectionCounts here = sum_of(rated, counts, every);
   json figures = row.conditions;
   figures["algorithm"] = row.algorithm.name;
   figures["as_printed"] = row.algorithm.as_printed;
   figures["here"] = json_of(here);
-  figures["sound"] = json_of(sum_of(task, counts, sound));
+  figures["sound"] = json_of(sum_of(rated, counts, sound));
   figures["users"] = json::object();
-  for (const std::string& user : task.users) figures["users"][user] = json_of(sum_of(task, counts, of_user(user)));
-  figures["seeds"] = task.seeds(row);
+  for (const std::string& user : rated.users) figures["users"][user] = json_of(sum_of(rated, counts, of_user(user)));
+  figures["seeds"] = rated.seeds(row);
   figures["thesis"] = nullptr;
   figures["difference_points"] = nullptr;
   if (row.thesis) {
@@ -196,15 +199,16 @@ LabelCount count_labels(const std::vector<RecordedHand>& hands, std::optional<Ha
   return count;
 }
 
-std::string labels_note(const HandTask& task, const LabelCount& count) {
+std::string labels_note(const RatedHands& rated, const LabelCount& count) {
   std::string users;
-  for (const std::string& user : task.users) users += (users.empty() ? ", of " : " and ") + user;
+  for (const std::string& user : rated.users) users += (users.empty() ? ", of " : " and ") + user;
   std::string note = "Here: " + std::to_string(count.trajectories) + " trajectories with " +
                      std::to_string(count.labels) + " labels" + users +
                      "; the thesis: " + std::to_string(kThesisTrajectories) + " of four users. ";
   if (count.unreachable == 0) return note + "No label is farther than 20 cm from every sample.";
-  const double placements = count_labels(task.hands, HandTasks::placements_and_removals).recall_ceiling().value_or(0.0);
-  const double pick_and_place = count_labels(task.hands, HandTasks::pick_and_place).recall_ceiling().value_or(0.0);
+  const double placements =
+      count_labels(rated.hands, HandTasks::placements_and_removals).recall_ceiling().value_or(0.0);
+  const double pick_and_place = count_labels(rated.hands, HandTasks::pick_and_place).recall_ceiling().value_or(0.0);
   return note + std::to_string(count.unreachable) + " labels, in " + std::to_string(count.unsound) +
          " trajectories, are farther than 20 cm from every sample. They bound recall by " +
          percent_text(count.recall_ceiling()) + " % (placements and removals: " + percent_text(placements) +
@@ -215,45 +219,46 @@ std::string labels_note(const HandTask& task, const LabelCount& count) {
 using Figure = std::optional<double> (DetectionCounts::*)() const;
 
 /// What the data say of a figure that is not near the thesis'; nothing where they do not explain it.
-std::string reason_text(const HandTask& task, const HandCounts& counts, Figure figure, double thesis) {
-  const DetectionCounts here = sum_of(task, counts, every);
+std::string reason_text(const RatedHands& rated, const HandCounts& counts, Figure figure, double thesis) {
+  const DetectionCounts here = sum_of(rated, counts, every);
   const std::size_t found = here.true_positives + here.false_positives;
   if (figure == &DetectionCounts::precision && found < kFewFound) return std::to_string(found) + " found in all";
   std::vector<double> of_users;
   std::string users;
-  for (const std::string& user : task.users) {
-    const std::optional<double> share = (sum_of(task, counts, of_user(user)).*figure)();
+  for (const std::string& user : rated.users) {
+    const std::optional<double> share = (sum_of(rated, counts, of_user(user)).*figure)();
     if (share) of_users.push_back(100.0 * *share);
     users += (users.empty() ? "" : ", ") + user + ": " + percent_text(share);
   }
   const auto [least, most] = std::minmax_element(of_users.begin(), of_users.end());
   if (!of_users.empty() && *least <= thesis && thesis <= *most) return "between the users' own, " + users;
-  const std::optional<double> among_sound = (sum_of(task, counts, sound).*figure)();
+  const std::optional<double> among_sound = (sum_of(rated, counts, sound).*figure)();
   const bool here_is_less = 100.0 * (here.*figure)().value_or(0.0) < thesis;
-  if (here_is_less && 100.0 * among_sound.value_or(0.0) >= thesis - kNearPoints) {
+  if (here_is_less && among_sound && tenths_above(*among_sound, thesis) >= -kNearTenths) {
     return percent_text(among_sound) + " where labels are sound";
   }
   return users;
 }
 
 /// ", GMM-AS: recall 80.4, not 86.1 (reason)" where it is not near the thesis' figure.
-std::string text_if_far(const HandTask& task, const HandRatesRow& row, const HandCounts& counts, const char* what,
+std::string text_if_far(const RatedHands& rated, const HandRatesRow& row, const HandCounts& counts, const char* what,
                         Figure figure, double thesis) {
-  const std::optional<double> here = (sum_of(task, counts, every).*figure)();
-  if (here && std::abs(100.0 * *here - thesis) <= kNearPoints) return {};
-  const std::string reason = reason_text(task, counts, figure, thesis);
+  const std::optional<double> here = (sum_of(rated, counts, every).*figure)();
+  if (here && std::abs(tenths_above(*here, thesis)) <= kNearTenths) return {};
+  const std::string reason = reason_text(rated, counts, figure, thesis);
   return ", " + std::string{row.algorithm.name} + ": " + what + " " + percent_text(here) + ", not " + fixed(thesis, 1) +
          (reason.empty() ? "" : " (" + reason + ")");
 }
 
-std::string differences_note(const HandTask& task, const HandRatesSpec& spec, const std::vector<HandCounts>& counts) {
+std::string differences_note(const RatedHands& rated, const HandRatesSpec& spec,
+                             const std::vector<HandCounts>& counts) {
   std::string far;
   for (std::size_t r = 0; r < spec.rows.size(); ++r) {
     const HandRatesRow& row = spec.rows[r];
     if (!row.thesis || row.algorithm.as_printed) continue;
     for (const std::string& text :
-         {text_if_far(task, row, counts[r], "precision", &DetectionCounts::precision, row.thesis->precision),
-          text_if_far(task, row, counts[r], "recall", &DetectionCounts::recall, row.thesis->recall)}) {
+         {text_if_far(rated, row, counts[r], "precision", &DetectionCounts::precision, row.thesis->precision),
+          text_if_far(rated, row, counts[r], "recall", &DetectionCounts::recall, row.thesis->recall)}) {
       if (!text.empty()) far += (far.empty() ? "" : "; ") + spec.condition + " " + row.condition + text;
     }
   }
@@ -265,37 +270,37 @@ std::string differences_note(const HandTask& task, const HandRatesSpec& spec, co
 
 Result<ReproducedTable> hand_rates_table(HandRatesSpec spec, const ReproduceOptions& options, const Executor& executor,
                                          const Progress& progress) {
-  HandTask task;
-  SACCADE_TRY(task.hands, read_hand_data(options.hands));
-  task.users = users_of(task.hands);
-  task.first_seed = options.seed;
-  task.noise_seeds = options.noise_seeds;
-  SACCADE_TRY(const std::vector<HandCounts> counts, count_rows(task, spec.rows, executor, progress));
+  RatedHands rated;
+  SACCADE_TRY(rated.hands, read_hand_data(options.hands));
+  rated.users = users_of(rated.hands);
+  rated.first_seed = options.seed;
+  rated.noise_seeds = options.noise_seeds;
+  SACCADE_TRY(const std::vector<HandCounts> counts, count_rows(rated, spec.rows, executor, progress));
 
   ReproducedTable table;
   table.caption = std::move(spec.caption);
   table.columns = {spec.condition, "algorithm", "thesis", "here", "difference"};
-  table.columns.insert(table.columns.end(), task.users.begin(), task.users.end());
+  table.columns.insert(table.columns.end(), rated.users.begin(), rated.users.end());
   table.columns.push_back("sound");
   json rows = json::array();
   for (std::size_t r = 0; r < spec.rows.size(); ++r) {
-    table.rows.push_back(cells_of(task, spec.rows[r], counts[r]));
-    rows.push_back(json_of(task, spec.rows[r], counts[r]));
+    table.rows.push_back(cells_of(rated, spec.rows[r], counts[r]));
+    rows.push_back(json_of(rated, spec.rows[r], counts[r]));
   }
-  const LabelCount labels = count_labels(task.hands);
+  const LabelCount labels = count_labels(rated.hands);
   table.notes = {
       "Precision / recall in %, and their differences in points. A label is found with a point of interest within 20 "
       "cm; "
       "a point farther than 20 cm from every label is false. Precision: found / (found + false).",
-      labels_note(task, labels),
+      labels_note(rated, labels),
       "GMM-AS has the denominator of eq. 2.13 cubed and POITh = 2.2; ZVC-like has ZVCTh = 1.385, the ends of its "
       "filter "
       "repeated, and nothing found at the ends: so the thesis' figures come out, as printed they do not (Table 2.2; "
       "docs/attention.md). Ours: docs/dip-detector.md."};
   table.notes.insert(table.notes.end(), spec.notes.begin(), spec.notes.end());
-  table.notes.push_back(differences_note(task, spec, counts));
+  table.notes.push_back(differences_note(rated, spec, counts));
   table.figures = {{"trajectories", labels.trajectories},
-                   {"users", task.users},
+                   {"users", rated.users},
                    {"ground_truth", labels.labels},
                    {"mislabelled", {{"labels", labels.unreachable}, {"trajectories", labels.unsound}}},
                    {"recall_ceiling", optional_share(labels.recall_ceiling())},
