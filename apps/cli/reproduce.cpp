@@ -64,8 +64,8 @@ Status write_markdown_output(const fs::path& file, const std::vector<ReproducedT
                              const GlobalOptions& global, const Executor& executor) {
   if (file.empty()) return {};
   std::ostringstream text;
-  text << kMarkdownHeading << "\n\nBy saccade reproduce " << SACCADE_VERSION << ", seed " << global.seed << ", "
-       << executor.threads() << (executor.threads() == 1 ? " thread.\n" : " threads.\n");
+  text << kMarkdownHeading << "\n\nBy `saccade reproduce`, version " << SACCADE_VERSION << ", seed " << global.seed
+       << ", " << executor.threads() << (executor.threads() == 1 ? " thread.\n" : " threads.\n");
   for (const ReproducedTable& table : tables) {
     text << "\n## ";
     print(text, table);

@@ -53,36 +53,49 @@ Result<SaliencyExample> choose_example(std::vector<RecordedHand> hands, HandTask
   return example;
 }
 
+/// The Gaussians of the thesis or of ours, with thresholds recomputed as 1.5 times the mean of their neighbours.
 template <class Gaussian>
-std::vector<std::optional<double>> neighbours_of(std::span<const Gaussian> gaussians) {
-  std::vector<double> saliencies;
-  for (const Gaussian& gaussian : gaussians) saliencies.push_back(gaussian.saliency);
-  return mean_neighbour_saliencies(saliencies, GmmAsConfig{}.neighbours);
-}
+struct SaliencySide {
+  std::span<const Gaussian> gaussians;
+  std::vector<std::optional<double>> recomputed;
+
+  explicit SaliencySide(std::span<const Gaussian> given) : gaussians{given} {
+    std::vector<double> saliencies;
+    for (const Gaussian& gaussian : gaussians) saliencies.push_back(gaussian.saliency);
+    recomputed = mean_neighbour_saliencies(saliencies, GmmAsConfig{}.neighbours);
+    for (std::optional<double>& threshold : recomputed) {
+      if (threshold) *threshold *= thesis::kThresholdFactor;
+    }
+  }
+};
 
 std::string saliency_text(const std::optional<double>& value) { return value ? fixed(*value, 6) : "–"; }
 
-/// Saliency, 1.5 times the neighbours' mean, threshold, whether it is a point of interest.
-template <class Gaussian>
-void add_cells(const Gaussian& gaussian, const std::optional<double>& recomputed, std::vector<std::string>& cells) {
-  cells.insert(cells.end(), {saliency_text(gaussian.saliency), saliency_text(recomputed),
-                             saliency_text(gaussian.threshold), gaussian.is_poi ? "YES" : "NO"});
-}
+json optional_json_of(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
+/// Adds the cells of Gaussian `g`. Returns the same for machines; null where there is none.
 template <class Gaussian>
-json gaussian_json(const Gaussian& gaussian, const std::optional<double>& recomputed) {
+json add_cells(const SaliencySide<Gaussian>& side, std::size_t g, std::vector<std::string>& cells) {
+  if (g >= side.gaussians.size()) {
+    cells.insert(cells.end(), 4, "–");
+    return nullptr;
+  }
+  const Gaussian& gaussian = side.gaussians[g];
+  cells.insert(cells.end(), {saliency_text(gaussian.saliency), saliency_text(side.recomputed[g]),
+                             saliency_text(gaussian.threshold), gaussian.is_poi ? "YES" : "NO"});
   return {{"saliency", gaussian.saliency},
-          {"recomputed_threshold", recomputed ? json(*recomputed) : json(nullptr)},
-          {"threshold", gaussian.threshold ? json(*gaussian.threshold) : json(nullptr)},
+          {"recomputed_threshold", optional_json_of(side.recomputed[g])},
+          {"threshold", optional_json_of(gaussian.threshold)},
           {"poi", gaussian.is_poi}};
 }
 
-/// The largest difference between the printed thresholds and the recomputed ones.
-double threshold_error(std::span<const GaussianSaliency> printed, std::span<const std::optional<double>> recomputed) {
+/// The largest difference between the thresholds as printed and as recomputed.
+double threshold_error(const SaliencySide<GaussianSaliency>& printed) {
   double error{0.0};
-  for (std::size_t g = 0; g < printed.size(); ++g) {
-    if (printed[g].threshold.has_value() != recomputed[g].has_value()) return std::numeric_limits<double>::infinity();
-    if (recomputed[g]) error = std::max(error, std::abs(*printed[g].threshold - *recomputed[g]));
+  for (std::size_t g = 0; g < printed.gaussians.size(); ++g) {
+    const std::optional<double>& threshold = printed.gaussians[g].threshold;
+    SACCADE_EXPECTS(threshold.has_value() == printed.recomputed[g].has_value());
+    if (threshold) error = std::max(error, std::abs(*threshold - *printed.recomputed[g]));
   }
   return error;
 }
@@ -123,14 +136,8 @@ Result<ReproducedTable> saliency_table(const SaliencySpec& spec, const Reproduce
   SACCADE_TRY(std::vector<RecordedHand> hands, read_hand_data(options.hands));
   SACCADE_TRY(const SaliencyExample example,
               choose_example(std::move(hands), spec.tasks, spec.printed.size(), progress));
-  const std::span<const SalientGaussian> found{example.result.gaussians};
-  auto printed_neighbours = neighbours_of(spec.printed);
-  auto found_neighbours = neighbours_of(found);
-  for (auto* means : {&printed_neighbours, &found_neighbours}) {
-    for (std::optional<double>& mean : *means) {
-      if (mean) *mean *= thesis::kThresholdFactor;
-    }
-  }
+  const SaliencySide<GaussianSaliency> printed{spec.printed};
+  const SaliencySide<SalientGaussian> found{example.result.gaussians};
 
   ReproducedTable table;
   table.caption = spec.caption;
@@ -138,44 +145,33 @@ Result<ReproducedTable> saliency_table(const SaliencySpec& spec, const Reproduce
   table.columns = {"Gaussian", "thesis: saliency", factor, "threshold", "POI", "here: saliency",
                    factor,     "threshold",        "POI"};
   json rows = json::array();
-  for (std::size_t g = 0; g < std::max(spec.printed.size(), found.size()); ++g) {
+  for (std::size_t g = 0; g < std::max(printed.gaussians.size(), found.gaussians.size()); ++g) {
     std::vector<std::string> cells{std::to_string(g + 1)};
-    json row{{"gaussian", g + 1}, {"thesis", nullptr}, {"here", nullptr}};
-    if (g < spec.printed.size()) {
-      add_cells(spec.printed[g], printed_neighbours[g], cells);
-      row["thesis"] = gaussian_json(spec.printed[g], printed_neighbours[g]);
-    } else {
-      cells.insert(cells.end(), 4, "–");
-    }
-    if (g < found.size()) {
-      add_cells(found[g], found_neighbours[g], cells);
-      row["here"] = gaussian_json(found[g], found_neighbours[g]);
-    } else {
-      cells.insert(cells.end(), 4, "–");
-    }
+    json row{{"gaussian", g + 1}};
+    row["thesis"] = add_cells(printed, g, cells);
+    row["here"] = add_cells(found, g, cells);
     table.rows.push_back(std::move(cells));
     rows.push_back(std::move(row));
   }
 
-  const double error = threshold_error(spec.printed, printed_neighbours);
+  const double error = threshold_error(printed);
+  const double poi_threshold = GmmAsConfig{}.poi_threshold;
   const std::vector<double> distances_m = label_distances_m(example);
-  table.notes = {example_note(example, spec.printed.size(), distances_m),
-                 "The thesis does not say which recording its example is, nor the data set which tasks are placements: "
-                 "these are the "
-                 "saliencies of another task, and compare in kind only.",
-                 "“" + factor +
-                     "”: of the saliencies of up to two neighbours on either side, those that exist. From the thesis' "
-                     "saliencies it gives the thesis' thresholds, to " +
-                     fixed(1e6 * error, 1) +
-                     "e-6 (six decimals are printed), "
-                     "although the text says POITh = 2.5. Here POITh is " +
-                     fixed(GmmAsConfig{}.poi_threshold, 1) + ", as Tables 2.2 to 2.4 need it."};
+  table.notes = {
+      example_note(example, spec.printed.size(), distances_m),
+      "The thesis does not say which recording its example is, nor the data set which tasks are placements: these are "
+      "the saliencies of another task, and compare in kind only.",
+      "“" + factor +
+          "”: of the saliencies of up to two neighbours on either side, those that exist. From the thesis' "
+          "saliencies it gives the thesis' thresholds, within " +
+          fixed(1e6 * error, 1) + "e-6 (six decimals are printed), although the text says POITh = 2.5. Here POITh is " +
+          fixed(poi_threshold, 1) + ", as Tables 2.2 to 2.4 need it."};
   table.figures = {{"recording", example.hand.file},
                    {"recordings", example.recordings},
                    {"gaussians", {{"least", example.least_gaussians}, {"most", example.most_gaussians}}},
-                   {"poi_threshold", GmmAsConfig{}.poi_threshold},
+                   {"poi_threshold", poi_threshold},
                    {"thesis_threshold_factor", thesis::kThresholdFactor},
-                   {"thesis_threshold_error", std::isfinite(error) ? json(error) : json(nullptr)},
+                   {"thesis_threshold_error", error},
                    {"distance_to_label_m", distances_m},
                    {"rows", std::move(rows)}};
   return table;
