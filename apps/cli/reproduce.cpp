@@ -175,6 +175,12 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
   command
+      ->add_option("--image-width", options->image_width_px,
+                   "images of Tables 2.7 and 2.8 so many pixels wide: quicker, but no longer what the thesis did "
+                   "(default: 640)")
+      ->check(CLI::Range(16, 640))
+      ->type_name("PIXELS");
+  command
       ->add_option("--hands", options->hands,
                    std::string{"Tables 2.2 to 2.6: folder of the thesis' recorded hands, from "} + kHandDataAddress)
       ->type_name("DIR");

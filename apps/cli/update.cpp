@@ -11,6 +11,7 @@
 #include "explore_report.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
+#include "progress_bar.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/ply_io.hpp"
@@ -49,7 +50,10 @@ std::optional<std::string> without_result(const WatchedTask& task, const UpdateF
 Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions& global) {
   const Stopwatch total;
   const Executor executor = global.executor();
-  ProgressBar progress{global.quiet};
+  ProgressBar bar{global.quiet};
+  Progress progress{
+      [&bar](std::string_view stage, std::size_t done, std::size_t of) { bar.update(stage, done, of); }};
+  const CancelOnInterrupt cancel{progress};
   SACCADE_CHECK(check_json_output(global));
   SACCADE_TRY(const UpdateCase subject, open_update_case(options));
   SACCADE_TRY(const WatchedTask task, watch_task(options, subject));
@@ -61,7 +65,7 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   std::function<Status(const TakenView&)> draw_view;
   if (options.write_pictures) draw_view = [&](const TakenView& view) { return pictures.draw_view(view); };
   SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress, draw_view));
-  progress.update("measuring", 0, 0);
+  progress.report("measuring", 0, 0);
   SACCADE_CHECK(write_maps(out, figures, task, executor));
   SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor));
   const json document = json_envelope("update", global, executor, {{"total", total.elapsed_ms()}}, result);
@@ -70,7 +74,7 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
     SACCADE_CHECK(pictures.draw_maps(figures));
     SACCADE_CHECK(write_update_report(options, task, out, document));
   }
-  progress.finish();
+  bar.finish();
   SACCADE_CHECK(write_json_output(global, document));
   if (!global.json_to_stdout()) print_update(options, result);
   if (figures.interrupted) {

@@ -7,7 +7,6 @@ namespace saccade::cli {
 namespace {
 
 void add_hand_options(CLI::App& command, UpdateOptions& options) {
-  options.trajectory = "simulated";
   command
       .add_option("--trajectory", options.trajectory,
                   "how the hand moved in the task: a file (docs/formats.md), in the scene's frame, or simulated")
@@ -24,11 +23,14 @@ void add_hand_options(CLI::App& command, UpdateOptions& options) {
 
 }  // namespace
 
+UpdateOptions::UpdateOptions() {
+  run.exploration.max_views = 30;  // the thesis' three regions took five
+  run.exploration.min_gain = 50;   // a region of 0.2 m is small beside a scene
+  robot = "comau";
+  method = &attend_methods().front();
+}
+
 void add_update_options(CLI::App& command, UpdateOptions& options) {
-  constexpr int kMaxViews{30};      // the thesis' three regions took five
-  constexpr double kMinGain{50.0};  // a region of 0.2 m is small beside a scene
-  options.run.exploration.max_views = kMaxViews;
-  options.run.exploration.min_gain = kMinGain;
   command
       .add_option("--scene", options.scene,
                   "the scene after the task: bottle, jug, another built-in one or a YAML file")
@@ -49,7 +51,6 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
       ->check(CLI::IsMember({"viewpoints", "motion"}))
       ->type_name("viewpoints|motion");
   add_run_options(command, options);
-  options.robot = "comau";
   command.add_option("--robot", options.robot, "what carries the camera: comau, a URDF file, or free, which flies")
       ->type_name("ROBOT")
       ->capture_default_str();

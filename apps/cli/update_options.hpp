@@ -11,8 +11,10 @@ namespace saccade::cli {
 
 /// Of the exploration's options those of the camera, the robot and the run; `scene` is the one after the task.
 struct UpdateOptions : ExploreOptions {
-  std::string before;      ///< scene before the task; empty: SCENE-before
-  std::string trajectory;  ///< a file, or "simulated"
+  UpdateOptions();
+
+  std::string before;                   ///< scene before the task; empty: SCENE-before
+  std::string trajectory{"simulated"};  ///< a file, or "simulated"
   std::optional<HandFormat> format;
   const AttendMethod* method{nullptr};
   double region_radius_m{0.2};

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "update_run.hpp"
 
-#include "interrupt.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/explore/true_contacts.hpp"
 #include "saccade/io/scene_yaml.hpp"
@@ -69,21 +68,18 @@ Result<ExploreDevices> open_update_devices(const UpdateOptions& options, const U
 }
 
 Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
-                                 ExploreDevices& devices, const Executor& executor, ProgressBar& progress,
+                                 ExploreDevices& devices, const Executor& executor, const Progress& progress,
                                  const std::function<Status(const TakenView& view)>& after_view) {
   TsdfConfig map_config = options.run.map();
   map_config.workspace = subject.before.scene.workspace;
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
   ExplorationCell cell{devices.camera(), [&](const Pose& pose) { return devices.observe(pose); }, devices.robot()};
-  ExplorationConfig config = options.run.exploration;
-  Progress cancel;
-  const CancelOnInterrupt on_interrupt{cancel};
+  const ExplorationConfig& config = options.run.exploration;
   UpdateFigures figures;
 
   // The scene as it was, and the robot out of the user's way.
-  progress.update("initial scan", 0, 0);
   for (const Box& box : options.free_boxes()) SACCADE_CHECK(map.free(box));
-  SACCADE_TRY(figures.scan, scan(map, cell, subject.before.scene.scan, config, executor, {}, cancel));
+  SACCADE_TRY(figures.scan, scan(map, cell, subject.before.scene.scan, config, executor, {}, progress));
   figures.interrupted = !figures.scan.complete;
   if (!figures.interrupted) {
     SACCADE_TRY(figures.update.back, return_to_stand_by(map, devices.robot(), executor));
@@ -106,7 +102,7 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
     std::size_t taken = 0;
     ExplorationHooks hooks;
     hooks.after_view = [&](const ExploredView& view, const Proposals& proposals) {
-      progress.update("looking again", ++taken, static_cast<std::size_t>(config.max_views));
+      ++taken;
       const TsdfSnapshot after = map.snapshot();
       if (after_view) drawn = after_view({taken, before, after, view, proposals, earlier, devices.take_frames()});
       before = after;
@@ -115,13 +111,13 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
     };
     const std::unique_ptr<Strategy> strategy = make_strategy(options.run, devices.camera(), task.regions.size());
     SACCADE_TRY(figures.update,
-                update_environment(map, cell, task.regions, *strategy, config, executor, hooks, cancel));
+                update_environment(map, cell, task.regions, *strategy, config, executor, hooks, progress));
     if (!drawn.ok()) return drawn.error();
     figures.interrupted = figures.update.exploration.stopped_because == StopReason::cancelled;
   }
   figures.after = map.snapshot();
   if (arm == nullptr) return figures;
-  progress.update("checking for contacts", 0, 0);
+  progress.report("checking for contacts", 0, 0);
   SACCADE_CHECK(count_contacts_of(*arm, 0, scanned, *subject.before.rays, executor, figures));
   SACCADE_CHECK(count_contacts_of(*arm, scanned, arm->motions().size(), *subject.after.rays, executor, figures));
   return figures;

@@ -3,7 +3,6 @@
 // UpdateRun: one user-driven update of a simulated scene, from the scan before the task to the figures after it.
 
 #include "explore_devices.hpp"
-#include "progress_bar.hpp"
 #include "saccade/explore/object_shape.hpp"
 #include "saccade/explore/region_coverage.hpp"
 #include "saccade/explore/simulated_task.hpp"
@@ -59,7 +58,7 @@ struct TakenView {
 /// @param after_view  may be empty; an error of it ends the run
 [[nodiscard]] Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase& subject,
                                                const WatchedTask& task, ExploreDevices& devices,
-                                               const Executor& executor, ProgressBar& progress,
+                                               const Executor& executor, const Progress& progress,
                                                const std::function<Status(const TakenView& view)>& after_view = {});
 
 /// The devices of the case, as they are before the task.

@@ -22,6 +22,7 @@ struct ReproduceOptions {
   std::uint64_t seed{1};
   std::filesystem::path hands;  ///< folder of the thesis' recorded hands; see hand_data.hpp
   std::size_t noise_seeds{20};  ///< that noise on them is averaged over
+  int image_width_px{0};        ///< of the simulated camera of Tables 2.7 and 2.8; 0: 640, as the thesis' camera has
 };
 
 struct ReproducedTable {
@@ -57,6 +58,10 @@ void print(std::ostream& out, const ReproducedTable& table);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_5(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_6(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_7(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_8(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_9(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
