@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade update as a user runs it: both experiments of the thesis, held to what they are held to, and what can go wrong.
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <csignal>
+#include <fstream>
+
+#include "cli/run_program.hpp"
+#include "support/effort.hpp"
+
+namespace saccade::test {
+namespace {
+
+using nlohmann::json;
+
+/// Small images where programs are slow.
+Arguments update(const fs::path& out, const Arguments& more) {
+  Arguments arguments{"update", "--quiet", "--out", out.string(), "--json", "-"};
+  if (kSanitized) arguments = arguments + Arguments{"--image-size", "160,120", "--voxel-size", "0.01", "--no-pictures"};
+  return arguments + more;
+}
+
+json result_of(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  json document = outcome.json();
+  expect_envelope(document, "update");
+  return document.at("result");
+}
+
+/// What every update is held to.
+void expect_complete(const json& result) {
+  for (const json& region : result.at("regions")) {
+    EXPECT_EQ(region.at("end"), "done");
+    EXPECT_LT(region.at("gain_left").get<double>(), 50.0);
+    const json& unknown = region.at("unknown");
+    ASSERT_EQ(unknown.size(), 1 + result.at("views").size());
+    EXPECT_LT(unknown.back().get<double>(), 0.2 * unknown.front().get<double>());
+    EXPECT_GE(region.at("coverage").at("surfaces").get<double>(), kSanitized ? 0.5 : 0.9);
+  }
+  ASSERT_EQ(result.at("objects").size(), 1U);
+  for (const auto& [parameter, error_m] : result.at("objects").at(0).at("error").items()) {
+    EXPECT_LE(std::abs(error_m.get<double>()), kSanitized ? 0.02 : 0.008) << parameter;
+  }
+  EXPECT_EQ(result.at("contacts").at("touching"), 0);
+  EXPECT_GT(result.at("contacts").at("instants").get<int>(), 100);
+  EXPECT_TRUE(result.at("back").at("at_stand_by").get<bool>());
+  EXPECT_EQ(result.at("stopped_because"), "regions_done");
+}
+
+double distance(const json& a, const json& b) {
+  double sum = 0.0;
+  for (std::size_t i = 0; i < 3; ++i) sum += std::pow(a.at(i).get<double>() - b.at(i).get<double>(), 2);
+  return std::sqrt(sum);
+}
+
+TEST(UpdateCommand, LooksAgainWhereABottleWasPutDown) {
+  const TempFolder folder;
+  const json result = result_of(run_program(update(folder / "run", {"--scene", "bottle"})));
+  EXPECT_EQ(result.at("scene"), "bottle");
+  EXPECT_EQ(result.at("before"), "bottle-before");
+  ASSERT_EQ(result.at("regions").size(), 1U);
+  EXPECT_EQ(result.at("objects").at(0).at("name"), "bottle");
+  expect_complete(result);
+  const json& task = result.at("task");
+  ASSERT_EQ(task.at("actions").size(), 1U);
+  EXPECT_LT(distance(task.at("actions").at(0).at("position_m"), task.at("true_places_m").at(0)), 0.05);
+  EXPECT_EQ(result.at("regions").at(0).at("center_m"), task.at("actions").at(0).at("position_m"));
+  std::vector<std::string> expected{"before.sacmap", "hand.csv", "map.sacmap", "mesh.ply", "update.json"};
+  if (!kSanitized) {
+    expected.insert(expected.end(), {"after.png", "before.png", "hand.png", "regions.png", "report.html",
+                                     "view-01-choice.png", "view-01-map.png", "view-01-seen.png"});
+  }
+  for (const std::string& name : expected) EXPECT_TRUE(fs::exists(folder / "run" / name)) << name;
+
+  // The same hand from a file, and other threads, give the same.
+  if (kSanitized) return;
+  Arguments again = update(folder / "again", {"--scene", "bottle", "--no-pictures", "--threads", "1"});
+  const json same = result_of(run_program(again + Arguments{"--trajectory", (folder / "run/hand.csv").string()}));
+  EXPECT_EQ(same.at("regions"), result.at("regions"));
+  EXPECT_EQ(same.at("objects"), result.at("objects"));
+  EXPECT_TRUE(same.at("task").at("true_places_m").empty());
+}
+
+TEST(UpdateCommand, LooksAgainWhereAJugWasTakenAndPutDown) {
+  const TempFolder folder;
+  const json result = result_of(run_program(update(folder / "run", {"--scene", "jug", "--no-pictures"})));
+  EXPECT_EQ(result.at("regions").size(), 2U);
+  EXPECT_EQ(result.at("objects").at(0).at("name"), "jug");
+  expect_complete(result);
+  EXPECT_FALSE(fs::exists(folder / "run/before.png"));
+}
+
+TEST(UpdateCommand, FusesOnItsWayWhenItIsTold) {
+  const TempFolder folder;
+  const Arguments few{"--scene", "jug", "--no-pictures", "--image-size", "160,120"};
+  const json at_views = result_of(run_program(update(folder / "a", few)));
+  const json on_way = result_of(run_program(update(folder / "b", few + Arguments{"--fuse-when", "motion"})));
+  EXPECT_EQ(on_way.at("fuse_when"), "motion");
+  for (const json& view : on_way.at("views")) EXPECT_GT(view.at("frames_on_way").get<int>(), 0);
+  for (const json& view : at_views.at("views")) EXPECT_EQ(view.at("frames_on_way"), 0);
+  EXPECT_LE(on_way.at("views").size(), at_views.at("views").size());
+  EXPECT_GT(on_way.at("phases_s").at("robot").get<double>(), at_views.at("phases_s").at("robot").get<double>());
+}
+
+void write_hand(const fs::path& path, const Eigen::Vector3d& place, int samples_there) {
+  std::ofstream file{path};
+  file << "time,x,y,z\n";
+  const Eigen::Vector3d outside{0.0, -0.8, 0.4};
+  double time_s = 0.0;
+  const auto add = [&](const Eigen::Vector3d& p) {
+    file << time_s << ',' << p.x() << ',' << p.y() << ',' << p.z() << '\n';
+    time_s += 0.01;
+  };
+  for (int i = 0; i < 100; ++i) add(outside + std::pow(std::sin(0.5 * M_PI * i / 100.0), 2) * (place - outside));
+  for (int i = 0; i < samples_there; ++i) add(place + Eigen::Vector3d{0.005 * std::sin(0.2 * i), 0, 0});
+  for (int i = 0; i < 100; ++i) add(place + std::pow(std::sin(0.5 * M_PI * i / 100.0), 2) * (outside - place));
+}
+
+TEST(UpdateCommand, EndsClearlyWhereThereIsNothingToUpdate) {
+  const TempFolder folder;
+  std::ofstream{folder / "empty.csv"} << "";
+  std::ofstream straight{folder / "straight.csv"};
+  straight << "time,x,y,z\n";
+  for (int i = 0; i < 200; ++i) straight << 0.01 * i << ',' << -1.0 + 0.01 * i << ",0,0.3\n";
+  straight.close();
+  write_hand(folder / "far.csv", {3.0, 2.0, 0.1}, 30);
+  const auto run = [&](const std::string& file, const char* says) {
+    const Arguments small{"--image-size", "80,60", "--voxel-size", "0.02", "--no-pictures", "--scene", "bottle"};
+    const Outcome outcome =
+        run_program(update(folder / ("out-" + file), small + Arguments{"--trajectory", (folder / file).string()}));
+    EXPECT_EQ(outcome.status, 5) << outcome.err;
+    EXPECT_NE(outcome.err.find(says), std::string::npos) << outcome.err;
+    EXPECT_TRUE(outcome.json().at("result").at("views").empty());
+  };
+  run("empty.csv", "the trajectory is empty");
+  run("straight.csv", "did not act anywhere");
+  run("far.csv", "outside the workspace");
+}
+
+TEST(UpdateCommand, SaysWhichRegionsAreOutOfReach) {
+  const TempFolder folder;
+  write_hand(folder / "hand.csv", {0.0, 0.0, 0.1}, 30);
+  // Nobody reaches view poses so far away.
+  const Outcome outcome = run_program(update(
+      folder / "run", {"--image-size", "80,60", "--voxel-size", "0.02", "--no-pictures", "--scene", "bottle", "--radius",
+                       "3", "--trajectory", (folder / "hand.csv").string()}));
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  EXPECT_NE(outcome.err.find("not one view"), std::string::npos) << outcome.err;
+  const json result = outcome.json().at("result");
+  EXPECT_EQ(result.at("regions").at(0).at("end"), "out_of_reach");
+  EXPECT_FALSE(result.at("regions").at(0).at("refused").empty());
+  EXPECT_TRUE(result.at("back").at("at_stand_by").get<bool>());
+}
+
+TEST(UpdateCommand, RefusesWhatMakesNoSense) {
+  const TempFolder folder;
+  const std::string out = (folder / "run").string();
+  const auto refused = [&](int status, const Arguments& more, const Arguments& parts) {
+    expect_failure(run_program(Arguments{"update", "--out", out, "--quiet"} + more), status, "update", parts);
+    EXPECT_FALSE(fs::exists(out));
+  };
+  refused(2, {}, {"--scene"});
+  refused(2, {"--scene", "bottle", "--method", "magic"}, {"--method", "gmm-as"});
+  refused(2, {"--scene", "bottle", "--fuse-when", "never"}, {"--fuse-when"});
+  refused(2, {"--scene", "bottle", "--fuse-when", "motion", "--robot", "free"}, {"--fuse-when", "arm"});
+  refused(2, {"--scene", "bottle", "--region-radius", "0"}, {"--region-radius"});
+  refused(2, {"--scene", "after.yaml"}, {"--before"});
+  refused(3, {"--scene", "tabletop-1"}, {"tabletop-1-before", "no such scene"});
+  refused(3, {"--scene", "bottle", "--before", "bottle"}, {"bottle"});
+  refused(3, {"--scene", "bottle", "--trajectory", "nowhere.csv"}, {"nowhere.csv", "no such file"});
+  refused(3, {"--scene", "bottle", "--robot", "nowhere.urdf"}, {"nowhere.urdf"});
+}
+
+TEST(UpdateCommand, AnInterruptedUpdateKeepsWhatItHas) {
+  const TempFolder folder;
+  const fs::path run = folder / "run";
+  RunningProgram program{{"update", "--scene", "jug", "--out", run.string(), "--fuse-when", "motion", "--no-pictures"}};
+  ASSERT_TRUE(program.wait_for("exploring"));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("stopped after"), std::string::npos) << outcome.err;
+  const json document = json::parse(text_of(run / "update.json"), nullptr, false);
+  ASSERT_TRUE(document.is_object());
+  EXPECT_TRUE(document.at("result").at("interrupted").get<bool>());
+  EXPECT_TRUE(fs::exists(run / "map.sacmap"));
+}
+
+}  // namespace
+}  // namespace saccade::test
