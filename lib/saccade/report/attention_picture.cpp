@@ -6,13 +6,9 @@
 #include <cmath>
 #include <limits>
 #include <numbers>
-#include <optional>
 
 #include "saccade/core/region.hpp"
-#include "saccade/report/canvas.hpp"
-#include "saccade/report/color_map.hpp"
 #include "saccade/report/plot.hpp"
-#include "saccade/report/sheet.hpp"
 
 namespace saccade {
 namespace {
@@ -46,48 +42,54 @@ void draw_way(Canvas& canvas, std::span<const HandSample> trajectory, double sta
   }
 }
 
-/// Everything that is to be in the picture.
-std::vector<Eigen::Vector3d> shown_points(std::span<const HandSample> trajectory, const AttentionFindings& findings,
-                                          double radius_m) {
+}  // namespace
+
+std::vector<Eigen::Vector3d> attention_points(std::span<const HandSample> trajectory, const AttentionFindings& findings,
+                                              double region_radius_m) {
   std::vector<Eigen::Vector3d> points;
   for (const HandSample& sample : trajectory) points.push_back(sample.position_m);
   points.insert(points.end(), findings.labels_m.begin(), findings.labels_m.end());
   for (const HandAction& action : findings.actions) {
-    const Box around = bounds(Region{Sphere{action.position_m, radius_m}});
+    const Box around = bounds(Region{Sphere{action.position_m, region_radius_m}});
     points.push_back(around.min);
     points.push_back(around.max);
   }
-  if (points.empty()) points.emplace_back(Eigen::Vector3d::Zero());
   return points;
 }
 
-}  // namespace
-
-ColorImage attention_picture(std::span<const HandSample> trajectory, const AttentionFindings& findings,
-                             const AttentionPictureConfig& config) {
-  Canvas canvas{overview_of(shown_points(trajectory, findings, config.region_radius_m), config.overview), kBackground};
-  std::vector<LegendEntry> legend;
-  std::optional<ColorBar> bar;
+AttentionLegend draw_attention(Canvas& canvas, std::span<const HandSample> trajectory,
+                               const AttentionFindings& findings, double region_radius_m) {
+  AttentionLegend legend;
   if (trajectory.size() > 1) {
     const double start_s = trajectory.front().time_s;
     const double duration_s = trajectory.back().time_s - start_s;
     draw_way(canvas, trajectory, start_s, duration_s);
-    bar = ColorBar{0.0, duration_s, "time since the start [s]"};
+    legend.time = ColorBar{0.0, duration_s, "time since the start [s]"};
   }
   for (const DrawnGaussian& gaussian : findings.gaussians) draw_gaussian(canvas, gaussian);
-  if (!findings.gaussians.empty()) legend.push_back({kGaussianColor, "Gaussians, two standard deviations"});
+  if (!findings.gaussians.empty()) legend.entries.push_back({kGaussianColor, "Gaussians, two standard deviations"});
   for (const Eigen::Vector3d& label : findings.labels_m) canvas.point(label, 11.0, kLabelColor, 0.6);
-  if (!findings.labels_m.empty()) legend.push_back({kLabelColor, "labels: where the hand acted"});
+  if (!findings.labels_m.empty()) legend.entries.push_back({kLabelColor, "labels: where the hand acted"});
   for (std::size_t i = 0; i < findings.actions.size(); ++i) {
     const Eigen::Vector3d& p = findings.actions[i].position_m;
-    canvas.outline(Region{Sphere{p, config.region_radius_m}}, {kPoiColor, 1.0, 0.4});
+    canvas.outline(Region{Sphere{p, region_radius_m}}, {kPoiColor, 1.0, 0.4});
     canvas.point(p, 9.0, kPoiColor, 0.7);
     canvas.label(p, std::to_string(i + 1), kPoiColor, 13.0);
   }
-  if (!findings.actions.empty()) legend.push_back({kPoiColor, "points of interest and their regions"});
+  if (!findings.actions.empty()) legend.entries.push_back({kPoiColor, "points of interest and their regions"});
+  return legend;
+}
 
-  Panel panel{canvas.finish(), {}, bar, {}, std::move(legend)};
-  if (bar) panel.colors = depth_colors();
+Rgb8 poi_color() { return kPoiColor; }
+
+ColorImage attention_picture(std::span<const HandSample> trajectory, const AttentionFindings& findings,
+                             const AttentionPictureConfig& config) {
+  std::vector<Eigen::Vector3d> shown = attention_points(trajectory, findings, config.region_radius_m);
+  if (shown.empty()) shown.emplace_back(Eigen::Vector3d::Zero());
+  Canvas canvas{overview_of(shown, config.overview), kBackground};
+  AttentionLegend legend = draw_attention(canvas, trajectory, findings, config.region_radius_m);
+  Panel panel{canvas.finish(), {}, legend.time, {}, std::move(legend.entries)};
+  if (panel.bar) panel.colors = depth_colors();
   return compose({config.title, {std::move(panel)}, trajectory.empty() ? "no samples" : config.note});
 }
 

@@ -1,15 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// attention_picture, speed_plot: the way of a hand, what a detector made of it, and where it found the hand to have
-// acted.
+// draw_attention, attention_picture, speed_plot: the way of a hand, what a detector made of it, and where it found the
+// hand to have acted.
 
 #include <Eigen/Core>
+#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/attention/speed_dips.hpp"
+#include "saccade/report/canvas.hpp"
+#include "saccade/report/color_map.hpp"
+#include "saccade/report/sheet.hpp"
 #include "saccade/report/viewpoint.hpp"
 #include "saccade/sensor/image.hpp"
 
@@ -30,6 +34,23 @@ struct AttentionFindings {
   std::vector<HandAction> actions;        ///< points of interest, numbered in their order
   std::vector<Eigen::Vector3d> labels_m;  ///< where the hand is known to have acted
 };
+
+/// What colours of draw_attention mean.
+struct AttentionLegend {
+  std::optional<ColorBar> time;  ///< of the trajectory, in depth_colors(); none where it has less than two samples
+  std::vector<LegendEntry> entries;
+};
+
+/// Adds the trajectory coloured by time, over everything, and what was found, with a sphere of the region's radius
+/// around each point of interest.
+AttentionLegend draw_attention(Canvas& canvas, std::span<const HandSample> trajectory,
+                               const AttentionFindings& findings, double region_radius_m);
+/// Everything that draw_attention draws lies between these.
+[[nodiscard]] std::vector<Eigen::Vector3d> attention_points(std::span<const HandSample> trajectory,
+                                                            const AttentionFindings& findings, double region_radius_m);
+
+/// Of points of interest and their regions.
+[[nodiscard]] Rgb8 poi_color();
 
 struct AttentionPictureConfig {
   std::string title{"Trajectory of the hand"};

@@ -15,14 +15,6 @@ constexpr Rgb8 kChosen{214, 28, 92};
 constexpr Rgb8 kEarlier{112, 119, 131};
 constexpr Rgb8 kNoGain{176, 180, 188};
 constexpr Rgb8 kPaper{236, 239, 243};  // that of the maps
-constexpr int kScaleHeight{54};        // below a picture, for its scale
-
-/// Below a picture whose lower left corner is (x, y).
-void draw_scale(ColorImage& page, int x, int y, int width, const ColorMap& colors, ColorBar bar) {
-  constexpr int kMargin{10};
-  bar.text_px = 11.0;
-  draw_color_bar(page, x + kMargin, y + 21, width - 2 * kMargin, colors, bar);
-}
 
 /// Averages of the pixels that a smaller picture's pixels cover.
 ColorImage averaged(const ColorImage& image, int width, int height) {
@@ -109,7 +101,7 @@ ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_w
   const int width = std::min(panel_width, frame.depth.width());
   const int height = std::max(1, frame.depth.height() * width / frame.depth.width());
   const int depth_x = frame.color ? width + kGap : 0;
-  ColorImage page{depth_x + width, height + kScaleHeight, kPaper};
+  ColorImage page{depth_x + width, height + kScaleHeight_px, kPaper};
   if (frame.color) paste(page, 0, 0, averaged(*frame.color, width, height));
   const Panel depth = depth_panel(thinned(frame.depth, width, height), scale, {});
   paste(page, depth_x, 0, depth.image);
@@ -131,7 +123,7 @@ ColorImage candidates_picture(const CandidatesScene& scene, const Executor& exec
   const double frustum_m = 0.08 * (box.max - box.min).norm();
   box.min.array() -= config.margin_m;
   box.max.array() += config.margin_m;
-  const TernaryPictureConfig ternary{.unknown_within = scene.region, .crop = box, .samples = config.samples};
+  const TernaryPictureConfig ternary{.unknown_within = {scene.region}, .crop = box, .samples = config.samples};
   const Eigen::Vector3d middle = 0.5 * (around.min + around.max);
   Canvas canvas =
       draw_ternary(scene.map, overview_with(scene.robot, std::move(shown), middle, config.overview), executor, ternary);
@@ -148,10 +140,7 @@ ColorImage candidates_picture(const CandidatesScene& scene, const Executor& exec
   canvas.frustum(config.sensor, scene.T_world_chosen, frustum_m, {kChosen, 3.0, 0.5});
   ColorImage map = canvas.finish();
   if (!bar) return map;
-  ColorImage page{map.width(), map.height() + kScaleHeight, kPaper};
-  paste(page, 0, 0, map);
-  draw_scale(page, 0, map.height(), map.width(), amount_colors(), *bar);
-  return page;
+  return with_scale(map, amount_colors(), *bar, kPaper);
 }
 
 ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& executor,

@@ -37,6 +37,7 @@ struct ReportView {
   std::vector<ReportPhase> phases;  ///< the same names in the same order for every view, as far as possible
   std::vector<ReportPicture> pictures;
   std::vector<std::pair<std::string, std::string>> facts{};  ///< further ones, such as the robot's
+  std::optional<std::size_t> region{};                       ///< number of the one that it was chosen for
 };
 
 /// The map after the initial scan.

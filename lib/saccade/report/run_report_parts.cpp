@@ -17,12 +17,6 @@ namespace {
 
 constexpr double kMillimetres{1000.0};
 
-/// Tiles: a label, a large figure, and a line that says more.
-std::string tile(std::string_view label, const std::string& value, const std::string& more = {}) {
-  return "<div><dt>" + html_escaped(label) + "</dt><dd class=\"big\">" + html_escaped(value) + "</dd>" +
-         (more.empty() ? "" : "<dd class=\"small\">" + html_escaped(more) + "</dd>") + "</div>";
-}
-
 std::string millimetres(double metres) { return number_text(kMillimetres * metres, 2) + " mm"; }
 
 template <class Get>
@@ -30,43 +24,14 @@ bool any_view(const RunReport& report, const Get& get) {
   return std::any_of(report.views.begin(), report.views.end(), [&](const ReportView& view) { return get(view); });
 }
 
-/// Names of all phases in the order in which they first appear.
-std::vector<std::string> phase_names(const RunReport& report) {
-  std::vector<std::string> names;
-  for (const ReportView& view : report.views) {
-    for (const ReportPhase& phase : view.phases) {
-      if (std::find(names.begin(), names.end(), phase.name) == names.end()) names.push_back(phase.name);
-    }
-  }
-  return names;
-}
-
-std::vector<std::string> positions_of(const RunReport& report) {
-  std::vector<std::string> positions{"scan"};
-  for (const ReportView& view : report.views) positions.push_back(std::to_string(view.index));
+std::vector<std::string> positions_of(std::span<const ReportView> views, const std::string& first) {
+  std::vector<std::string> positions{first};
+  for (const ReportView& view : views) positions.push_back(std::to_string(view.index));
   return positions;
 }
 
 std::string chart(const std::string& title, const std::string& svg, const std::string& key = {}) {
   return "<figure><figcaption>" + html_escaped(title) + "</figcaption>" + svg + key + "</figure>";
-}
-
-std::string time_chart(const RunReport& report) {
-  PhaseCurve curve{"Time per view", phase_names(report), {{}}, positions_of(report)};
-  if (curve.names.empty()) return {};
-  for (const ReportView& view : report.views) {
-    std::vector<double>& ms = curve.ms.emplace_back(curve.names.size(), 0.0);
-    for (const ReportPhase& phase : view.phases) {
-      const auto it = std::find(curve.names.begin(), curve.names.end(), phase.name);
-      ms[static_cast<std::size_t>(it - curve.names.begin())] += phase.ms;
-    }
-  }
-  std::string key = "<ul class=\"key\">";
-  for (std::size_t i = 0; i < curve.names.size(); ++i) {
-    key += "<li><span class=\"swatch p" + std::to_string(i % kPhaseColors) + "\"></span>" +
-           html_escaped(curve.names[i]) + "</li>";
-  }
-  return chart(curve.title, stacked_svg(curve), key + "</ul>");
 }
 
 /// A column of the table: its head, and what stands in it for a view.
@@ -120,8 +85,15 @@ std::string css_color(const Rgb8& color) {
   return "rgb(" + std::to_string(color[0]) + ", " + std::to_string(color[1]) + ", " + std::to_string(color[2]) + ")";
 }
 
-std::string swatch(const std::string& style, const std::string& text, const std::string& css_class = {}) {
-  return "<li><span class=\"swatch" + css_class + "\" style=\"" + style + "\"></span>" + html_escaped(text) + "</li>";
+std::string swatch(const LegendItem& item, const std::string& css_class = {}) {
+  std::string style = (item.is_outline ? "border-color: " : "background: ") + css_color(item.colors.front());
+  if (item.colors.size() > 1) {
+    style = "background: linear-gradient(90deg";
+    for (const Rgb8& color : item.colors) style += ", " + css_color(color);
+    style += ")";
+  }
+  const std::string shape = item.colors.size() > 1 ? " wide" : item.is_outline ? " ring" : css_class;
+  return "<li><span class=\"swatch" + shape + "\" style=\"" + style + "\"></span>" + html_escaped(item.text) + "</li>";
 }
 
 }  // namespace
@@ -145,6 +117,16 @@ std::string stop_sentence(const std::string& stop_reason) {
   if (stop_reason == "no_candidate") return "It stopped because none of the views that gain enough can be reached.";
   if (stop_reason == "cancelled") return "It was interrupted.";
   return "It stopped: " + stop_reason + ".";
+}
+
+std::vector<std::string> phase_names(std::span<const ReportView> views) {
+  std::vector<std::string> names;
+  for (const ReportView& view : views) {
+    for (const ReportPhase& phase : view.phases) {
+      if (std::find(names.begin(), names.end(), phase.name) == names.end()) names.push_back(phase.name);
+    }
+  }
+  return names;
 }
 
 double total_ms(const ReportView& view) {
@@ -172,30 +154,36 @@ std::string FactList::html() const {
   return items_.empty() ? std::string{} : "<dl class=\"" + css_class_ + "\">" + items_ + "</dl>";
 }
 
+std::string tile_html(std::string_view label, const std::string& value, const std::string& more) {
+  return "<div><dt>" + html_escaped(label) + "</dt><dd class=\"big\">" + html_escaped(value) + "</dd>" +
+         (more.empty() ? "" : "<dd class=\"small\">" + html_escaped(more) + "</dd>") + "</div>";
+}
+
 std::string tiles_html(const RunReport& report) {
   std::string out = "<dl class=\"tiles\">";
   const ReportFinal& end = report.final;
   if (end.coverage) {
     const auto& before = report.initial.coverage;
-    out += tile("coverage", percent_text(*end.coverage), before ? percent_text(*before) + " after the scan" : "");
+    out += tile_html("coverage", percent_text(*end.coverage), before ? percent_text(*before) + " after the scan" : "");
   }
-  out += tile("unknown left", grouped(end.unknown_left),
-              "voxels, of " + grouped(report.initial.unknown_left) + " after the scan");
-  if (end.unknown_near_objects) out += tile("near objects", grouped(*end.unknown_near_objects), "unknown voxels");
-  if (end.f_score) out += tile("F-score", number_text(*end.f_score, 3), "at 5 mm");
-  if (end.chamfer_m) out += tile("Chamfer distance", millimetres(*end.chamfer_m));
-  if (end.accuracy_m) out += tile("accuracy", millimetres(*end.accuracy_m));
+  out += tile_html("unknown left", grouped(end.unknown_left),
+                   "voxels, of " + grouped(report.initial.unknown_left) + " after the scan");
+  if (end.unknown_near_objects) out += tile_html("near objects", grouped(*end.unknown_near_objects), "unknown voxels");
+  if (end.f_score) out += tile_html("F-score", number_text(*end.f_score, 3), "at 5 mm");
+  if (end.chamfer_m) out += tile_html("Chamfer distance", millimetres(*end.chamfer_m));
+  if (end.accuracy_m) out += tile_html("accuracy", millimetres(*end.accuracy_m));
   double time_ms{0.0};
   for (const ReportView& view : report.views) time_ms += total_ms(view);
-  out += tile("views", grouped(report.views.size()), time_ms > 0.0 ? "in " + duration_text(time_ms) : "");
+  out += tile_html("views", grouped(report.views.size()), time_ms > 0.0 ? "in " + duration_text(time_ms) : "");
   return out + "</dl>";
 }
 
 std::string charts_html(const RunReport& report) {
   if (report.views.empty()) return {};
-  ViewCurve coverage{"Coverage", {}, positions_of(report), {}, {}, 1, " %"};
-  ViewCurve unknown{"Unknown left, voxels", {}, positions_of(report), {}, {}, 0, ""};
-  ViewCurve gain{"Predicted gain, " + report.gain_unit, {{}}, positions_of(report), {}, report.min_gain, 0, ""};
+  ViewCurve coverage{"Coverage", {}, positions_of(report.views, "scan"), {}, {}, 1, " %"};
+  ViewCurve unknown{"Unknown left, voxels", {}, positions_of(report.views, "scan"), {}, {}, 0, ""};
+  ViewCurve gain{
+      "Predicted gain, " + report.gain_unit, {{}}, positions_of(report.views, "scan"), {}, report.min_gain, 0, ""};
   const auto percent = [](const std::optional<double>& share) {
     return share ? std::optional{100.0 * *share} : std::nullopt;
   };
@@ -219,8 +207,26 @@ std::string charts_html(const RunReport& report) {
       key = "<p class=\"key\">dashed: below " + html_escaped(gain_text(*report.min_gain)) + " a region is done</p>";
     out += chart(gain.title, bars_svg(gain), key);
   }
-  out += time_chart(report);
+  out += time_chart_html(report.views, "scan");
   return "<div class=\"charts\">" + out + "</div>";
+}
+
+std::string time_chart_html(std::span<const ReportView> views, const std::string& first) {
+  PhaseCurve curve{"Time per view", phase_names(views), {{}}, positions_of(views, first)};
+  if (curve.names.empty()) return {};
+  for (const ReportView& view : views) {
+    std::vector<double>& ms = curve.ms.emplace_back(curve.names.size(), 0.0);
+    for (const ReportPhase& phase : view.phases) {
+      const auto it = std::find(curve.names.begin(), curve.names.end(), phase.name);
+      ms[static_cast<std::size_t>(it - curve.names.begin())] += phase.ms;
+    }
+  }
+  std::string key = "<ul class=\"key\">";
+  for (std::size_t i = 0; i < curve.names.size(); ++i) {
+    key += "<li><span class=\"swatch p" + std::to_string(i % kPhaseColors) + "\"></span>" +
+           html_escaped(curve.names[i]) + "</li>";
+  }
+  return chart(curve.title, stacked_svg(curve), key + "</ul>");
 }
 
 std::string table_html(const RunReport& report) {
@@ -238,26 +244,21 @@ std::string table_html(const RunReport& report) {
   return out + "</tbody></table></div>";
 }
 
-std::string legend_html(const RunReport& report) {
-  const bool pictures = !report.initial.pictures.empty() ||
-                        any_view(report, [](const ReportView& view) { return !view.pictures.empty(); });
-  if (!pictures) return {};
-  std::string gradient = "linear-gradient(90deg";
+std::string legend_html(bool draws_robot, const std::vector<LegendItem>& more) {
   constexpr int kStops{6};
-  for (int i = 0; i <= kStops; ++i) gradient += ", " + css_color(amount_colors()(static_cast<double>(i) / kStops));
+  std::vector<Rgb8> gains;
+  for (int i = 0; i <= kStops; ++i) gains.push_back(amount_colors()(static_cast<double>(i) / kStops));
   TernaryPictureConfig with_region;
-  with_region.unknown_within = Sphere{};
+  with_region.unknown_within = {Sphere{}};
   const LegendEntry region = ternary_legend(with_region).back();
   std::string items;
-  for (const LegendEntry& entry : ternary_legend())
-    items += swatch("background: " + css_color(entry.color), entry.text);
-  items += swatch("border-color: " + css_color(region.color), region.text, " ring");
-  items += swatch("background: " + gradient + ")", "candidates, by the best gain at each place", " wide");
-  for (const CandidateMark& mark : candidate_marks(report.draws_robot)) {
-    const std::string color = css_color(mark.color);
-    items += mark.is_point ? swatch("background: " + color, mark.text, " point")
-                           : swatch("border-color: " + color, mark.text, " ring");
+  for (const LegendEntry& entry : ternary_legend()) items += swatch({{entry.color}, entry.text});
+  items += swatch({{region.color}, region.text, true});
+  items += swatch({gains, "candidates, by the best gain at each place"});
+  for (const CandidateMark& mark : candidate_marks(draws_robot)) {
+    items += swatch({{mark.color}, mark.text, !mark.is_point}, mark.is_point ? " point" : "");
   }
+  for (const LegendItem& item : more) items += swatch(item);
   return "<section id=\"legend\"><h2>How to read the pictures</h2><ul class=\"key\">" + items + "</ul></section>\n";
 }
 

@@ -4,10 +4,12 @@
 
 #include <functional>
 #include <optional>
+#include <span>
 #include <string>
 #include <string_view>
 
 #include "saccade/report/run_report.hpp"
+#include "saccade/sensor/image.hpp"
 
 namespace saccade {
 
@@ -20,6 +22,8 @@ namespace saccade {
 [[nodiscard]] std::string signed_text(double value, int decimals);
 /// Why the run stopped, as a sentence.
 [[nodiscard]] std::string stop_sentence(const std::string& stop_reason);
+/// Names of all phases in the order in which they first appear.
+[[nodiscard]] std::vector<std::string> phase_names(std::span<const ReportView> views);
 [[nodiscard]] double total_ms(const ReportView& view);
 /// " (candidates 0.4 ms, evaluation 31 ms)".
 [[nodiscard]] std::string phases_text(const ReportView& view);
@@ -41,14 +45,25 @@ class FactList {
   std::string items_;
 };
 
+/// A label, a large figure, and a line that says more; in a list of the class "tiles".
+[[nodiscard]] std::string tile_html(std::string_view label, const std::string& value, const std::string& more = {});
 /// Headline figures.
 [[nodiscard]] std::string tiles_html(const RunReport& report);
 /// Coverage, unknown left, gain and time over the views; what has no values has no chart.
 [[nodiscard]] std::string charts_html(const RunReport& report);
 /// One row per view, with a link to it. Empty without views.
 [[nodiscard]] std::string table_html(const RunReport& report);
-/// What colours in the pictures stand for. Empty without pictures.
-[[nodiscard]] std::string legend_html(const RunReport& report);
+/// A colour of the pictures, or several from left to right, and what it stands for.
+struct LegendItem {
+  std::vector<Rgb8> colors;
+  std::string text;
+  bool is_outline{false};
+};
+/// What colours in the pictures stand for.
+[[nodiscard]] std::string legend_html(bool draws_robot, const std::vector<LegendItem>& more = {});
+/// Time of each phase over the views, stacked. Empty without phases.
+/// @param first  name of the position before the first view.
+[[nodiscard]] std::string time_chart_html(std::span<const ReportView> views, const std::string& first);
 /// A figure; empty for what is no PNG. Pictures much wider than high take the whole width.
 [[nodiscard]] std::string picture_html(const ReportPicture& picture);
 

@@ -64,6 +64,8 @@ figcaption { font-size: 0.875rem; margin-top: 0.35rem; }
 .chart .p0, .p0 { fill: var(--p0); background: var(--p0); } .chart .p1, .p1 { fill: var(--p1); background: var(--p1); }
 .chart .p2, .p2 { fill: var(--p2); background: var(--p2); } .chart .p3, .p3 { fill: var(--p3); background: var(--p3); }
 .chart .p4, .p4 { fill: var(--p4); background: var(--p4); } .chart .p5, .p5 { fill: var(--p5); background: var(--p5); }
+.plot { margin-top: 0.9rem; } .plot svg { display: block; width: 100%; max-width: 48rem; height: auto;
+  border-radius: 0.4rem; filter: var(--dim); }
 .scroll { overflow-x: auto; margin-top: 1.3rem; }
 table { border-collapse: collapse; width: 100%; font-size: 0.9375rem; }
 th, td { text-align: right; padding: 0.32rem 0 0.32rem 1.1rem; white-space: nowrap; border-bottom: 1px solid var(--line); }

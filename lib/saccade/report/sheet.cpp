@@ -74,6 +74,19 @@ void paste(ColorImage& image, int x, int y, const ColorImage& part) {
   }
 }
 
+void draw_scale(ColorImage& page, int x, int y, int width, const ColorMap& colors, ColorBar bar) {
+  constexpr int kBeside_px{10};
+  bar.text_px = 11.0;
+  draw_color_bar(page, x + kBeside_px, y + 21, width - 2 * kBeside_px, colors, bar);
+}
+
+ColorImage with_scale(const ColorImage& picture, const ColorMap& colors, const ColorBar& bar, const Rgb8& paper) {
+  ColorImage page{picture.width(), picture.height() + kScaleHeight_px, paper};
+  paste(page, 0, 0, picture);
+  draw_scale(page, 0, picture.height(), picture.width(), colors, bar);
+  return page;
+}
+
 ColorImage compose(const Sheet& sheet) {
   const bool has_titles =
       std::any_of(sheet.panels.begin(), sheet.panels.end(), [](const Panel& panel) { return !panel.title.empty(); });

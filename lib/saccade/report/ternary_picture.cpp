@@ -44,8 +44,11 @@ class TernaryCaster {
     IndexBox known = map.grid.known_bounds();
     if (!known.empty()) known = {known.lo - Index3{1, 1, 1}, known.hi + Index3{1, 1, 1}};  // beyond begins the unknown
     unknown_ = map.config.workspace ? voxels_with_center_in(*map.config.workspace, voxel_size_m_) : known;
-    if (config.unknown_within) {
-      const IndexBox inside = voxels_with_center_in(bounds(*config.unknown_within), voxel_size_m_);
+    if (!config.unknown_within.empty()) {
+      IndexBox inside;
+      for (const Region& region : config.unknown_within) {
+        inside = join(inside, voxels_with_center_in(bounds(region), voxel_size_m_));
+      }
       unknown_ = map.config.workspace ? intersect(unknown_, inside) : inside;
     }
     domain_ = join(known, unknown_);
@@ -104,8 +107,11 @@ class TernaryCaster {
 
   /// Whether an unknown voxel is drawn.
   [[nodiscard]] bool shown(const Index3& voxel) const {
+    const std::vector<Region>& regions = config_.unknown_within;
+    const Eigen::Vector3d p = voxel_center(voxel, voxel_size_m_);
     return unknown_.contains(voxel) &&
-           (!config_.unknown_within || contains(*config_.unknown_within, voxel_center(voxel, voxel_size_m_)));
+           (regions.empty() ||
+            std::any_of(regions.begin(), regions.end(), [&](const Region& r) { return contains(r, p); }));
   }
 
   [[nodiscard]] Voxel voxel(const Index3& index) const {
@@ -160,7 +166,7 @@ Canvas draw_ternary(const TsdfSnapshot& map, const Viewpoint& view, const Execut
     });
   }
   if (config.outline_workspace && map.config.workspace) canvas.outline(Region{*map.config.workspace}, kWorkspaceLine);
-  if (config.unknown_within) canvas.outline(*config.unknown_within, kRegionLine);
+  for (const Region& region : config.unknown_within) canvas.outline(region, kRegionLine);
   return canvas;
 }
 
@@ -175,10 +181,11 @@ ColorImage ternary_figure(const TsdfSnapshot& map, const Viewpoint& view, const 
 }
 
 std::vector<LegendEntry> ternary_legend(const TernaryPictureConfig& config) {
-  std::vector<LegendEntry> legend{{kClay, "occupied (grey or in colour)"},
-                                  {kUnknownFaces[0], config.unknown_within ? "unknown, in the region" : "unknown"},
-                                  {config.background, "empty"}};
-  if (config.unknown_within) legend.push_back({kRegionLine.color, "region"});
+  std::vector<LegendEntry> legend{
+      {kClay, "occupied (grey or in colour)"},
+      {kUnknownFaces[0], config.unknown_within.empty() ? "unknown" : "unknown, in the region"},
+      {config.background, "empty"}};
+  if (!config.unknown_within.empty()) legend.push_back({kRegionLine.color, "region"});
   return legend;
 }
 

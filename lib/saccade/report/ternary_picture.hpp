@@ -13,9 +13,9 @@
 namespace saccade {
 
 struct TernaryPictureConfig {
-  std::optional<Region> unknown_within;  ///< unknown voxels outside it are transparent, and it is outlined
-  std::optional<Box> crop;               ///< what lies outside is not drawn at all
-  double start_m{0.1};  ///< depth where rays start: no depth camera sees the space around its own centre
+  std::vector<Region> unknown_within;  ///< if any: unknown voxels outside all are transparent, and they are outlined
+  std::optional<Box> crop;             ///< what lies outside is not drawn at all
+  double start_m{0.1};                 ///< depth where rays start: no depth camera sees the space around its own centre
   bool outline_workspace{false};
   int samples{2};  ///< per pixel and direction
   Rgb8 background{236, 239, 243};

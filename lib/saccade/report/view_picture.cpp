@@ -72,7 +72,7 @@ ColorImage view_picture(const TsdfSnapshot& map, const Region& region, std::span
                         const Executor& executor, const ViewPictureConfig& config) {
   const std::vector<Center> centers = centers_of(ranked, config.best);
   const Box scene = scene_box(region, centers, config.margin_m);
-  const TernaryPictureConfig ternary{.unknown_within = region, .crop = scene, .samples = config.samples};
+  const TernaryPictureConfig ternary{.unknown_within = {region}, .crop = scene, .samples = config.samples};
   const Box around = bounds(region);
   std::vector<Eigen::Vector3d> shown{around.min, around.max};
   for (const Center& c : centers) shown.push_back(c.p_world);

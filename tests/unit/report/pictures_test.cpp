@@ -55,7 +55,7 @@ double silhouette_px(double radius_m, double distance_m) { return kFocal * std::
 
 TernaryPictureConfig no_unknown() {
   TernaryPictureConfig config;
-  config.unknown_within = Sphere{{0.0, 0.0, 50.0}, 0.01};
+  config.unknown_within = {Sphere{{0.0, 0.0, 50.0}, 0.01}};
   return config;
 }
 
@@ -95,7 +95,7 @@ TEST(TernaryPicture, ForgottenBallIsSeenFromWithinTheUnknown) {
   TsdfMap map{ball()};
   ASSERT_TRUE(map.forget(Sphere{{0.0, 0.0, 0.0}, 0.15}).ok());
   TernaryPictureConfig config;
-  config.unknown_within = Sphere{{0.0, 0.0, 0.0}, 0.15};
+  config.unknown_within = {Sphere{{0.0, 0.0, 0.0}, 0.15}};
   config.samples = 1;
   const ColorImage picture = ternary_picture(map.snapshot(), outside(), kSequential, config);
   EXPECT_EQ(picture(0, 0), config.background);

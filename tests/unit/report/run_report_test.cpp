@@ -8,6 +8,7 @@
 #include <limits>
 
 #include "saccade/report/html_text.hpp"
+#include "unit/report/png_header.hpp"
 #include "unit/report/well_formed.hpp"
 
 namespace saccade {
@@ -15,21 +16,8 @@ namespace {
 
 using test::count;
 using test::Markup;
+using test::png_header;
 using test::well_formed;
-
-/// The beginning of a PNG: all that the page looks at.
-std::vector<std::byte> png_header(unsigned width, unsigned height, std::size_t size = 64) {
-  std::vector<std::byte> png;
-  for (const unsigned byte : {0x89U, 0x50U, 0x4EU, 0x47U, 0x0DU, 0x0AU, 0x1AU, 0x0AU, 0U, 0U, 0U, 13U}) {
-    png.push_back(static_cast<std::byte>(byte));
-  }
-  for (const char c : {'I', 'H', 'D', 'R'}) png.push_back(static_cast<std::byte>(c));
-  for (const unsigned edge : {width, height}) {
-    for (const unsigned shift : {24U, 16U, 8U, 0U}) png.push_back(static_cast<std::byte>(edge >> shift));
-  }
-  png.resize(std::max(size, png.size()), std::byte{0x5A});
-  return png;
-}
 
 RunReport example() {
   RunReport report;

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// UpdateReport and update_report_html: a user's task and how the map was brought up to date after it, as one HTML page.
+// How to read it: docs/report.md.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <string>
+#include <utility>
+#include <vector>
+
+#include "saccade/report/run_report.hpp"
+
+namespace saccade {
+
+/// Where the hand did something, and what became of it.
+struct ReportRegion {
+  std::size_t number{1};  ///< as in the pictures, each once
+  std::string why;
+  std::array<double, 3> center_m{};  ///< world frame
+  double radius_m{0.0};
+  std::string end;                   ///< in words, for example "complete" or "out of reach"
+  std::vector<std::size_t> unknown;  ///< voxels in it: after the task, then after each view of the page
+  // Of what can be seen at all in the region, the share that the final map has.
+  std::optional<double> coverage_objects{};
+  std::optional<double> coverage_surfaces{};  ///< with supports
+};
+
+/// A length of an object. Metres.
+struct ReportMeasure {
+  std::string name;  ///< for example "height"
+  std::optional<double> true_m;
+  std::optional<double> measured_m;
+};
+
+/// An object that the task involved. Thesis §2.4.1.
+struct ReportObject {
+  std::string name;
+  std::vector<ReportMeasure> measures;
+};
+
+/// Everything the page says. Text is plain; the page escapes it. Empty text and what is absent is left out.
+struct UpdateReport {
+  std::string title;
+  std::string scene;   ///< for example "bottle-before to bottle"
+  std::string hand;    ///< where its trajectory came from
+  std::string method;  ///< that detected actions
+  std::string fuse_when;
+  std::string robot;
+  bool draws_robot{false};  ///< the pictures show an arm and its camera's way
+  std::string noise;
+  std::uint64_t seed{0};
+  std::size_t threads{0};
+  std::string version;  ///< of the program
+  /// Further facts, no dates among them: the same run gives the same page but for its durations.
+  std::vector<std::pair<std::string, std::string>> facts;
+  std::string gain_unit{"rays"};
+  std::optional<double> min_gain;  ///< below which a region is done
+  ReportScan before;               ///< after the initial scan, before the task
+  // The task.
+  std::vector<ReportPicture> task_pictures;
+  std::vector<std::pair<std::string, std::string>> task_facts;
+  std::string speed_svg;  ///< speed_plot; it goes into the page as it is
+  std::vector<ReportRegion> regions;
+  // Looking again.
+  std::vector<ReportPhase> phases_once;  ///< not part of any view, such as clearing
+  std::vector<ReportView> views;         ///< with their region's number
+  std::size_t unknown_after_task{0};     ///< voxels of the whole workspace
+  std::optional<double> coverage_after_task;
+  // After it.
+  std::vector<ReportPicture> after_pictures;
+  ReportFinal final;
+  std::vector<ReportObject> objects;
+  std::vector<ReportLink> links;
+};
+
+/// The page: UTF-8, well-formed as XML but for its doctype, nothing in it from elsewhere. O(bytes of the pictures).
+[[nodiscard]] std::string update_report_html(const UpdateReport& report);
+
+}  // namespace saccade
