@@ -43,7 +43,9 @@ std::vector<ReportPicture> pictures_of(const RunFolder& out, std::size_t number,
   return pictures;
 }
 
-ReportView view_of(const RunFolder& out, const json& view) {
+}  // namespace
+
+ReportView report_view(const RunFolder& out, const json& view) {
   ReportView shown;
   shown.index = view.at("index").get<std::size_t>() + 1;
   shown.gain = optional_of<double>(view.at("gain"));
@@ -80,8 +82,6 @@ std::string camera_text(const json& camera) {
        << camera.at("min_range_m").get<double>() << "–" << camera.at("max_range_m").get<double>() << " m";
   return text.str();
 }
-
-}  // namespace
 
 Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor& executor) {
   std::vector<ScoredPose> candidates;
@@ -151,7 +151,7 @@ Status write_report(const RunFolder& out, const json& document, const ExploreOpt
   }
   report.initial.pictures =
       pictures_of(out, 0, {{{}, "The map after the scan, unknown in black", "The map from outside", "map"}});
-  for (const json& view : result.at("views")) report.views.push_back(view_of(out, view));
+  for (const json& view : result.at("views")) report.views.push_back(report_view(out, view));
   const json& final = result.at("final");
   report.final = {optional_of<double>(final.at("coverage")),
                   final.at("unknown_left").get<std::size_t>(),

@@ -8,6 +8,7 @@
 #include "explore_devices.hpp"
 #include "run_folder.hpp"
 #include "saccade/report/robot_drawing.hpp"
+#include "saccade/report/run_report.hpp"
 
 namespace saccade::cli {
 
@@ -32,6 +33,12 @@ struct ViewScenes {
 [[nodiscard]] Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace,
                                const Executor& executor, const RobotDrawing* robot = nullptr);
 [[nodiscard]] bool is_view_picture(const std::string& file_name);
+
+/// A view of the document for the page, with the pictures that draw_view made of it. Where the map was not measured
+/// after it, nothing is unknown.
+[[nodiscard]] ReportView report_view(const RunFolder& out, const nlohmann::json& view);
+/// "640 × 480, f = 525 px, 0.5–2 m", from the document.
+[[nodiscard]] std::string camera_text(const nlohmann::json& camera);
 
 /// "2 no_ik, 1 no_path": the counts of `refused` in the document; empty: none.
 [[nodiscard]] std::string refused_text(const nlohmann::json& refused);

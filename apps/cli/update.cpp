@@ -51,8 +51,7 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   const Stopwatch total;
   const Executor executor = global.executor();
   ProgressBar bar{global.quiet};
-  Progress progress{
-      [&bar](std::string_view stage, std::size_t done, std::size_t of) { bar.update(stage, done, of); }};
+  Progress progress{[&bar](std::string_view stage, std::size_t done, std::size_t of) { bar.update(stage, done, of); }};
   const CancelOnInterrupt cancel{progress};
   SACCADE_CHECK(check_json_output(global));
   SACCADE_TRY(const UpdateCase subject, open_update_case(options));

@@ -149,7 +149,11 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
   }
   SACCADE_TRY(json objects, objects_json(subject, mesh, executor));
   json views = json::array();
-  for (const ExploredView& view : figures.update.exploration.views) views.push_back(view_json(view, views.size()));
+  for (const ExploredView& view : figures.update.exploration.views) {
+    json record = view_json(view, views.size());
+    record["unknown_left"] = figures.unknown_left.at(views.size());
+    views.push_back(std::move(record));
+  }
   return json{{"scene", subject.after.scene.name},
               {"before", subject.before.scene.name},
               {"out", options.out.string()},
@@ -158,8 +162,12 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"noise", options.run.noise},
               {"camera", camera_to_json(devices.camera())},
               {"voxel_size_m", options.run.voxel_size_m},
-              {"scan", {{"views", figures.scan.views}, {"refused", refused_json(figures.scan.refused)}}},
+              {"scan",
+               {{"views", figures.scan.views},
+                {"refused", refused_json(figures.scan.refused)},
+                {"unknown_left", count_unknown(figures.before, subject.before.scene.workspace)}}},
               {"task", task_json(options, task)},
+              {"unknown_after_task", count_unknown(figures.forgotten, subject.before.scene.workspace)},
               {"regions", std::move(regions)},
               {"views", std::move(views)},
               {"objects", std::move(objects)},

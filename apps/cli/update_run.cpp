@@ -84,6 +84,7 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
   if (!figures.interrupted) {
     SACCADE_TRY(figures.update.back, return_to_stand_by(map, devices.robot(), executor));
   }
+  figures.stand_by = devices.robot().configuration();
   figures.before = map.snapshot();
   const SimulatedRobot* arm = devices.simulated_arm();
   const std::size_t scanned = arm != nullptr ? arm->motions().size() : 0;
@@ -103,6 +104,7 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
     ExplorationHooks hooks;
     hooks.after_view = [&](const ExploredView& view, const Proposals& proposals) {
       ++taken;
+      figures.unknown_left.push_back(count_unknown(map.content(), subject.after.scene.workspace));
       const TsdfSnapshot after = map.snapshot();
       if (after_view) drawn = after_view({taken, before, after, view, proposals, earlier, devices.take_frames()});
       before = after;

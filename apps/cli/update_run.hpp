@@ -35,8 +35,10 @@ struct WatchedTask {
 struct UpdateFigures {
   TsdfSnapshot before;  ///< after the scan
   ScanResult scan;
-  TsdfSnapshot forgotten;  ///< the regions are unknown
-  UpdateResult update;     ///< without regions the robot came back from the scan
+  std::optional<Configuration> stand_by{};  ///< of an arm, in which it waits
+  TsdfSnapshot forgotten;                   ///< the regions are unknown
+  UpdateResult update;                      ///< without regions the robot came back from the scan
+  std::vector<std::size_t> unknown_left;    ///< in the workspace, after each view
   TsdfSnapshot after;
   bool interrupted{false};
   std::size_t instants{0};  ///< of all motions, at which contacts were looked for

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade update as a user runs it: both experiments of the thesis, held to what they are held to, and what can go wrong.
+// saccade update as a user runs it: both experiments of the thesis, held to what they are held to, and what can go
+// wrong.
 #include <gtest/gtest.h>
 
 #include <cmath>
@@ -142,9 +143,9 @@ TEST(UpdateCommand, SaysWhichRegionsAreOutOfReach) {
   const TempFolder folder;
   write_hand(folder / "hand.csv", {0.0, 0.0, 0.1}, 30);
   // Nobody reaches view poses so far away.
-  const Outcome outcome = run_program(update(
-      folder / "run", {"--image-size", "80,60", "--voxel-size", "0.02", "--no-pictures", "--scene", "bottle", "--radius",
-                       "3", "--trajectory", (folder / "hand.csv").string()}));
+  const Outcome outcome =
+      run_program(update(folder / "run", {"--image-size", "80,60", "--voxel-size", "0.02", "--no-pictures", "--scene",
+                                          "bottle", "--radius", "3", "--trajectory", (folder / "hand.csv").string()}));
   EXPECT_EQ(outcome.status, 5) << outcome.err;
   EXPECT_NE(outcome.err.find("not one view"), std::string::npos) << outcome.err;
   const json result = outcome.json().at("result");

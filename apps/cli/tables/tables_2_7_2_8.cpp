@@ -74,7 +74,8 @@ UpdateOptions options_of(const ThesisExperiment& experiment, const ReproduceOpti
   UpdateOptions options;
   options.scene = experiment.scene;
   options.fuse_when = experiment.fuse_when;
-  if (reproduce.image_width_px > 0) options.camera.image_size = {reproduce.image_width_px, reproduce.image_width_px * 3 / 4};
+  if (reproduce.image_width_px > 0)
+    options.camera.image_size = {reproduce.image_width_px, reproduce.image_width_px * 3 / 4};
   GlobalOptions global;
   global.seed = reproduce.seed;
   check_update_options(options, global);
@@ -151,7 +152,8 @@ json figures_of(const std::vector<OurExperiment>& all) {
 void add_common_notes(const ReproduceOptions& options, ReproducedTable& table) {
   table.notes.emplace_back(
       "Here the scenes, the hand, the arm and the camera with its noise are simulated (`saccade update --scene "
-      "bottle|jug`); the thesis' were real. The objects, the table and the room are of our making, so figures compare in "
+      "bottle|jug`); the thesis' were real. The objects, the table and the room are of our making, so figures compare "
+      "in "
       "kind, not to the digit.");
   if (options.image_width_px > 0) {
     table.notes.push_back("Images are " + std::to_string(options.image_width_px) +
@@ -211,7 +213,8 @@ Result<ReproducedTable> reproduce_table_2_8(const ReproduceOptions& options, con
   add("robot movement", &ThesisExperiment::movement_s, &OurExperiment::movement_s, 2);
   table.notes = {
       "Next best view: here candidates, reachability and gains of one choice; only poses within the arm's reach are "
-      "evaluated, with a virtual sensor of 160 × 120 rays, all of the image. How long 640 × 480 rays take is Table 2.9.",
+      "evaluated, with a virtual sensor of 160 × 120 rays, all of the image. How long 640 × 480 rays take is Table "
+      "2.9.",
       "Robot movement: here the mean of the ways to the views, their oscillation included, and of the way back. In "
       "motion the arm has a quarter of its speed."};
   add_common_notes(options, table);
