@@ -82,15 +82,6 @@ void draw_places(Canvas& canvas, const std::vector<Place>& places, double full_g
   }
 }
 
-std::vector<Eigen::Vector3d> corners_of(const Box& box) {
-  std::vector<Eigen::Vector3d> corners;
-  for (unsigned i = 0; i < 8; ++i) {
-    corners.emplace_back((i & 1U) != 0 ? box.max.x() : box.min.x(), (i & 2U) != 0 ? box.max.y() : box.min.y(),
-                         (i & 4U) != 0 ? box.max.z() : box.min.z());
-  }
-  return corners;
-}
-
 }  // namespace
 
 ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_width) {

@@ -46,7 +46,7 @@ double tick_step(double length) {
   return magnitude * (rest <= 1.0 ? 1.0 : rest <= 2.0 ? 2.0 : rest <= 5.0 ? 5.0 : 10.0);
 }
 
-std::array<Eigen::Vector2d, 4> corners_of(const Box& box) {
+std::array<Eigen::Vector2d, 4> corners_from_above(const Box& box) {
   return {Eigen::Vector2d{box.min.x(), box.min.y()}, Eigen::Vector2d{box.max.x(), box.min.y()},
           Eigen::Vector2d{box.max.x(), box.max.y()}, Eigen::Vector2d{box.min.x(), box.max.y()}};
 }
@@ -150,8 +150,8 @@ Panel top_panel(const ReachScene& scene) {
               square.share ? color_of(*square.share) : kUntested);
     untested = untested || !square.share;
   }
-  for (const Box& box : scene.fixtures) draw_outline(plot, top.all_to_px(corners_of(box)), {kFixture, 3.0});
-  draw_outline(plot, top.all_to_px(corners_of(scene.workspace)), {kWorkspace, 1.5, 7.0});
+  for (const Box& box : scene.fixtures) draw_outline(plot, top.all_to_px(corners_from_above(box)), {kFixture, 3.0});
+  draw_outline(plot, top.all_to_px(corners_from_above(scene.workspace)), {kWorkspace, 1.5, 7.0});
   for (const auto& part : scene.arm) {
     const std::vector<Eigen::Vector2d> hull = top.all_to_px(convex_hull(part));
     fill_convex(plot, hull, kArm, 0.12);

@@ -11,15 +11,6 @@ namespace {
 
 constexpr Rgb8 kRegionColor{214, 92, 22};  // that of their outlines
 
-std::vector<Eigen::Vector3d> corners_of(const Box& box) {
-  std::vector<Eigen::Vector3d> corners;
-  for (unsigned i = 0; i < 8; ++i) {
-    corners.emplace_back((i & 1U) != 0 ? box.max.x() : box.min.x(), (i & 2U) != 0 ? box.max.y() : box.min.y(),
-                         (i & 4U) != 0 ? box.max.z() : box.min.z());
-  }
-  return corners;
-}
-
 /// The same for both pictures of a task.
 Viewpoint viewpoint_of(const TaskScene& task, const TaskPictureConfig& config) {
   std::vector<Eigen::Vector3d> shown = corners_of(task.workspace);

@@ -68,7 +68,7 @@ std::string text_or_nothing(const std::optional<T>& value, const Format& format)
   return value ? format(*value) : std::string{kNothing};
 }
 
-std::string millimetres(double metres) { return number_text(1000.0 * metres, 1); }
+std::string in_millimetres(double metres) { return number_text(1000.0 * metres, 1); }
 
 std::string place_of(const ReportRegion& region) {
   std::string out = "(";
@@ -142,7 +142,7 @@ std::string tiles(const UpdateReport& report) {
       ++errors;
     }
   }
-  if (errors > 0) out += tile_html("mean error of lengths", millimetres(error_m / errors) + " mm", "of the objects");
+  if (errors > 0) out += tile_html("mean error of lengths", in_millimetres(error_m / errors) + " mm", "of the objects");
   if (report.final.f_score) out += tile_html("F-score", number_text(*report.final.f_score, 3), "at 5 mm");
   double time_ms = 0.0;
   for (const ReportView& view : report.views) time_ms += total_ms(view);
@@ -252,8 +252,8 @@ std::string objects_html(const UpdateReport& report) {
   for (const ReportObject& object : report.objects) {
     for (const ReportMeasure& measure : object.measures) {
       const bool both = measure.true_m && measure.measured_m;
-      lines.rows.push_back({object.name, measure.name, text_or_nothing(measure.true_m, millimetres),
-                            text_or_nothing(measure.measured_m, millimetres),
+      lines.rows.push_back({object.name, measure.name, text_or_nothing(measure.true_m, in_millimetres),
+                            text_or_nothing(measure.measured_m, in_millimetres),
                             both ? signed_text(1000.0 * (*measure.measured_m - *measure.true_m), 1) : kNothing});
     }
   }

@@ -2,10 +2,8 @@
 #include "saccade/report/viewpoint.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <limits>
-#include <vector>
 
 namespace saccade {
 
@@ -57,13 +55,15 @@ Viewpoint overview_of(std::span<const Eigen::Vector3d> points_world, const Overv
   return view;
 }
 
-Viewpoint overview_of(const Box& box, const OverviewConfig& config) {
-  std::array<Eigen::Vector3d, 8> corners;
-  for (std::size_t i = 0; i < corners.size(); ++i) {
-    corners[i] = {(i & 1U) != 0 ? box.max.x() : box.min.x(), (i & 2U) != 0 ? box.max.y() : box.min.y(),
-                  (i & 4U) != 0 ? box.max.z() : box.min.z()};
+std::vector<Eigen::Vector3d> corners_of(const Box& box) {
+  std::vector<Eigen::Vector3d> corners;
+  for (unsigned i = 0; i < 8; ++i) {
+    corners.emplace_back((i & 1U) != 0 ? box.max.x() : box.min.x(), (i & 2U) != 0 ? box.max.y() : box.min.y(),
+                         (i & 4U) != 0 ? box.max.z() : box.min.z());
   }
-  return overview_of(corners, config);
+  return corners;
 }
+
+Viewpoint overview_of(const Box& box, const OverviewConfig& config) { return overview_of(corners_of(box), config); }
 
 }  // namespace saccade

@@ -3,6 +3,7 @@
 // Viewpoint: the camera a picture is drawn from; overview_of chooses one that shows all of a scene.
 
 #include <span>
+#include <vector>
 
 #include "saccade/core/pose.hpp"
 #include "saccade/core/region.hpp"
@@ -28,6 +29,7 @@ struct OverviewConfig {
 
 /// The nearest viewpoint in the given direction from which all points (at least one) are in the picture.
 [[nodiscard]] Viewpoint overview_of(std::span<const Eigen::Vector3d> points_world, const OverviewConfig& config = {});
+[[nodiscard]] std::vector<Eigen::Vector3d> corners_of(const Box& box);
 /// The same for a whole box.
 [[nodiscard]] Viewpoint overview_of(const Box& box, const OverviewConfig& config = {});
 
