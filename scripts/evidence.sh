@@ -74,6 +74,17 @@ scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'impor
 step compare build/release/saccade --quiet compare --scenes "$scenes,clutter:1" --strategies sphere,random --seeds 1-10 --max-views 12 \
   --out "$out/compare" --json "$out/compare.json"
 
+echo "Updates after a user's task: ten seeds, noise on"
+for scene in bottle jug; do
+  for when in viewpoints motion; do
+    for seed in 1 2 3 4 5 6 7 8 9 10; do
+      name="update_${scene}_${when}_$seed"
+      step "$name" build/release/saccade --quiet --seed "$seed" update --scene "$scene" --fuse-when "$when" --robot comau --no-pictures \
+        --force --out "$out/update" --json "$out/$name.json"
+    done
+  done
+done
+
 echo "Arms beside FCL: 100,000 configurations each"
 scripts/install_packages.sh program tests
 configure release -DSACCADE_BUILD_TESTS=ON && compile release parity >"$out/build_parity.log" || failed=1

@@ -24,8 +24,8 @@ void add_hand_options(CLI::App& command, UpdateOptions& options) {
 }  // namespace
 
 UpdateOptions::UpdateOptions() {
-  run.exploration.max_views = 30;  // the thesis' three regions took five
-  run.exploration.min_gain = 50;   // a region of 0.2 m is small beside a scene
+  run.exploration.max_views = kUpdateMaxViews;
+  run.exploration.min_gain = kUpdateMinGain;
   robot = "comau";
   method = &attend_methods().front();
 }
