@@ -6,6 +6,7 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
+#include <optional>
 #include <sstream>
 
 #include "command.hpp"
@@ -14,6 +15,7 @@
 #include "json_output.hpp"
 #include "options.hpp"
 #include "progress_bar.hpp"
+#include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/atomic_file.hpp"
 #include "tables/hand_data.hpp"
@@ -46,6 +48,11 @@ json json_of(const std::string& number, const ReproducedTable& table) {
   return entry;
 }
 
+struct PlotOptions {
+  std::string folder;  ///< empty: no plots
+  bool force{false};
+};
+
 constexpr std::string_view kMarkdownHeading{"# Tables of the thesis, ours beside theirs"};
 
 /// Fails early where --markdown names a file that cannot be written, or one that is none of ours.
@@ -75,8 +82,8 @@ Status write_markdown_output(const fs::path& file, const std::vector<ReproducedT
 
 /// Prints one table after the other as they are done. After a failure `tables` has those before it.
 Status reproduce_each(const std::vector<std::string>& numbers, const ReproduceOptions& options,
-                      const GlobalOptions& global, const Executor& executor, std::vector<ReproducedTable>& tables,
-                      TimingsMs& timings_ms) {
+                      const std::optional<RunFolder>& out, const GlobalOptions& global, const Executor& executor,
+                      std::vector<ReproducedTable>& tables, TimingsMs& timings_ms) {
   ProgressBar bar{global.quiet};
   Progress progress{
       [&bar](std::string_view stage, std::size_t done, std::size_t total) { bar.update(stage, done, total); }};
@@ -92,6 +99,9 @@ Status reproduce_each(const std::vector<std::string>& numbers, const ReproduceOp
       std::cout << std::flush;
     }
     tables.push_back(std::move(table));
+    for (const TablePlot& plot : tables.back().plots) {
+      if (out) SACCADE_CHECK(write_file_atomically(*out / plot.file, plot.svg));
+    }
   }
   return {};
 }
@@ -107,14 +117,19 @@ Status check_reproduce(const std::vector<std::string>& numbers, const ReproduceO
 }
 
 Result<int> run_reproduce(const std::vector<std::string>& numbers, const ReproduceOptions& options,
-                          const fs::path& markdown, const GlobalOptions& global) {
+                          const fs::path& markdown, const PlotOptions& plots, const GlobalOptions& global) {
   if (numbers.empty()) return list_tables(global);
   const Stopwatch clock;
   const Executor executor = global.executor();
   SACCADE_CHECK(check_reproduce(numbers, options, markdown, global));
+  std::optional<RunFolder> out;
+  if (!plots.folder.empty()) {
+    SACCADE_TRY(RunFolder opened, RunFolder::open(plots.folder, kTablePlotFiles, "", plots.force));
+    out.emplace(std::move(opened));
+  }
   TimingsMs timings_ms;
   std::vector<ReproducedTable> done;
-  const Status status = reproduce_each(numbers, options, global, executor, done, timings_ms);
+  const Status status = reproduce_each(numbers, options, out, global, executor, done, timings_ms);
   if (done.empty()) return status.error();
   timings_ms["total"] = clock.elapsed_ms();
   json tables = json::array();
@@ -159,6 +174,12 @@ void check_markdown_option(const std::string& markdown, const std::vector<std::s
   }
 }
 
+void check_plots_option(const std::string& plots, const std::vector<std::string>& numbers) {
+  const auto has_plots = [](const std::string& number) { return find_thesis_table(number)->has_plots; };
+  if (plots.empty() || std::any_of(numbers.begin(), numbers.end(), has_plots)) return;
+  usage_error("--out", "is for plots, which Table 2.1 has");
+}
+
 }  // namespace
 
 void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& action) {
@@ -166,6 +187,7 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
   auto numbers = std::make_shared<std::vector<std::string>>();
   auto options = std::make_shared<ReproduceOptions>();
   auto markdown = std::make_shared<std::string>();
+  auto plots = std::make_shared<PlotOptions>();
   command->add_option("tables", *numbers, "tables by their number; none: lists those that there are")
       ->type_name("TABLE");
   command
@@ -190,12 +212,22 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N")
       ->capture_default_str();
+  command
+      ->add_option("--frames", options->frames,
+                   "scan of Table 2.1: only so many of its first frames, for a quick look (default: all)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+      ->type_name("N");
+  command->add_option("--out", plots->folder, "folder for the plots of Table 2.1: Fig. 2.12")->type_name("DIR");
+  command->add_flag("--force", plots->force, "let --out write among other files");
   command->add_option("--markdown", *markdown, "write the tables as Markdown to a file")->type_name("FILE");
-  command->callback([numbers, options, markdown, &global, &action] {
+  command->callback([numbers, options, markdown, plots, &global, &action] {
     check_numbers(*numbers, *options);
     check_markdown_option(*markdown, *numbers, global);
+    check_plots_option(plots->folder, *numbers);
     options->seed = global.seed;
-    action = [numbers, options, markdown, &global] { return run_reproduce(*numbers, *options, *markdown, global); };
+    action = [numbers, options, markdown, plots, &global] {
+      return run_reproduce(*numbers, *options, *markdown, *plots, global);
+    };
   });
 }
 

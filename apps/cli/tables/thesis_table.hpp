@@ -3,6 +3,7 @@
 // ReproducedTable: a table of the thesis with our figures beside its own; thesis_tables: those that there are.
 // A further table is a source of its own here, with a line in thesis_table.cpp.
 
+#include <array>
 #include <filesystem>
 #include <nlohmann/json.hpp>
 #include <ostream>
@@ -23,6 +24,15 @@ struct ReproduceOptions {
   std::filesystem::path hands;  ///< folder of the thesis' recorded hands; see hand_data.hpp
   std::size_t noise_seeds{20};  ///< that noise on them is averaged over
   int image_width_px{0};        ///< of the simulated camera of Tables 2.7 and 2.8; 0: 640, as the thesis' camera has
+  std::size_t frames{0};        ///< of the beginning of the scan of Table 2.1; 0: all
+};
+
+/// Files that tables' plots go to, all there are.
+constexpr std::array<std::string_view, 2> kTablePlotFiles{"fig-2-12-translation.svg", "fig-2-12-rotation.svg"};
+
+struct TablePlot {
+  std::string_view file;
+  std::string svg;
 };
 
 struct ReproducedTable {
@@ -31,6 +41,7 @@ struct ReproducedTable {
   std::vector<std::vector<std::string>> rows;
   std::vector<std::string> notes;  ///< what was done here, and what differs from the thesis
   nlohmann::json figures;
+  std::vector<TablePlot> plots{};  ///< figures of the thesis that go with it
 };
 
 /// A table of the thesis, by its number.
@@ -39,6 +50,7 @@ struct ThesisTable {
   std::string_view title;
   Result<ReproducedTable> (*reproduce)(const ReproduceOptions&, const Executor&, const Progress&);
   bool needs_hands{false};  ///< ReproduceOptions::hands
+  bool has_plots{false};
 };
 
 /// In the thesis' order.
@@ -49,6 +61,8 @@ struct ThesisTable {
 /// As Markdown: the caption, the table with aligned columns, and the notes as a list.
 void print(std::ostream& out, const ReproducedTable& table);
 
+[[nodiscard]] Result<ReproducedTable> reproduce_table_2_1(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_2(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_3(const ReproduceOptions& options, const Executor& executor,

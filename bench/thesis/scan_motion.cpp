@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thesis/scan_motion.hpp"
+
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numbers>
+
+#include "saccade/explore/simulated_run.hpp"
+#include "saccade/robot/kinematics.hpp"
+
+namespace saccade::thesis {
+namespace {
+
+using Eigen::Vector3d;
+
+/// On a sphere around the middle of the table.
+struct Corner {
+  double radius_m;
+  double azimuth_deg;
+  double elevation_deg;
+};
+/// Lower down, the arm comes to the table's left and front only.
+constexpr std::array<Corner, 12> kCorners{{{0.85, 165, 22},
+                                           {0.85, 195, 25},
+                                           {0.80, 180, 45},
+                                           {0.75, 150, 52},
+                                           {0.75, 115, 65},
+                                           {0.70, 80, 65},
+                                           {0.70, 40, 65},
+                                           {0.75, 0, 65},
+                                           {0.80, 330, 50},
+                                           {0.80, 305, 35},
+                                           {0.80, 275, 38},
+                                           {0.80, 285, 60}}};
+const Vector3d kLookedAt{0.0, 0.0, 0.08};
+
+/// A camera at the corner, in four turns about its axis.
+std::vector<Pose> views_at(const Corner& corner) {
+  const double azimuth_rad = corner.azimuth_deg * std::numbers::pi / 180.0;
+  const double elevation_rad = corner.elevation_deg * std::numbers::pi / 180.0;
+  const Vector3d outward{std::cos(azimuth_rad) * std::cos(elevation_rad),
+                         std::sin(azimuth_rad) * std::cos(elevation_rad), std::sin(elevation_rad)};
+  std::vector<Pose> views;
+  for (int quarter = 0; quarter < 4; ++quarter) {
+    views.push_back(
+        look_at(kLookedAt + corner.radius_m * outward, kLookedAt, Vector3d::UnitZ(), 0.5 * std::numbers::pi * quarter));
+  }
+  return views;
+}
+
+Box bounds_of(const TriangleMesh& mesh) {
+  Box box{Vector3d::Constant(std::numeric_limits<double>::infinity()),
+          Vector3d::Constant(-std::numeric_limits<double>::infinity())};
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    box.min = box.min.cwiseMin(vertex.cast<double>());
+    box.max = box.max.cwiseMax(vertex.cast<double>());
+  }
+  return box;
+}
+
+}  // namespace
+
+Result<std::vector<Pose>> scan_motion(const RayScene& scene, const ArmModel& arm, double pace) {
+  SACCADE_EXPECTS(pace > 0.0);
+  // Whoever teaches the arm its way sees the objects, which no map knows yet.
+  ArmRobotConfig config;
+  config.obstacles.unknown_is_obstacle = false;
+  for (const ObjectMesh& object : scene.meshes()) {
+    if (!object.support) config.obstacles.fixtures.push_back(bounds_of(object.mesh));
+  }
+  Scene with_start = scene.scene();
+  with_start.scan = views_at(kCorners.front());
+  SACCADE_TRY(SimulatedRobot robot, simulated_arm(arm, with_start, SimulatedRunConfig{}, config));
+
+  std::vector<Pose> poses{robot.T_world_camera()};
+  const double between_s = pace / kFrameRate_hz;  // in the time of the planned motions, which are the fastest
+  double next_s = between_s;                      // since the arm left the last corner
+  for (const Corner& corner : kCorners) {
+    SACCADE_TRY(const PlannedMotion planned, robot.plan(views_at(corner)));
+    if (!planned.motion) {
+      return Error{Errc::not_found, "no way for the arm to a corner of the scan: " + planned.why, arm.name()};
+    }
+    const Trajectory& trajectory = planned.motion->trajectory;
+    for (; next_s <= trajectory.duration_s(); next_s += between_s) {
+      poses.push_back(camera_pose(arm, trajectory.at(next_s).q));
+    }
+    next_s -= trajectory.duration_s();
+    SACCADE_TRY([[maybe_unused]] const auto arrival, robot.execute(*planned.motion));
+  }
+  return poses;
+}
+
+}  // namespace saccade::thesis
