@@ -156,7 +156,7 @@ std::vector<std::string> notes_of(const Totals& totals, const ScanTrackingConfig
       "Egomotion is our ICP of each frame against the map, begun at the first pose that the arm reports. Robot "
       "kinematics are the true poses but for a hand-eye calibration that is off by " +
           millimetres(config.calibration_m) + " and " + fixed(degrees(config.calibration_rad), 1) +
-          "°: an assumption, what a careful calibration leaves. Drift, at the end (and at most), is against the "
+          "°: an assumption, what a careful calibration leaves. Drift is against the "
           "camera's true motion since the first frame; in the thesis the robot's poses stand for the truth.",
       "The thesis' egomotion has drifted by about " + fixed(1e3 * kThesisDrift_m, 0) + " mm at the end, ours by " +
           millimetres(totals.drift_m) +
@@ -182,8 +182,14 @@ Result<ReproducedTable> reproduce_table_2_1(const ReproduceOptions& options, con
   config.seed = options.seed;
   ReproducedTable table;
   table.caption = "Table 2.1: errors of rebuilt objects by tracking method, in metres; drift as in Fig. 2.12";
-  table.columns = {"scenario",        "tracking method", "thesis: mean abs.", "thesis: st. dev.",
-                   "here: mean abs.", "here: st. dev.",  "drift, m",          "drift, °"};
+  table.columns = {"scenario",
+                   "tracking method",
+                   "thesis: mean abs.",
+                   "thesis: st. dev.",
+                   "here: mean abs.",
+                   "here: st. dev.",
+                   "drift at the end (at most), m",
+                   "°"};
   json rows = json::array();
   DriftPlots plots;
   Totals totals;

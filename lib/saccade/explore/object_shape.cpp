@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <functional>
+#include <iterator>
 #include <limits>
 #include <numbers>
 
@@ -24,28 +26,28 @@ Box bounds_of(const TriangleMesh& mesh) {
   return box;
 }
 
-/// The greatest value but for the `trimmed` greatest. Reorders the values.
-float highest(std::vector<float>& values, std::size_t trimmed) {
-  const auto at = values.end() - 1 - static_cast<std::ptrdiff_t>(trimmed);
-  std::nth_element(values.begin(), at, values.end());
+/// The greatest value but for the `trimmed` greatest.
+float highest(const std::vector<float>& values, std::size_t trimmed) {
+  constexpr float kNearEnd_m{0.01F};  // what is sorted; nearly always enough
+  const float end = *std::max_element(values.begin(), values.end());
+  std::vector<float> top;
+  std::copy_if(values.begin(), values.end(), std::back_inserter(top),
+               [&](float value) { return value > end - kNearEnd_m; });
+  if (top.size() <= trimmed) top = values;
+  const auto at = top.begin() + static_cast<std::ptrdiff_t>(trimmed);
+  std::nth_element(top.begin(), at, top.end(), std::greater<>{});
   return *at;
 }
 
-float lowest(std::vector<float>& values, std::size_t trimmed) {
-  const auto at = values.begin() + static_cast<std::ptrdiff_t>(trimmed);
-  std::nth_element(values.begin(), at, values.end());
-  return *at;
-}
-
-/// Between two vertical planes that hold the points between them.
-double width_m(const std::vector<Eigen::Vector3f>& points, double direction_rad, std::size_t trimmed,
+/// How far the points reach along a horizontal direction.
+double reach_m(const std::vector<Eigen::Vector3f>& points, double direction_deg, std::size_t trimmed,
                std::vector<float>& scratch) {
+  const double direction_rad = direction_deg * std::numbers::pi / 180.0;
   const auto x = static_cast<float>(std::cos(direction_rad));
   const auto y = static_cast<float>(std::sin(direction_rad));
   scratch.clear();
   for (const Eigen::Vector3f& p : points) scratch.push_back(x * p.x() + y * p.y());
-  const float high = highest(scratch, trimmed);
-  return static_cast<double>(high) - static_cast<double>(lowest(scratch, trimmed));
+  return static_cast<double>(highest(scratch, trimmed));
 }
 
 struct Axes {
@@ -61,8 +63,9 @@ Axes axes_of(const std::vector<Eigen::Vector3f>& points, std::size_t trimmed) {
   constexpr double kAsNarrow_m{0.002};
   std::vector<float> scratch;
   scratch.reserve(points.size());
+  // Between two vertical planes that hold the points between them.
   const auto width_at_m = [&](double degrees) {
-    return width_m(points, degrees * std::numbers::pi / kHalfTurn, trimmed, scratch);
+    return reach_m(points, degrees, trimmed, scratch) + reach_m(points, degrees + kHalfTurn, trimmed, scratch);
   };
   std::vector<double> widths_m;
   for (std::size_t degree = 0; degree < kHalfTurn; ++degree) {
