@@ -3,7 +3,6 @@
 
 #include <array>
 #include <cmath>
-#include <limits>
 #include <numbers>
 
 #include "saccade/explore/simulated_run.hpp"
@@ -49,29 +48,17 @@ std::vector<Pose> views_at(const Corner& corner) {
   return views;
 }
 
-Box bounds_of(const TriangleMesh& mesh) {
-  Box box{Vector3d::Constant(std::numeric_limits<double>::infinity()),
-          Vector3d::Constant(-std::numeric_limits<double>::infinity())};
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    box.min = box.min.cwiseMin(vertex.cast<double>());
-    box.max = box.max.cwiseMax(vertex.cast<double>());
-  }
-  return box;
-}
-
 }  // namespace
 
-Result<std::vector<Pose>> scan_motion(const RayScene& scene, const ArmModel& arm, double pace) {
+Result<std::vector<Pose>> scan_motion(const Scene& scene, const ArmModel& arm, double pace) {
   SACCADE_EXPECTS(pace > 0.0);
-  // Whoever teaches the arm its way sees the objects, which no map knows yet.
   ArmRobotConfig config;
   config.obstacles.unknown_is_obstacle = false;
-  for (const ObjectMesh& object : scene.meshes()) {
-    if (!object.support) config.obstacles.fixtures.push_back(bounds_of(object.mesh));
-  }
-  Scene with_start = scene.scene();
-  with_start.scan = views_at(kCorners.front());
-  SACCADE_TRY(SimulatedRobot robot, simulated_arm(arm, with_start, SimulatedRunConfig{}, config));
+  Scene seen = scene;
+  seen.scan = views_at(kCorners.front());
+  // Whoever teaches the arm its way sees the objects, which no map knows yet.
+  for (SceneObject& object : seen.objects) object.fixture = true;
+  SACCADE_TRY(SimulatedRobot robot, simulated_arm(arm, seen, SimulatedRunConfig{}, config));
 
   std::vector<Pose> poses{robot.T_world_camera()};
   const double between_s = pace / kFrameRate_hz;  // in the time of the planned motions, which are the fastest

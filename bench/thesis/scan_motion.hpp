@@ -6,7 +6,7 @@
 
 #include "saccade/core/pose.hpp"
 #include "saccade/robot/arm_model.hpp"
-#include "saccade/scene/ray_scene.hpp"
+#include "saccade/scene/scene.hpp"
 
 namespace saccade::thesis {
 
@@ -16,6 +16,6 @@ constexpr double kFrameRate_hz{30.0};
 /// always looking at its middle. It stops at the corners of its way.
 /// @param pace share of the speed that the arm could drive with; positive
 /// @return errors of SimulatedRobot::create; not_found where the arm has no way from one corner to the next.
-[[nodiscard]] Result<std::vector<Pose>> scan_motion(const RayScene& scene, const ArmModel& arm, double pace);
+[[nodiscard]] Result<std::vector<Pose>> scan_motion(const Scene& scene, const ArmModel& arm, double pace);
 
 }  // namespace saccade::thesis

@@ -89,7 +89,7 @@ Result<std::vector<ScanTracking>> track_scan(const std::string& scene, const Sca
   SACCADE_TRY(const RayScene rays, RayScene::build(std::move(found)));
   SACCADE_TRY(const ObjectShapes shapes, ObjectShapes::build(rays));
   SACCADE_TRY(const UrdfArm robot, find_robot("comau_smart_six"));
-  SACCADE_TRY(std::vector<Pose> T_world_camera, scan_motion(rays, robot.arm, config.pace));
+  SACCADE_TRY(std::vector<Pose> T_world_camera, scan_motion(rays.scene(), robot.arm, config.pace));
   if (config.frames > 0) T_world_camera.resize(std::min(config.frames, T_world_camera.size()));
   SimulatedRunConfig run;
   run.seed = config.seed;
