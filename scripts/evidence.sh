@@ -61,13 +61,13 @@ else
 fi
 
 echo "Tables of the thesis"
-tables=(2.1 2.9 2.10)
+tables=(2.9 2.10)
 if [[ -d $data/hand_polhemus ]]; then
   tables=(2.2 2.3 2.4 2.5 2.6 "${tables[@]}" --hands "$data/hand_polhemus")
 else
   echo "  without Tables 2.2 to 2.6, $data/hand_polhemus is not there"
 fi
-step reproduce build/release/saccade --quiet reproduce "${tables[@]}" --out "$out/figures" --json "$out/reproduce.json"
+step reproduce build/release/saccade --quiet reproduce 2.1 "${tables[@]}" --out "$out/figures" --json "$out/reproduce.json"
 
 echo "Explorations: ten seeds, noise on"
 scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'import json, sys; print(",".join(s["name"] for s in json.load(sys.stdin)["result"]["scenes"] if not s["name"].endswith("-before")))')"
