@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "cli/run_program.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -29,6 +30,24 @@ TEST(Reproduce, RefusesWhatItDoesNotKnow) {
   expect_failure(run_program({"reproduce", "2.9", "2.10", "2.9"}), 2, "reproduce", {"2.9 is named twice"});
   expect_failure(run_program({"reproduce", "2.9", "--poses", "0"}), 2, "reproduce", {"--poses"});
   expect_failure(run_program({"reproduce", "2.9", "--json", "/dev/null/no/file"}), 3, "reproduce", {"/dev/null/no"});
+}
+
+TEST(Reproduce, UpdatesStandBesideTheThesis) {
+  if (kSanitized) GTEST_SKIP() << "four updates take long under sanitizers; update_test runs them";
+  const Outcome outcome = run_program({"reproduce", "2.7", "--image-width", "80", "--quiet", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json table = outcome.json().at("result").at("tables").at(0);
+  ASSERT_EQ(table.at("rows").size(), 4U);
+  for (const nlohmann::json& row : table.at("rows")) {
+    EXPECT_GT(row.at("views").get<int>(), 0);
+    EXPECT_GT(row.at("coverage").get<double>(), 0.5);
+    EXPECT_LT(row.at("error_m").get<double>(), 0.02);
+    EXPECT_GT(row.at("robot_s").get<double>(), 1.0);
+    EXPECT_LT(row.at("nbv_s").get<double>(), row.at("thesis").at("nbv_s").get<double>());
+    EXPECT_GT(row.at("regions").get<int>(), row.at("experiment").get<int>() - 1);
+  }
+  EXPECT_EQ(table.at("rows").at(3).at("thesis").at("views"), 3);
+  EXPECT_NE(table.at("notes").dump().find("80 pixels wide"), std::string::npos);
 }
 
 /// One run for both, with few poses.

@@ -16,6 +16,7 @@
 #include "saccade/attention/hand_recorder.hpp"
 #include "saccade/attention/zvc.hpp"
 #include "saccade/core/pose.hpp"
+#include "saccade/explore/environment_update.hpp"
 #include "saccade/explore/simulated_run.hpp"
 #include "saccade/explore/simulated_task.hpp"
 #include "saccade/io/urdf.hpp"
@@ -91,6 +92,10 @@ TEST(Defaults, OfExplorationsAreDocumented) {
   expect_documented("ExplorationConfig::oscillation_frames", {static_cast<double>(run.exploration.oscillation_frames)});
   expect_documented("ExplorationConfig::oscillation_rad", {degrees(run.exploration.oscillation_rad)});
   expect_documented("kCameraClearance_m", {kCameraClearance_m});
+  expect_documented("kUpdateMinGain", {kUpdateMinGain});
+  expect_documented("kUpdateMaxViews", {static_cast<double>(kUpdateMaxViews)});
+  expect_documented("kSpeedWhileFusing", {kSpeedWhileFusing});
+  expect_documented("kFrameOnWay_s", {kFrameOnWay_s});
 }
 
 TEST(Defaults, OfAttentionAreDocumented) {

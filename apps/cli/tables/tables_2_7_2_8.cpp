@@ -182,8 +182,8 @@ Result<ReproducedTable> reproduce_table_2_7(const ReproduceOptions& options, con
       "Errors are of the height and both axes of the object that was put down (docs/metrics.md).",
       "Completeness: the thesis gave marks from 1 to 10 by eye; here it is the share of the surface that can be seen "
       "inside a region, table included, which the mesh has within a voxel, of the region that has least.",
-      "Time: here what the simulated arm's motions take and what was computed meanwhile on this machine. The thesis' "
-      "also holds planning, which took its OpenRAVE and collision map most of it.",
+      "Time: here what the simulated arm's motions take, and what was computed between them on this machine; the "
+      "thesis' is that of its whole system.",
       "In the second experiment the thesis had three regions, two of them almost the same; here there are as many as "
       "the detector found: " +
           std::to_string(all.back().regions) + "."};

@@ -23,8 +23,8 @@ enum class FuseWhen : std::uint8_t {
 constexpr double kSpeedWhileFusing{0.25};
 /// Between frames that are fused on the way, seconds.
 constexpr double kFrameOnWay_s{0.1};
-/// IncTh of Algorithm 1 for regions as small as those of a hand: from 0.8 m a ball of 0.2 m fills about 3500 of the 160 ×
-/// 120 rays that views are chosen with.
+/// IncTh of Algorithm 1 for regions as small as those of a hand: from 0.8 m a ball of 0.2 m fills about 3500 of the 160
+/// × 120 rays that views are chosen with.
 constexpr double kUpdateMinGain{50.0};
 /// The three regions of the thesis' second experiment took five.
 constexpr int kUpdateMaxViews{30};
