@@ -106,7 +106,9 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
       ++taken;
       figures.unknown_left.push_back(count_unknown(map.content(), subject.after.scene.workspace));
       const TsdfSnapshot after = map.snapshot();
-      if (after_view) drawn = after_view({taken, before, after, view, proposals, earlier, devices.take_frames()});
+      std::vector<Frame> frames = devices.take_frames();
+      frames.erase(frames.begin(), frames.end() - static_cast<std::ptrdiff_t>(view.frames));  // those on the way
+      if (after_view) drawn = after_view({taken, before, after, view, proposals, earlier, std::move(frames)});
       before = after;
       earlier.push_back(view.T_world_camera);
       return drawn.ok();

@@ -53,7 +53,7 @@ struct TakenView {
   const ExploredView& view;
   const Proposals& proposals;
   std::vector<Pose> T_world_earlier;
-  std::vector<Frame> frames;
+  std::vector<Frame> frames;  ///< of the oscillation
 };
 
 /// Scans the scene before the task, returns to stand-by, lets the user change the scene, and runs Algorithm 1.

@@ -16,16 +16,6 @@ namespace {
 
 using Eigen::Vector3d;
 
-Box bounds_of(const TriangleMesh& mesh) {
-  Box box{Vector3d::Constant(std::numeric_limits<double>::infinity()),
-          Vector3d::Constant(-std::numeric_limits<double>::infinity())};
-  for (const Eigen::Vector3f& vertex : mesh.vertices) {
-    box.min = box.min.cwiseMin(vertex.cast<double>());
-    box.max = box.max.cwiseMax(vertex.cast<double>());
-  }
-  return box;
-}
-
 /// The greatest value but for the `trimmed` greatest.
 float highest(const std::vector<float>& values, std::size_t trimmed) {
   constexpr float kNearEnd_m{0.01F};  // what is sorted; nearly always enough

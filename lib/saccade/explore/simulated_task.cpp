@@ -14,12 +14,6 @@ using Eigen::Vector3d;
 
 Error bad(std::string what) { return Error{Errc::invalid_argument, std::move(what), "simulated task"}; }
 
-Box bounds_of(const TriangleMesh& mesh) {
-  Eigen::AlignedBox3d around;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) around.extend(vertex.cast<double>());
-  return {around.min(), around.max()};
-}
-
 const ObjectMesh* find(const std::vector<ObjectMesh>& meshes, const std::string& name) {
   const auto found = std::find_if(meshes.begin(), meshes.end(), [&](const ObjectMesh& m) { return m.name == name; });
   return found == meshes.end() ? nullptr : &*found;

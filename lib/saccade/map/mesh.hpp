@@ -30,4 +30,7 @@ struct MeshConfig {
 [[nodiscard]] TriangleMesh extract_mesh(const TsdfSnapshot& map, const Executor& executor,
                                         const MeshConfig& config = {});
 
+/// Smallest box around its vertices; an empty box around the origin when there are none.
+[[nodiscard]] Box bounds_of(const TriangleMesh& mesh);
+
 }  // namespace saccade

@@ -23,7 +23,4 @@ void draw_mesh(Canvas& canvas, const TriangleMesh& mesh, const Executor& executo
 [[nodiscard]] ColorImage mesh_picture(const TriangleMesh& mesh, const Viewpoint& view, const Executor& executor,
                                       const MeshPictureConfig& config = {});
 
-/// Smallest box around its vertices; an empty box around the origin when there are none.
-[[nodiscard]] Box bounds_of(const TriangleMesh& mesh);
-
 }  // namespace saccade
