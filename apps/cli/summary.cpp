@@ -7,8 +7,9 @@
 namespace saccade::cli {
 
 void Summary::line(std::string_view name, std::string_view value) const {
-  constexpr int kNameWidth{12};
-  out_ << std::left << std::setw(kNameWidth) << name << value << '\n';
+  constexpr std::size_t kNameWidth{12};
+  out_ << std::left << std::setw(static_cast<int>(kNameWidth)) << name << (name.size() < kNameWidth ? "" : "  ")
+       << value << '\n';
 }
 
 std::string fixed(double value, int decimals) {

@@ -43,6 +43,13 @@ json unknown_json(const UpdateResult& update, std::size_t region) {
   return counts;
 }
 
+/// Where the map ends there is nothing to look at again, whatever the robot reaches.
+std::string_view end_of(const UpdateResult& update, std::size_t region) {
+  const auto& outcomes = update.exploration.regions;
+  if (region >= outcomes.size()) return to_string(RegionEnd::not_begun);
+  return update.unknown_after_task.at(region) == 0 ? "outside_workspace" : to_string(outcomes[region].end);
+}
+
 Result<json> region_json(const UpdateCase& subject, const WatchedTask& task, const UpdateFigures& figures,
                          const TriangleMesh& mesh, std::size_t i, const Executor& executor) {
   const RegionOfInterest& region = task.regions[i];
@@ -59,7 +66,7 @@ Result<json> region_json(const UpdateCase& subject, const WatchedTask& task, con
               {"radius_m", sphere.radius_m},
               {"saliency", region.saliency},
               {"why", region.why},
-              {"end", to_string(outcome.end)},
+              {"end", end_of(figures.update, i)},
               {"views", taken},
               {"gain_left", outcome.gain_left},
               {"refused", refused_json(outcome.refused)},
@@ -171,7 +178,7 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"regions", std::move(regions)},
               {"views", std::move(views)},
               {"objects", std::move(objects)},
-              {"back", return_json(figures.update.back)},
+              {"back", options.has_arm() ? return_json(figures.update.back) : json(nullptr)},
               {"contacts", {{"instants", figures.instants}, {"touching", figures.contacts}}},
               {"phases_s", phases_json(figures.update)},
               {"interrupted", figures.interrupted},

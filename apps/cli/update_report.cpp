@@ -22,6 +22,7 @@ using nlohmann::json;
 std::string in_words(const std::string& end) {
   if (end == "done") return "complete";
   if (end == "out_of_reach") return "out of reach";
+  if (end == "outside_workspace") return "outside the workspace";
   return end == "not_begun" ? "not begun" : end;
 }
 
@@ -99,8 +100,8 @@ Status UpdatePictures::draw_maps(const UpdateFigures& figures) const {
   const Box& workspace = subject_.after.scene.workspace;
   const std::vector<Region> regions = bounds_of(task_.regions);
   const TaskScene task{workspace, task_.trajectory, task_.findings, regions};
-  // The arm stands at its stand-by before the task and after the update.
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), figures.stand_by, {});
+  const std::optional<RobotDrawing> robot_at_end = drawing_of(devices_.arm(), figures.at_end, {});
   TaskPictureConfig config;
   config.region_radius_m = options_.region_radius_m;
   MapPictureConfig map;
@@ -108,6 +109,7 @@ Status UpdatePictures::draw_maps(const UpdateFigures& figures) const {
   SACCADE_CHECK(write_png(out_ / "before.png", map_picture(figures.before, workspace, executor_, map)));
   SACCADE_CHECK(write_png(out_ / "hand.png", task_picture(figures.before, task, executor_, config)));
   SACCADE_CHECK(write_png(out_ / "regions.png", forgotten_picture(figures.forgotten, task, executor_, config)));
+  map.robot = robot_at_end ? &*robot_at_end : nullptr;
   return write_png(out_ / "after.png", map_picture(figures.after, workspace, executor_, map));
 }
 

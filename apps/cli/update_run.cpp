@@ -57,6 +57,11 @@ Result<WatchedTask> watch_task(const UpdateOptions& options, const UpdateCase& s
   task.ms = stopwatch.elapsed_ms();
   task.findings.labels_m = std::move(places_m);
   SACCADE_TRY(task.regions, regions_of_interest(task.findings.actions, options.region_radius_m));
+  // A region that no map can hold is found here, before the robot moves.
+  SACCADE_TRY(TsdfMap empty, TsdfMap::create(options.run.map()));
+  if (const Status forgotten = forget_around(empty, task.regions); !forgotten) {
+    return Error{forgotten.error().code, forgotten.error().message, "regions of the hand in " + options.trajectory};
+  }
   return task;
 }
 
@@ -81,7 +86,9 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
   for (const Box& box : options.free_boxes()) SACCADE_CHECK(map.free(box));
   SACCADE_TRY(figures.scan, scan(map, cell, subject.before.scene.scan, config, executor, {}, progress));
   figures.interrupted = !figures.scan.complete;
-  if (!figures.interrupted) {
+  if (figures.interrupted) {
+    figures.update.exploration.stopped_because = StopReason::cancelled;
+  } else {
     SACCADE_TRY(figures.update.back, return_to_stand_by(map, devices.robot(), executor));
   }
   figures.stand_by = devices.robot().configuration();
@@ -120,6 +127,7 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
     figures.interrupted = figures.update.exploration.stopped_because == StopReason::cancelled;
   }
   figures.after = map.snapshot();
+  figures.at_end = devices.robot().configuration();
   if (arm == nullptr) return figures;
   progress.report("checking for contacts", 0, 0);
   SACCADE_CHECK(count_contacts_of(*arm, 0, scanned, *subject.before.rays, executor, figures));

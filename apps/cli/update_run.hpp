@@ -27,8 +27,8 @@ struct WatchedTask {
   std::vector<RegionOfInterest> regions;
   double ms{0.0};  ///< of the detector
 };
-/// Reads or simulates the hand. Errors: those of reader, detector and simulated_hand; a hand without an action has no
-/// regions.
+/// Reads or simulates the hand. Errors: those of reader, detector and simulated_hand, and invalid_argument for a region
+/// that no map can hold; a hand without an action has no regions.
 [[nodiscard]] Result<WatchedTask> watch_task(const UpdateOptions& options, const UpdateCase& subject);
 
 /// An update as far as it came.
@@ -40,6 +40,7 @@ struct UpdateFigures {
   UpdateResult update;                      ///< without regions the robot came back from the scan
   std::vector<std::size_t> unknown_left;    ///< in the workspace, after each view
   TsdfSnapshot after;
+  std::optional<Configuration> at_end{};  ///< of an arm; an interrupted one stands elsewhere than at its stand-by
   bool interrupted{false};
   std::size_t instants{0};  ///< of all motions, at which contacts were looked for
   std::size_t contacts{0};  ///< with what was really there

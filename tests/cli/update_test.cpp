@@ -3,6 +3,7 @@
 // wrong.
 #include <gtest/gtest.h>
 
+#include <Eigen/Core>
 #include <cmath>
 #include <csignal>
 #include <fstream>
@@ -139,6 +140,40 @@ TEST(UpdateCommand, EndsClearlyWhereThereIsNothingToUpdate) {
   run("far.csv", "outside the workspace");
 }
 
+TEST(UpdateCommand, APlaceOutsideTheWorkspaceIsNotCalledDone) {
+  const TempFolder folder;
+  write_hand(folder / "far.csv", {0.0, 0.6, 0.75}, 30);  // over the table's far edge, where view poses are within reach
+  const Outcome outcome =
+      run_program(update(folder / "run", {"--image-size", "80,60", "--voxel-size", "0.02", "--no-pictures", "--scene",
+                                          "bottle", "--trajectory", (folder / "far.csv").string()}));
+  EXPECT_EQ(outcome.status, 5) << outcome.err;
+  const json result = outcome.json().at("result");
+  ASSERT_EQ(result.at("regions").size(), 1U);
+  EXPECT_EQ(result.at("regions").at(0).at("end"), "outside_workspace");
+}
+
+TEST(UpdateCommand, PicturesOfAViewAreThoseOfTheViewAndNotOfTheWayToIt) {
+  const TempFolder folder;
+  const Arguments first_view{"update", "--quiet",    "--scene",     "bottle", "--image-size", "160,120", "--voxel-size",
+                             "0.02",   "--no-noise", "--max-views", "1"};
+  for (const char* when : {"viewpoints", "motion"}) {
+    const Outcome outcome = run_program(first_view + Arguments{"--fuse-when", when, "--out", (folder / when).string()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  // The first view is chosen in the same map, so that its exact picture is the same.
+  const std::string at_view = text_of(folder / "viewpoints/view-01-seen.png");
+  EXPECT_FALSE(at_view.empty());
+  EXPECT_EQ(at_view, text_of(folder / "motion/view-01-seen.png"));
+}
+
+TEST(UpdateCommand, LongNamesOfObjectsStandApartFromTheirFigures) {
+  const TempFolder folder;
+  const Outcome outcome =
+      run_program({"update", "--quiet", "--scene", "tabletop-1", "--before", "tabletop-2", "--image-size", "80,60",
+                   "--voxel-size", "0.02", "--max-views", "0", "--no-pictures", "--out", (folder / "run").string()});
+  EXPECT_NE(outcome.out.find("\nright-middle  "), std::string::npos) << outcome.out << outcome.err;
+}
+
 TEST(UpdateCommand, SaysWhichRegionsAreOutOfReach) {
   const TempFolder folder;
   write_hand(folder / "hand.csv", {0.0, 0.0, 0.1}, 30);
@@ -166,6 +201,7 @@ TEST(UpdateCommand, RefusesWhatMakesNoSense) {
   refused(2, {"--scene", "bottle", "--fuse-when", "never"}, {"--fuse-when"});
   refused(2, {"--scene", "bottle", "--fuse-when", "motion", "--robot", "free"}, {"--fuse-when", "arm"});
   refused(2, {"--scene", "bottle", "--region-radius", "0"}, {"--region-radius"});
+  refused(3, {"--scene", "bottle", "--region-radius", "1e6"}, {"regions of the hand", "within 1000 m"});
   refused(2, {"--scene", "after.yaml"}, {"--before"});
   refused(3, {"--scene", "tabletop-1"}, {"tabletop-1-before", "no such scene"});
   refused(3, {"--scene", "bottle", "--before", "bottle"}, {"bottle"});
@@ -186,6 +222,20 @@ TEST(UpdateCommand, AnInterruptedUpdateKeepsWhatItHas) {
   ASSERT_TRUE(document.is_object());
   EXPECT_TRUE(document.at("result").at("interrupted").get<bool>());
   EXPECT_TRUE(fs::exists(run / "map.sacmap"));
+}
+
+TEST(UpdateCommand, AnInterruptedScanIsNoUpdateThatIsDone) {
+  const TempFolder folder;
+  const fs::path run = folder / "run";
+  RunningProgram program{{"update", "--scene", "jug", "--out", run.string(), "--no-pictures"}};
+  ASSERT_TRUE(program.wait_for("initial scan"));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  const json document = json::parse(text_of(run / "update.json"), nullptr, false);
+  ASSERT_TRUE(document.is_object());
+  EXPECT_EQ(document.at("result").at("stopped_because"), "cancelled");
+  EXPECT_EQ(document.at("result").at("regions").at(0).at("end"), "not_begun");
 }
 
 }  // namespace
