@@ -28,6 +28,8 @@
 #include "saccade/robot/motion_planner.hpp"
 #include "saccade/robot/obstacle_map.hpp"
 #include "saccade/robot/swept_cells.hpp"
+#include "saccade/segment/lccp.hpp"
+#include "saccade/segment/supervoxels.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -130,6 +132,20 @@ TEST(Defaults, OfAttentionAreDocumented) {
                     {SimulatedHandConfig{}.grip_share, SimulatedHandConfig{}.wrist_m});
   expect_documented("HandRecorderConfig::margin_m", {recorder.margin_m});
   expect_documented("HandRecorderConfig::dropout_s", {recorder.dropout_s});
+}
+
+TEST(Defaults, OfSegmentationAreDocumented) {
+  const SupervoxelConfig supervoxels;
+  expect_documented("VoxelCloudConfig::voxel_size_m", {supervoxels.voxels.voxel_size_m});
+  expect_documented("SupervoxelConfig::seed_spacing_m", {supervoxels.seed_spacing_m});
+  expect_documented("SupervoxelConfig::spatial_weight",
+                    {supervoxels.spatial_weight, supervoxels.normal_weight, supervoxels.color_weight});
+  expect_documented("SupervoxelConfig::min_seed_share", {supervoxels.min_seed_share});
+  expect_documented("SupervoxelConfig::max_rounds", {static_cast<double>(supervoxels.max_rounds)});
+  const LccpConfig lccp;
+  expect_documented("LccpConfig::concavity_tolerance_rad", {degrees(lccp.concavity_tolerance_rad)});
+  expect_documented("LccpConfig::smoothness", {lccp.smoothness});
+  expect_documented("LccpConfig::min_supervoxels", {static_cast<double>(lccp.min_supervoxels)});
 }
 
 TEST(Defaults, OfViewsAreDocumented) {

@@ -1,0 +1,163 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/segment/lccp.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+#include <cmath>
+#include <utility>
+
+namespace saccade {
+
+namespace {
+
+constexpr double kDegree{std::numbers::pi / 180.0};
+
+/// The least angle between the line of centroids and the line in which the two planes meet, for normals `angle_rad`
+/// apart (Stein et al., section 3.2, with the constants given there).
+double least_sane_angle_rad(double angle_rad) {
+  constexpr double kMost_rad{60.0 * kDegree};
+  constexpr double kMiddle_deg{25.0};
+  constexpr double kSlope_per_deg{0.25};
+  return kMost_rad / (1.0 + std::exp(-kSlope_per_deg * (angle_rad / kDegree - kMiddle_deg)));
+}
+
+bool joins(const Supervoxel& a, const Supervoxel& b, const LccpConfig& config, double voxel_size_m) {
+  const Eigen::Vector3d n_a = a.normal.cast<double>();
+  const Eigen::Vector3d n_b = b.normal.cast<double>();
+  const Eigen::Vector3d between_m = (a.centroid_m - b.centroid_m).cast<double>();
+  const double distance_m = between_m.norm();
+  if (!(distance_m > 0.0)) return true;
+  const Eigen::Vector3d d = between_m / distance_m;
+  const double angle_rad = std::atan2(n_a.cross(n_b).norm(), n_a.dot(n_b));
+
+  if (config.smooth) {
+    // On a surface that bends evenly a patch lies off the other's plane by half of this.
+    const double bend_m = distance_m * (n_a - n_b).norm();
+    const double step_m = std::min(std::abs(n_a.dot(between_m)), std::abs(n_b.dot(between_m)));
+    if (step_m > bend_m + config.smoothness * voxel_size_m) return false;
+  }
+  if (config.sanity) {
+    const Eigen::Vector3d crease = n_a.cross(n_b);
+    const double between_rad = std::atan2(crease.cross(d).norm(), std::abs(crease.dot(d)));
+    if (crease.norm() > 0.0 && between_rad < least_sane_angle_rad(angle_rad)) return false;
+  }
+  return angle_rad < config.concavity_tolerance_rad || n_a.dot(d) >= n_b.dot(d);
+}
+
+/// Disjoint sets; a set is called by its least member.
+class Sets {
+ public:
+  explicit Sets(std::size_t count) : parents_(count) {
+    for (std::size_t i = 0; i < count; ++i) parents_[i] = static_cast<std::uint32_t>(i);
+  }
+  std::uint32_t root(std::uint32_t i) {
+    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
+    return i;
+  }
+  void join(std::uint32_t a, std::uint32_t b) {
+    a = root(a);
+    b = root(b);
+    parents_[std::max(a, b)] = std::min(a, b);
+  }
+
+ private:
+  std::vector<std::uint32_t> parents_;
+};
+
+/// Of those edges, the ones whose ends have a common neighbour by others of them.
+std::vector<bool> with_common_neighbour(const SupervoxelResult& from, const std::vector<bool>& convex) {
+  std::vector<std::vector<std::uint32_t>> neighbours(from.supervoxels.size());  // sorted, as the edges are
+  for (std::size_t e = 0; e < convex.size(); ++e) {
+    if (convex[e]) neighbours[from.edges[e].second].push_back(from.edges[e].first);
+  }
+  for (std::size_t e = 0; e < convex.size(); ++e) {
+    if (convex[e]) neighbours[from.edges[e].first].push_back(from.edges[e].second);
+  }
+  const auto meet = [](const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b) {
+    for (std::size_t i = 0, k = 0; i < a.size() && k < b.size();) {
+      if (a[i] == b[k]) return true;
+      ++(a[i] < b[k] ? i : k);
+    }
+    return false;
+  };
+  std::vector<bool> kept(convex.size());
+  for (std::size_t e = 0; e < convex.size(); ++e) {
+    kept[e] = convex[e] && meet(neighbours[from.edges[e].first], neighbours[from.edges[e].second]);
+  }
+  return kept;
+}
+
+/// The least segment that is too small joins the largest one next to it, until there is none.
+void join_small(const SupervoxelResult& from, std::size_t min_supervoxels, Sets& sets) {
+  const std::size_t count = from.supervoxels.size();
+  std::vector<bool> alone(count);  // nothing next to it
+  for (;;) {
+    std::vector<std::size_t> sizes(count, 0);
+    for (std::uint32_t s = 0; s < count; ++s) sizes[sets.root(s)] += 1;
+    std::uint32_t least{kUnlabelled};
+    for (std::uint32_t s = 0; s < count; ++s) {
+      if (sizes[s] == 0 || sizes[s] >= min_supervoxels || alone[s]) continue;
+      if (least == kUnlabelled || sizes[s] < sizes[least]) least = s;
+    }
+    if (least == kUnlabelled) return;
+    std::uint32_t largest{kUnlabelled};
+    for (const auto& [first, second] : from.edges) {
+      const std::uint32_t a = sets.root(first);
+      const std::uint32_t b = sets.root(second);
+      if ((a == least) == (b == least)) continue;
+      const std::uint32_t other = a == least ? b : a;
+      if (largest == kUnlabelled || sizes[other] > sizes[largest] ||
+          (sizes[other] == sizes[largest] && other < largest)) {
+        largest = other;
+      }
+    }
+    if (largest == kUnlabelled) {
+      alone[least] = true;
+    } else {
+      sets.join(least, largest);
+    }
+  }
+}
+
+}  // namespace
+
+Status LccpConfig::validate() const {
+  for (const double number : {concavity_tolerance_rad, smoothness}) {
+    if (!(std::isfinite(number) && number >= 0.0)) {
+      return Error{Errc::invalid_argument, "a number that is not finite, or negative", "LCCP"};
+    }
+  }
+  return {};
+}
+
+Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels, const LccpConfig& config) {
+  SACCADE_CHECK(config.validate());
+  LccpResult result;
+  result.convex.resize(supervoxels.edges.size());
+  for (std::size_t e = 0; e < supervoxels.edges.size(); ++e) {
+    const auto& [a, b] = supervoxels.edges[e];
+    result.convex[e] = joins(supervoxels.supervoxels[a], supervoxels.supervoxels[b], config, supervoxels.voxel_size_m);
+  }
+  if (config.extended_convexity) result.convex = with_common_neighbour(supervoxels, result.convex);
+
+  Sets sets{supervoxels.supervoxels.size()};
+  for (std::size_t e = 0; e < supervoxels.edges.size(); ++e) {
+    if (result.convex[e]) sets.join(supervoxels.edges[e].first, supervoxels.edges[e].second);
+  }
+  if (config.min_supervoxels > 1) join_small(supervoxels, config.min_supervoxels, sets);
+
+  std::uint32_t next{0};
+  result.segment_of.resize(supervoxels.supervoxels.size());
+  for (std::uint32_t s = 0; s < result.segment_of.size(); ++s) {
+    const std::uint32_t root = sets.root(s);
+    result.segment_of[s] = root == s ? next++ : result.segment_of[root];
+  }
+  result.segments = next;
+  result.labels = supervoxels.labels;
+  for (std::uint32_t& label : result.labels) {
+    if (label != kUnlabelled) label = result.segment_of[label];
+  }
+  return result;
+}
+
+}  // namespace saccade

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// LccpConfig, LccpResult and segment_by_convexity: LCCP, supervoxels joined where surfaces bend outwards.
+
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "saccade/core/result.hpp"
+#include "saccade/segment/supervoxels.hpp"
+
+namespace saccade {
+
+/// Parameters of segment_by_convexity.
+struct LccpConfig {
+  double concavity_tolerance_rad{10.0 * std::numbers::pi /
+                                 180.0};  ///< a smaller angle between normals counts as convex
+  bool sanity{true};                      ///< supervoxels that touch in one point only are kept apart
+  bool extended_convexity{false};         ///< a convex edge needs a third supervoxel with convex edges to both
+  bool smooth{true};                      ///< supervoxels with a step between them are kept apart
+  double smoothness{0.1};                 ///< the step that is allowed, in voxels
+  std::size_t min_supervoxels{0};         ///< a segment with fewer joins the largest one that it touches
+
+  /// @return invalid_argument for a number that is not finite or negative.
+  [[nodiscard]] Status validate() const;
+};
+
+/// Labels count segments from 0, in the order of their first supervoxels.
+struct LccpResult {
+  std::vector<std::uint32_t> labels;      ///< one per point; kUnlabelled where there is no point
+  std::vector<std::uint32_t> segment_of;  ///< per supervoxel
+  std::vector<bool> convex;               ///< per edge of the supervoxels: joined
+  std::size_t segments{0};
+};
+
+/// Locally convex connected patches (Stein et al., CVPR 2014): edges between supervoxels are convex or concave by their
+/// centroids and normals, and what convex edges connect is a segment.
+/// @return invalid_argument for a bad config.
+/// O(points + edges · degree), one thread, deterministic.
+[[nodiscard]] Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels,
+                                                      const LccpConfig& config = {});
+
+}  // namespace saccade

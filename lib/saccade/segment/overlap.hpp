@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SegmentOverlap, score_segments: how well segments match labelled objects.
+
+#include <cstdint>
+#include <span>
+
+#include "saccade/core/result.hpp"
+#include "saccade/segment/point_cloud.hpp"
+
+namespace saccade {
+
+/// Of one cloud. The best segment of an object is the one with the largest overlap.
+struct SegmentOverlap {
+  std::size_t objects{0};
+  std::size_t points{0};           ///< of all objects
+  double over_segmentation{0.0};   ///< F_os = 1 − Σ|object ∩ best| / Σ|object|
+  double under_segmentation{0.0};  ///< F_us = Σ|best ∖ object| / Σ|object|
+  double weighted_overlap{0.0};    ///< WOv = Σ|object| · max IoU / Σ|object|
+};
+
+/// Compares segments with objects, point by point (Stein et al., CVPR 2014, section 4). Points without an object are no
+/// part of a segment; points without a segment are parts of objects that were missed.
+/// @param segments  one label per point; kUnlabelled: none.
+/// @param objects   as many labels; kUnlabelled: none. Objects below `first_object` are not scored, but count as what a
+///                  segment holds besides.
+/// @return size_mismatch for unlike numbers of labels; no objects: all zero.
+/// O(points · log points), one thread, deterministic.
+[[nodiscard]] Result<SegmentOverlap> score_segments(std::span<const std::uint32_t> segments,
+                                                    std::span<const std::uint32_t> objects,
+                                                    std::uint32_t first_object = 0);
+
+}  // namespace saccade
