@@ -29,7 +29,8 @@ class Clustering {
         spatial_{static_cast<float>(config.spatial_weight / config.seed_spacing_m)},
         normal_{static_cast<float>(config.normal_weight)},
         color_{static_cast<float>(config.color_weight)},
-        labels_(cloud.voxels.size(), kUnlabelled) {}
+        labels_(cloud.voxels.size(), kUnlabelled),
+        open_(cloud.voxels.size(), 0) {}
 
   /// A label for every voxel.
   std::vector<std::uint32_t> run() {
@@ -40,6 +41,7 @@ class Clustering {
     }
     for (std::size_t round = 0; round < config_.max_rounds; ++round) {
       move_centres();
+      std::fill(open_.begin(), open_.end(), 1);
       if (!grow()) break;
     }
     fill_rest();
@@ -56,6 +58,7 @@ class Clustering {
   void add(std::uint32_t voxel) {
     labels_[voxel] = static_cast<std::uint32_t>(centres_.size());
     centres_.push_back({cloud_.voxels[voxel].place, cloud_.voxels[voxel].normal, cloud_.voxels[voxel].color});
+    for (const std::uint32_t other : cloud_.neighbours(voxel)) open_[other] = 1;
   }
 
   /// How much normals and colours differ from the neighbours'.
@@ -139,18 +142,28 @@ class Clustering {
     }
   }
 
-  /// Every voxel goes to the nearest centre among its own and its neighbours'. @return whether one changed.
+  /// Every open voxel goes to the nearest centre among its own and its neighbours'; then those next to one that changed
+  /// are open. @return whether there are any.
   bool grow() {
-    std::vector<std::uint32_t> next(labels_.size());
-    std::vector<std::uint8_t> changed((labels_.size() + kGrain - 1) / kGrain, 0);
+    std::vector<std::uint32_t> next = labels_;
+    std::vector<std::vector<std::uint32_t>> changed((labels_.size() + kGrain - 1) / kGrain);
     executor_.parallel_for(labels_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t v = begin; v < end; ++v) {
+        if (open_[v] == 0) continue;
+        open_[v] = 0;
         next[v] = nearest_label(static_cast<std::uint32_t>(v));
-        if (next[v] != labels_[v]) changed[begin / kGrain] = 1;
+        if (next[v] != labels_[v]) changed[begin / kGrain].push_back(static_cast<std::uint32_t>(v));
       }
     });
     labels_.swap(next);
-    return std::find(changed.begin(), changed.end(), 1) != changed.end();
+    bool any{false};
+    for (const std::vector<std::uint32_t>& chunk : changed) {
+      for (const std::uint32_t voxel : chunk) {
+        any = true;
+        for (const std::uint32_t other : cloud_.neighbours(voxel)) open_[other] = 1;
+      }
+    }
+    return any;
   }
 
   [[nodiscard]] std::uint32_t nearest_label(std::uint32_t v) const {
@@ -236,6 +249,7 @@ class Clustering {
   const Executor& executor_;
   float spatial_, normal_, color_;
   std::vector<std::uint32_t> labels_;
+  std::vector<std::uint8_t> open_;  ///< voxels for which another centre may be nearer
   std::vector<Centre> centres_;
 };
 
