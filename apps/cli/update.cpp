@@ -64,9 +64,8 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   std::function<Status(const TakenView&)> draw_view;
   if (options.write_pictures) draw_view = [&](const TakenView& view) { return pictures.draw_view(view); };
   SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress, draw_view));
-  progress.report("measuring", 0, 0);
   SACCADE_CHECK(write_maps(out, figures, task, executor));
-  SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor));
+  SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor, progress));
   const json document = json_envelope("update", global, executor, {{"total", total.elapsed_ms()}}, result);
   SACCADE_CHECK(write_json(out / "update.json", document));
   if (options.write_pictures) {
@@ -75,8 +74,8 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   }
   bar.finish();
   SACCADE_CHECK(write_json_output(global, document));
-  if (!global.json_to_stdout()) print_update(options, result);
-  if (figures.interrupted) {
+  if (!global.json_to_stdout()) print_update(options, task, result);
+  if (figures.interrupted || progress.cancelled()) {
     print_error("update", "stopped after " + std::to_string(figures.update.exploration.views.size()) +
                               " views; what they gave is in " + options.out.string());
     return interrupt_status();

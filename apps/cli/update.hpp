@@ -9,10 +9,11 @@
 
 namespace saccade::cli {
 
-/// `result` of the JSON: the figures, held against the truth.
+/// `result` of the JSON: the figures, held against the truth. Once it is cancelled, coverage is measured no more.
 [[nodiscard]] Result<nlohmann::json> update_json(const UpdateOptions& options, const UpdateCase& subject,
                                                  const WatchedTask& task, const UpdateFigures& figures,
-                                                 const ExploreDevices& devices, const Executor& executor);
-void print_update(const UpdateOptions& options, const nlohmann::json& result);
+                                                 const ExploreDevices& devices, const Executor& executor,
+                                                 const Progress& progress);
+void print_update(const UpdateOptions& options, const WatchedTask& task, const nlohmann::json& result);
 
 }  // namespace saccade::cli

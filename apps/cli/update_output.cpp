@@ -50,28 +50,34 @@ std::string_view end_of(const UpdateResult& update, std::size_t region) {
   return update.unknown_after_task.at(region) == 0 ? "outside_workspace" : to_string(outcomes[region].end);
 }
 
-Result<json> region_json(const UpdateCase& subject, const WatchedTask& task, const UpdateFigures& figures,
-                         const TriangleMesh& mesh, std::size_t i, const Executor& executor) {
+/// What the mesh has of the surface in a region; nulls where nothing was forgotten, or there is nothing to be seen.
+Result<json> coverage_json(const UpdateCase& subject, const UpdateFigures& figures, const Region& region,
+                           const MeshDistance* mesh, const Progress& progress, const Executor& executor) {
+  RegionCoverage coverage;
+  if (!figures.update.unknown_after_task.empty() && !progress.cancelled()) {
+    SACCADE_TRY(const RegionSurface surface, observable_in(*subject.after.rays, region, kTruthSpacing_m, executor));
+    coverage = measure_coverage(surface, mesh, figures.after.config.voxel_size_m, executor);
+  }
+  return json{{"objects", share_json(coverage.objects)}, {"surfaces", share_json(coverage.surfaces)}};
+}
+
+json region_json(const WatchedTask& task, const UpdateFigures& figures, std::size_t i) {
   const RegionOfInterest& region = task.regions[i];
   const auto& sphere = std::get<Sphere>(region.bounds);
   const auto& outcomes = figures.update.exploration.regions;
   const RegionOutcome outcome = i < outcomes.size() ? outcomes[i] : RegionOutcome{};
-  SACCADE_TRY(const RegionSurface surface,
-              observable_in(*subject.after.rays, region.bounds, kTruthSpacing_m, executor));
-  const RegionCoverage coverage = measure_coverage(surface, mesh, figures.after.config.voxel_size_m, executor);
   const auto& views = figures.update.exploration.views;
   const auto taken =
       std::count_if(views.begin(), views.end(), [i](const ExploredView& view) { return view.region == i; });
-  return json{{"center_m", point_json(sphere.center)},
-              {"radius_m", sphere.radius_m},
-              {"saliency", region.saliency},
-              {"why", region.why},
-              {"end", end_of(figures.update, i)},
-              {"views", taken},
-              {"gain_left", outcome.gain_left},
-              {"refused", refused_json(outcome.refused)},
-              {"unknown", unknown_json(figures.update, i)},
-              {"coverage", {{"objects", share_json(coverage.objects)}, {"surfaces", share_json(coverage.surfaces)}}}};
+  return {{"center_m", point_json(sphere.center)},
+          {"radius_m", sphere.radius_m},
+          {"saliency", region.saliency},
+          {"why", region.why},
+          {"end", end_of(figures.update, i)},
+          {"views", taken},
+          {"gain_left", outcome.gain_left},
+          {"refused", refused_json(outcome.refused)},
+          {"unknown", unknown_json(figures.update, i)}};
 }
 
 json shape_json(const ObjectShape& shape) {
@@ -147,11 +153,19 @@ std::string arm_text(const json& result) {
 }  // namespace
 
 Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
-                         const UpdateFigures& figures, const ExploreDevices& devices, const Executor& executor) {
+                         const UpdateFigures& figures, const ExploreDevices& devices, const Executor& executor,
+                         const Progress& progress) {
   const TriangleMesh mesh = extract_mesh(figures.after, executor);
   json regions = json::array();
+  std::optional<MeshDistance> distance;
+  if (!mesh.triangles.empty()) {
+    SACCADE_TRY(distance, MeshDistance::build(mesh));
+  }
   for (std::size_t i = 0; i < task.regions.size(); ++i) {
-    SACCADE_TRY(json region, region_json(subject, task, figures, mesh, i, executor));
+    progress.report("measuring", i, task.regions.size());
+    json region = region_json(task, figures, i);
+    SACCADE_TRY(region["coverage"], coverage_json(subject, figures, task.regions[i].bounds,
+                                                  distance ? &*distance : nullptr, progress, executor));
     regions.push_back(std::move(region));
   }
   SACCADE_TRY(json objects, objects_json(subject, mesh, executor));
@@ -172,6 +186,7 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"scan",
                {{"views", figures.scan.views},
                 {"refused", refused_json(figures.scan.refused)},
+                {"at_stand_by", figures.after_scan.at_stand_by},
                 {"unknown_left", count_unknown(figures.before, subject.before.scene.workspace)}}},
               {"task", task_json(options, task)},
               {"unknown_after_task", count_unknown(figures.forgotten, subject.before.scene.workspace)},
@@ -181,16 +196,19 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"back", options.has_arm() ? return_json(figures.update.back) : json(nullptr)},
               {"contacts", {{"instants", figures.instants}, {"touching", figures.contacts}}},
               {"phases_s", phases_json(figures.update)},
-              {"interrupted", figures.interrupted},
+              {"interrupted", figures.interrupted || progress.cancelled()},
               {"stopped_because", to_string(figures.update.exploration.stopped_because)}};
 }
 
-void print_update(const UpdateOptions& options, const json& result) {
+void print_update(const UpdateOptions& options, const WatchedTask& task, const json& result) {
   const Summary summary{std::cout};
   const json& scan = result["scan"];
   const std::string refused = refused_text(scan["refused"]);
-  summary.line("scan", std::to_string(scan["views"].get<std::size_t>()) + " views" +
-                           (refused.empty() ? "" : ", passed over: " + refused));
+  summary.line("scan",
+               std::to_string(scan["views"].get<std::size_t>()) + " views" +
+                   (refused.empty() ? "" : ", passed over: " + refused) +
+                   (options.has_arm() && !scan["at_stand_by"].get<bool>() ? "; no way back to the stand-by" : ""));
+  summary.line("hand", task.report.to_string());
   for (const json& action : result["task"]["actions"]) {
     summary.line("action", fixed(action["time_s"].get<double>(), 2) + " s  " + action["why"].get<std::string>());
   }

@@ -89,7 +89,8 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
   if (figures.interrupted) {
     figures.update.exploration.stopped_because = StopReason::cancelled;
   } else {
-    SACCADE_TRY(figures.update.back, return_to_stand_by(map, devices.robot(), executor));
+    SACCADE_TRY(figures.after_scan, return_to_stand_by(map, devices.robot(), executor));
+    figures.update.back = figures.after_scan;
   }
   figures.stand_by = devices.robot().configuration();
   figures.before = map.snapshot();

@@ -35,6 +35,7 @@ struct WatchedTask {
 struct UpdateFigures {
   TsdfSnapshot before;  ///< after the scan
   ScanResult scan;
+  Return after_scan;
   std::optional<Configuration> stand_by{};  ///< of an arm, in which it waits
   TsdfSnapshot forgotten;                   ///< the regions are unknown
   UpdateResult update;                      ///< without regions the robot came back from the scan

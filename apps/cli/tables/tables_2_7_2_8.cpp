@@ -90,7 +90,7 @@ Result<OurExperiment> carry_out(const ThesisExperiment& experiment, const Reprod
   SACCADE_TRY(ExploreDevices devices, open_update_devices(options, subject, executor));
   SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress));
   if (figures.interrupted) return Error{Errc::cancelled, "cancelled", std::string{"experiment "} + experiment.scene};
-  SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor));
+  SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor, progress));
   OurExperiment ours;
   ours.mean_abs_error_m = mean_abs_error_m(result.at("objects"));
   ours.coverage = least_coverage(result.at("regions"));

@@ -4,7 +4,6 @@
 #include <cmath>
 #include <numeric>
 
-#include "saccade/scene/mesh_distance.hpp"
 #include "saccade/scene/surface_samples.hpp"
 
 namespace saccade {
@@ -50,15 +49,17 @@ Result<RegionSurface> observable_in(const RayScene& scene, const Region& region,
 
 RegionCoverage measure_coverage(const RegionSurface& truth, const TriangleMesh& mesh, double within_m,
                                 const Executor& executor) {
+  if (mesh.triangles.empty()) return measure_coverage(truth, nullptr, within_m, executor);
+  const auto distance = MeshDistance::build(mesh);
+  SACCADE_EXPECTS(distance.ok());
+  return measure_coverage(truth, &*distance, within_m, executor);
+}
+
+RegionCoverage measure_coverage(const RegionSurface& truth, const MeshDistance* mesh, double within_m,
+                                const Executor& executor) {
   SACCADE_EXPECTS(within_m > 0.0);
-  std::optional<MeshDistance> distance;
-  if (!mesh.triangles.empty()) {
-    auto built = MeshDistance::build(mesh);
-    SACCADE_EXPECTS(built.ok());
-    distance = *std::move(built);
-  }
   const auto count = [&](const std::vector<Eigen::Vector3f>& points) {
-    return distance ? covered(points, *distance, within_m, executor) : std::size_t{0};
+    return mesh != nullptr ? covered(points, *mesh, within_m, executor) : std::size_t{0};
   };
   const auto share = [](std::size_t part, std::size_t of) -> std::optional<double> {
     if (of == 0) return std::nullopt;

@@ -8,6 +8,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/region.hpp"
+#include "saccade/scene/mesh_distance.hpp"
 #include "saccade/scene/ray_scene.hpp"
 
 namespace saccade {
@@ -33,6 +34,9 @@ struct RegionCoverage {
 /// Holds a mesh against the surface in a region; one without triangles has nothing of it. Expects indices within range
 /// and a positive distance. O(triangles · log triangles + points · log triangles), the same for every thread count.
 [[nodiscard]] RegionCoverage measure_coverage(const RegionSurface& truth, const TriangleMesh& mesh, double within_m,
+                                              const Executor& executor);
+/// The same for several regions: the distance to the mesh is built once. Null: it has no triangles.
+[[nodiscard]] RegionCoverage measure_coverage(const RegionSurface& truth, const MeshDistance* mesh, double within_m,
                                               const Executor& executor);
 
 }  // namespace saccade
