@@ -30,6 +30,7 @@
 #include "saccade/robot/swept_cells.hpp"
 #include "saccade/segment/lccp.hpp"
 #include "saccade/segment/supervoxels.hpp"
+#include "saccade/sensor/kinect_v2_filter.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -146,6 +147,12 @@ TEST(Defaults, OfSegmentationAreDocumented) {
   expect_documented("LccpConfig::concavity_tolerance_rad", {degrees(lccp.concavity_tolerance_rad)});
   expect_documented("LccpConfig::smoothness", {lccp.smoothness});
   expect_documented("LccpConfig::min_supervoxels", {static_cast<double>(lccp.min_supervoxels)});
+TEST(Defaults, OfDepthFiltersAreDocumented) {
+  const DepthFilterConfig filter;
+  expect_documented("DepthFilterConfig::baseline_m", {filter.baseline_m});
+  EXPECT_EQ(documented("DepthFilterConfig::emitter_side"),
+            filter.emitter_side == EmitterSide::left ? " left " : " right ");
+  expect_documented("DepthFilterConfig::veil_angle_rad", {degrees(filter.veil_angle_rad)});
 }
 
 TEST(Defaults, OfViewsAreDocumented) {

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// DepthFilter: removes the wrong points of a Kinect v2's depth images, those in the emitter's shadow and those that
+// veil edges.  Thesis §3.1.3.
+
+#include <cstddef>
+#include <cstdint>
+#include <numbers>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/sensor/image.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade {
+
+/// Where the infrared emitter is, seen along the camera's view: left is towards u = 0. The thesis' equations have it on
+/// the left; drivers that mirror the image need the right.
+enum class EmitterSide { left, right };
+
+struct DepthFilterConfig {
+  double baseline_m{0.08};                      ///< Δ: from the camera's centre to the emitter, along its x axis
+  EmitterSide emitter_side{EmitterSide::left};  ///< shadows fall to the other side of an object
+  double veil_angle_rad{10.0 * std::numbers::pi / 180.0};  ///< Θ_max of eq. 3.19
+  bool remove_shadow_points{true};
+  bool remove_veil_points{true};
+
+  /// invalid_argument unless the baseline is within 0 and 1 m and the angle above 0 and below 90°.
+  [[nodiscard]] Status validate() const;
+};
+
+/// What the filter made of a pixel. One that both steps remove is a shadow point.
+enum class FilteredPixel : std::uint8_t { no_return, kept, shadow_point, veil_point };
+
+struct FilteredDepth {
+  DepthImage depth;             ///< 0 where a point was removed, else as it came
+  Image<FilteredPixel> pixels;  ///< of the same size
+  std::size_t points{0};        ///< returns in the image that came
+  std::size_t shadow_points{0};
+  std::size_t veil_points{0};
+
+  [[nodiscard]] std::size_t kept() const { return points - shadow_points - veil_points; }
+};
+
+/// Shadow points: seen by the camera, not lit by the emitter. A point is removed when its angle from the emitter
+/// (eq. 3.16) is not beyond that of every point before it in its row, counted from the emitter's side (eq. 3.18,
+/// Algorithm 5). The condition is necessary, not sufficient: behind a thin object, lit points are removed too.
+/// Veil points: between an edge and what lies behind it. A point is removed when the line to one of its four neighbours
+/// is within veil_angle_rad of the line from the camera (eq. 3.19; the thesis' text says "higher than"). This takes the
+/// points on both sides of an edge.
+/// Both steps judge the image as it came. Each row needs itself and its two neighbours; nothing is kept between images.
+class DepthFilter {
+ public:
+  /// The camera of the depth images, without distortion. invalid_argument: see PinholeCamera and DepthFilterConfig.
+  [[nodiscard]] static Result<DepthFilter> create(const PinholeCamera& camera, const DepthFilterConfig& config = {});
+
+  [[nodiscard]] const DepthFilterConfig& config() const { return config_; }
+
+  /// Pixels without a return (0, NaN, infinity) and free claims (d < 0) are kept as they are, and neither cast shadows
+  /// nor count as neighbours. size_mismatch unless the image has the camera's size. O(pixels); rows in parallel, the
+  /// same result for every thread count; safe to call concurrently.
+  [[nodiscard]] Result<FilteredDepth> filter(const DepthImage& depth, const Executor& executor = {}) const;
+
+ private:
+  DepthFilter(const PinholeCamera& camera, const DepthFilterConfig& config);
+  void mark_shadow_points(const float* z, FilteredPixel* pixels) const;
+  void mark_veil_points(const DepthImage& depth, int v, FilteredPixel* pixels) const;
+
+  DepthFilterConfig config_;
+  std::vector<double> x_;  ///< of the ray through each column, at z = 1
+  std::vector<double> y_;  ///< of the ray through each row, at z = 1
+  double step_x_;          ///< between columns, at z = 1
+  double step_y_;
+};
+
+}  // namespace saccade
