@@ -147,6 +147,8 @@ TEST(Defaults, OfSegmentationAreDocumented) {
   expect_documented("LccpConfig::concavity_tolerance_rad", {degrees(lccp.concavity_tolerance_rad)});
   expect_documented("LccpConfig::smoothness", {lccp.smoothness});
   expect_documented("LccpConfig::min_supervoxels", {static_cast<double>(lccp.min_supervoxels)});
+}
+
 TEST(Defaults, OfDepthFiltersAreDocumented) {
   const DepthFilterConfig filter;
   expect_documented("DepthFilterConfig::baseline_m", {filter.baseline_m});
