@@ -87,7 +87,7 @@ json program_json(const Executor& executor) {
           {"dependencies", dependencies()}};
 }
 
-json map_json(const TsdfSnapshot& map) {
+json saved_map_json(const TsdfSnapshot& map) {
   const TsdfGrid::Usage usage = map.grid.usage();
   std::size_t occupied = 0;
   std::size_t known = 0;
@@ -191,7 +191,7 @@ Result<json> describe(const fs::path& path, const Executor& executor, bool print
   }
   const fs::path map_path = is_run ? path / "map.sacmap" : path;
   SACCADE_TRY(const TsdfSnapshot map, load_map(map_path, executor));
-  result["map"] = map_json(map);
+  result["map"] = saved_map_json(map);
   if (print) print_map(map_path, result["map"]);
   return result;
 }

@@ -64,6 +64,7 @@ int run(int argc, char** argv, CLI::App& program) {
   saccade::cli::add_attend(program, global, action);
   saccade::cli::add_compare(program, global, action);
   saccade::cli::add_explore(program, global, action);
+  saccade::cli::add_filter(program, global, action);
   saccade::cli::add_fuse(program, global, action);
   saccade::cli::add_nbv(program, global, action);
   saccade::cli::add_info(program, global, action);
@@ -77,9 +78,9 @@ int run(int argc, char** argv, CLI::App& program) {
     program.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
     if (!program.get_subcommands().empty()) return usage(program, error.what());
-    return usage(
-        program,
-        "name what to do: attend, compare, explore, fuse, nbv, reproduce, robot, scene, info, sample or update");
+    return usage(program,
+                 "name what to do: attend, compare, explore, filter, fuse, nbv, reproduce, robot, scene, info, sample "
+                 "or update");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
     return usage(program, error.what());

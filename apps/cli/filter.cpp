@@ -1,0 +1,230 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade filter: removes the shadow and veil points of a Kinect v2 from depth images, and shows which.
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <memory>
+
+#include "exit_status.hpp"
+#include "filter.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+#include "run_folder.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/file_io.hpp"
+#include "saccade/io/image_io.hpp"
+#include "saccade/io/json_io.hpp"
+#include "saccade/report/filter_picture.hpp"
+#include "saccade/sensor/mask.hpp"
+
+namespace saccade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+constexpr std::string_view kFilterFile{"filter.json"};
+constexpr std::string_view kPictureFolder{"pictures"};
+
+struct InputFrame {
+  fs::path file;
+  bool from_folder{false};
+};
+
+/// The PNG files of a folder, by name.
+Result<std::vector<InputFrame>> frames_in(const fs::path& folder) {
+  std::error_code code;
+  std::error_code ignored;
+  std::vector<InputFrame> frames;
+  for (const fs::directory_entry& entry : fs::directory_iterator{folder, code}) {
+    if (entry.path().extension() == ".png" && !fs::is_directory(entry.path(), ignored))
+      frames.push_back({entry.path(), true});
+  }
+  if (code) return Error{Errc::io_failure, "cannot be listed: " + code.message(), folder.string()};
+  if (frames.empty()) return Error{Errc::not_found, "there are no PNG files in this folder", folder.string()};
+  std::sort(frames.begin(), frames.end(), [](const auto& a, const auto& b) { return a.file < b.file; });
+  return frames;
+}
+
+Result<std::vector<InputFrame>> input_frames(const FilterOptions& options) {
+  std::error_code ignored;
+  std::vector<InputFrame> frames;
+  for (const fs::path& path : options.frames) {
+    if (!fs::is_directory(path, ignored)) {
+      frames.push_back({path, false});
+      continue;
+    }
+    SACCADE_TRY(const std::vector<InputFrame> found, frames_in(path));
+    frames.insert(frames.end(), found.begin(), found.end());
+  }
+  return frames;
+}
+
+/// Filtered frames keep their names: so no two may have the same one, and none may stand in the folder of the results.
+Status check_names(const std::vector<InputFrame>& frames, const fs::path& out) {
+  std::vector<fs::path> names;
+  std::error_code ignored;
+  for (const InputFrame& frame : frames) {
+    const fs::path folder = frame.file.has_parent_path() ? frame.file.parent_path() : fs::path{"."};
+    if (fs::equivalent(folder, out, ignored) || fs::equivalent(folder, out / kPictureFolder, ignored)) {
+      return Error{Errc::invalid_argument, "the results would replace the frames; name another folder with --out",
+                   out.string()};
+    }
+    names.push_back(frame.file.filename());
+  }
+  std::sort(names.begin(), names.end());
+  const auto twice = std::adjacent_find(names.begin(), names.end());
+  if (twice == names.end()) return {};
+  return Error{Errc::invalid_argument, "two of the frames have this name; filter them into two folders",
+               twice->string()};
+}
+
+/// The camera of a frame: with --intrinsics and without a preset, its size is the image's.
+PinholeCamera camera_of(const FilterOptions& options, const Image16& samples) {
+  PinholeCamera camera = options.camera;
+  if (options.camera_options.intrinsics && !options.camera_options.preset) {
+    camera.width = samples.width();
+    camera.height = samples.height();
+  }
+  return camera;
+}
+
+struct DepthFrame {
+  Image16 samples;
+  DepthImage depth;  ///< within the camera's range
+  PinholeCamera camera;
+  std::size_t out_of_range{0};
+};
+
+std::size_t count_returns(const DepthImage& depth) {
+  const auto& pixels = depth.pixels();
+  return static_cast<std::size_t>(std::count_if(pixels.begin(), pixels.end(), [](float z) { return z > 0.0F; }));
+}
+
+Result<DepthFrame> read_frame(const fs::path& file, const FilterOptions& options) {
+  SACCADE_TRY(Image16 samples, read_png16(file));
+  DepthFrame frame{std::move(samples), {}, {}, 0};
+  frame.camera = camera_of(options, frame.samples);
+  if (frame.samples.width() != frame.camera.width || frame.samples.height() != frame.camera.height) {
+    return Error{Errc::size_mismatch,
+                 "has " + std::to_string(frame.samples.width()) + "x" + std::to_string(frame.samples.height()) +
+                     " pixels, the camera " + std::to_string(frame.camera.width) + "x" +
+                     std::to_string(frame.camera.height) + "; pass --camera or --intrinsics",
+                 file.string()};
+  }
+  frame.depth = decode_depth(frame.samples, options.encoding);
+  const std::size_t returns = count_returns(frame.depth);
+  clip_to_range(frame.camera, frame.depth);
+  frame.out_of_range = returns - count_returns(frame.depth);
+  return frame;
+}
+
+/// Samples that stay are those of the file, bit for bit; saturated ones are no points and stay.
+Image16 kept_samples(const DepthFrame& frame, const FilteredDepth& filtered) {
+  constexpr std::uint16_t kSaturated{65535};
+  Image16 kept = frame.samples;
+  for (std::size_t i = 0; i < kept.size(); ++i) {
+    const bool stays = filtered.pixels.pixels()[i] == FilteredPixel::kept || kept.data()[i] == kSaturated;
+    if (!stays) kept.data()[i] = 0;
+  }
+  return kept;
+}
+
+Status write_picture(const RunFolder& out, const fs::path& name, const DepthFrame& frame,
+                     const FilteredDepth& filtered) {
+  const fs::path folder = out / kPictureFolder;
+  std::error_code code;
+  fs::create_directories(folder, code);
+  if (code) return Error{Errc::io_failure, "cannot make the folder: " + code.message(), folder.string()};
+  return write_png(folder / name, filter_picture(frame.depth, filtered, name.string()));
+}
+
+Result<FilteredFrame> filter_frame(const fs::path& file, const FilterOptions& options, const RunFolder& out,
+                                   const Executor& executor, bool with_picture) {
+  SACCADE_TRY(const DepthFrame frame, read_frame(file, options));
+  auto filter = DepthFilter::create(frame.camera, options.filter);
+  if (!filter) return in_file(filter.error(), file);
+  const Stopwatch watch;
+  SACCADE_TRY(const FilteredDepth filtered, filter->filter(frame.depth, executor));
+  const double ms = watch.elapsed_ms();
+  const fs::path name = file.filename();
+  SACCADE_CHECK(write_png16(out.path() / name, kept_samples(frame, filtered)));
+  if (with_picture) SACCADE_CHECK(write_picture(out, name, frame, filtered));
+  return FilteredFrame{file, filtered.points, filtered.shadow_points, filtered.veil_points, frame.out_of_range, ms};
+}
+
+/// A failed write ends the work; a file of a folder that cannot be used is left out.
+bool is_left_out(const InputFrame& frame, const Error& error) {
+  return frame.from_folder && error.code != Errc::io_failure;
+}
+
+Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const FilterOptions& options,
+                                const RunFolder& out, const Executor& executor, ProgressBar& bar) {
+  FilterResult result;
+  for (std::size_t i = 0; i < frames.size() && !interrupted(); ++i) {
+    bar.update("filtering", i, frames.size());
+    const bool with_picture = result.frames.size() < options.pictures;
+    auto filtered = filter_frame(frames[i].file, options, out, executor, with_picture);
+    if (filtered) {
+      result.frames.push_back(std::move(*filtered));
+    } else if (is_left_out(frames[i], filtered.error())) {
+      // Images of another kind, such as the colours beside the depth, are no news.
+      if (filtered.error().code != Errc::unsupported) bar.note("left out: " + filtered.error().to_string());
+      result.left_out.push_back(filtered.error());
+    } else {
+      return filtered.error();
+    }
+  }
+  return result;
+}
+
+/// Why there is not a single frame.
+Error nothing_filtered(const FilterResult& result) {
+  if (interrupted()) return {Errc::cancelled, "interrupted", {}};
+  Error first = result.left_out.front();
+  first.message = "not one of the " + std::to_string(result.left_out.size()) +
+                  " PNG files can be used; the first: " + first.message;
+  return first;
+}
+
+Result<int> run_filter(const FilterOptions& options, const GlobalOptions& global) {
+  const Stopwatch total;
+  const Executor executor = global.executor();
+  ProgressBar bar{global.quiet};
+  SACCADE_CHECK(check_json_output(global));
+  SACCADE_TRY(const std::vector<InputFrame> frames, input_frames(options));
+  SACCADE_CHECK(check_names(frames, options.out));
+  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, std::array{kFilterFile}, kFilterFile, options.force));
+  SACCADE_CHECK(out.remove(std::array{kFilterFile}));
+  SACCADE_TRY(const FilterResult result, filter_all(frames, options, out, executor, bar));
+  bar.finish();
+  if (result.frames.empty()) return nothing_filtered(result);
+  const nlohmann::json document = json_envelope("filter", global, executor, {{"total", total.elapsed_ms()}},
+                                                filter_json(options, result, interrupted()));
+  SACCADE_CHECK(write_json(out / kFilterFile, document));
+  SACCADE_CHECK(write_json_output(global, document));
+  if (result.points() > 0 && !global.json_to_stdout()) print_filter(options, result);
+  if (result.points() == 0 && !interrupted()) {
+    print_error("filter",
+                "no frame has a point within the camera's range: see --min-range, --max-range and --depth-scale");
+    return static_cast<int>(ExitStatus::no_result);
+  }
+  if (!interrupted()) return static_cast<int>(ExitStatus::done);
+  print_error("filter", "interrupted after " + std::to_string(result.frames.size()) + " of " +
+                            std::to_string(frames.size()) + " frames; they are in " + options.out.string());
+  return interrupt_status();
+}
+
+}  // namespace
+
+void add_filter(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command =
+      program.add_subcommand("filter", "removes a Kinect v2's shadow and veil points from depth images");
+  auto options = std::make_shared<FilterOptions>();
+  add_filter_options(*command, *options);
+  command->callback([options, &global, &action] {
+    check_filter_options(*options);
+    action = [options, &global] { return run_filter(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,74 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <iostream>
+
+#include "filter.hpp"
+#include "summary.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+std::size_t sum(const FilterResult& result, std::size_t FilteredFrame::*count) {
+  std::size_t total{0};
+  for (const FilteredFrame& frame : result.frames) total += frame.*count;
+  return total;
+}
+
+double median_ms(const FilterResult& result) {
+  std::vector<double> ms;
+  for (const FilteredFrame& frame : result.frames) ms.push_back(frame.ms);
+  return median_of(std::move(ms));
+}
+
+json frame_json(const FilteredFrame& frame) {
+  return {{"frame", frame.file.string()},       {"points", frame.points},
+          {"shadow", frame.shadow_points},      {"veil", frame.veil_points},
+          {"out_of_range", frame.out_of_range}, {"ms", frame.ms}};
+}
+
+std::string count_and_share(std::size_t count, std::size_t of) {
+  return std::to_string(count) + " (" + percent(static_cast<double>(count) / static_cast<double>(of)) + ")";
+}
+
+}  // namespace
+
+std::size_t FilterResult::points() const { return sum(*this, &FilteredFrame::points); }
+
+json filter_json(const FilterOptions& options, const FilterResult& result, bool interrupted) {
+  json details = json::array();
+  for (const FilteredFrame& frame : result.frames) details.push_back(frame_json(frame));
+  json left_out = json::array();
+  for (const Error& error : result.left_out) left_out.push_back({{"frame", error.context}, {"reason", error.message}});
+  return {{"out", options.out.string()},
+          {"frames", result.frames.size()},
+          {"points", result.points()},
+          {"shadow", sum(result, &FilteredFrame::shadow_points)},
+          {"veil", sum(result, &FilteredFrame::veil_points)},
+          {"out_of_range", sum(result, &FilteredFrame::out_of_range)},
+          {"ms_per_frame", {{"median", median_ms(result)}}},
+          {"baseline_m", options.filter.baseline_m},
+          {"emitter_side", options.filter.emitter_side == EmitterSide::left ? "left" : "right"},
+          {"veil_angle_rad", options.filter.veil_angle_rad},
+          {"steps", {{"shadow", options.filter.remove_shadow_points}, {"veil", options.filter.remove_veil_points}}},
+          {"depth_scale", options.encoding.units_per_m},
+          {"interrupted", interrupted},
+          {"left_out", std::move(left_out)},
+          {"details", std::move(details)}};
+}
+
+void print_filter(const FilterOptions& options, const FilterResult& result) {
+  const std::size_t points = result.points();
+  Summary summary{std::cout};
+  summary.line("frames", std::to_string(result.frames.size()) + " filtered, " + std::to_string(result.left_out.size()) +
+                             " left out");
+  summary.line("points", std::to_string(points));
+  summary.line("shadow", count_and_share(sum(result, &FilteredFrame::shadow_points), points));
+  summary.line("veil", count_and_share(sum(result, &FilteredFrame::veil_points), points));
+  const std::size_t out_of_range = sum(result, &FilteredFrame::out_of_range);
+  if (out_of_range > 0) summary.line("out of range", std::to_string(out_of_range) + " more, removed as well");
+  summary.line("per frame", fixed(median_ms(result), 2) + " ms (median, of the filter alone)");
+  summary.line("results", options.out.string());
+}
+
+}  // namespace saccade::cli

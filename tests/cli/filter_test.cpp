@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade filter as a user runs it, on rendered frames of the size of a Kinect v2's and on what is none.
+#include <gtest/gtest.h>
+
+#include "cli/run_program.hpp"
+#include "saccade/io/depth_encoding.hpp"
+#include "saccade/sensor/analytic_scene.hpp"
+#include "saccade/sensor/kinect_v2_filter.hpp"
+#include "saccade/sensor/mask.hpp"
+#include "saccade/sensor/noise.hpp"
+
+namespace saccade::test {
+namespace {
+
+constexpr int kFrames{3};
+
+class Filter : public ::testing::Test {
+ protected:
+  void SetUp() override {
+    fs::create_directories(folder_ / "frames");
+    const std::vector<Pose> T_world_camera = sample_trajectory(kFrames);
+    for (int i = 0; i < kFrames; ++i) {
+      const auto seen = render(sample_tabletop(), camera_, T_world_camera[static_cast<std::size_t>(i)]);
+      ASSERT_TRUE(seen);
+      ASSERT_TRUE(write_png16(frame(i), encode_depth(with_noise(seen->depth, DepthNoise{}), {})));
+    }
+  }
+  [[nodiscard]] fs::path frames() const { return folder_ / "frames"; }
+  [[nodiscard]] fs::path frame(int i) const { return frames() / name(i); }
+  [[nodiscard]] static std::string name(int i) { return "depth-" + std::to_string(i) + ".png"; }
+  [[nodiscard]] fs::path out() const { return folder_ / "out"; }
+  [[nodiscard]] Arguments filter(const Arguments& more = {}) const {
+    return Arguments{"filter", frames().string(), "--out", out().string(), "--quiet"} + more;
+  }
+  const PinholeCamera camera_{camera_preset("kinect-v2").value()};
+  TempFolder folder_;
+};
+
+TEST_F(Filter, RemovesWhatTheLibraryRemoves) {
+  const std::string untouched = text_of(frame(0));
+  const Outcome outcome = run_program(filter({"--json", "-", "--pictures", "2"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  expect_envelope(outcome.json(), "filter");
+  const nlohmann::json result = outcome.json().at("result");
+  EXPECT_EQ(nlohmann::json::parse(text_of(out() / "filter.json")), outcome.json());
+  EXPECT_EQ(result.at("frames"), kFrames);
+  EXPECT_TRUE(result.at("ms_per_frame").at("median").is_number());
+  const DepthFilter library = DepthFilter::create(camera_).value();
+  std::size_t points{0};
+  std::size_t shadow_points{0};
+  std::size_t veil_points{0};
+  for (int i = 0; i < kFrames; ++i) {
+    DepthImage depth = decode_depth(read_png16(frame(i)).value(), {});
+    clip_to_range(camera_, depth);
+    const FilteredDepth expected = library.filter(depth).value();
+    EXPECT_EQ(decode_depth(read_png16(out() / name(i)).value(), {}), expected.depth);
+    EXPECT_EQ(result.at("details").at(static_cast<std::size_t>(i)).at("shadow"), expected.shadow_points);
+    points += expected.points;
+    shadow_points += expected.shadow_points;
+    veil_points += expected.veil_points;
+  }
+  EXPECT_EQ(result.at("points"), points);
+  EXPECT_EQ(result.at("shadow"), shadow_points);
+  EXPECT_EQ(result.at("veil"), veil_points);
+  EXPECT_GT(shadow_points, 1000U);
+  EXPECT_GT(veil_points, 1000U);
+  EXPECT_EQ(names_in(out() / "pictures"), (std::vector<std::string>{name(0), name(1)}));
+  EXPECT_GE(read_color(out() / "pictures" / name(0)).value().width(), 3 * 512);
+  EXPECT_EQ(text_of(frame(0)), untouched);
+}
+
+TEST_F(Filter, PrintsCountsForPeopleAndIsTheSameForEveryThreadCount) {
+  const Outcome one = run_program(filter({"--threads", "1"}));
+  ASSERT_EQ(one.status, 0) << one.err;
+  for (const char* part : {"3 filtered, 0 left out", "shadow ", "veil ", " ms (median"}) {
+    EXPECT_NE(one.out.find(part), std::string::npos) << part << one.out;
+  }
+  const std::string first = text_of(out() / name(0));
+  ASSERT_EQ(run_program(filter({"--threads", "3"})).status, 0);  // into the folder of the earlier run
+  EXPECT_TRUE(text_of(out() / name(0)) == first);
+}
+
+TEST_F(Filter, DoesOneStepAndTakesTheOtherSide) {
+  const auto result_with = [&](const Arguments& more) {
+    const Outcome outcome = run_program(filter({"--json", "-", "--pictures", "0"}) + more);
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.json().at("result");
+  };
+  const nlohmann::json left = result_with({"--only", "shadow"});
+  EXPECT_GT(left.at("shadow"), 0);
+  EXPECT_EQ(left.at("veil"), 0);
+  const nlohmann::json right = result_with({"--only", "shadow", "--emitter", "right"});
+  EXPECT_EQ(right.at("emitter_side"), "right");
+  EXPECT_NE(right.at("shadow"), left.at("shadow"));
+  EXPECT_LT(result_with({"--only", "shadow", "--baseline", "0.04"}).at("shadow"), left.at("shadow"));
+  const nlohmann::json veil = result_with({"--only", "veil"});
+  EXPECT_EQ(veil.at("shadow"), 0);
+  EXPECT_LT(result_with({"--only", "veil", "--veil-angle", "2"}).at("veil"), veil.at("veil"));
+  EXPECT_GT(result_with({"--max-range", "0.9"}).at("out_of_range"), 10000);
+  EXPECT_FALSE(fs::exists(out() / "pictures"));
+}
+
+TEST_F(Filter, LeavesOutWhatIsNoDepthImage) {
+  ASSERT_TRUE(write_png(frames() / "color.png", ColorImage{512, 424}));
+  std::ofstream{frames() / "broken.png"} << "no image";
+  std::ofstream{frames() / "notes.txt"} << "no image";
+  ASSERT_TRUE(write_png16(frames() / "small.png", Image16{320, 240, 1000}));
+  const Outcome outcome = run_program(filter({"--json", "-"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json().at("result").at("frames"), kFrames);
+  EXPECT_EQ(outcome.json().at("result").at("left_out").size(), 3U);
+  const auto of_file = [&](const char* file) {
+    return run_program({"filter", (frames() / file).string(), "--out", (folder_ / "alone").string(), "--quiet"});
+  };
+  expect_failure(of_file("broken.png"), 3, "filter", {"broken.png"});
+  expect_failure(of_file("color.png"), 3, "filter", {"color.png"});
+  expect_failure(of_file("small.png"), 3, "filter", {"small.png", "320x240", "512x424", "--intrinsics"});
+  expect_failure(of_file("missing.png"), 3, "filter", {"missing.png"});
+  EXPECT_FALSE(fs::exists(folder_ / "alone"));
+}
+
+TEST_F(Filter, TakesImagesOfAnySizeWithIntrinsics) {
+  ASSERT_TRUE(write_png16(folder_ / "small.png", Image16{320, 240, 65535}));
+  Image16 samples{320, 240, 1000};
+  samples(7, 9) = 65535;
+  ASSERT_TRUE(write_png16(folder_ / "small.png", samples));
+  const Outcome outcome = run_program({"filter", (folder_ / "small.png").string(), "--out", out().string(),
+                                       "--intrinsics", "250,250,160,120", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json().at("result").at("points"), 320 * 240 - 1);
+  EXPECT_EQ(read_png16(out() / "small.png").value(), samples);
+}
+
+TEST_F(Filter, NeverReplacesItsInput) {
+  const Arguments onto_itself{"filter", frames().string(), "--out", frames().string(), "--force"};
+  expect_failure(run_program(onto_itself), 3, "filter", {"would replace the frames"});
+  expect_failure(run_program({"filter", frame(0).string(), frame(0).string(), "--out", out().string()}), 3, "filter",
+                 {name(0), "two"});
+  expect_failure(run_program({"filter", frames().string(), "--out", folder_.path().string()}), 3, "filter",
+                 {"other files"});
+  EXPECT_EQ(names_in(frames()).size(), static_cast<std::size_t>(kFrames));
+}
+
+TEST_F(Filter, SaysWhenThereIsNothingToFilter) {
+  fs::create_directories(folder_ / "empty");
+  expect_failure(run_program({"filter", (folder_ / "empty").string(), "--out", out().string()}), 3, "filter",
+                 {"no PNG files"});
+  ASSERT_TRUE(write_png16(folder_ / "dark.png", Image16{512, 424}));
+  expect_failure(run_program({"filter", (folder_ / "dark.png").string(), "--out", out().string(), "--quiet"}), 5,
+                 "filter", {"--depth-scale"});
+}
+
+TEST_F(Filter, UsageErrorsAreOneLine) {
+  expect_failure(run_program({"filter", frames().string()}), 2, "filter", {"--out"});
+  expect_failure(run_program(filter({"--baseline", "-0.08"})), 2, "filter", {"--baseline"});
+  expect_failure(run_program(filter({"--veil-angle", "90"})), 2, "filter", {"--veil-angle"});
+  expect_failure(run_program(filter({"--emitter", "above"})), 2, "filter", {"--emitter", "left or right"});
+  expect_failure(run_program(filter({"--only", "both"})), 2, "filter", {"--only"});
+  expect_failure(run_program(filter({"--depth-scale", "0"})), 2, "filter", {"--depth-scale"});
+  expect_failure(run_program(filter({"--camera", "eye"})), 2, "filter", {"--camera"});
+}
+
+TEST_F(Filter, KeepsWhatIsDoneWhenInterrupted) {
+  for (int i = kFrames; i < 400; ++i) fs::copy_file(frame(i % kFrames), frame(i));
+  RunningProgram program{{"filter", frames().string(), "--out", out().string(), "--quiet"}};
+  ASSERT_TRUE(wait_for_file(out() / name(1)));
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted after "), std::string::npos) << outcome.err;
+  const nlohmann::json result = nlohmann::json::parse(text_of(out() / "filter.json")).at("result");
+  EXPECT_EQ(result.at("interrupted"), true);
+  EXPECT_LT(result.at("frames"), 400);
+  EXPECT_EQ(names_in(out()).size(), result.at("frames").get<std::size_t>() + 2);  // filter.json, pictures
+}
+
+}  // namespace
+}  // namespace saccade::test
