@@ -5,12 +5,6 @@
 #include <cmath>
 
 namespace saccade {
-namespace {
-
-constexpr Rgb8 kNoReturn{34, 36, 42};
-
-}  // namespace
-
 DepthScale depth_scale(const DepthImage& depth) {
   std::vector<float> valid;
   for (const float d : depth.pixels()) {

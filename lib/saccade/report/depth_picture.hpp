@@ -13,6 +13,9 @@ struct DepthScale {
   double far_m{4.0};
 };
 
+/// Colour of pixels without a return.
+inline constexpr Rgb8 kNoReturn{34, 36, 42};
+
 /// A round scale around the 1st to 99th percentile of the valid depths of the image; the default where there is none.
 [[nodiscard]] DepthScale depth_scale(const DepthImage& depth);
 

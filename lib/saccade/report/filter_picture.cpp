@@ -8,7 +8,6 @@
 namespace saccade {
 namespace {
 
-constexpr Rgb8 kNoReturn{34, 36, 42};
 constexpr double kNearGrey{225.0};
 constexpr double kFarGrey{95.0};
 
