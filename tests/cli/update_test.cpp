@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <csignal>
 #include <fstream>
@@ -16,10 +17,13 @@ namespace {
 
 using nlohmann::json;
 
-/// Small images where programs are slow.
+/// Small images where programs are slow, unless the test says how large they are.
 Arguments update(const fs::path& out, const Arguments& more) {
   Arguments arguments{"update", "--quiet", "--out", out.string(), "--json", "-"};
-  if (kSanitized) arguments = arguments + Arguments{"--image-size", "160,120", "--voxel-size", "0.01", "--no-pictures"};
+  const auto named = [&more](const char* option) { return std::find(more.begin(), more.end(), option) != more.end(); };
+  if (kSanitized && !named("--image-size")) arguments = arguments + Arguments{"--image-size", "160,120"};
+  if (kSanitized && !named("--voxel-size")) arguments = arguments + Arguments{"--voxel-size", "0.01"};
+  if (kSanitized && !named("--no-pictures")) arguments = arguments + Arguments{"--no-pictures"};
   return arguments + more;
 }
 

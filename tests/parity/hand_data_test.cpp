@@ -132,7 +132,7 @@ void expect_rows(const HandActionDetector& detector, Rates ConditionRates::*thes
   EXPECT_TRUE(test::kSanitized || near >= near_rows) << near << " rows within 3 points";
 }
 
-TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ConditionRates::gmm, 5); }
+TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ConditionRates::gmm, 6); }
 
 TEST_F(RecordedHands, Tables2_3And2_4OfZvc) { expect_rows(by_zvc, &ConditionRates::zvc, 5); }
 

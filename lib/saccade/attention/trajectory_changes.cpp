@@ -9,6 +9,15 @@
 namespace saccade {
 namespace {
 
+/// The hand is faster: of the samples, those at steps of 1 / multiplier, rounded down.
+HandTrajectory left_out(const HandTrajectory& trajectory, double multiplier) {
+  HandTrajectory fewer;
+  for (std::size_t i = 0; static_cast<double>(i) / multiplier < static_cast<double>(trajectory.size()); ++i) {
+    fewer.push_back(trajectory[static_cast<std::size_t>(static_cast<double>(i) / multiplier)]);
+  }
+  return fewer;
+}
+
 HandSample between(const HandSample& a, const HandSample& b, double share) {
   HandSample sample;
   sample.time_s = a.time_s + share * (b.time_s - a.time_s);
@@ -17,26 +26,33 @@ HandSample between(const HandSample& a, const HandSample& b, double share) {
   return sample;
 }
 
+/// The hand is slower: more samples, from end to end.
+HandTrajectory interpolated(const HandTrajectory& trajectory, double multiplier) {
+  const auto intervals = static_cast<double>(trajectory.size() - 1);
+  const auto count = static_cast<std::size_t>(std::round(intervals * multiplier));
+  const double step = intervals / static_cast<double>(count);
+  HandTrajectory more;
+  more.reserve(count + 1);
+  for (std::size_t i = 0; i <= count; ++i) {
+    const double at = std::min(step * static_cast<double>(i), intervals);
+    const std::size_t before = std::min(static_cast<std::size_t>(at), trajectory.size() - 2);
+    more.push_back(between(trajectory[before], trajectory[before + 1], at - static_cast<double>(before)));
+  }
+  return more;
+}
+
 }  // namespace
 
 Result<HandTrajectory> at_speed(const HandTrajectory& trajectory, double multiplier) {
   constexpr double kMaxSamples{1e8};
-  const auto intervals = static_cast<double>(trajectory.empty() ? 0 : trajectory.size() - 1);
-  if (!(multiplier > 0.0) || !std::isfinite(multiplier) || intervals * multiplier > kMaxSamples) {
+  if (!(multiplier > 0.0) || !std::isfinite(multiplier) ||
+      static_cast<double>(trajectory.size()) * multiplier > kMaxSamples) {
     return Error{Errc::invalid_argument, "a speed multiplier must be positive, and give at most 1e8 samples", {}};
   }
   if (trajectory.size() < 2 || multiplier == 1.0) return trajectory;
-  const auto count = static_cast<std::size_t>(std::max(1.0, std::round(intervals * multiplier)));
-  const double step = intervals / static_cast<double>(count);
-  HandTrajectory resampled;
-  resampled.reserve(count + 1);
-  for (std::size_t i = 0; i <= count; ++i) {
-    const double at = std::min(step * static_cast<double>(i), intervals);
-    const std::size_t before = std::min(static_cast<std::size_t>(at), trajectory.size() - 2);
-    resampled.push_back(between(trajectory[before], trajectory[before + 1], at - static_cast<double>(before)));
-  }
+  HandTrajectory resampled = multiplier < 1.0 ? left_out(trajectory, multiplier) : interpolated(trajectory, multiplier);
   const double start_s = trajectory.front().time_s;
-  for (HandSample& sample : resampled) sample.time_s = start_s + (sample.time_s - start_s) / step;
+  for (HandSample& sample : resampled) sample.time_s = start_s + (sample.time_s - start_s) * multiplier;
   return resampled;
 }
 

@@ -9,9 +9,9 @@
 
 namespace saccade {
 
-/// Resamples linearly to `multiplier` times as many samples as before, at the sampling intervals of before: 0.25 gives
-/// a quarter of the samples, as a hand four times as fast would, 4 a slow hand. Ends stay where they are; orientations
-/// are interpolated where both neighbours have one. A multiplier of 1 changes nothing.
+/// `multiplier` times as many samples as before, at the sampling intervals of before. Undersampling takes every n-th
+/// sample, so that 0.25 is a hand four times as fast; oversampling is linear from end to end, orientations interpolated
+/// where both neighbours have one, so that 4 is a slow hand. A multiplier of 1 changes nothing.
 /// @return invalid_argument for a multiplier that is not positive and finite, or that gives more than 1e8 samples.
 /// O(samples returned).
 [[nodiscard]] Result<HandTrajectory> at_speed(const HandTrajectory& trajectory, double multiplier);

@@ -36,6 +36,17 @@ TEST(TrajectoryChanges, SpeedMultipliesSamplesAndKeepsTheInterval) {
   }
 }
 
+TEST(TrajectoryChanges, FasterHandsHaveOnlyPlacesThatWereSampled) {
+  HandTrajectory trajectory = straight_way(8);
+  for (std::size_t i = 1; i < 8; i += 2) trajectory[i].position_m.z() = 1.0;
+  const HandTrajectory twice = at_speed(trajectory, 0.5).value();
+  ASSERT_EQ(twice.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(twice[i].position_m, trajectory[2 * i].position_m);
+  const HandTrajectory uneven = at_speed(trajectory, 0.4).value();
+  ASSERT_EQ(uneven.size(), 4U);
+  for (std::size_t i = 0; i < 4; ++i) EXPECT_EQ(uneven[i].position_m, trajectory[(5 * i) / 2].position_m);
+}
+
 TEST(TrajectoryChanges, OrientationsThatAreMissingStayMissing) {
   HandTrajectory trajectory = straight_way(5);
   trajectory[2].R_world_hand.reset();
@@ -50,7 +61,7 @@ TEST(TrajectoryChanges, OrientationsThatAreMissingStayMissing) {
 TEST(TrajectoryChanges, ShortTrajectoriesAndBadMultipliers) {
   EXPECT_TRUE(at_speed({}, 4.0).value().empty());
   EXPECT_EQ(at_speed(straight_way(1), 4.0).value().size(), 1U);
-  EXPECT_EQ(at_speed(straight_way(9), 0.01).value().size(), 2U);
+  EXPECT_EQ(at_speed(straight_way(9), 0.01).value().size(), 1U);
   for (const double bad : {0.0, -1.0, std::nan(""), HUGE_VAL, 1e12}) EXPECT_FALSE(at_speed(straight_way(9), bad));
 }
 
