@@ -38,7 +38,7 @@ phase_asan() {
 
 phase_tsan() {
   configure tsan -DSACCADE_BUILD_APPS=OFF -DSACCADE_BUILD_EXAMPLES=OFF && compile tsan saccade_parallel_tests || return 1
-  TSAN_OPTIONS=halt_on_error=1:second_deadlock_stack=1 run_tsan
+  TSAN_OPTIONS="halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan.supp" run_tsan
 }
 run_tsan() { without_randomisation ctest --version >/dev/null && without_randomisation env ctest --test-dir build/tsan -j 2 \
   --output-on-failure --no-tests=error --output-junit "$PWD/$results/tsan.xml" -L parallel; }

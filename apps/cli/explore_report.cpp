@@ -1,15 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "explore_report.hpp"
 
+#include <array>
 #include <cstddef>
 #include <iomanip>
 #include <sstream>
+#include <utility>
 
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/run_report.hpp"
+#include "saccade/robot/refusal.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -54,10 +57,14 @@ ReportView report_view(const RunFolder& out, const json& view) {
   shown.unknown_left = view.at("unknown_left").get<std::size_t>();
   shown.unknown_near_objects = optional_of<std::size_t>(view.at("unknown_near_objects"));
   shown.points_at_object = optional_of<bool>(view.at("points_at_object"));
-  for (const char* phase :
-       {"planner_map", "candidates", "reachability", "evaluation", "planning", "motion", "fusion"}) {
-    shown.phases.push_back({phase, view.at("ms").at(phase).get<double>()});
-  }
+  constexpr std::array<std::pair<const char*, const char*>, 7> kPhases{{{"planner_map", "planner's map"},
+                                                                        {"candidates", "candidates"},
+                                                                        {"reachability", "reachability"},
+                                                                        {"evaluation", "evaluation"},
+                                                                        {"planning", "motion planning"},
+                                                                        {"motion", "motion"},
+                                                                        {"fusion", "fusion"}}};
+  for (const auto& [key, name] : kPhases) shown.phases.push_back({name, view.at("ms").at(key).get<double>()});
   if (const double motion_s = view.value("motion_s", 0.0); motion_s > 0.0) {
     shown.facts.emplace_back(
         "robot", fixed(motion_s, 1) + " s, camera's way " + fixed(view.at("path_m").get<double>(), 2) + " m");
@@ -113,9 +120,21 @@ Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& works
 }
 
 std::string refused_text(const json& refused) {
+  const auto says = [](Refusal reason) {
+    switch (reason) {
+      case Refusal::no_ik: return "out of reach";
+      case Refusal::outside_limits: return "beyond a joint's limits";
+      case Refusal::goal_in_collision: return "in collision there";
+      case Refusal::start_in_collision: return "in collision at the start";
+      case Refusal::no_path: return "without a path";
+      default: return "declined by the robot";
+    }
+  };
   std::string text;
-  for (const auto& [reason, count] : refused.items()) {
-    text += (text.empty() ? "" : ", ") + std::to_string(count.get<std::size_t>()) + " " + reason;
+  for (const Refusal reason : kRefusals) {
+    const auto found = refused.find(to_string(reason));
+    if (found == refused.end()) continue;
+    text += (text.empty() ? "" : ", ") + std::to_string(found->get<std::size_t>()) + " " + says(reason);
   }
   return text;
 }

@@ -40,7 +40,7 @@ struct ViewScenes {
 /// "640 × 480, f = 525 px, 0.5–2 m", from the document.
 [[nodiscard]] std::string camera_text(const nlohmann::json& camera);
 
-/// "2 no_ik, 1 no_path": the counts of `refused` in the document; empty: none.
+/// "2 out of reach, 1 without a path": the counts of `refused` in the document; empty: none.
 [[nodiscard]] std::string refused_text(const nlohmann::json& refused);
 
 /// Writes report.html from the document that goes to run.json and the pictures in the folder; pictures that are not

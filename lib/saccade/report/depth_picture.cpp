@@ -5,6 +5,7 @@
 #include <cmath>
 
 namespace saccade {
+
 DepthScale depth_scale(const DepthImage& depth) {
   std::vector<float> valid;
   for (const float d : depth.pixels()) {

@@ -36,7 +36,7 @@ RunReport example() {
                     273794,
                     12134,
                     {{png_header(720, 540), "after the scan", "the map", "map"}},
-                    {{"poses passed over", "1 no_ik"}}};
+                    {{"poses passed over", "1 out of reach"}}};
   report.views = {{1, 5581.0, 960, 0.932, 162586, 4606, false, {{"evaluation", 931.0}, {"fusion", 357.0}}, {}},
                   {2, 1590.5, 959, 0.941, 132342, 3132, true, {{"evaluation", 877.0}, {"fusion", 371.0}}, {}}};
   report.views[0].pictures = {{png_header(720, 592), "the choice", "candidates", "choice"},
