@@ -52,6 +52,7 @@ TEST(Reproduce, UpdatesStandBesideTheThesis) {
 
 /// One run for both, with few poses.
 TEST(Reproduce, TablesStandBesideTheThesis) {
+  if (kSanitized) GTEST_SKIP() << "minutes under sanitizers: maps as large as the thesis'";
   const TempFolder folder;
   const fs::path file = folder / "tables.json";
   const Outcome outcome = run_program({"reproduce", "2.10", "2.9", "--poses", "2", "--json", file.string()});
@@ -105,6 +106,7 @@ TEST(Reproduce, TablesStandBesideTheThesis) {
 
 /// The map of Table 2.10 does not fit into the files that the program may write.
 TEST(Reproduce, AFailureKeepsTheTablesBeforeIt) {
+  if (kSanitized) GTEST_SKIP() << "minutes under sanitizers: maps as large as the thesis'";
   const TempFolder folder;
   const fs::path file = folder / "tables.json";
   const Arguments arguments{"--quiet", "reproduce", "2.9", "2.10", "--poses", "1", "--json", file.string()};

@@ -73,9 +73,9 @@ class RunningProgram {
 
   [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
   void send(int signal) const { ::kill(pid_, signal); }
-  /// Whether the text shows up on standard error within 60 s.
+  /// Whether the text shows up on standard error within 120 s.
   [[nodiscard]] bool wait_for(const std::string& text) const {
-    for (int i = 0; i < 12000; ++i) {
+    for (int i = 0; i < 24000; ++i) {
       if (err().find(text) != std::string::npos) return true;
       std::this_thread::sleep_for(std::chrono::milliseconds{5});
     }
