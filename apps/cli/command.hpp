@@ -40,6 +40,8 @@ void add_explore(CLI::App& program, const GlobalOptions& global, Action& action)
 void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_robot(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_scene(CLI::App& program, const GlobalOptions& global, Action& action);
+void add_score(CLI::App& program, const GlobalOptions& global, Action& action);
+void add_segment(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_sample(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_update(CLI::App& program, const GlobalOptions& global, Action& action);
 

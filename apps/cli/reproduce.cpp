@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade reproduce TABLE…: tables of the thesis, ours beside theirs.
+// saccade reproduce TABLE…: tables and figures of the thesis, ours beside theirs.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <fstream>
@@ -18,6 +18,7 @@
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/atomic_file.hpp"
+#include "saccade/io/image_io.hpp"
 #include "tables/hand_data.hpp"
 #include "tables/thesis_table.hpp"
 
@@ -102,6 +103,9 @@ Status reproduce_each(const std::vector<std::string>& numbers, const ReproduceOp
     for (const TablePlot& plot : tables.back().plots) {
       if (out) SACCADE_CHECK(write_file_atomically(*out / plot.file, plot.svg));
     }
+    for (const TablePicture& picture : tables.back().pictures) {
+      if (out) SACCADE_CHECK(write_png(*out / picture.file, picture.image));
+    }
   }
   return {};
 }
@@ -124,7 +128,9 @@ Result<int> run_reproduce(const std::vector<std::string>& numbers, const Reprodu
   SACCADE_CHECK(check_reproduce(numbers, options, markdown, global));
   std::optional<RunFolder> out;
   if (!plots.folder.empty()) {
-    SACCADE_TRY(RunFolder opened, RunFolder::open(plots.folder, kTablePlotFiles, "", plots.force));
+    std::vector<std::string_view> files(kTablePlotFiles.begin(), kTablePlotFiles.end());
+    files.insert(files.end(), kTablePictureFiles.begin(), kTablePictureFiles.end());
+    SACCADE_TRY(RunFolder opened, RunFolder::open(plots.folder, files, "", plots.force));
     out.emplace(std::move(opened));
   }
   TimingsMs timings_ms;
@@ -177,7 +183,11 @@ void check_markdown_option(const std::string& markdown, const std::vector<std::s
 void check_plots_option(const std::string& plots, const std::vector<std::string>& numbers) {
   const auto has_plots = [](const std::string& number) { return find_thesis_table(number)->has_plots; };
   if (plots.empty() || std::any_of(numbers.begin(), numbers.end(), has_plots)) return;
-  usage_error("--out", "is for plots, which Table 2.1 has");
+  std::string with_plots;
+  for (const ThesisTable& table : thesis_tables()) {
+    if (table.has_plots) with_plots += (with_plots.empty() ? "" : ", ") + std::string{table.number};
+  }
+  usage_error("--out", "is for plots and pictures, which these have: " + with_plots);
 }
 
 }  // namespace
@@ -188,7 +198,7 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
   auto options = std::make_shared<ReproduceOptions>();
   auto markdown = std::make_shared<std::string>();
   auto plots = std::make_shared<PlotOptions>();
-  command->add_option("tables", *numbers, "tables by their number; none: lists those that there are")
+  command->add_option("tables", *numbers, "tables, and figures, by their number; none: lists those that there are")
       ->type_name("TABLE");
   command
       ->add_option("--poses", options->poses,
@@ -217,7 +227,10 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
                    "scan of Table 2.1: only so many of its first frames, for a quick look (default: all)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
-  command->add_option("--out", plots->folder, "folder for the plots of Table 2.1: Fig. 2.12")->type_name("DIR");
+  command
+      ->add_option("--out", plots->folder,
+                   "folder for the plots of Table 2.1 (Fig. 2.12) and the pictures of Figs. 3.8, 3.9")
+      ->type_name("DIR");
   command->add_flag("--force", plots->force, "let --out write among other files");
   command->add_option("--markdown", *markdown, "write the tables as Markdown to a file")->type_name("FILE");
   command->callback([numbers, options, markdown, plots, &global, &action] {

@@ -14,6 +14,7 @@
 #include "saccade/attention/dip_stream.hpp"
 #include "saccade/attention/gmm_as.hpp"
 #include "saccade/attention/hand_recorder.hpp"
+#include "saccade/attention/saliency.hpp"
 #include "saccade/attention/zvc.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/explore/environment_update.hpp"
@@ -147,6 +148,15 @@ TEST(Defaults, OfSegmentationAreDocumented) {
   expect_documented("LccpConfig::concavity_tolerance_rad", {degrees(lccp.concavity_tolerance_rad)});
   expect_documented("LccpConfig::smoothness", {lccp.smoothness});
   expect_documented("LccpConfig::min_supervoxels", {static_cast<double>(lccp.min_supervoxels)});
+}
+
+TEST(Defaults, OfSaliencyAreDocumented) {
+  const SizePriorConfig size;
+  const HeightConfig height;
+  expect_documented("MeasureConfig::isolation_distance_m", {MeasureConfig{}.isolation_distance_m});
+  expect_documented("SizePriorConfig::size_m", {size.size_m, size.factor});
+  expect_documented("HeightConfig::half_height_m", {height.half_height_m});
+  expect_documented("HeightConfig::level_rad", {degrees(height.level_rad)});
 }
 
 TEST(Defaults, OfDepthFiltersAreDocumented) {

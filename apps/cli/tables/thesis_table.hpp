@@ -15,6 +15,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/core/progress.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/image.hpp"
 
 namespace saccade::cli {
 
@@ -35,6 +36,14 @@ struct TablePlot {
   std::string svg;
 };
 
+/// The same of pictures.
+constexpr std::array<std::string_view, 2> kTablePictureFiles{"fig-3-8.png", "fig-3-9.png"};
+
+struct TablePicture {
+  std::string_view file;
+  ColorImage image;
+};
+
 struct ReproducedTable {
   std::string caption;
   std::vector<std::string> columns;
@@ -42,6 +51,7 @@ struct ReproducedTable {
   std::vector<std::string> notes;  ///< what was done here, and what differs from the thesis
   nlohmann::json figures;
   std::vector<TablePlot> plots{};  ///< figures of the thesis that go with it
+  std::vector<TablePicture> pictures{};
 };
 
 /// A table of the thesis, by its number.
@@ -50,7 +60,7 @@ struct ThesisTable {
   std::string_view title;
   Result<ReproducedTable> (*reproduce)(const ReproduceOptions&, const Executor&, const Progress&);
   bool needs_hands{false};  ///< ReproduceOptions::hands
-  bool has_plots{false};
+  bool has_plots{false};    ///< or pictures
 };
 
 /// In the thesis' order.
@@ -80,6 +90,10 @@ void print(std::ostream& out, const ReproducedTable& table);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_9(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_10(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_3_8(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_3_9(const ReproduceOptions& options, const Executor& executor,
                                                            const Progress& progress);
 
 }  // namespace saccade::cli

@@ -15,6 +15,7 @@ namespace saccade {
 /// What drew the attention.
 enum class AttentionOrigin {
   hand_action,
+  segment,  ///< salient_regions
 };
 
 /// The one currency between attention and planning: everything after it works on regions and does not know where they

@@ -1,0 +1,135 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade segment: a point cloud, or the surface of a map, in segments, and how much each draws attention.
+#include "segment.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <memory>
+
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+#include "progress_bar.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/atomic_file.hpp"
+#include "saccade/io/image_io.hpp"
+
+namespace saccade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Fails early where a file cannot be written, or where it is one that is read or written besides.
+Status check_output(const fs::path& file, const char* option, const std::vector<fs::path>& others) {
+  if (file.empty()) return {};
+  std::error_code ignored;
+  for (const fs::path& other : others) {
+    if (other.empty() || fs::weakly_canonical(file, ignored) != fs::weakly_canonical(other, ignored)) continue;
+    return Error{Errc::invalid_argument, std::string{"would be replaced by "} + option + "; name another file there",
+                 file.string()};
+  }
+  SACCADE_TRY(const AtomicFile probe, AtomicFile::create(file));
+  return {};
+}
+
+Status check_outputs(const SegmentOptions& options, const GlobalOptions& global) {
+  SACCADE_CHECK(check_output(options.out, "--out", {options.input}));
+  SACCADE_CHECK(check_output(options.picture, "--picture", {options.input, options.out}));
+  const fs::path json_file = global.json_to_stdout() ? "" : global.json;
+  SACCADE_CHECK(check_output(json_file, "--json", {options.input, options.out, options.picture}));
+  return check_json_output(global);
+}
+
+Status stop_if_interrupted() { return interrupted() ? Status{Error{Errc::cancelled, "interrupted", {}}} : Status{}; }
+
+Status judge(const SegmentOptions& options, const SegmentInput& input, const Executor& executor,
+             SegmentFindings& findings) {
+  const Stopwatch clock;
+  SACCADE_TRY(const SegmentedPoints points,
+              SegmentedPoints::create(input.cloud.positions_m, findings.segments.labels, findings.segments.segments));
+  SACCADE_TRY(findings.measures, measure_segments(points, options.measures, executor));
+  findings.saliencies = options.saliency.heuristic({points, findings.measures, options.measures});
+  findings.saliency_ms = clock.elapsed_ms();
+  findings.points = points.positions_m().size();
+  return {};
+}
+
+Result<SegmentFindings> find_segments(const SegmentOptions& options, const SegmentInput& input,
+                                      const Executor& executor, ProgressBar& bar) {
+  SegmentFindings findings;
+  SupervoxelConfig config = options.supervoxels;
+  const Eigen::Vector3d own_m = config.voxels.single_camera ? Eigen::Vector3d::Zero() : input.viewpoint_m;
+  config.voxels.viewpoint_m = options.viewpoint_m.value_or(own_m);
+  bar.update("supervoxels", 0, 0);
+  Stopwatch clock;
+  SACCADE_TRY(findings.supervoxels, find_supervoxels(input.cloud, config, executor));
+  findings.supervoxels_ms = clock.lap_ms();
+  SACCADE_CHECK(stop_if_interrupted());
+  bar.update("segments", 0, 0);
+  SACCADE_TRY(findings.segments, segment_by_convexity(findings.supervoxels, options.lccp));
+  findings.lccp_ms = clock.lap_ms();
+  SACCADE_CHECK(stop_if_interrupted());
+  bar.update("saliency", 0, 0);
+  SACCADE_CHECK(judge(options, input, executor, findings));
+  SACCADE_CHECK(stop_if_interrupted());
+  return findings;
+}
+
+Status write_results(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings,
+                     const Executor& executor) {
+  if (!options.out.empty()) SACCADE_CHECK(write_cloud(options.out, input.file));
+  if (options.picture.empty() || findings.points == 0) return {};
+  return write_png(options.picture, segment_sheet(options, input, findings, executor));
+}
+
+Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& global) {
+  Stopwatch clock;
+  const Stopwatch total;
+  TimingsMs timings_ms;
+  const Executor executor = global.executor();
+  ProgressBar bar{global.quiet};
+  SACCADE_CHECK(check_outputs(options, global));
+  bar.update("reading", 0, 0);
+  SACCADE_TRY(SegmentInput input, read_segment_input(options.input, executor));
+  timings_ms["read"] = clock.lap_ms();
+  SACCADE_CHECK(stop_if_interrupted());
+  SACCADE_TRY(SegmentFindings findings, find_segments(options, input, executor, bar));
+  timings_ms["segment"] = clock.lap_ms();
+  findings.label_kept_as = add_labels(input.file, findings.segments.labels);
+  if (!options.out.empty() && !findings.label_kept_as.empty()) {
+    bar.note("the cloud has a field label already; its values are kept as " + findings.label_kept_as);
+  }
+  bar.update("writing", 0, 0);
+  SACCADE_CHECK(write_results(options, input, findings, executor));
+  timings_ms["write"] = clock.lap_ms();
+  timings_ms["total"] = total.elapsed_ms();
+  bar.finish();
+  SACCADE_CHECK(write_json_output(
+      global, json_envelope("segment", global, executor, timings_ms, segment_json(options, input, findings))));
+  if (findings.points == 0) {
+    const bool empty = input.cloud.positions_m.empty();
+    print_error(
+        "segment",
+        options.input.string() +
+            (empty ? ": has no points"
+                   : ": has no point with a finite place" +
+                         std::string{options.supervoxels.voxels.single_camera ? " in front of the camera" : ""}) +
+            "; there is nothing to segment");
+    return static_cast<int>(ExitStatus::no_result);
+  }
+  if (!global.json_to_stdout()) print_segments(options, findings);
+  return static_cast<int>(ExitStatus::done);
+}
+
+}  // namespace
+
+void add_segment(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command = program.add_subcommand("segment", "a point cloud or a map in segments, and their saliency");
+  auto options = std::make_shared<SegmentOptions>();
+  add_segment_options(*command, *options);
+  command->callback([options, &global, &action] {
+    check_segment_options(*options);
+    action = [options, &global] { return run_segment(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli

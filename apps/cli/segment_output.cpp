@@ -1,0 +1,155 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+#include <cmath>
+#include <iomanip>
+#include <iostream>
+#include <numeric>
+
+#include "saccade/report/segment_picture.hpp"
+#include "segment.hpp"
+#include "summary.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+json segments_json(const SegmentFindings& findings) {
+  json segments = json::array();
+  for (std::size_t s = 0; s < findings.measures.size(); ++s) {
+    const SegmentMeasures& measures = findings.measures[s];
+    segments.push_back(
+        {{"id", s + 1},
+         {"points", measures.points},
+         {"saliency", findings.saliencies[s].value},
+         {"why", findings.saliencies[s].why},
+         {"roundness", measures.roundness},
+         {"isolation", measures.isolation},
+         {"mean_m", point_json(measures.mean_m)},
+         {"sizes_m", point_json(measures.sizes_m)},
+         {"bounds_m", {{"min", point_json(measures.lowest_m)}, {"max", point_json(measures.highest_m)}}}});
+  }
+  return segments;
+}
+
+json parameters_json(const SegmentOptions& options) {
+  const SupervoxelConfig& supervoxels = options.supervoxels;
+  return {{"voxel_size_m", supervoxels.voxels.voxel_size_m},
+          {"seed_size_m", supervoxels.seed_spacing_m},
+          {"weights",
+           {{"spatial", supervoxels.spatial_weight},
+            {"normal", supervoxels.normal_weight},
+            {"color", supervoxels.color_weight}}},
+          {"transform", supervoxels.voxels.single_camera},
+          {"concavity_rad", options.lccp.concavity_tolerance_rad},
+          {"smoothness_vox", options.lccp.smoothness},
+          {"sanity", options.lccp.sanity},
+          {"extended", options.lccp.extended_convexity},
+          {"min_size", options.lccp.min_supervoxels},
+          {"saliency", options.saliency.names},
+          {"isolation_distance_m", options.measures.isolation_distance_m}};
+}
+
+json text_or_null(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
+
+/// The most salient first, equal ones in their order.
+std::vector<std::size_t> by_saliency(const SegmentFindings& findings) {
+  std::vector<std::size_t> order(findings.saliencies.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+    return findings.saliencies[a].value > findings.saliencies[b].value;
+  });
+  return order;
+}
+
+/// Of points on a surface that fill its voxels as evenly as these do on average.
+double spacing_of(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings) {
+  const double per_voxel = static_cast<double>(findings.points) / static_cast<double>(findings.supervoxels.voxels);
+  double edge_m = options.supervoxels.voxels.voxel_size_m;
+  if (options.supervoxels.voxels.single_camera) {
+    double depth_m{0.0};
+    for (std::size_t i = 0; i < input.cloud.positions_m.size(); ++i) {
+      if (findings.segments.labels[i] != kUnlabelled) depth_m += static_cast<double>(input.cloud.positions_m[i].z());
+    }
+    edge_m *= depth_m / static_cast<double>(findings.points);
+  }
+  return edge_m / std::sqrt(per_voxel);
+}
+
+/// Of the points, or where they have none of their supervoxels.
+std::vector<Eigen::Vector3f> normals_of(const SegmentInput& input, const SegmentFindings& findings) {
+  if (!input.cloud.normals.empty()) return input.cloud.normals;
+  std::vector<Eigen::Vector3f> normals(input.cloud.positions_m.size(), Eigen::Vector3f::Zero());
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    const std::uint32_t supervoxel = findings.supervoxels.labels[i];
+    if (supervoxel != kUnlabelled) normals[i] = findings.supervoxels.supervoxels[supervoxel].normal;
+  }
+  return normals;
+}
+
+}  // namespace
+
+json segment_json(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings) {
+  return {{"input", options.input.string()},
+          {"kind", input.is_map ? "map" : "cloud"},
+          {"method", options.method},
+          {"parameters", parameters_json(options)},
+          {"rows", input.cloud.positions_m.size()},
+          {"points", findings.points},
+          {"voxels", findings.supervoxels.voxels},
+          {"supervoxels", findings.supervoxels.supervoxels.size()},
+          {"normals", input.cloud.normals.empty() ? "estimated" : (input.is_map ? "tsdf gradient" : "given")},
+          {"ms",
+           {{"supervoxels", findings.supervoxels_ms}, {"lccp", findings.lccp_ms}, {"saliency", findings.saliency_ms}}},
+          {"segments", segments_json(findings)},
+          {"out", text_or_null(options.out.string())},
+          {"picture", text_or_null(findings.points == 0 ? "" : options.picture.string())},
+          {"label_kept_as", text_or_null(findings.label_kept_as)}};
+}
+
+void print_segments(const SegmentOptions& options, const SegmentFindings& findings) {
+  const Summary summary{std::cout};
+  summary.line("points", std::to_string(findings.points));
+  summary.line("supervoxels", std::to_string(findings.supervoxels.supervoxels.size()));
+  summary.line("segments", std::to_string(findings.measures.size()));
+  summary.line("time", fixed(findings.supervoxels_ms, 1) + " ms supervoxels, " + fixed(findings.lccp_ms, 1) +
+                           " ms LCCP, " + fixed(findings.saliency_ms, 1) + " ms saliency");
+  if (!options.out.empty()) summary.line("labels", options.out.string());
+  if (!options.picture.empty()) summary.line("picture", options.picture.string());
+  constexpr std::size_t kShown{10};
+  const std::vector<std::size_t> order = by_saliency(findings);
+  std::cout << "\nsegment   points  saliency  roundness  isolation  why\n";
+  for (std::size_t i = 0; i < std::min(kShown, order.size()); ++i) {
+    const std::size_t s = order[i];
+    std::cout << std::right << std::setw(7) << s + 1 << std::setw(9) << findings.measures[s].points << std::setw(10)
+              << fixed(findings.saliencies[s].value, 3) << std::setw(11) << fixed(findings.measures[s].roundness, 3)
+              << std::setw(11) << fixed(findings.measures[s].isolation, 3) << "  " << findings.saliencies[s].why
+              << '\n';
+  }
+  if (order.size() > kShown) std::cout << "... and " << order.size() - kShown << " more, all in the JSON result\n";
+}
+
+ColorImage segment_sheet(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings,
+                         const Executor& executor) {
+  const std::vector<Eigen::Vector3f> normals = normals_of(input, findings);
+  const DrawnSegments drawn{input.cloud.positions_m, normals, findings.segments.labels, input.triangles,
+                            spacing_of(options, input, findings)};
+  constexpr int kWidth_px{800};
+  constexpr int kHeight_px{600};
+  OverviewConfig overview;
+  overview.width = kWidth_px;
+  overview.height = kHeight_px;
+  overview.up = options.saliency.height.up;
+  const Viewpoint view = options.supervoxels.voxels.single_camera
+                             ? camera_view_of(input.cloud.positions_m, kWidth_px, kHeight_px)
+                             : overview_of_points(input.cloud.positions_m, overview);
+  std::vector<double> values;
+  for (const Saliency& saliency : findings.saliencies) values.push_back(saliency.value);
+  const double most = values.empty() ? 1.0 : *std::max_element(values.begin(), values.end());
+  return compose({options.input.filename().string(),
+                  {segments_panel(drawn, findings.measures, view, executor),
+                   saliency_panel(drawn, values, most, view, "saliency: " + options.saliency.names, executor)},
+                  {}});
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,72 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SegmentedPoints: the points of a cloud, segment by segment; measure_segments: what saliency is made of.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <span>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/region.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+/// Points in the order of their segments, within a segment in the order given.
+class SegmentedPoints {
+ public:
+  /// @param positions_m  of one frame; one that is not finite is no point.
+  /// @param labels       one per position: a segment below `segments`, or kUnlabelled: in none.
+  /// @return size_mismatch for unlike numbers; invalid_argument for a label that is no segment.
+  /// O(points).
+  [[nodiscard]] static Result<SegmentedPoints> create(std::span<const Eigen::Vector3f> positions_m,
+                                                      std::span<const std::uint32_t> labels, std::size_t segments);
+
+  [[nodiscard]] std::size_t segments() const { return starts_.size() - 2; }
+  [[nodiscard]] std::span<const Eigen::Vector3f> points_of(std::size_t segment) const {
+    return std::span{positions_m_}.subspan(starts_[segment], starts_[segment + 1] - starts_[segment]);
+  }
+  /// All points; those in no segment come last.
+  [[nodiscard]] std::span<const Eigen::Vector3f> positions_m() const { return positions_m_; }
+  /// Where a segment's points begin among all; segments(): where those in none begin.
+  [[nodiscard]] std::size_t start_of(std::size_t segment) const { return starts_[segment]; }
+  /// The segment of each of them; segments(): none.
+  [[nodiscard]] const std::vector<std::uint32_t>& segment_of() const { return segment_of_; }
+
+ private:
+  SegmentedPoints() = default;
+  std::vector<Eigen::Vector3f> positions_m_;
+  std::vector<std::uint32_t> segment_of_;
+  std::vector<std::size_t> starts_;  ///< of each segment, of the points in none, and the end
+};
+
+/// What is measured of a segment.
+struct SegmentMeasures {
+  std::size_t points{0};
+  Eigen::Vector3d mean_m{Eigen::Vector3d::Zero()};
+  Eigen::Matrix3d axes{Eigen::Matrix3d::Identity()};  ///< columns: principal axes, the one of least spread first
+  Eigen::Vector3d sizes_m{Eigen::Vector3d::Zero()};   ///< of the oriented bounding box along them, d of eq. 3.8
+  Eigen::Vector3d lowest_m{Eigen::Vector3d::Zero()};  ///< corners of the box along x, y, z
+  Eigen::Vector3d highest_m{Eigen::Vector3d::Zero()};
+  double roundness{0.0};  ///< d_min / d_max; 0 where all points are one
+  double isolation{0.0};  ///< F of eq. 3.11
+};
+
+struct MeasureConfig {
+  double isolation_distance_m{0.02};  ///< B_th of eq. 3.11
+
+  /// @return invalid_argument for a distance that is not finite and positive.
+  [[nodiscard]] Status validate() const;
+};
+
+/// Oriented bounding boxes by principal axes, and isolation: the share of a segment's points farther than B_th from
+/// every point outside it, in no segment or in another.  Thesis §3.1.2, eq. 3.8–3.11.
+/// @return one entry per segment; all zero for one without points. An error of the config.
+/// O(points) away from where segments meet, O(points · log points) there. The thread count never changes a bit.
+[[nodiscard]] Result<std::vector<SegmentMeasures>> measure_segments(const SegmentedPoints& points,
+                                                                    const MeasureConfig& config,
+                                                                    const Executor& executor);
+
+}  // namespace saccade

@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// draw_segments, segments_panel, saliency_panel: a cloud or a mesh coloured by its segments, or by their saliency.
+
+#include <Eigen/Core>
+#include <array>
+#include <cstdint>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saccade/attention/segmented_points.hpp"
+#include "saccade/core/executor.hpp"
+#include "saccade/report/sheet.hpp"
+#include "saccade/report/viewpoint.hpp"
+
+namespace saccade {
+
+/// Points with their segments.
+struct DrawnSegments {
+  std::span<const Eigen::Vector3f> positions_m;             ///< one that is not finite is not drawn
+  std::span<const Eigen::Vector3f> normals;                 ///< one per position, or none: no shading
+  std::span<const std::uint32_t> labels;                    ///< one per position; kUnlabelled: grey
+  std::span<const std::array<std::uint32_t, 3>> triangles;  ///< between them; none: points are drawn as discs
+  double spacing_m{0.005};                                  ///< between points: the discs' size
+};
+
+/// A colour for each segment, unlike those of the segments numbered next to it.
+[[nodiscard]] std::vector<Rgb8> segment_colors(std::size_t segments);
+
+/// Each point in the colour of its segment, shaded by its normal. Expects a colour per segment.
+[[nodiscard]] ColorImage draw_segments(const DrawnSegments& segments, const Viewpoint& view,
+                                       std::span<const Rgb8> colors, const Executor& executor);
+
+/// The segments, told apart by colour, the largest of them named by their numbers, which begin with 1.
+[[nodiscard]] Panel segments_panel(const DrawnSegments& segments, std::span<const SegmentMeasures> measures,
+                                   const Viewpoint& view, const Executor& executor);
+
+/// The segments, the more salient the brighter, with a scale from 0 to `most`; `values` has one saliency per segment.
+[[nodiscard]] Panel saliency_panel(const DrawnSegments& segments, std::span<const double> values, double most,
+                                   const Viewpoint& view, std::string title, const Executor& executor);
+
+/// The view of a camera at the origin that looks along +z with y downwards, wide enough for all points.
+[[nodiscard]] Viewpoint camera_view_of(std::span<const Eigen::Vector3f> positions_m, int width, int height);
+/// overview_of for points, of which at least one is finite.
+[[nodiscard]] Viewpoint overview_of_points(std::span<const Eigen::Vector3f> positions_m, const OverviewConfig& config);
+
+}  // namespace saccade
