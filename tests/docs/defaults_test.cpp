@@ -143,7 +143,6 @@ TEST(Defaults, OfSegmentationAreDocumented) {
   expect_documented("SupervoxelConfig::spatial_weight",
                     {supervoxels.spatial_weight, supervoxels.normal_weight, supervoxels.color_weight});
   expect_documented("SupervoxelConfig::min_seed_share", {supervoxels.min_seed_share});
-  expect_documented("SupervoxelConfig::max_rounds", {static_cast<double>(supervoxels.max_rounds)});
   const LccpConfig lccp;
   expect_documented("LccpConfig::concavity_tolerance_rad", {degrees(lccp.concavity_tolerance_rad)});
   expect_documented("LccpConfig::smoothness", {lccp.smoothness});

@@ -23,7 +23,7 @@ inline constexpr int kCellBits{21};                    ///< per axis
   std::uint64_t cell{0};
   for (const int axis : {0, 1, 2}) {
     const double index = std::floor(static_cast<double>(place[axis]) / size);
-    if (!(index > -kHalf && index < kHalf - 1.0)) return kFarCell;  // so that the cells next to it are cells, too
+    if (!(index > 8.0 - kHalf && index < kHalf - 9.0)) return kFarCell;  // so that blocks next to its block exist
     cell = (cell << kCellBits) | static_cast<std::uint64_t>(index + kHalf);
   }
   return cell;

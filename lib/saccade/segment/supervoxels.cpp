@@ -3,22 +3,17 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 #include "saccade/segment/cell_index.hpp"
+#include "saccade/segment/voxel_difference.hpp"
 
 namespace saccade {
 
 namespace {
 
-constexpr std::size_t kGrain{1024};
-
-/// What a voxel is compared with.
-struct Centre {
-  Eigen::Vector3f place;
-  Eigen::Vector3f normal;
-  Eigen::Vector3f color;
-};
+constexpr std::size_t kSeedGrain{512};
 
 class Clustering {
  public:
@@ -26,49 +21,37 @@ class Clustering {
       : cloud_{cloud},
         config_{config},
         executor_{executor},
-        spatial_{static_cast<float>(config.spatial_weight / config.seed_spacing_m)},
-        normal_{static_cast<float>(config.normal_weight)},
-        color_{static_cast<float>(config.color_weight)},
+        difference_{config},
         labels_(cloud.voxels.size(), kUnlabelled),
-        open_(cloud.voxels.size(), 0) {}
+        distances_(cloud.voxels.size(), std::numeric_limits<float>::infinity()),
+        is_changed_(cloud.voxels.size()) {}
 
   /// A label for every voxel.
   std::vector<std::uint32_t> run() {
-    for (const std::uint32_t seed : seeds()) add(seed);
+    for (const std::uint32_t seed : seeds()) {
+      add(seed);
+      distances_[seed] = 0.0F;
+    }
+    changed_ = seeds_;
     const double reach =
         2.0 * config_.seed_spacing_m / config_.voxels.voxel_size_m;  // of a seed among others, in voxels
-    for (double step = 0.0; step < reach && grow(); step += 1.0) {
-    }
-    for (std::size_t round = 0; round < config_.max_rounds; ++round) {
-      move_centres();
-      std::fill(open_.begin(), open_.end(), 1);
-      if (!grow()) break;
-    }
+    for (double step = 0.0; step < reach && !changed_.empty(); step += 1.0) grow();
     fill_rest();
     return compact();
   }
 
  private:
-  [[nodiscard]] float distance(const CloudVoxel& voxel, const Centre& centre) const {
-    float sum = spatial_ * (voxel.place - centre.place).norm() + normal_ * (1.0F - voxel.normal.dot(centre.normal));
-    if (color_ > 0.0F) sum += color_ * (voxel.color - centre.color).norm();
-    return sum;
-  }
-
   void add(std::uint32_t voxel) {
-    labels_[voxel] = static_cast<std::uint32_t>(centres_.size());
-    centres_.push_back({cloud_.voxels[voxel].place, cloud_.voxels[voxel].normal, cloud_.voxels[voxel].color});
-    for (const std::uint32_t other : cloud_.neighbours(voxel)) open_[other] = 1;
+    labels_[voxel] = static_cast<std::uint32_t>(seeds_.size());
+    seeds_.push_back(voxel);
   }
 
   /// How much normals and colours differ from the neighbours'.
   [[nodiscard]] float gradient(std::uint32_t voxel) const {
     const CloudVoxel& here = cloud_.voxels[voxel];
     float sum{0.0F};
-    for (const std::uint32_t other : cloud_.neighbours(voxel)) {
-      const CloudVoxel& there = cloud_.voxels[other];
-      sum += normal_ * (1.0F - here.normal.dot(there.normal)) + color_ * (here.color - there.color).norm();
-    }
+    for (const std::uint32_t other : cloud_.neighbours(voxel))
+      sum += difference_.of_surfaces(here, cloud_.voxels[other]);
     return sum / static_cast<float>(std::max<std::size_t>(1, cloud_.neighbours(voxel).size()));
   }
 
@@ -89,9 +72,10 @@ class Clustering {
     }
     std::vector<std::uint32_t> nearest(sums.size(), kUnlabelled);
     std::vector<double> nearest_squared(sums.size());
+    for (std::size_t c = 0; c < sums.size(); ++c) sums[c] /= counts[c];
     for (std::size_t v = 0; v < cloud_.voxels.size(); ++v) {
       const std::uint32_t cell = cell_of[v];
-      const double squared = (cloud_.voxels[v].place.cast<double>() - sums[cell] / counts[cell]).squaredNorm();
+      const double squared = (cloud_.voxels[v].place.cast<double>() - sums[cell]).squaredNorm();
       if (nearest[cell] != kUnlabelled && squared >= nearest_squared[cell]) continue;
       nearest[cell] = static_cast<std::uint32_t>(v);
       nearest_squared[cell] = squared;
@@ -102,14 +86,14 @@ class Clustering {
   /// Seeds that have enough voxels around them, each moved to the least gradient there.
   [[nodiscard]] std::vector<std::uint32_t> seeds() const {
     const double radius_m = 0.5 * config_.seed_spacing_m;
-    const double across = radius_m / config_.voxels.voxel_size_m;
-    const double fewest = config_.min_seed_share * std::numbers::pi * across * across;
+    const double fewest = config_.fewest_around_seed(config_.seed_spacing_m / config_.voxels.voxel_size_m);
     const std::vector<std::uint32_t> candidates = cell_voxels();
     std::vector<std::uint32_t> chosen(candidates.size(), kUnlabelled);
-    executor_.parallel_for(candidates.size(), 64, [&](std::size_t begin, std::size_t end) {
+    executor_.parallel_for(candidates.size(), kSeedGrain, [&](std::size_t begin, std::size_t end) {
       std::vector<std::uint32_t> around;
+      std::vector<bool> met(cloud_.voxels.size());
       for (std::size_t i = begin; i < end; ++i) {
-        voxels_around(candidates[i], radius_m, around);
+        voxels_around(candidates[i], radius_m, around, met);
         if (static_cast<double>(around.size()) < fewest) continue;
         float least{0.0F};
         for (const std::uint32_t voxel : around) {
@@ -131,79 +115,42 @@ class Clustering {
   }
 
   /// Those within the radius to which voxels within it lead; the nearest first, roughly.
-  void voxels_around(std::uint32_t centre, double radius_m, std::vector<std::uint32_t>& around) const {
+  /// None is `met` before or after.
+  void voxels_around(std::uint32_t centre, double radius_m, std::vector<std::uint32_t>& around,
+                     std::vector<bool>& met) const {
     const auto limit = static_cast<float>(radius_m * radius_m);
     around.assign(1, centre);
+    met[centre] = true;
     for (std::size_t next = 0; next < around.size(); ++next) {
       for (const std::uint32_t other : cloud_.neighbours(around[next])) {
+        if (met[other]) continue;
         if ((cloud_.voxels[other].place - cloud_.voxels[centre].place).squaredNorm() > limit) continue;
-        if (std::find(around.begin(), around.end(), other) == around.end()) around.push_back(other);
+        met[other] = true;
+        around.push_back(other);
       }
     }
+    for (const std::uint32_t voxel : around) met[voxel] = false;
   }
 
-  /// Every open voxel goes to the nearest centre among its own and its neighbours'; then those next to one that changed
-  /// are open. @return whether there are any.
-  bool grow() {
-    std::vector<std::uint32_t> next = labels_;
-    std::vector<std::vector<std::uint32_t>> changed((labels_.size() + kGrain - 1) / kGrain);
-    executor_.parallel_for(labels_.size(), kGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t v = begin; v < end; ++v) {
-        if (open_[v] == 0) continue;
-        open_[v] = 0;
-        next[v] = nearest_label(static_cast<std::uint32_t>(v));
-        if (next[v] != labels_[v]) changed[begin / kGrain].push_back(static_cast<std::uint32_t>(v));
-      }
-    });
-    labels_.swap(next);
-    bool any{false};
-    for (const std::vector<std::uint32_t>& chunk : changed) {
-      for (const std::uint32_t voxel : chunk) {
-        any = true;
-        for (const std::uint32_t other : cloud_.neighbours(voxel)) open_[other] = 1;
-      }
+  /// What voxels got in the last step they offer to their neighbours, which take it if it is nearer; all at once.
+  void grow() {
+    std::vector<std::pair<std::uint32_t, std::uint32_t>> offers;
+    for (const std::uint32_t voxel : changed_) {
+      offers.emplace_back(voxel, labels_[voxel]);
+      is_changed_[voxel] = false;
     }
-    return any;
-  }
-
-  [[nodiscard]] std::uint32_t nearest_label(std::uint32_t v) const {
-    const CloudVoxel& voxel = cloud_.voxels[v];
-    std::uint32_t best = labels_[v];
-    float least{-1.0F};  // not computed yet
-    std::uint32_t last = best;
-    for (const std::uint32_t other : cloud_.neighbours(v)) {
-      const std::uint32_t label = labels_[other];
-      if (label == last || label == best || label == kUnlabelled) continue;
-      last = label;
-      if (best != kUnlabelled && least < 0.0F) least = distance(voxel, centres_[best]);
-      const float there = distance(voxel, centres_[label]);
-      if (best == kUnlabelled || there < least || (there == least && label < best)) {
-        best = label;
-        least = there;
+    changed_.clear();
+    for (const auto& [voxel, label] : offers) {
+      const CloudVoxel& seed = cloud_.voxels[seeds_[label]];
+      for (const std::uint32_t other : cloud_.neighbours(voxel)) {
+        if (labels_[other] == label) continue;
+        const float distance = difference_.of(cloud_.voxels[other], seed);
+        if (std::pair{distance, label} >= std::pair{distances_[other], labels_[other]}) continue;
+        labels_[other] = label;
+        distances_[other] = distance;
+        if (!is_changed_[other]) changed_.push_back(other);
+        is_changed_[other] = true;
       }
-    }
-    return best;
-  }
-
-  /// To the means of their voxels; a centre that lost all of them stays.
-  void move_centres() {
-    std::vector<Eigen::Matrix<double, 9, 1>> sums(centres_.size(), Eigen::Matrix<double, 9, 1>::Zero());
-    std::vector<double> counts(centres_.size(), 0.0);
-    for (std::size_t v = 0; v < labels_.size(); ++v) {
-      if (labels_[v] == kUnlabelled) continue;
-      const CloudVoxel& voxel = cloud_.voxels[v];
-      Eigen::Matrix<double, 9, 1>& sum = sums[labels_[v]];
-      sum.head<3>() += voxel.place.cast<double>();
-      sum.segment<3>(3) += voxel.normal.cast<double>();
-      sum.tail<3>() += voxel.color.cast<double>();
-      counts[labels_[v]] += 1.0;
-    }
-    for (std::size_t c = 0; c < centres_.size(); ++c) {
-      if (counts[c] == 0.0) continue;
-      const Eigen::Matrix<double, 9, 1> mean = sums[c] / counts[c];
-      centres_[c].place = mean.head<3>().cast<float>();
-      if (mean.segment<3>(3).squaredNorm() > 0.0) centres_[c].normal = mean.segment<3>(3).normalized().cast<float>();
-      centres_[c].color = mean.tail<3>().cast<float>();
     }
   }
 
@@ -220,11 +167,20 @@ class Clustering {
       }
       front.clear();
     };
+    std::vector<std::uint32_t> rest;
     for (std::uint32_t v = 0; v < labels_.size(); ++v) {
-      if (labels_[v] != kUnlabelled) front.push_back(v);
+      if (labels_[v] == kUnlabelled) rest.push_back(v);
     }
+    // Labelled voxels next to these, in the order of voxels.
+    for (const std::uint32_t v : rest) {
+      for (const std::uint32_t other : cloud_.neighbours(v)) {
+        if (labels_[other] != kUnlabelled) front.push_back(other);
+      }
+    }
+    std::sort(front.begin(), front.end());
+    front.erase(std::unique(front.begin(), front.end()), front.end());
     spread();
-    for (std::uint32_t v = 0; v < labels_.size(); ++v) {
+    for (const std::uint32_t v : rest) {
       if (labels_[v] != kUnlabelled) continue;
       add(v);
       front.push_back(v);
@@ -234,7 +190,7 @@ class Clustering {
 
   /// Labels without those that no voxel has.
   std::vector<std::uint32_t> compact() {
-    std::vector<std::uint32_t> renamed(centres_.size(), kUnlabelled);
+    std::vector<std::uint32_t> renamed(seeds_.size(), kUnlabelled);
     std::uint32_t used{0};
     for (const std::uint32_t label : labels_) renamed[label] = 0;
     for (std::uint32_t& name : renamed) {
@@ -247,10 +203,12 @@ class Clustering {
   const VoxelCloud& cloud_;
   const SupervoxelConfig& config_;
   const Executor& executor_;
-  float spatial_, normal_, color_;
+  const VoxelDifference difference_;
   std::vector<std::uint32_t> labels_;
-  std::vector<std::uint8_t> open_;  ///< voxels for which another centre may be nearer
-  std::vector<Centre> centres_;
+  std::vector<float> distances_;      ///< from the seed of the label
+  std::vector<std::uint32_t> seeds_;  ///< a voxel per label
+  std::vector<std::uint32_t> changed_;
+  std::vector<bool> is_changed_;
 };
 
 std::vector<Supervoxel> summarise(const VoxelCloud& cloud, const std::vector<std::uint32_t>& labels) {
@@ -299,6 +257,10 @@ Status SupervoxelConfig::validate() const {
   if (spatial_weight + normal_weight + color_weight == 0.0) return error("all weights are zero");
   if (seed_spacing_m < voxels.voxel_size_m) return error("seed_spacing_m must be at least voxel_size_m");
   return {};
+}
+
+double SupervoxelConfig::fewest_around_seed(double spacing_vox) const {
+  return min_seed_share * std::numbers::pi * 0.25 * spacing_vox * spacing_vox;
 }
 
 Result<SupervoxelResult> find_supervoxels(const PointCloud& cloud, const SupervoxelConfig& config,

@@ -1,14 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/segment/voxel_cloud.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
+#include <Eigen/LU>
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <string>
 #include <utility>
 
-#include "saccade/segment/cell_index.hpp"
+#include "saccade/segment/cell_blocks.hpp"
 
 namespace saccade {
 
@@ -17,46 +18,68 @@ namespace {
 constexpr std::size_t kPointGrain{8192};
 constexpr std::size_t kVoxelGrain{1024};
 
-/// Sums over points, of which plane and mean come.
+/// Sums over points, of which plane and mean come: x y z, xx xy xz yy yz zz, and their number.
 struct Moments {
-  Eigen::Vector3d sum{Eigen::Vector3d::Zero()};
-  std::array<double, 6> squares{};  ///< xx xy xz yy yz zz
-  double count{0.0};
+  Eigen::Array<double, 10, 1> sums{Eigen::Array<double, 10, 1>::Zero()};
 
   void add(const Eigen::Vector3d& p) {
-    sum += p;
-    squares[0] += p.x() * p.x();
-    squares[1] += p.x() * p.y();
-    squares[2] += p.x() * p.z();
-    squares[3] += p.y() * p.y();
-    squares[4] += p.y() * p.z();
-    squares[5] += p.z() * p.z();
-    count += 1.0;
+    sums.head<3>() += p.array();
+    sums.segment<3>(3) += p.x() * p.array();
+    sums[6] += p.y() * p.y();
+    sums[7] += p.y() * p.z();
+    sums[8] += p.z() * p.z();
+    sums[9] += 1.0;
   }
-  void operator+=(const Moments& other) {
-    sum += other.sum;
-    for (std::size_t i = 0; i < squares.size(); ++i) squares[i] += other.squares[i];
-    count += other.count;
-  }
+  [[nodiscard]] double count() const { return sums[9]; }
+  [[nodiscard]] Eigen::Vector3d mean() const { return (sums.head<3>() / count()).matrix(); }
 };
 
-/// Of the plane through the points, towards the viewpoint.
-Eigen::Vector3f plane_normal(const Moments& moments, const Eigen::Vector3d& to_viewpoint) {
-  const Eigen::Vector3d mean = moments.sum / moments.count;
-  const std::array<double, 6>& s = moments.squares;
-  Eigen::Matrix3d covariance;
-  covariance << s[0], s[1], s[2], s[1], s[3], s[4], s[2], s[4], s[5];
-  covariance = covariance / moments.count - mean * mean.transpose();
-  const double spread = covariance.trace();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
-  const bool one_place = !(spread > 1e-12 * mean.squaredNorm());  // what is left is rounding
-  if (!one_place) solver.computeDirect(covariance / spread);
+/// Of a symmetric matrix without negative eigenvalues and with a trace of 1: the eigenvector of the least one; zero
+/// where two of them are next to zero, or all are alike.
+Eigen::Vector3d least_eigenvector(const Eigen::Matrix3d& m) {
   constexpr double kThinnest{1e-6};  // of the spread, squared: thinner is a line
-  if (one_place || solver.eigenvalues()[1] < kThinnest) {
+  const double minors = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1) + m(0, 0) * m(2, 2) - m(0, 2) * m(0, 2) +
+                        m(1, 1) * m(2, 2) - m(1, 2) * m(1, 2);
+  const double determinant = m.determinant();
+  // Newton's steps from below come to the least root of λ³ − λ² + minors · λ − determinant.
+  double least{0.0};
+  for (int step = 0; step < 30; ++step) {
+    const double slope = (3.0 * least - 2.0) * least + minors;
+    const double value = ((least - 1.0) * least + minors) * least - determinant;
+    if (!(slope > 0.0) || value >= 0.0) break;
+    const double next = least - value / slope;
+    if (!(next - least > 1e-12)) break;
+    least = next;
+  }
+  const double others = 1.0 - least;
+  const double product = minors - least * others;
+  const double middle = 0.5 * (others - std::sqrt(std::max(0.0, others * others - 4.0 * product)));
+  if (middle < kThinnest) return Eigen::Vector3d::Zero();
+  const Eigen::Matrix3d rows = m - least * Eigen::Matrix3d::Identity();
+  Eigen::Vector3d longest = Eigen::Vector3d::Zero();
+  for (const int i : {0, 1, 2}) {
+    const Eigen::Vector3d across = rows.col(i).cross(rows.col((i + 1) % 3));
+    if (across.squaredNorm() > longest.squaredNorm()) longest = across;
+  }
+  return longest.squaredNorm() > 1e-24 ? Eigen::Vector3d{longest.normalized()}
+                                       : Eigen::Vector3d{Eigen::Vector3d::Zero()};
+}
+
+/// Of the plane through the points, towards the viewpoint; where they do not span one, to the viewpoint.
+Eigen::Vector3f plane_normal(const Moments& moments, const Eigen::Vector3d& to_viewpoint) {
+  const Eigen::Vector3d mean = moments.mean();
+  const auto& s = moments.sums;
+  Eigen::Matrix3d covariance;
+  covariance << s[3], s[4], s[5], s[4], s[6], s[7], s[5], s[7], s[8];
+  covariance = covariance / moments.count() - mean * mean.transpose();
+  const double spread = covariance.trace();
+  Eigen::Vector3d normal = Eigen::Vector3d::Zero();
+  if (spread > 1e-12 * mean.squaredNorm())
+    normal = least_eigenvector(covariance / spread);  // else only rounding is left
+  if (normal.isZero(0.0)) {
     const double distance_m = to_viewpoint.norm();
     return distance_m > 0.0 ? Eigen::Vector3f{(to_viewpoint / distance_m).cast<float>()} : Eigen::Vector3f::UnitZ();
   }
-  const Eigen::Vector3d normal = solver.eigenvectors().col(0).normalized();
   return (normal.dot(to_viewpoint) < 0.0 ? Eigen::Vector3d{-normal} : normal).cast<float>();
 }
 
@@ -66,34 +89,39 @@ std::vector<Moments> with_neighbours(const VoxelCloud& cloud, const std::vector<
   std::vector<Moments> sums(moments.size());
   executor.parallel_for(moments.size(), kVoxelGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel) {
-      sums[voxel] = moments[voxel];
-      for (const std::uint32_t other : cloud.neighbours(static_cast<std::uint32_t>(voxel)))
-        sums[voxel] += moments[other];
+      Eigen::Array<double, 10, 1> sum = moments[voxel].sums;
+      for (const std::uint32_t other : cloud.neighbours(static_cast<std::uint32_t>(voxel))) sum += moments[other].sums;
+      sums[voxel].sums = sum;
     }
   });
   return sums;
 }
 
-void find_neighbours(VoxelCloud& cloud, const CellIndex& index, const Executor& executor) {
-  const std::size_t count = index.cells().size();
+void find_neighbours(VoxelCloud& cloud, const CellBlocks& index, const Executor& executor) {
+  const std::size_t count = index.size();
   std::vector<std::vector<std::uint32_t>> chunks((count + kVoxelGrain - 1) / kVoxelGrain);
   cloud.starts.assign(count + 1, 0);
   executor.parallel_for(count, kVoxelGrain, [&](std::size_t begin, std::size_t end) {
     std::vector<std::uint32_t>& chunk = chunks[begin / kVoxelGrain];
-    chunk.reserve(16 * (end - begin));
+    chunk.resize(CellBlocks::kAround * (end - begin));
+    std::uint32_t* next = chunk.data();
     for (std::size_t voxel = begin; voxel < end; ++voxel) {
-      const std::size_t before = chunk.size();
-      for (const std::uint64_t offset : neighbour_offsets()) {
-        const std::uint32_t other = index.find(index.cells()[voxel] + offset);
-        if (other != kUnlabelled) chunk.push_back(other);
-      }
-      cloud.starts[voxel + 1] = static_cast<std::uint32_t>(chunk.size() - before);
+      std::uint32_t* const first = next;
+      next = index.around(static_cast<std::uint32_t>(voxel), next);
+      cloud.starts[voxel + 1] = static_cast<std::uint32_t>(next - first);
     }
+    chunk.resize(static_cast<std::size_t>(next - chunk.data()));
   });
   for (std::size_t voxel = 0; voxel < count; ++voxel) cloud.starts[voxel + 1] += cloud.starts[voxel];
   cloud.ids.reserve(cloud.starts.back());
   for (const std::vector<std::uint32_t>& chunk : chunks) cloud.ids.insert(cloud.ids.end(), chunk.begin(), chunk.end());
 }
+
+/// What the points of one voxel add up to.
+struct VoxelSums {
+  Eigen::Vector3d normal{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d color{Eigen::Vector3d::Zero()};
+};
 
 bool is_direction(const Eigen::Vector3f& v) { return v.allFinite() && v.squaredNorm() > 0.0F; }
 
@@ -111,47 +139,49 @@ Result<VoxelCloud> voxelise(const PointCloud& cloud, const VoxelCloudConfig& con
   SACCADE_CHECK(config.validate());
   SACCADE_CHECK(cloud.validate());
   const std::size_t points = cloud.positions_m.size();
-
-  // Places, and the cells that they lie in.
-  std::vector<Eigen::Vector3f> places(points);
+  const auto place_of = [&](const Eigen::Vector3f& p) {
+    return config.single_camera ? Eigen::Vector3f{p.x() / p.z(), p.y() / p.z(), std::log(p.z())} : p;
+  };
   std::vector<std::uint64_t> cells(points);
   executor.parallel_for(points, kPointGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f& p = cloud.positions_m[i];
-      cells[i] = kNoCell;
-      if (!p.allFinite() || (config.single_camera && !(p.z() > 0.0F))) continue;
-      places[i] = config.single_camera ? Eigen::Vector3f{p.x() / p.z(), p.y() / p.z(), std::log(p.z())} : p;
-      cells[i] = cell_at(places[i], config.voxel_size_m);
+      const bool is_point = p.allFinite() && !(config.single_camera && !(p.z() > 0.0F));
+      cells[i] = is_point ? cell_at(place_of(p), config.voxel_size_m) : kNoCell;
     }
   });
 
   // Voxels in the order of their first points.
   VoxelCloud made;
   made.voxel_of.assign(points, kUnlabelled);
-  CellIndex index;
+  CellBlocks index;
   std::vector<Moments> moments;
-  std::vector<Eigen::Vector3d> place_sums, normal_sums, color_sums;
-  std::uint32_t voxel{kUnlabelled};
-  for (std::size_t i = 0; i < points; ++i) {
-    if (cells[i] == kNoCell) continue;
+  std::vector<VoxelSums> sums;  // only where the cloud has normals or colours
+  const bool has_sums = !cloud.normals.empty() || !cloud.colors.empty();
+  for (std::size_t i = 0; i < points;) {
+    if (cells[i] == kNoCell) {
+      ++i;
+      continue;
+    }
     if (cells[i] == kFarCell) {
       return Error{Errc::invalid_argument, "a point farther than a million voxels; leave it out or take larger voxels",
                    "point " + std::to_string(i)};
     }
-    if (voxel == kUnlabelled || index.cells()[voxel] != cells[i]) voxel = index.insert(cells[i]);
+    const std::uint32_t voxel = index.insert(cells[i]);
     if (voxel == moments.size()) {
       moments.emplace_back();
-      place_sums.emplace_back(Eigen::Vector3d::Zero());
-      normal_sums.emplace_back(Eigen::Vector3d::Zero());
-      color_sums.emplace_back(Eigen::Vector3d::Zero());
+      if (has_sums) sums.emplace_back();
     }
-    made.voxel_of[i] = voxel;
-    moments[voxel].add(cloud.positions_m[i].cast<double>());
-    place_sums[voxel] += places[i].cast<double>();
-    if (!cloud.normals.empty() && is_direction(cloud.normals[i])) {
-      normal_sums[voxel] += cloud.normals[i].cast<double>().normalized();
+    Moments here = moments[voxel];
+    for (const std::uint64_t cell = cells[i]; i < points && cells[i] == cell; ++i) {
+      made.voxel_of[i] = voxel;
+      here.add(cloud.positions_m[i].cast<double>());
+      if (!cloud.normals.empty() && is_direction(cloud.normals[i])) {
+        sums[voxel].normal += cloud.normals[i].cast<double>().normalized();
+      }
+      if (!cloud.colors.empty()) sums[voxel].color += cloud.colors[i].cast<double>();
     }
-    if (!cloud.colors.empty()) color_sums[voxel] += cloud.colors[i].cast<double>();
+    moments[voxel] = here;
   }
   find_neighbours(made, index, executor);
 
@@ -159,14 +189,16 @@ Result<VoxelCloud> voxelise(const PointCloud& cloud, const VoxelCloudConfig& con
   made.voxels.resize(moments.size());
   executor.parallel_for(moments.size(), kVoxelGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {
-      const double count = moments[v].count;
-      const Eigen::Vector3d position_m = moments[v].sum / count;
+      const double count = moments[v].count();
+      const Eigen::Vector3d position_m = moments[v].mean();
       CloudVoxel& to = made.voxels[v];
-      to.place = (place_sums[v] / count).cast<float>();
       to.position_m = position_m.cast<float>();
-      to.color = (color_sums[v] / count).cast<float>();
+      to.place = place_of(to.position_m);
+      to.color.setZero();
       to.points = static_cast<std::uint32_t>(count);
-      const Eigen::Vector3f given = normal_sums[v].cast<float>();
+      if (has_sums) to.color = (sums[v].color / count).cast<float>();
+      const Eigen::Vector3f given =
+          has_sums ? Eigen::Vector3f{sums[v].normal.cast<float>()} : Eigen::Vector3f{Eigen::Vector3f::Zero()};
       to.normal = given.squaredNorm() > 1e-12F ? Eigen::Vector3f{given.normalized()}
                                                : plane_normal(near[v], config.viewpoint_m - position_m);
     }

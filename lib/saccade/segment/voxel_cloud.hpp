@@ -25,7 +25,7 @@ struct VoxelCloudConfig {
 
 /// What the points in one voxel have in common.
 struct CloudVoxel {
-  Eigen::Vector3f place;       ///< mean, in the coordinates of the voxels: metres, or (x/z, y/z, ln z)
+  Eigen::Vector3f place;       ///< of the mean, in the coordinates of the voxels: metres, or (x/z, y/z, ln z)
   Eigen::Vector3f position_m;  ///< mean
   Eigen::Vector3f normal;      ///< of unit length
   Eigen::Vector3f color;       ///< mean; zero where the cloud has none
