@@ -21,29 +21,6 @@ double least_sane_angle_rad(double angle_rad) {
   return kMost_rad / (1.0 + std::exp(-kSlope_per_deg * (angle_rad / kDegree - kMiddle_deg)));
 }
 
-bool joins(const Supervoxel& a, const Supervoxel& b, const LccpConfig& config, double voxel_size_m) {
-  const Eigen::Vector3d n_a = a.normal.cast<double>();
-  const Eigen::Vector3d n_b = b.normal.cast<double>();
-  const Eigen::Vector3d between_m = (a.centroid_m - b.centroid_m).cast<double>();
-  const double distance_m = between_m.norm();
-  if (!(distance_m > 0.0)) return true;
-  const Eigen::Vector3d d = between_m / distance_m;
-  const double angle_rad = std::atan2(n_a.cross(n_b).norm(), n_a.dot(n_b));
-
-  if (config.smooth) {
-    // On a surface that bends evenly a patch lies off the other's plane by half of this.
-    const double bend_m = distance_m * (n_a - n_b).norm();
-    const double step_m = std::min(std::abs(n_a.dot(between_m)), std::abs(n_b.dot(between_m)));
-    if (step_m > bend_m + config.smoothness * voxel_size_m) return false;
-  }
-  if (config.sanity) {
-    const Eigen::Vector3d crease = n_a.cross(n_b);
-    const double between_rad = std::atan2(crease.cross(d).norm(), std::abs(crease.dot(d)));
-    if (crease.norm() > 0.0 && between_rad < least_sane_angle_rad(angle_rad)) return false;
-  }
-  return angle_rad < config.concavity_tolerance_rad || n_a.dot(d) >= n_b.dot(d);
-}
-
 /// Disjoint sets; a set is called by its least member.
 class Sets {
  public:
@@ -130,14 +107,32 @@ Status LccpConfig::validate() const {
   return {};
 }
 
-Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels, const LccpConfig& config) {
-  SACCADE_CHECK(config.validate());
-  LccpResult result;
-  result.convex.resize(supervoxels.edges.size());
-  for (std::size_t e = 0; e < supervoxels.edges.size(); ++e) {
-    const auto& [a, b] = supervoxels.edges[e];
-    result.convex[e] = joins(supervoxels.supervoxels[a], supervoxels.supervoxels[b], config, supervoxels.voxel_size_m);
+bool is_convex(const Supervoxel& a, const Supervoxel& b, const LccpConfig& config, double voxel_size_m) {
+  const Eigen::Vector3d n_a = a.normal.cast<double>();
+  const Eigen::Vector3d n_b = b.normal.cast<double>();
+  const Eigen::Vector3d between_m = (a.centroid_m - b.centroid_m).cast<double>();
+  const double distance_m = between_m.norm();
+  if (!(distance_m > 0.0)) return true;
+  const Eigen::Vector3d d = between_m / distance_m;
+  const double angle_rad = std::atan2(n_a.cross(n_b).norm(), n_a.dot(n_b));
+
+  if (config.smooth) {
+    // On a surface that bends evenly a patch lies off the other's plane by half of this.
+    const double bend_m = distance_m * (n_a - n_b).norm();
+    const double step_m = std::min(std::abs(n_a.dot(between_m)), std::abs(n_b.dot(between_m)));
+    if (step_m > bend_m + config.smoothness * voxel_size_m) return false;
   }
+  if (config.sanity) {
+    const Eigen::Vector3d crease = n_a.cross(n_b);
+    const double between_rad = std::atan2(crease.cross(d).norm(), std::abs(crease.dot(d)));
+    if (crease.norm() > 0.0 && between_rad < least_sane_angle_rad(angle_rad)) return false;
+  }
+  return angle_rad < config.concavity_tolerance_rad || n_a.dot(d) >= n_b.dot(d);
+}
+
+LccpResult join_convex(const SupervoxelResult& supervoxels, std::vector<bool> convex, const LccpConfig& config) {
+  LccpResult result;
+  result.convex = std::move(convex);
   if (config.extended_convexity) result.convex = with_common_neighbour(supervoxels, result.convex);
 
   Sets sets{supervoxels.supervoxels.size()};
@@ -158,6 +153,16 @@ Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels, con
     if (label != kUnlabelled) label = result.segment_of[label];
   }
   return result;
+}
+
+Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels, const LccpConfig& config) {
+  SACCADE_CHECK(config.validate());
+  std::vector<bool> convex(supervoxels.edges.size());
+  for (std::size_t e = 0; e < convex.size(); ++e) {
+    const auto& [a, b] = supervoxels.edges[e];
+    convex[e] = is_convex(supervoxels.supervoxels[a], supervoxels.supervoxels[b], config, supervoxels.voxel_size_m);
+  }
+  return join_convex(supervoxels, std::move(convex), config);
 }
 
 }  // namespace saccade

@@ -34,6 +34,16 @@ struct LccpResult {
   std::size_t segments{0};
 };
 
+/// Whether the edge between two supervoxels that touch joins them (Stein et al., CVPR 2014, section 3), common
+/// neighbours aside. The order of the two changes nothing.
+[[nodiscard]] bool is_convex(const Supervoxel& a, const Supervoxel& b, const LccpConfig& config, double voxel_size_m);
+
+/// The segments that result from edges being convex or not, `convex` as many as edges. Extended convexity and the least
+/// size are heeded here.
+/// O(points + edges · degree), one thread, deterministic.
+[[nodiscard]] LccpResult join_convex(const SupervoxelResult& supervoxels, std::vector<bool> convex,
+                                     const LccpConfig& config);
+
 /// Locally convex connected patches (Stein et al., CVPR 2014): edges between supervoxels are convex or concave by their
 /// centroids and normals, and what convex edges connect is a segment.
 /// @return invalid_argument for a bad config.
