@@ -27,6 +27,13 @@ ROWS = [
     ("regions:best_pose/again:1/threads:2", "only the best again", "regions:best_pose/again:0/threads:2", 2.0, None),
     ("view_evaluation:best_only/views:0/threads:2", "only the best of 960 poses, on the table that is known all around",
      "view_evaluation:all_savings/views:0/threads:2", 2.0, None),
+    ("segments:clouds/2", "supervoxels and LCCP of twelve labelled clouds (mOSD)", "segments:pcl_clouds", 4.0, None),
+    ("segments:map/voxel_um:7500/threads:2", "segments of a map with 490,000 surface voxels of 3.6 mm, in voxels of 7.2 mm",
+     None, None, 250.0),
+    ("segments:map/voxel_um:3600/threads:2", "the same in voxels of 3.6 mm", None, None, 250.0),
+    ("segments:map_after_view/voxel_um:7500/threads:2", "these after one more view of about 5 % of it, in voxels of 7.2 mm",
+     None, None, 20.0),
+    ("segments:map_after_view/voxel_um:3600/threads:2", "the same in voxels of 3.6 mm", None, None, 20.0),
 ]
 PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only",
          "mapping:open3d_raycast": "Open3D VoxelBlockGrid",
@@ -36,7 +43,8 @@ PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only
          "view_evaluation:embree/views:3/every:1": "Embree",
          "view_evaluation:all_savings/views:0/threads:2": "all poses, as above",
          "regions:all_poses/again:0/threads:2": "all poses",
-         "regions:best_pose/again:0/threads:2": "the first time"}
+         "regions:best_pose/again:0/threads:2": "the first time",
+         "segments:pcl_clouds": "PCL"}
 
 
 def target_row(results, row):
