@@ -10,7 +10,7 @@ namespace saccade {
 
 namespace {
 
-constexpr std::size_t kBlockGrain{32};
+constexpr std::size_t kLabelledGrain{32};
 constexpr int kTileShift{4};  // tiles of 16³ blocks are labelled at once
 constexpr double kReach_vox{8.0};
 constexpr double kSeedRadius_vox{2.0};
@@ -233,7 +233,7 @@ LiveSegments::Slots LiveSegments::renew_labels(const Slots& slots, const Executo
 }
 
 void LiveSegments::renew_parts(const Slots& slots, const Executor& executor) {
-  executor.parallel_for(slots.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(slots.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     PaddedBlock near;
     for (std::size_t i = begin; i < end; ++i) {
       SurfaceBlock& block = blocks_[slots[i]];
@@ -247,16 +247,16 @@ void LiveSegments::renew_parts(const Slots& slots, const Executor& executor) {
 
 /// Supervoxels with their seeds in these blocks, and edges, with those of others to them.
 void LiveSegments::renew_own(const Slots& slots, const Executor& executor) {
-  executor.parallel_for(slots.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(slots.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) blocks_[slots[i]].own = own_of(blocks_, slots[i]);
   });
-  executor.parallel_for(slots.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(slots.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) blocks_[slots[i]].edges = edges_of(blocks_, slots[i]);
   });
   std::vector<bool> renewed(blocks_.slots());
   for (const std::uint32_t slot : slots) renewed[slot] = true;
   const Slots all = blocks_.with_rings(slots, 3);  // a supervoxel touches others whose seeds lie up to 17 voxels away
-  executor.parallel_for(all.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(all.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       SurfaceBlock& block = blocks_[all[i]];
       for (SurfaceBlock::Edge& edge : block.edges) {
