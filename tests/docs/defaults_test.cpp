@@ -30,6 +30,7 @@
 #include "saccade/robot/obstacle_map.hpp"
 #include "saccade/robot/swept_cells.hpp"
 #include "saccade/segment/lccp.hpp"
+#include "saccade/segment/live_segments.hpp"
 #include "saccade/segment/supervoxels.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
 #include "saccade/view/view_gain.hpp"
@@ -143,6 +144,12 @@ TEST(Defaults, OfSegmentationAreDocumented) {
   expect_documented("SupervoxelConfig::spatial_weight",
                     {supervoxels.spatial_weight, supervoxels.normal_weight, supervoxels.color_weight});
   expect_documented("SupervoxelConfig::min_seed_share", {supervoxels.min_seed_share});
+  const MapSegmentsConfig map;
+  expect_documented("MapSegmentsConfig::voxel_size_m", {map.voxel_size_m});
+  EXPECT_EQ(map.spatial_weight, supervoxels.spatial_weight);
+  EXPECT_EQ(map.normal_weight, supervoxels.normal_weight);
+  EXPECT_EQ(map.color_weight, supervoxels.color_weight);
+  EXPECT_EQ(map.min_seed_share, supervoxels.min_seed_share);
   const LccpConfig lccp;
   expect_documented("LccpConfig::concavity_tolerance_rad", {degrees(lccp.concavity_tolerance_rad)});
   expect_documented("LccpConfig::smoothness", {lccp.smoothness});

@@ -4,6 +4,7 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
+#include <set>
 #include <utility>
 
 namespace saccade {
@@ -67,32 +68,42 @@ std::vector<bool> with_common_neighbour(const SupervoxelResult& from, const std:
 /// The least segment that is too small joins the largest one next to it, until there is none.
 void join_small(const SupervoxelResult& from, std::size_t min_supervoxels, Sets& sets) {
   const std::size_t count = from.supervoxels.size();
-  std::vector<bool> alone(count);  // nothing next to it
-  for (;;) {
-    std::vector<std::size_t> sizes(count, 0);
-    for (std::uint32_t s = 0; s < count; ++s) sizes[sets.root(s)] += 1;
-    std::uint32_t least{kUnlabelled};
-    for (std::uint32_t s = 0; s < count; ++s) {
-      if (sizes[s] == 0 || sizes[s] >= min_supervoxels || alone[s]) continue;
-      if (least == kUnlabelled || sizes[s] < sizes[least]) least = s;
-    }
-    if (least == kUnlabelled) return;
+  std::vector<std::size_t> sizes(count, 0);                // of a set, at its root
+  std::vector<std::vector<std::uint32_t>> next_to(count);  // supervoxels next to a set, and some of its own
+  for (std::uint32_t s = 0; s < count; ++s) sizes[sets.root(s)] += 1;
+  for (const auto& [first, second] : from.edges) {
+    const std::uint32_t a = sets.root(first);
+    const std::uint32_t b = sets.root(second);
+    if (a == b) continue;
+    next_to[a].push_back(second);
+    next_to[b].push_back(first);
+  }
+  std::set<std::pair<std::size_t, std::uint32_t>> small;  // by size, then by root
+  for (std::uint32_t s = 0; s < count; ++s) {
+    if (sizes[s] > 0 && sizes[s] < min_supervoxels) small.emplace(sizes[s], s);
+  }
+  while (!small.empty()) {
+    const std::uint32_t least = small.begin()->second;
+    small.erase(small.begin());
     std::uint32_t largest{kUnlabelled};
-    for (const auto& [first, second] : from.edges) {
-      const std::uint32_t a = sets.root(first);
-      const std::uint32_t b = sets.root(second);
-      if ((a == least) == (b == least)) continue;
-      const std::uint32_t other = a == least ? b : a;
-      if (largest == kUnlabelled || sizes[other] > sizes[largest] ||
-          (sizes[other] == sizes[largest] && other < largest)) {
-        largest = other;
+    for (const std::uint32_t other : next_to[least]) {
+      const std::uint32_t root = sets.root(other);
+      if (root == least) continue;
+      if (largest == kUnlabelled || sizes[root] > sizes[largest] || (sizes[root] == sizes[largest] && root < largest)) {
+        largest = root;
       }
     }
-    if (largest == kUnlabelled) {
-      alone[least] = true;
-    } else {
-      sets.join(least, largest);
-    }
+    if (largest == kUnlabelled) continue;  // nothing next to it
+    small.erase({sizes[largest], largest});
+    sets.join(least, largest);
+    const std::uint32_t both = sets.root(least);
+    const std::uint32_t gone = both == least ? largest : least;
+    sizes[both] += sizes[gone];
+    sizes[gone] = 0;
+    if (next_to[both].size() < next_to[gone].size()) next_to[both].swap(next_to[gone]);
+    next_to[both].insert(next_to[both].end(), next_to[gone].begin(), next_to[gone].end());
+    next_to[gone].clear();
+    if (sizes[both] < min_supervoxels) small.emplace(sizes[both], both);
   }
 }
 

@@ -47,7 +47,7 @@ struct LccpResult {
 /// Locally convex connected patches (Stein et al., CVPR 2014): edges between supervoxels are convex or concave by their
 /// centroids and normals, and what convex edges connect is a segment.
 /// @return invalid_argument for a bad config.
-/// O(points + edges · degree), and edges once more per segment that is too small; one thread, deterministic.
+/// O(points + edges · degree); one thread, deterministic.
 [[nodiscard]] Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels,
                                                       const LccpConfig& config = {});
 

@@ -35,6 +35,11 @@ struct BlockCloud {
   /// Slots by the keys of their blocks in z-y-x order.
   BlockCloud(const SurfaceBlocks& blocks, std::span<const std::uint32_t> slots)
       : first_of(blocks.slots(), kUnlabelled) {
+    std::size_t voxels{0};
+    for (const std::uint32_t slot : slots) voxels += blocks[slot].voxels.size();
+    cloud.voxels.reserve(voxels);
+    names.reserve(voxels);
+    cell_of.reserve(voxels);
     for (const std::uint32_t slot : slots) {
       const SurfaceBlock& block = blocks[slot];
       first_of[slot] = static_cast<std::uint32_t>(names.size());
@@ -186,7 +191,12 @@ void LiveSegments::label_blocks(std::span<const std::uint32_t> slots) {
   SupervoxelGrowth growth{part.cloud, VoxelDifference{supervoxel_config_, supervoxel_config_.seed_spacing_m}};
   growth.seed(part.cell_of, part.cells, kSeedRadius_vox * supervoxel_config_.voxels.voxel_size_m,
               supervoxel_config_.fewest_around_seed(2.0 * kSeedRadius_vox), Executor{});
-  const SupervoxelGrowth::Grown grown = growth.grow(kReach_vox);
+  // What a seed brings about in the blocks beyond the first ring does not come here within its reach.
+  std::vector<std::uint8_t> outside(part.names.size(), 1);
+  for (const std::uint32_t slot : blocks_.with_rings(slots, 1)) {
+    std::fill_n(outside.begin() + part.first_of[slot], blocks_[slot].voxels.size(), std::uint8_t{0});
+  }
+  const SupervoxelGrowth::Grown grown = growth.grow(kReach_vox, outside);
   for (const std::uint32_t slot : slots) {
     std::array<VoxelName, 8> rest;  // per cell: the first voxel that no seed reached
     rest.fill(kNobody);

@@ -40,11 +40,18 @@ void SupervoxelGrowth::seed(std::span<const std::uint32_t> cell_of, std::size_t 
   }
 }
 
-SupervoxelGrowth::Grown SupervoxelGrowth::grow(double steps) {
+SupervoxelGrowth::Grown SupervoxelGrowth::grow(double steps, std::span<const std::uint8_t> outside) {
   distances_.assign(cloud_.voxels.size(), std::numeric_limits<float>::infinity());
-  is_changed_.assign(cloud_.voxels.size(), false);
-  for (const std::uint32_t seed : grown_.seeds) distances_[seed] = 0.0F;
-  changed_ = grown_.seeds;
+  for (std::size_t v = 0; v < outside.size(); ++v) {
+    if (outside[v] != 0) distances_[v] = kOutside;
+  }
+  is_changed_.assign(cloud_.voxels.size(), 0);
+  changed_.clear();
+  for (const std::uint32_t seed : grown_.seeds) {
+    if (distances_[seed] == kOutside) continue;
+    distances_[seed] = 0.0F;
+    changed_.push_back(seed);
+  }
   for (double done = 0.0; done < steps && !changed_.empty(); done += 1.0) step();
   return std::move(grown_);
 }
@@ -101,19 +108,19 @@ void SupervoxelGrowth::step() {
   offers.reserve(changed_.size());
   for (const std::uint32_t voxel : changed_) {
     offers.emplace_back(voxel, grown_.labels[voxel]);
-    is_changed_[voxel] = false;
+    is_changed_[voxel] = 0;
   }
   changed_.clear();
   for (const auto& [voxel, label] : offers) {
     const CloudVoxel& seed = cloud_.voxels[grown_.seeds[label]];
     for (const std::uint32_t other : cloud_.neighbours(voxel)) {
-      if (grown_.labels[other] == label) continue;
+      if (grown_.labels[other] == label || distances_[other] == kOutside) continue;
       const float distance = difference_.of(cloud_.voxels[other], seed);
       if (std::pair{distance, label} >= std::pair{distances_[other], grown_.labels[other]}) continue;
       grown_.labels[other] = label;
       distances_[other] = distance;
-      if (!is_changed_[other]) changed_.push_back(other);
-      is_changed_[other] = true;
+      if (is_changed_[other] == 0) changed_.push_back(other);
+      is_changed_[other] = 1;
     }
   }
 }

@@ -53,8 +53,9 @@ class SupervoxelGrowth {
     std::vector<std::uint32_t> labels;  ///< per voxel: a seed; kUnlabelled: none came there
     std::vector<std::uint32_t> seeds;   ///< voxels, in the order of their cells
   };
-  /// As many steps from voxel to voxel. One thread.
-  [[nodiscard]] Grown grow(double steps);
+  /// As many steps from voxel to voxel, among those that are not `outside` (one flag per voxel, or none: all). A seed
+  /// outside does not grow. One thread.
+  [[nodiscard]] Grown grow(double steps, std::span<const std::uint8_t> outside = {});
 
  private:
   [[nodiscard]] float gradient(std::uint32_t voxel) const;
@@ -64,12 +65,13 @@ class SupervoxelGrowth {
                      std::vector<bool>& met) const;
   void step();
 
+  static constexpr float kOutside{-1.0F};
   const VoxelCloud& cloud_;
   VoxelDifference difference_;
   Grown grown_;
-  std::vector<float> distances_;        ///< from the seed of the label
+  std::vector<float> distances_;        ///< from the seed of the label; of those outside kOutside
   std::vector<std::uint32_t> changed_;  ///< in the last step
-  std::vector<bool> is_changed_;
+  std::vector<std::uint8_t> is_changed_;
 };
 
 }  // namespace saccade

@@ -4,7 +4,10 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
+#include <random>
+#include <set>
 
 namespace saccade {
 namespace {
@@ -77,6 +80,70 @@ TEST(Lccp, SmallSegmentsJoinTheLargestOneThatTheyTouch) {
   LccpConfig config;
   config.min_supervoxels = 2;
   EXPECT_EQ(segment_by_convexity(row, config).value().segment_of, (std::vector<std::uint32_t>{0, 0, 0, 0, 0, 1}));
+}
+
+/// Segments by the rule, one search of all edges after the other.
+std::vector<std::uint32_t> join_small_by_search(const SupervoxelResult& from, std::vector<std::uint32_t> set_of,
+                                                std::size_t fewest) {
+  std::vector<bool> alone(set_of.size());
+  for (;;) {
+    std::vector<std::size_t> sizes(set_of.size(), 0);
+    for (const std::uint32_t set : set_of) sizes[set] += 1;
+    std::uint32_t least{kUnlabelled};
+    for (std::uint32_t s = 0; s < set_of.size(); ++s) {
+      if (sizes[s] == 0 || sizes[s] >= fewest || alone[s]) continue;
+      if (least == kUnlabelled || sizes[s] < sizes[least]) least = s;
+    }
+    if (least == kUnlabelled) return set_of;
+    std::uint32_t largest{kUnlabelled};
+    for (const auto& [first, second] : from.edges) {
+      if ((set_of[first] == least) == (set_of[second] == least)) continue;
+      const std::uint32_t other = set_of[first] == least ? set_of[second] : set_of[first];
+      if (largest == kUnlabelled || sizes[other] > sizes[largest] ||
+          (sizes[other] == sizes[largest] && other < largest)) {
+        largest = other;
+      }
+    }
+    if (largest == kUnlabelled) alone[least] = true;
+    const std::uint32_t gone = largest == kUnlabelled ? least : std::max(least, largest);
+    const std::uint32_t kept = largest == kUnlabelled ? least : std::min(least, largest);
+    for (std::uint32_t& set : set_of) set = set == gone ? kept : set;
+  }
+}
+
+TEST(Lccp, SmallSegmentsOfRandomGraphsJoinByTheRule) {
+  std::mt19937 random{1};
+  std::size_t joined{0};
+  for (int run = 0; run < 300; ++run) {
+    const auto count = static_cast<std::uint32_t>(1 + random() % 60);
+    SupervoxelResult made = graph(std::vector<Supervoxel>(count), {});
+    std::vector<bool> convex;
+    for (std::uint32_t a = 0; a < count; ++a) {
+      for (std::uint32_t b = a + 1; b < count; ++b) {
+        if (random() % count >= 2) continue;
+        made.edges.emplace_back(a, b);
+        convex.push_back(random() % 3 == 0);
+      }
+    }
+    LccpConfig config;
+    const LccpResult before = join_convex(made, convex, config);
+    std::vector<std::uint32_t> first_of(before.segments, kUnlabelled);
+    std::vector<std::uint32_t> set_of(count);
+    for (std::uint32_t s = 0; s < count; ++s) {
+      std::uint32_t& first = first_of[before.segment_of[s]];
+      first = std::min(first, s);
+      set_of[s] = first;
+    }
+    config.min_supervoxels = 2 + random() % 5;
+    const std::vector<std::uint32_t> expected = join_small_by_search(made, set_of, config.min_supervoxels);
+    const LccpResult found = join_convex(made, convex, config);
+    for (std::uint32_t s = 0; s < count; ++s) {
+      ASSERT_EQ(found.segment_of[s], found.segment_of[expected[s]]) << run;
+      joined += expected[s] != set_of[s] ? 1 : 0;
+    }
+    ASSERT_EQ(found.segments, std::set(expected.begin(), expected.end()).size()) << run;
+  }
+  EXPECT_GT(joined, 1000U);
 }
 
 }  // namespace

@@ -274,6 +274,26 @@ TEST(Segmentation, ThreadsChangeNothing) {
   }
 }
 
+TEST(Segmentation, AMillionPointsAreOneForAnyThreads) {
+  PointCloud cloud;
+  for (int i = 0; i < 1000; ++i) {
+    for (int k = 0; k < 1000; ++k) {
+      const float x = 0.001F * static_cast<float>(i);
+      const float y = 0.001F * static_cast<float>(k);
+      cloud.positions_m.emplace_back(x, y, 1.0F + 0.05F * std::sin(4.0F * x) * std::sin(3.0F * y));
+    }
+  }
+  const Segments one = segment(cloud);
+  ASSERT_NO_FATAL_FAILURE(expect_sound(cloud, one));
+  EXPECT_EQ(one.lccp.segments, 1U);
+  EXPECT_GT(one.supervoxels.supervoxels.size(), 800U);
+  for (const std::size_t threads : {2, 4}) {
+    const Segments found = segment(cloud, {}, {}, threads);
+    EXPECT_EQ(found.supervoxels.labels, one.supervoxels.labels);
+    EXPECT_EQ(found.lccp.labels, one.lccp.labels);
+  }
+}
+
 TEST(Segmentation, BadInputIsRefused) {
   const Executor executor;
   PointCloud cloud = plane();
