@@ -71,7 +71,7 @@ const std::vector<TsdfSnapshot>& maps() {
     for (int view = 0; view < 6; ++view) {
       const double turn_rad = view * 1.2;
       const Eigen::Vector3d target{0.3 * std::cos(turn_rad), 0.3 * std::sin(turn_rad), 0.05};
-      const Eigen::Vector3d eye{0.4 * std::cos(turn_rad + 0.3), 0.4 * std::sin(turn_rad + 0.3), 0.5};
+      const Eigen::Vector3d eye{0.37 * std::cos(turn_rad + 0.3), 0.37 * std::sin(turn_rad + 0.3), 0.44};
       const Pose T_world_camera = look_at(eye, target, Eigen::Vector3d::UnitZ());
       const RenderedFrame seen = render(bench::table(), camera, T_world_camera, {}).value();
       SACCADE_EXPECTS(map.integrate(camera, seen.depth, T_world_camera, {}).ok());

@@ -96,10 +96,11 @@ std::vector<SurfaceBlock::Part> parts_of(const SurfaceBlock& block) {
   return parts;
 }
 
+using NamePairs = std::vector<std::pair<VoxelName, VoxelName>>;
+
 /// Pairs of a label in the block and another next to it, sorted.
-std::vector<std::pair<VoxelName, VoxelName>> touching_in(const SurfaceBlock& block, const PaddedBlock& near) {
-  std::vector<std::pair<VoxelName, VoxelName>> touching;
-  touching.reserve(4 * block.voxels.size());
+void find_touching(const SurfaceBlock& block, const PaddedBlock& near, NamePairs& touching) {
+  touching.clear();
   PaddedBlock::Neighbours found;
   std::size_t position{0};
   block.mask.for_each([&](std::size_t i) {
@@ -114,8 +115,6 @@ std::vector<std::pair<VoxelName, VoxelName>> touching_in(const SurfaceBlock& blo
   });
   std::sort(touching.begin(), touching.end());
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
-  touching.shrink_to_fit();
-  return touching;
 }
 
 /// Supervoxels with their seeds in the block, from their parts in it and next to it.
@@ -245,12 +244,14 @@ LiveSegments::Slots LiveSegments::renew_labels(const Slots& slots, const Executo
 void LiveSegments::renew_parts(const Slots& slots, const Executor& executor) {
   executor.parallel_for(slots.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     PaddedBlock near;
+    NamePairs touching;
     for (std::size_t i = begin; i < end; ++i) {
       SurfaceBlock& block = blocks_[slots[i]];
       block.parts = parts_of(block);
       near.load(blocks_, slots[i],
                 [&](std::uint32_t other, std::size_t position) { return blocks_[other].labels[position]; });
-      block.touching = touching_in(block, near);
+      find_touching(block, near, touching);
+      block.touching.assign(touching.begin(), touching.end());
     }
   });
 }
