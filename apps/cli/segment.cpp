@@ -74,8 +74,8 @@ Result<SegmentFindings> find_segments(const SegmentOptions& options, const Segme
   return findings;
 }
 
-Status write_results(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings,
-                     const Executor& executor) {
+Status write_segment_files(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings,
+                           const Executor& executor) {
   if (!options.out.empty()) SACCADE_CHECK(write_cloud(options.out, input.file));
   if (options.picture.empty() || findings.points == 0) return {};
   return write_png(options.picture, segment_sheet(options, input, findings, executor));
@@ -99,7 +99,7 @@ Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& glob
     bar.note("the cloud has a field label already; its values are kept as " + findings.label_kept_as);
   }
   bar.update("writing", 0, 0);
-  SACCADE_CHECK(write_results(options, input, findings, executor));
+  SACCADE_CHECK(write_segment_files(options, input, findings, executor));
   timings_ms["write"] = clock.lap_ms();
   timings_ms["total"] = total.elapsed_ms();
   bar.finish();

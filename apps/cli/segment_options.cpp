@@ -8,7 +8,7 @@
 namespace saccade::cli {
 namespace {
 
-constexpr double kRadPerDegree{std::numbers::pi / 180.0};
+constexpr double kDegree_rad{std::numbers::pi / 180.0};
 
 void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
   SupervoxelConfig& supervoxels = options.supervoxels;
@@ -40,7 +40,7 @@ void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
 void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
   command
       .add_option_function<double>(
-          "--concavity", [&lccp](const double& angle_deg) { lccp.concavity_tolerance_rad = angle_deg * kRadPerDegree; },
+          "--concavity", [&lccp](const double& angle_deg) { lccp.concavity_tolerance_rad = angle_deg * kDegree_rad; },
           "surfaces that bend inwards by less count as convex, degrees (default: 10)")
       ->type_name("DEGREES");
   command.add_option("--smoothness", lccp.smoothness, "step between supervoxels that is allowed, in voxels")

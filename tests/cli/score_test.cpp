@@ -4,6 +4,7 @@
 
 #include "cli/run_program.hpp"
 #include "saccade/io/pcd_io.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -74,6 +75,25 @@ TEST_F(Score, AveragesOverPairsAndFolders) {
   const Outcome printed =
       run_program({"score", "--quiet", (folder_ / "predicted").string(), (folder_ / "truth").string()});
   EXPECT_NE(printed.out.find("mean of 2 clouds"), std::string::npos) << printed.out;
+}
+
+/// What docs/segmentation.md says of mOSD's clouds, by the commands that it names.
+TEST_F(Score, OfRealLabelledClouds) {
+  const fs::path clouds = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
+  if (!fs::is_directory(clouds)) GTEST_SKIP() << "no " << clouds;
+  if (kSanitized) GTEST_SKIP() << "twelve clouds take long under sanitizers; golden has one";
+  fs::create_directories(folder_ / "predicted");
+  for (const std::string& name : names_in(clouds)) {
+    const Outcome outcome = run_program({"segment", (clouds / name).string(), "--transform", "--quiet", "--out",
+                                         (folder_ / "predicted" / name).string()});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+  }
+  const nlohmann::json result = result_of({(folder_ / "predicted").string(), clouds.string(), "--objects-from", "20"});
+  EXPECT_EQ(result.at("clouds").size(), 12U);
+  EXPECT_GT(result.at("wov_objects"), 0.938);
+  EXPECT_GT(result.at("wov"), 0.983);
+  EXPECT_LT(result.at("fos"), 0.015);
+  EXPECT_LT(result.at("fus"), 0.005);
 }
 
 TEST_F(Score, RefusesCloudsThatDoNotBelongTogether) {

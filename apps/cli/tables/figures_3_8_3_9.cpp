@@ -22,6 +22,7 @@ using nlohmann::json;
 
 constexpr const char* kTableScene{"tabletop-2"};  // in place of the thesis' experiment 2
 constexpr double kScrap_m{0.1};
+constexpr double kBetweenVertices_m{0.006};  // about a voxel
 constexpr double kTruthSpacing_m{0.01};
 
 /// What a segment is of.
@@ -36,7 +37,9 @@ struct SegmentedScan {
   std::vector<SegmentMeasures> measures;  ///< with the default B_th
   std::vector<SegmentOf> kinds;
 
-  [[nodiscard]] DrawnSegments drawn() const { return {mesh.vertices, mesh.normals, labels, mesh.triangles, 0.0}; }
+  [[nodiscard]] DrawnSegments drawn() const {
+    return {mesh.vertices, mesh.normals, labels, mesh.triangles, kBetweenVertices_m};
+  }
   [[nodiscard]] std::size_t count(SegmentOf kind) const {
     return static_cast<std::size_t>(std::count(kinds.begin(), kinds.end(), kind));
   }
@@ -197,7 +200,7 @@ Panel panel_of(const SegmentedScan& scan, const Judgement& judgement, double mos
 }
 
 std::string picture_note() {
-  return std::string{"brighter: more salient. The scene "} + kTableScene + " after its initial scan, seen from there";
+  return std::string{"brighter: more salient. The scene "} + kTableScene + " after its initial scan";
 }
 
 }  // namespace

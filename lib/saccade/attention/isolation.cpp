@@ -12,35 +12,38 @@ namespace saccade {
 
 namespace {
 
-constexpr std::size_t kPointGrain{8192};
+constexpr std::size_t kPlaceGrain{8192};
 constexpr std::size_t kCellGrain{512};
 constexpr std::size_t kQueryGrain{1024};
 constexpr std::uint32_t kMixed{kUnlabelled};  // more than one segment
 
+struct Member {
+  Eigen::Vector3f p_m;
+  std::uint32_t segment;
+  std::uint32_t point;  ///< index among all
+};
+
 /// Points of several segments in boxes within boxes.
 class SegmentTree {
  public:
-  SegmentTree(std::span<const Eigen::Vector3f> positions_m, std::span<const std::uint32_t> segments,
-              std::vector<std::uint32_t> members)
-      : positions_m_{positions_m}, segments_{segments}, members_{std::move(members)} {
-    nodes_.reserve(members_.size() / 2 + 1);
+  explicit SegmentTree(std::vector<Member> members) : members_{std::move(members)} {
+    nodes_.reserve(members_.size() / 4 + 1);
     if (!members_.empty()) build(0, static_cast<std::uint32_t>(members_.size()));
   }
 
-  [[nodiscard]] const std::vector<std::uint32_t>& members() const { return members_; }
+  [[nodiscard]] const std::vector<Member>& members() const { return members_; }
 
   /// Whether a point of another segment lies within the distance. The boxes' bounds are rounded as the distances are,
   /// so the answer is that of going through all points.
-  [[nodiscard]] bool has_foreign(std::uint32_t of, double squared_distance) const {
-    const Eigen::Vector3d p = positions_m_[of].cast<double>();
-    const std::uint32_t own = segments_[of];
+  [[nodiscard]] bool has_foreign(const Member& of, double squared_distance) const {
+    const Eigen::Vector3d p = of.p_m.cast<double>();
     std::array<std::uint32_t, kMostDepth> open;  // NOLINT(*-member-init): filled as it is used
     std::size_t count{0};
     open[count++] = 0;
     while (count > 0) {
       const std::uint32_t at = open[--count];
       const Node& node = nodes_[at];
-      if (node.segment == own) continue;
+      if (node.segment == of.segment) continue;
       const Eigen::Array3d below = node.low.cast<double>().array() - p.array();
       const Eigen::Array3d above = p.array() - node.high.cast<double>().array();
       const Eigen::Vector3d nearest = below.max(above).max(0.0).matrix();
@@ -53,8 +56,8 @@ class SegmentTree {
         continue;
       }
       for (std::uint32_t i = node.first; i < node.last; ++i) {
-        if (segments_[members_[i]] == own) continue;
-        if ((positions_m_[members_[i]].cast<double>() - p).squaredNorm() <= squared_distance) return true;
+        if (members_[i].segment == of.segment) continue;
+        if ((members_[i].p_m.cast<double>() - p).squaredNorm() <= squared_distance) return true;
       }
     }
     return false;
@@ -73,12 +76,12 @@ class SegmentTree {
 
   void build(std::uint32_t first, std::uint32_t last) {
     const std::size_t at = nodes_.size();
-    Node node{positions_m_[members_[first]], positions_m_[members_[first]], first, last, segments_[members_[first]], 0};
+    const Member& one = members_[first];
+    Node node{one.p_m, one.p_m, first, last, one.segment, 0};
     for (std::uint32_t i = first + 1; i < last; ++i) {
-      const std::uint32_t member = members_[i];
-      node.low = node.low.cwiseMin(positions_m_[member]);
-      node.high = node.high.cwiseMax(positions_m_[member]);
-      if (segments_[member] != node.segment) node.segment = kMixed;
+      node.low = node.low.cwiseMin(members_[i].p_m);
+      node.high = node.high.cwiseMax(members_[i].p_m);
+      if (members_[i].segment != node.segment) node.segment = kMixed;
     }
     nodes_.push_back(node);
     if (last - first <= kLeaf) return;
@@ -86,19 +89,15 @@ class SegmentTree {
     (node.high - node.low).maxCoeff(&axis);
     const std::uint32_t middle = first + (last - first) / 2;
     const auto begin = members_.begin();
-    std::nth_element(begin + first, begin + middle, begin + last, [&](std::uint32_t a, std::uint32_t b) {
-      const float x = positions_m_[a][axis];
-      const float y = positions_m_[b][axis];
-      return x < y || (x == y && a < b);
+    std::nth_element(begin + first, begin + middle, begin + last, [axis](const Member& a, const Member& b) {
+      return a.p_m[axis] < b.p_m[axis] || (a.p_m[axis] == b.p_m[axis] && a.point < b.point);
     });
     build(first, middle);
     nodes_[at].right = static_cast<std::uint32_t>(nodes_.size());
     build(middle, last);
   }
 
-  std::span<const Eigen::Vector3f> positions_m_;
-  std::span<const std::uint32_t> segments_;
-  std::vector<std::uint32_t> members_;
+  std::vector<Member> members_;
   std::vector<Node> nodes_;
 };
 
@@ -109,7 +108,7 @@ class Cells {
     constexpr double kMore{1.0 + 1e-6};  // for rounding
     const std::span<const Eigen::Vector3f> positions_m = points.positions_m();
     std::vector<std::uint64_t> cells(positions_m.size());
-    executor.parallel_for(cells.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
+    executor.parallel_for(cells.size(), kPlaceGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) cells[i] = cell_at(positions_m[i], kMore * distance_m);
     });
     cell_of_.resize(cells.size(), kUnlabelled);
@@ -124,14 +123,15 @@ class Cells {
   }
 
   /// Points with another segment in their cell or next to it; of those beyond the index it is not known.
-  [[nodiscard]] std::vector<std::uint32_t> points_near_others(const Executor& executor) const {
+  [[nodiscard]] std::vector<Member> points_near_others(const SegmentedPoints& points, const Executor& executor) const {
     std::vector<std::uint8_t> is_near(segments_.size(), 0);
     executor.parallel_for(is_near.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t cell = begin; cell < end; ++cell) is_near[cell] = meets_others(cell) ? 1 : 0;
     });
-    std::vector<std::uint32_t> near;
+    std::vector<Member> near;
     for (std::size_t i = 0; i < cell_of_.size(); ++i) {
-      if (cell_of_[i] == kUnlabelled || is_near[cell_of_[i]] != 0) near.push_back(static_cast<std::uint32_t>(i));
+      if (cell_of_[i] != kUnlabelled && is_near[cell_of_[i]] == 0) continue;
+      near.push_back({points.positions_m()[i], points.segment_of()[i], static_cast<std::uint32_t>(i)});
     }
     return near;
   }
@@ -155,13 +155,12 @@ class Cells {
 
 std::vector<std::uint8_t> isolated_points(const SegmentedPoints& points, double distance_m, const Executor& executor) {
   SACCADE_EXPECTS(distance_m > 0.0);
-  const SegmentTree tree{points.positions_m(), points.segment_of(),
-                         Cells{points, distance_m, executor}.points_near_others(executor)};
+  const SegmentTree tree{Cells{points, distance_m, executor}.points_near_others(points, executor)};
   std::vector<std::uint8_t> isolated(points.positions_m().size(), 1);
   executor.parallel_for(tree.members().size(), kQueryGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::uint32_t point = tree.members()[i];
-      isolated[point] = tree.has_foreign(point, distance_m * distance_m) ? 0 : 1;
+      const Member& member = tree.members()[i];
+      isolated[member.point] = tree.has_foreign(member, distance_m * distance_m) ? 0 : 1;
     }
   });
   return isolated;

@@ -70,7 +70,7 @@ std::vector<Eigen::Vector3f> unpacked_colors(const Column& column, std::size_t r
   return colors;
 }
 
-std::vector<Eigen::Vector3f> colors_of(const ColumnTable& fields) {
+std::vector<Eigen::Vector3f> point_colors(const ColumnTable& fields) {
   for (const char* name : {"rgb", "rgba"}) {
     const Column* column = fields.find(name);
     if (column != nullptr && column->count == 1 && bytes_of(column->type) == sizeof(std::uint32_t)) {
@@ -135,7 +135,7 @@ Result<PointCloud> cloud_from_fields(const ColumnTable& fields) {
   std::vector<const Column*> normals = find_three(fields, {"normal_x", "normal_y", "normal_z"});
   if (normals.empty()) normals = find_three(fields, {"nx", "ny", "nz"});
   if (!normals.empty()) cloud.normals = vectors_of(normals, fields.rows, 1.0);
-  cloud.colors = colors_of(fields);
+  cloud.colors = point_colors(fields);
   return cloud;
 }
 

@@ -15,12 +15,13 @@ namespace saccade {
 
 namespace {
 
-constexpr Rgb8 kBackground{236, 239, 243};
+constexpr Rgb8 kGround{236, 239, 243};
 constexpr Rgb8 kNoSegment{150, 154, 160};
 constexpr Rgb8 kNameColor{16, 18, 24};
 constexpr std::size_t kNamed{20};  // segments that are named, at most
 constexpr int kNameSteps{4};       // that a name needs around it
-constexpr double kNameGap_px{22.0};
+constexpr double kNameWidth_px{36.0};
+constexpr double kNameHeight_px{17.0};
 
 Rgb8 from_hue(double hue, double saturation, double value) {
   Rgb8 color{};
@@ -67,11 +68,11 @@ void draw_triangles(Canvas& canvas, const DrawnSegments& segments, std::span<con
   draw_mesh(canvas, mesh, executor);
 }
 
-Canvas drawn(const DrawnSegments& segments, const Viewpoint& view, std::span<const Rgb8> colors,
-             const Executor& executor) {
+Canvas canvas_with(const DrawnSegments& segments, const Viewpoint& view, std::span<const Rgb8> colors,
+                   const Executor& executor) {
   SACCADE_EXPECTS(segments.labels.size() == segments.positions_m.size());
   SACCADE_EXPECTS(segments.normals.empty() || segments.normals.size() == segments.positions_m.size());
-  Canvas canvas{view, kBackground};
+  Canvas canvas{view, kGround};
   if (segments.triangles.empty()) {
     draw_points(canvas, segments, colors);
   } else {
@@ -157,7 +158,9 @@ void name_segments(Canvas& canvas, const DrawnSegments& segments, std::span<cons
   for (const std::size_t s : largest(measures)) {
     if (most[s] < kNameSteps) continue;
     const Eigen::Vector2d at = canvas.project(places[s]).value();
-    const auto is_near = [&](const Eigen::Vector2d& other) { return (other - at).norm() < kNameGap_px; };
+    const auto is_near = [&](const Eigen::Vector2d& other) {
+      return std::abs(other.x() - at.x()) < kNameWidth_px && std::abs(other.y() - at.y()) < kNameHeight_px;
+    };
     if (std::any_of(taken.begin(), taken.end(), is_near)) continue;
     taken.push_back(at);
     canvas.label(places[s], std::to_string(s + 1), kNameColor, 13.0);
@@ -188,13 +191,13 @@ std::vector<Rgb8> segment_colors(std::size_t segments) {
 
 ColorImage draw_segments(const DrawnSegments& segments, const Viewpoint& view, std::span<const Rgb8> colors,
                          const Executor& executor) {
-  return drawn(segments, view, colors, executor).finish();
+  return canvas_with(segments, view, colors, executor).finish();
 }
 
 Panel segments_panel(const DrawnSegments& segments, std::span<const SegmentMeasures> measures, const Viewpoint& view,
                      const Executor& executor) {
   const std::vector<Rgb8> colors = segment_colors(measures.size());
-  Canvas canvas = drawn(segments, view, colors, executor);
+  Canvas canvas = canvas_with(segments, view, colors, executor);
   name_segments(canvas, segments, measures);
   return {
       canvas.finish(), std::to_string(measures.size()) + (measures.size() == 1 ? " segment" : " segments"), {}, {}, {}};
@@ -232,7 +235,24 @@ Viewpoint camera_view_of(std::span<const Eigen::Vector3f> positions_m, int width
 }
 
 Viewpoint overview_of_points(std::span<const Eigen::Vector3f> positions_m, const OverviewConfig& config) {
-  return overview_of(finite_points(positions_m), config);
+  std::vector<Eigen::Vector3d> points = finite_points(positions_m);
+  SACCADE_EXPECTS(!points.empty());
+  // The box of all but half a percent at either end, and a tenth around it.
+  Eigen::Array3d low, high;
+  std::vector<double> values(points.size());
+  for (const int axis : {0, 1, 2}) {
+    std::transform(points.begin(), points.end(), values.begin(), [&](const Eigen::Vector3d& p) { return p[axis]; });
+    std::sort(values.begin(), values.end());
+    const std::size_t outliers = values.size() / 200;
+    low[axis] = values[outliers];
+    high[axis] = values[values.size() - 1 - outliers];
+  }
+  const Eigen::Array3d margin = 0.1 * (high - low);
+  std::vector<Eigen::Vector3d> most;
+  for (const Eigen::Vector3d& p : points) {
+    if ((p.array() >= low - margin).all() && (p.array() <= high + margin).all()) most.push_back(p);
+  }
+  return overview_of(most.empty() ? points : most, config);
 }
 
 }  // namespace saccade

@@ -42,7 +42,7 @@ struct DrawnSegments {
 
 /// The view of a camera at the origin that looks along +z with y downwards, wide enough for all points.
 [[nodiscard]] Viewpoint camera_view_of(std::span<const Eigen::Vector3f> positions_m, int width, int height);
-/// overview_of for points, of which at least one is finite.
+/// overview_of for points, of which at least one is finite, but for outliers far from the others.
 [[nodiscard]] Viewpoint overview_of_points(std::span<const Eigen::Vector3f> positions_m, const OverviewConfig& config);
 
 }  // namespace saccade
