@@ -11,6 +11,7 @@
 #include "progress_bar.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/atomic_file.hpp"
+#include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
 
 namespace saccade::cli {
@@ -39,6 +40,12 @@ Status check_outputs(const SegmentOptions& options, const GlobalOptions& global)
   return check_json_output(global);
 }
 
+/// Of a cloud in other units, or one too sparse for the voxels, nothing touches anything.
+bool are_too_small(const SegmentFindings& findings) {
+  constexpr std::size_t kFewPoints{20};
+  return findings.points > kFewPoints && 2 * findings.supervoxels.supervoxels.size() > findings.points;
+}
+
 Status stop_if_interrupted() { return interrupted() ? Status{Error{Errc::cancelled, "interrupted", {}}} : Status{}; }
 
 Status judge(const SegmentOptions& options, const SegmentInput& input, const Executor& executor,
@@ -61,7 +68,9 @@ Result<SegmentFindings> find_segments(const SegmentOptions& options, const Segme
   config.voxels.viewpoint_m = options.viewpoint_m.value_or(own_m);
   bar.update("supervoxels", 0, 0);
   Stopwatch clock;
-  SACCADE_TRY(findings.supervoxels, find_supervoxels(input.cloud, config, executor));
+  auto supervoxels = find_supervoxels(input.cloud, config, executor);
+  if (!supervoxels) return in_file(supervoxels.error(), options.input);
+  findings.supervoxels = std::move(*supervoxels);
   findings.supervoxels_ms = clock.lap_ms();
   SACCADE_CHECK(stop_if_interrupted());
   bar.update("segments", 0, 0);
@@ -94,9 +103,14 @@ Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& glob
   SACCADE_CHECK(stop_if_interrupted());
   SACCADE_TRY(SegmentFindings findings, find_segments(options, input, executor, bar));
   timings_ms["segment"] = clock.lap_ms();
-  findings.label_kept_as = add_labels(input.file, findings.segments.labels);
-  if (!options.out.empty() && !findings.label_kept_as.empty()) {
+  if (!options.out.empty()) findings.label_kept_as = add_labels(input.file, findings.segments.labels);
+  if (!findings.label_kept_as.empty()) {
     bar.note("the cloud has a field label already; its values are kept as " + findings.label_kept_as);
+  }
+  if (are_too_small(findings)) {
+    bar.note(
+        "most supervoxels hold a point or two: are the coordinates metres? Else take larger --voxel-size and "
+        "--seed-size");
   }
   bar.update("writing", 0, 0);
   SACCADE_CHECK(write_segment_files(options, input, findings, executor));

@@ -54,6 +54,8 @@ struct SegmentFindings {
 void add_segment_options(CLI::App& command, SegmentOptions& options);
 void check_segment_options(SegmentOptions& options);
 
+/// By its name: .sacmap.
+[[nodiscard]] bool is_map(const std::filesystem::path& input);
 /// A map's surface points are the vertices of its mesh, with TSDF-gradient normals (thesis §3.1).
 [[nodiscard]] Result<SegmentInput> read_segment_input(const std::filesystem::path& path, const Executor& executor);
 

@@ -45,9 +45,11 @@ Result<SegmentInput> read_map_surface(const std::filesystem::path& path, const E
 
 }  // namespace
 
+bool is_map(const std::filesystem::path& input) { return input.extension() == ".sacmap"; }
+
 Result<SegmentInput> read_segment_input(const std::filesystem::path& path, const Executor& executor) {
   SegmentInput input;
-  if (path.extension() == ".sacmap") {
+  if (is_map(path)) {
     SACCADE_TRY(input, read_map_surface(path, executor));
   } else {
     SACCADE_TRY(input.file, read_cloud(path));

@@ -69,7 +69,7 @@ void add_segment_options(CLI::App& command, SegmentOptions& options) {
       ->required()
       ->type_name("CLOUD|MAP");
   command.add_option("--method", options.method, "how: lccp, supervoxels joined where surfaces bend outwards")
-      ->type_name("lccp")
+      ->type_name("NAME")
       ->capture_default_str();
   command
       .add_option("--out", options.out,
@@ -94,6 +94,9 @@ void check_segment_options(SegmentOptions& options) {
   require_ok(options.supervoxels.validate(), "--seed-size, --spatial-weight, --normal-weight, --color-weight");
   require_ok(options.lccp.validate(), "--concavity, --smoothness");
   require_ok(options.measures.validate(), "--isolation-distance");
+  if (is_map(options.input) && options.supervoxels.voxels.single_camera) {
+    usage_error("--transform", "is for the cloud of one camera in its frame; a map is in the world's");
+  }
   check_saliency_options(options.saliency, options.supervoxels.voxels.single_camera);
 }
 

@@ -158,6 +158,14 @@ TEST_F(Segment, TakesEveryHeuristicAndBlends) {
   EXPECT_GT(most_salient({"--saliency", "isolation", "--isolation-distance", "0.001"}).at("saliency"), 0.99);
 }
 
+TEST_F(Segment, SaysWhenVoxelsAreTooSmall) {
+  const auto notes_with = [&](const char* voxel_size_m) {
+    return run_program({"segment", cloud().string(), "--voxel-size", voxel_size_m, "--seed-size", "0.02"}).err;
+  };
+  EXPECT_NE(notes_with("0.0001").find("--voxel-size"), std::string::npos);
+  EXPECT_EQ(notes_with("0.0075").find("--voxel-size"), std::string::npos);
+}
+
 TEST_F(Segment, KeepsAnEarlierLabelAndSaysSo) {
   fields_.add<std::uint32_t>("label", std::vector<std::uint32_t>(fields_.rows, 77));
   ASSERT_TRUE(write_pcd(cloud(), fields_));
@@ -204,6 +212,7 @@ TEST_F(Segment, NothingToSegmentIsNoCrash) {
   EXPECT_EQ(nothing.at("points"), 0);
   EXPECT_TRUE(nothing.at("segments").empty());
   EXPECT_FALSE(fs::exists(folder_ / "none.png"));
+  expect_failure(with_rows({0.5F, 1e9F}), 3, "segment", {"table.pcd", "point 1", "larger voxels"});
   const Outcome one = with_rows({0.5F});
   EXPECT_EQ(one.status, 0) << one.err;
   EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "none.json")).at("result").at("segments").at(0).at("points"), 1);
@@ -251,6 +260,7 @@ TEST_F(Segment, UsageErrorsAreOneLine) {
   expect_failure(run_program(segment({"--saliency", "size=-1"})), 2, "segment", {"weight of size"});
   expect_failure(run_program(segment({"--saliency", "region"})), 2, "segment", {"--box or --sphere"});
   expect_failure(run_program(segment({"--sphere", "0,0,0,1"})), 2, "segment", {"--saliency region"});
+  expect_failure(run_program({"segment", "some.sacmap", "--transform"}), 2, "segment", {"--transform", "world"});
   expect_failure(run_program(segment({"--min-size", "-1"})), 2, "segment", {"--min-size"});
 }
 

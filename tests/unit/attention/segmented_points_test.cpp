@@ -5,6 +5,7 @@
 #include <gtest/gtest.h>
 
 #include <Eigen/Geometry>
+#include <Eigen/SVD>
 #include <cmath>
 #include <limits>
 #include <random>
@@ -152,6 +153,38 @@ TEST(SegmentMeasures, AreThoseOfATurnedBox) {
     const Eigen::Vector3d p = points.positions_m[i].cast<double>();
     EXPECT_TRUE((p.array() >= box.lowest_m.array()).all() && (p.array() <= box.highest_m.array()).all());
   }
+}
+
+/// Eq. 3.8–3.10 as they are written, by other means.
+TEST(SegmentMeasures, AreThoseOfADirectComputation) {
+  std::mt19937 random{5};
+  std::normal_distribution<double> normal;
+  int compared{0};
+  for (int run = 0; run < test::scaled_cases(200); ++run) {
+    const int count = std::uniform_int_distribution{4, 60}(random);
+    LabelledPoints points;
+    Eigen::MatrixX3d rows{count, 3};
+    const Eigen::Matrix3d turn = Eigen::Quaterniond{normal(random), normal(random), normal(random), normal(random)}
+                                     .normalized()
+                                     .toRotationMatrix();
+    for (int i = 0; i < count; ++i) {
+      const Eigen::Vector3d p =
+          turn * Eigen::Vector3d{0.4 * normal(random), 0.2 * normal(random), 0.1 * normal(random)};
+      points.add(p.cast<float>(), 0);
+      rows.row(i) = points.positions_m.back().cast<double>();
+    }
+    const Eigen::MatrixX3d centred = rows.rowwise() - rows.colwise().mean();
+    const Eigen::JacobiSVD<Eigen::MatrixX3d> svd{centred, Eigen::ComputeThinU | Eigen::ComputeThinV};
+    const Eigen::Vector3d spread = svd.singularValues();
+    if (spread[1] > 0.95 * spread[0] || spread[2] > 0.95 * spread[1]) continue;  // axes that are not determined well
+    const Eigen::MatrixX3d along = centred * svd.matrixV();
+    const Eigen::Vector3d sizes_m = along.colwise().maxCoeff() - along.colwise().minCoeff();
+    const SegmentMeasures measures = points.measured()[0];
+    EXPECT_TRUE(measures.sizes_m.isApprox(sizes_m.reverse(), 1e-6)) << run;
+    EXPECT_NEAR(measures.roundness, sizes_m.minCoeff() / sizes_m.maxCoeff(), 1e-6);
+    ++compared;
+  }
+  EXPECT_GT(compared, test::scaled_cases(200) / 2);
 }
 
 TEST(SegmentMeasures, OfABallAreRoundAndNotOfALeaf) {
