@@ -55,10 +55,13 @@ void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
       ->capture_default_str();
 }
 
-void check_extension(const std::filesystem::path& path) {
-  const std::filesystem::path extension = path.extension();
-  if (!path.empty() && extension != ".pcd" && extension != ".ply") {
-    usage_error("--out", "needs a name that ends in .pcd or .ply, not '" + path.string() + "'");
+void check_extensions(const SegmentOptions& options) {
+  const std::filesystem::path extension = options.out.extension();
+  if (!options.out.empty() && extension != ".pcd" && extension != ".ply") {
+    usage_error("--out", "needs a name that ends in .pcd or .ply, not '" + options.out.string() + "'");
+  }
+  if (!options.picture.empty() && options.picture.extension() != ".png") {
+    usage_error("--picture", "needs a name that ends in .png, not '" + options.picture.string() + "'");
   }
 }
 
@@ -88,7 +91,7 @@ void add_segment_options(CLI::App& command, SegmentOptions& options) {
 
 void check_segment_options(SegmentOptions& options) {
   if (options.method != "lccp") usage_error("--method", "must be lccp, not '" + options.method + "'");
-  check_extension(options.out);
+  check_extensions(options);
   require_positive(options.supervoxels.voxels.voxel_size_m, "--voxel-size");
   require_positive(options.supervoxels.seed_spacing_m, "--seed-size");
   require_ok(options.supervoxels.validate(), "--seed-size, --spatial-weight, --normal-weight, --color-weight");

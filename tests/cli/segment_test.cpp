@@ -242,7 +242,8 @@ TEST_F(Segment, NeverReplacesItsInput) {
   expect_failure(run_program(segment({"--out", cloud().string()})), 3, "segment", {"table.pcd", "--out"});
   fs::create_symlink(cloud(), folder_ / "link.pcd");
   expect_failure(run_program(segment({"--out", (folder_ / "link.pcd").string()})), 3, "segment", {"--out"});
-  expect_failure(run_program(segment({"--picture", cloud().string()})), 3, "segment", {"--picture"});
+  fs::create_symlink(cloud(), folder_ / "link.png");
+  expect_failure(run_program(segment({"--picture", (folder_ / "link.png").string()})), 3, "segment", {"--picture"});
   expect_failure(run_program(segment({"--out", out().string(), "--json", out().string()})), 3, "segment", {"--json"});
   EXPECT_TRUE(text_of(cloud()) == before);
   EXPECT_FALSE(fs::exists(out()));
@@ -252,6 +253,7 @@ TEST_F(Segment, UsageErrorsAreOneLine) {
   expect_failure(run_program({"segment"}), 2, "segment", {"input is required"});
   expect_failure(run_program(segment({"--method", "slic"})), 2, "segment", {"--method", "lccp"});
   expect_failure(run_program(segment({"--out", "labels.txt"})), 2, "segment", {".pcd or .ply"});
+  expect_failure(run_program(segment({"--picture", "picture.jpg"})), 2, "segment", {"--picture", ".png"});
   expect_failure(run_program(segment({"--voxel-size", "0"})), 2, "segment", {"--voxel-size"});
   expect_failure(run_program(segment({"--voxel-size", "0.1"})), 2, "segment", {"--seed-size"});
   expect_failure(run_program(segment({"--concavity", "-1"})), 2, "segment", {"--concavity"});

@@ -174,7 +174,7 @@ TEST(SegmentMeasures, AreThoseOfADirectComputation) {
       rows.row(i) = points.positions_m.back().cast<double>();
     }
     const Eigen::MatrixX3d centred = rows.rowwise() - rows.colwise().mean();
-    const Eigen::JacobiSVD<Eigen::MatrixX3d> svd{centred, Eigen::ComputeThinU | Eigen::ComputeThinV};
+    const Eigen::JacobiSVD<Eigen::MatrixX3d> svd{centred, Eigen::ComputeFullV};
     const Eigen::Vector3d spread = svd.singularValues();
     if (spread[1] > 0.95 * spread[0] || spread[2] > 0.95 * spread[1]) continue;  // axes that are not determined well
     const Eigen::MatrixX3d along = centred * svd.matrixV();
