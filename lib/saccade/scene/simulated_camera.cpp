@@ -31,16 +31,23 @@ DepthNoise kinect_v1_noise(std::uint64_t seed) {
 Status SimulatedCameraConfig::validate() const {
   SACCADE_CHECK(camera.validate());
   if (!std::isfinite(reach_m)) return Error{Errc::invalid_argument, "the reach must be finite", "simulated camera"};
+  if (depth_filter) SACCADE_CHECK(depth_filter->validate());
+  if (time_of_flight) return time_of_flight->validate();
   return noise ? noise->validate() : Status{};
 }
 
 Result<SimulatedCamera> SimulatedCamera::create(RayScene scene, const SimulatedCameraConfig& config) {
   SACCADE_CHECK(config.validate());
-  return SimulatedCamera{std::move(scene), config};
+  std::shared_ptr<const DepthFilter> filter;
+  if (config.depth_filter) {
+    SACCADE_TRY(DepthFilter created, DepthFilter::create(config.camera, *config.depth_filter));
+    filter = std::make_shared<const DepthFilter>(std::move(created));
+  }
+  return SimulatedCamera{std::move(scene), config, std::move(filter)};
 }
 
 Frame SimulatedCamera::capture(const Pose& T_world_camera, const Executor& executor) {
-  return frame_of(scene_.render(far_sighted(config_), T_world_camera, executor), T_world_camera);
+  return frame_of(scene_.render(far_sighted(config_), T_world_camera, executor), T_world_camera, nullptr, executor);
 }
 
 Frame SimulatedCamera::capture(const Pose& T_world_camera, const DepthImage& before, const Executor& executor) {
@@ -62,22 +69,37 @@ Frame SimulatedCamera::capture(const Pose& T_world_camera, const DepthImage& bef
       exact.color.data()[i] = {};
     }
   }
-  return frame_of(std::move(exact), T_world_camera);
+  return frame_of(std::move(exact), T_world_camera, &before, executor);
 }
 
-Frame SimulatedCamera::frame_of(ExactFrame exact, const Pose& T_world_camera) {
+DepthImage SimulatedCamera::measured(ExactFrame& exact, const Pose& T_world_camera, const DepthImage* before,
+                                     const Executor& executor) {
+  if (config_.time_of_flight) {
+    TimeOfFlightFrame frame = measure_time_of_flight(scene_, far_sighted(config_), *config_.time_of_flight,
+                                                     T_world_camera, std::move(exact.depth), before, frames_, executor);
+    truth_ = std::move(frame.truth);
+    return std::move(frame.depth);
+  }
+  return config_.noise ? with_noise(exact.depth, *config_.noise, frames_, &exact.incidence_cosine)
+                       : std::move(exact.depth);
+}
+
+Frame SimulatedCamera::frame_of(ExactFrame exact, const Pose& T_world_camera, const DepthImage* before,
+                                const Executor& executor) {
   Frame frame;
   frame.index = frames_;
   frame.name = "frame " + std::to_string(frames_);
   frame.T_world_camera = T_world_camera;
+  frame.depth = measured(exact, T_world_camera, before, executor);
   frame.color = std::move(exact.color);
-  frame.depth = config_.noise ? with_noise(exact.depth, *config_.noise, frames_, &exact.incidence_cosine)
-                              : std::move(exact.depth);
   const auto max_range_m = static_cast<float>(config_.camera.max_range_m);
   for (std::size_t i = 0; i < frame.depth.size(); ++i) {
     float& z = frame.depth.data()[i];
-    if (z > max_range_m) z = -max_range_m;
+    if (z <= max_range_m) continue;
+    z = -max_range_m;
+    if (!truth_.empty()) truth_.data()[i] = MeasuredPixel::no_return;
   }
+  if (filter_) frame.depth = filter_->filter(frame.depth, executor).value().depth;
   ++frames_;
   return frame;
 }

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <set>
 
@@ -155,6 +156,72 @@ TEST(SimulatedCamera, NoiseFallsOnWhatStandsBeforeToo) {
   for (const float z : depth.pixels()) squares += (z - 1.0) * (z - 1.0);
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(depth.size())), DepthNoise{}.sigma_m(1.0), 5e-4);
   EXPECT_EQ(same.capture(above(2.0), before, Executor::with_threads(3)).depth, depth);
+}
+
+/// A post before a wall, 0.6 m behind it.
+SimulatedCamera time_of_flight_camera(const std::optional<DepthFilterConfig>& filter) {
+  Scene scene;
+  scene.name = "post";
+  SceneObject post;
+  post.name = "post";
+  post.shape = BoxShape{{0.11, 0.11, 4.0}};
+  post.T_world_object = Pose{Eigen::Translation3d{1.0, 0.0, -2.0}};
+  SceneObject wall;
+  wall.name = "wall";
+  wall.shape = BoxShape{{0.1, 20.0, 20.0}};
+  wall.T_world_object = Pose{Eigen::Translation3d{1.7, 0.0, -10.0}};
+  scene.objects = {post, wall};
+  scene.workspace = Box{Vector3d::Constant(-2.0), Vector3d::Constant(2.0)};
+  SimulatedCameraConfig config;
+  config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.2, 6.0};
+  config.time_of_flight.emplace();
+  config.depth_filter = filter;
+  return *SimulatedCamera::create(*RayScene::build(scene), config);
+}
+
+TEST(SimulatedCamera, KnowsWhatATimeOfFlightCameraMeasuresWrongly) {
+  const Pose T_world_camera = look_at(Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitZ());
+  SimulatedCamera camera = time_of_flight_camera(std::nullopt);
+  EXPECT_TRUE(camera.truth().empty());
+  const Frame frame = camera.capture(T_world_camera);
+  const TimeOfFlightFrame expected =
+      capture_time_of_flight(camera.scene(), camera.camera(), TimeOfFlightConfig{}, T_world_camera).value();
+  EXPECT_EQ(frame.depth, expected.depth);
+  EXPECT_EQ(camera.truth(), expected.truth);
+  const auto count = [&](MeasuredPixel kind) {
+    const auto& pixels = camera.truth().pixels();
+    return std::count(pixels.begin(), pixels.end(), kind);
+  };
+  EXPECT_GT(count(MeasuredPixel::in_shadow), 200);
+  EXPECT_GT(count(MeasuredPixel::veil), 50);
+
+  SimulatedCamera filtering = time_of_flight_camera(DepthFilterConfig{});
+  const Frame filtered = filtering.capture(T_world_camera);
+  const DepthFilter filter = DepthFilter::create(camera.camera()).value();
+  EXPECT_EQ(filtered.depth, filter.filter(expected.depth).value().depth);
+  EXPECT_EQ(filtering.truth(), expected.truth);
+}
+
+TEST(SimulatedCamera, WhatStandsBeforeATimeOfFlightCameraThrowsNoShadow) {
+  const Pose T_world_camera = look_at(Vector3d::Zero(), Vector3d::UnitX(), Vector3d::UnitZ());
+  SimulatedCamera camera = time_of_flight_camera(std::nullopt);
+  SimulatedCamera same = time_of_flight_camera(std::nullopt);
+  DepthImage before{160, 120};
+  for (int v = 0; v < 120; ++v) {
+    for (int u = 0; u < 40; ++u) before(u, v) = 0.5F;
+  }
+  const Frame frame = camera.capture(T_world_camera, before);
+  const Frame without = same.capture(T_world_camera);
+  for (int v = 0; v < 120; ++v) {
+    for (int u = 0; u < 160; ++u) {
+      if (u < 40) {
+        ASSERT_NEAR(frame.depth(u, v), 0.5F, 0.02F);
+        ASSERT_EQ(camera.truth()(u, v), MeasuredPixel::good);
+      } else if (u > 41) {
+        ASSERT_EQ(frame.depth(u, v), without.depth(u, v)) << u << ", " << v;
+      }
+    }
+  }
 }
 
 TEST(SimulatedCamera, RefusesABadCameraOrNoise) {

@@ -16,6 +16,11 @@ constexpr double kBox_m{1.0};   // its front
 constexpr double kHalfWidth_m{0.08};
 constexpr double kHalfHeight_m{0.15};
 
+const PinholeCamera& kinect_v2() {
+  static const PinholeCamera camera = camera_preset("kinect-v2").value();
+  return camera;
+}
+
 /// The camera looks along world x; its x axis points along −y, its y axis down.
 Pose camera_pose() { return look_at({0.0, 0.0, 1.0}, {1.0, 0.0, 1.0}, Vector3d::UnitZ()); }
 
@@ -40,12 +45,13 @@ TEST(TimeOfFlight, KnowsWhatTheEmitterLights) {
     TimeOfFlightConfig config;
     config.emitter_side = side;
     const double emitter_x = side == EmitterSide::left ? -config.baseline_m : config.baseline_m;
-    const TimeOfFlightFrame frame = capture_time_of_flight(box_before_wall(), config, camera_pose()).value();
+    const TimeOfFlightFrame frame =
+        capture_time_of_flight(box_before_wall(), kinect_v2(), config, camera_pose()).value();
     std::size_t in_shadow{0};
     for (int v = 0; v < frame.exact.height(); ++v) {
       int differing{0};
       for (int u = 0; u < frame.exact.width(); ++u) {
-        const Vector3d p = config.camera.ray(u, v) * static_cast<double>(frame.exact(u, v));
+        const Vector3d p = kinect_v2().ray(u, v) * static_cast<double>(frame.exact(u, v));
         const auto blocked_at = [&](double z) {
           const double x = emitter_x + (p.x() - emitter_x) * z / p.z();
           return p.z() > 2.0 && std::abs(x) < kHalfWidth_m && std::abs(p.y() * z / p.z()) < kHalfHeight_m;
@@ -65,8 +71,9 @@ TEST(TimeOfFlight, KnowsWhatTheEmitterLights) {
 
 TEST(TimeOfFlight, MeasuresEachKindOfPixelAsStated) {
   TimeOfFlightConfig config;
-  const TimeOfFlightFrame frame = capture_time_of_flight(box_before_wall(), config, camera_pose()).value();
+  const TimeOfFlightFrame frame = capture_time_of_flight(box_before_wall(), kinect_v2(), config, camera_pose()).value();
   double good_squares{0.0};
+  double shadow_sum{0.0};
   double shadow_squares{0.0};
   std::size_t good{0};
   std::size_t in_shadow{0};
@@ -80,7 +87,8 @@ TEST(TimeOfFlight, MeasuresEachKindOfPixelAsStated) {
         ++good;
         break;
       case MeasuredPixel::in_shadow:
-        shadow_squares += error_m * error_m;
+        shadow_sum += error_m;
+        shadow_squares += (error_m - config.shadow_bias_m) * (error_m - config.shadow_bias_m);
         ++in_shadow;
         break;
       case MeasuredPixel::veil:
@@ -91,6 +99,7 @@ TEST(TimeOfFlight, MeasuresEachKindOfPixelAsStated) {
     }
   }
   EXPECT_NEAR(std::sqrt(good_squares / static_cast<double>(good)), config.noise.base_m, 0.1 * config.noise.base_m);
+  EXPECT_NEAR(shadow_sum / static_cast<double>(in_shadow), config.shadow_bias_m, 0.02);
   EXPECT_NEAR(std::sqrt(shadow_squares / static_cast<double>(in_shadow)), config.shadow_sigma_m, 0.02);
   EXPECT_GT(veil, 50U);
   EXPECT_LT(veil, 2000U);
@@ -98,8 +107,8 @@ TEST(TimeOfFlight, MeasuresEachKindOfPixelAsStated) {
 
 TEST(TimeOfFlight, ShowsTheFilterWhatToRemove) {
   const TimeOfFlightConfig config;
-  const TimeOfFlightFrame frame = capture_time_of_flight(box_before_wall(), config, camera_pose()).value();
-  const FilteredDepth filtered = DepthFilter::create(config.camera).value().filter(frame.depth).value();
+  const TimeOfFlightFrame frame = capture_time_of_flight(box_before_wall(), kinect_v2(), config, camera_pose()).value();
+  const FilteredDepth filtered = DepthFilter::create(kinect_v2()).value().filter(frame.depth).value();
   std::size_t wrong{0};
   std::size_t wrong_kept{0};
   std::size_t good{0};
@@ -119,25 +128,25 @@ TEST(TimeOfFlight, ShowsTheFilterWhatToRemove) {
 TEST(TimeOfFlight, FramesOfASeedAreTheSameForEveryThreadCount) {
   TimeOfFlightConfig config;
   const RayScene scene = box_before_wall();
-  const TimeOfFlightFrame once = capture_time_of_flight(scene, config, camera_pose(), 3).value();
+  const TimeOfFlightFrame once = capture_time_of_flight(scene, kinect_v2(), config, camera_pose(), 3).value();
   const TimeOfFlightFrame again =
-      capture_time_of_flight(scene, config, camera_pose(), 3, Executor::with_threads(3)).value();
+      capture_time_of_flight(scene, kinect_v2(), config, camera_pose(), 3, Executor::with_threads(3)).value();
   EXPECT_EQ(again.depth, once.depth);
   EXPECT_EQ(again.truth, once.truth);
-  EXPECT_NE(capture_time_of_flight(scene, config, camera_pose(), 4).value().depth, once.depth);
+  EXPECT_NE(capture_time_of_flight(scene, kinect_v2(), config, camera_pose(), 4).value().depth, once.depth);
 }
 
 TEST(TimeOfFlight, RefusesWhatMakesNoSense) {
   const auto refuses = [](const auto& change) {
     TimeOfFlightConfig config;
     change(config);
-    return !capture_time_of_flight(box_before_wall(), config, camera_pose()).ok();
+    return !capture_time_of_flight(box_before_wall(), kinect_v2(), config, camera_pose()).ok();
   };
   EXPECT_TRUE(refuses([](TimeOfFlightConfig& c) { c.baseline_m = -0.08; }));
   EXPECT_TRUE(refuses([](TimeOfFlightConfig& c) { c.footprint_px = 0.0; }));
   EXPECT_TRUE(refuses([](TimeOfFlightConfig& c) { c.footprint_samples = 1; }));
   EXPECT_TRUE(refuses([](TimeOfFlightConfig& c) { c.shadow_sigma_m = std::nan(""); }));
-  EXPECT_TRUE(refuses([](TimeOfFlightConfig& c) { c.camera.fx = 0.0; }));
+  EXPECT_TRUE(refuses([](TimeOfFlightConfig& c) { c.shadow_bias_m = -1.0; }));
 }
 
 }  // namespace
