@@ -10,6 +10,16 @@ namespace {
 constexpr double kRadPerDegree{std::numbers::pi / 180.0};
 
 void add_step_options(CLI::App& command, DepthFilterConfig& filter) {
+  command
+      .add_option_function<std::string>(
+          "--method",
+          [&filter](const std::string& text) {
+            const auto method = depth_filter_method(text);
+            require_ok(method ? Status{} : Status{method.error()}, "--method");
+            filter.method = *method;
+          },
+          "surface keeps what lies on a surface; thesis removes all that may be wrong (default: surface)")
+      ->type_name("surface|thesis");
   command.add_option("--baseline", filter.baseline_m, "from the camera to the infrared emitter, metres")
       ->type_name("METRES")
       ->capture_default_str();

@@ -47,6 +47,7 @@ json filter_json(const FilterOptions& options, const FilterResult& result, bool 
           {"veil", sum(result, &FilteredFrame::veil_points)},
           {"out_of_range", sum(result, &FilteredFrame::out_of_range)},
           {"ms_per_frame", {{"median", median_ms(result)}}},
+          {"method", to_string(options.filter.method)},
           {"baseline_m", options.filter.baseline_m},
           {"emitter_side", options.filter.emitter_side == EmitterSide::left ? "left" : "right"},
           {"veil_angle_rad", options.filter.veil_angle_rad},

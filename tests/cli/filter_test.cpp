@@ -63,7 +63,7 @@ TEST_F(Filter, RemovesWhatTheLibraryRemoves) {
   EXPECT_EQ(result.at("shadow"), shadow_points);
   EXPECT_EQ(result.at("veil"), veil_points);
   EXPECT_GT(shadow_points, 1000U);
-  EXPECT_GT(veil_points, 1000U);
+  EXPECT_GT(veil_points, 100U);
   EXPECT_EQ(names_in(out() / "pictures"), (std::vector<std::string>{name(0), name(1)}));
   EXPECT_GE(read_color(out() / "pictures" / name(0)).value().width(), 3 * 512);
   EXPECT_EQ(text_of(frame(0)), untouched);
@@ -98,6 +98,19 @@ TEST_F(Filter, DoesOneStepAndTakesTheOtherSide) {
   EXPECT_LT(result_with({"--only", "veil", "--veil-angle", "2"}).at("veil"), veil.at("veil"));
   EXPECT_GT(result_with({"--max-range", "0.9"}).at("out_of_range"), 10000);
   EXPECT_FALSE(fs::exists(out() / "pictures"));
+}
+
+TEST_F(Filter, HasTheMethodOfTheThesisToo) {
+  const Outcome surface = run_program(filter({"--json", "-", "--pictures", "0"}));
+  const Outcome thesis = run_program(filter({"--json", "-", "--pictures", "0", "--method", "thesis"}));
+  ASSERT_EQ(thesis.status, 0) << thesis.err;
+  EXPECT_EQ(surface.json().at("result").at("method"), "surface");
+  EXPECT_EQ(thesis.json().at("result").at("method"), "thesis");
+  const DepthFilter library = DepthFilter::create(camera_, {.method = DepthFilterMethod::thesis}).value();
+  DepthImage depth = decode_depth(read_png16(frame(0)).value(), {});
+  clip_to_range(camera_, depth);
+  EXPECT_EQ(decode_depth(read_png16(out() / name(0)).value(), {}), library.filter(depth).value().depth);
+  EXPECT_GT(thesis.json().at("result").at("veil"), surface.json().at("result").at("veil"));
 }
 
 TEST_F(Filter, LeavesOutWhatIsNoDepthImage) {
@@ -154,6 +167,7 @@ TEST_F(Filter, UsageErrorsAreOneLine) {
   expect_failure(run_program({"filter", frames().string()}), 2, "filter", {"--out"});
   expect_failure(run_program(filter({"--baseline", "-0.08"})), 2, "filter", {"--baseline"});
   expect_failure(run_program(filter({"--veil-angle", "90"})), 2, "filter", {"--veil-angle"});
+  expect_failure(run_program(filter({"--method", "median"})), 2, "filter", {"--method", "surface, thesis"});
   expect_failure(run_program(filter({"--emitter", "above"})), 2, "filter", {"--emitter", "left or right"});
   expect_failure(run_program(filter({"--only", "both"})), 2, "filter", {"--only"});
   expect_failure(run_program(filter({"--depth-scale", "0"})), 2, "filter", {"--depth-scale"});

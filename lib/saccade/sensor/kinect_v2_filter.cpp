@@ -54,9 +54,26 @@ struct VeilTest {
 
 }  // namespace
 
+std::string_view to_string(DepthFilterMethod method) {
+  return method == DepthFilterMethod::surface ? "surface" : "thesis";
+}
+
+Result<DepthFilterMethod> depth_filter_method(std::string_view name) {
+  for (const DepthFilterMethod method : {DepthFilterMethod::surface, DepthFilterMethod::thesis}) {
+    if (to_string(method) == name) return method;
+  }
+  return Error{Errc::invalid_argument, "there is no method \"" + std::string{name} + "\"; known: surface, thesis", {}};
+}
+
 Status DepthFilterConfig::validate() const {
   if (!(baseline_m >= 0.0 && baseline_m <= kMaxBaseline_m)) {
     return Error{Errc::invalid_argument, "the emitter's distance from the camera must be within 0 and 1 m", {}};
+  }
+  if (!(baseline_uncertainty >= 0.0 && baseline_uncertainty <= 1.0)) {
+    return Error{Errc::invalid_argument, "the uncertainty of the emitter's distance is a share, within 0 and 1", {}};
+  }
+  if (!(tolerance_m >= 0.0 && std::isfinite(tolerance_m) && tolerance_per_m >= 0.0 && std::isfinite(tolerance_per_m))) {
+    return Error{Errc::invalid_argument, "the tolerance of surfaces must be finite and not negative", {}};
   }
   if (!(veil_angle_rad > 0.0 && veil_angle_rad < 0.5 * std::numbers::pi)) {
     return Error{Errc::invalid_argument, "the angle of veil points must be above 0 and below 90 degrees", {}};
@@ -126,14 +143,19 @@ Result<FilteredDepth> DepthFilter::filter(const DepthImage& depth, const Executo
                  {}};
   }
   FilteredDepth result{depth, {width, height}};
+  const bool by_surface = config_.method == DepthFilterMethod::surface;
+  const bool judges_shadows = by_surface && config_.remove_shadow_points;
+  const Image<ShadowVerdict> verdicts = judges_shadows ? judge_shadows(depth, executor) : Image<ShadowVerdict>{};
   std::vector<RowCounts> counts(y_.size());
   executor.parallel_for(counts.size(), kRowGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int v = static_cast<int>(i);
       FilteredPixel* pixels = result.pixels.row(v);
       std::transform(depth.row(v), depth.row(v) + width, pixels, as_it_came);
-      if (config_.remove_shadow_points) mark_shadow_points(depth.row(v), pixels);
-      if (config_.remove_veil_points) mark_veil_points(depth, v, pixels);
+      if (judges_shadows) mark_unlit_points(depth, verdicts, v, pixels);
+      if (config_.remove_shadow_points && !by_surface) mark_shadow_points(depth.row(v), pixels);
+      if (config_.remove_veil_points && by_surface) mark_unsupported_points(depth, verdicts, v, pixels);
+      if (config_.remove_veil_points && !by_surface) mark_veil_points(depth, v, pixels);
       counts[i] = remove_marked(pixels, width, result.depth.row(v));
     }
   });

@@ -6,12 +6,14 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <string_view>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
+#include "saccade/sensor/shadow_doubt.hpp"
 
 namespace saccade {
 
@@ -19,14 +21,28 @@ namespace saccade {
 /// the left; drivers that mirror the image need the right.
 enum class EmitterSide { left, right };
 
+enum class DepthFilterMethod : std::uint8_t {
+  thesis,   ///< removes all that may be wrong: Algorithm 5 and eq. 3.19
+  surface,  ///< keeps of that what lies on a surface.  docs/depth-filter.md
+};
+
+[[nodiscard]] std::string_view to_string(DepthFilterMethod method);
+/// invalid_argument, with the known names, for any other.
+[[nodiscard]] Result<DepthFilterMethod> depth_filter_method(std::string_view name);
+
 struct DepthFilterConfig {
+  DepthFilterMethod method{DepthFilterMethod::surface};
   double baseline_m{0.08};                      ///< Δ: from the camera's centre to the emitter, along its x axis
   EmitterSide emitter_side{EmitterSide::left};  ///< shadows fall to the other side of an object
   double veil_angle_rad{10.0 * std::numbers::pi / 180.0};  ///< Θ_max of eq. 3.19
+  double baseline_uncertainty{0.15};  ///< share of the baseline by which it may be wrong; method surface
+  double tolerance_m{0.004};          ///< a point lies on a surface within tolerance_m + tolerance_per_m · z; the same
+  double tolerance_per_m{0.004};
   bool remove_shadow_points{true};
   bool remove_veil_points{true};
 
-  /// invalid_argument unless the baseline is within 0 and 1 m and the angle above 0 and below 90°.
+  /// invalid_argument unless the baseline is within 0 and 1 m, its uncertainty within 0 and 1, the angle above 0 and
+  /// below 90°, and the tolerance finite and not negative.
   [[nodiscard]] Status validate() const;
 };
 
@@ -43,13 +59,16 @@ struct FilteredDepth {
   [[nodiscard]] std::size_t kept() const { return points - shadow_points - veil_points; }
 };
 
-/// Shadow points: seen by the camera, not lit by the emitter. A point is removed when its angle from the emitter
-/// (eq. 3.16) is not beyond that of every point before it in its row, counted from the emitter's side (eq. 3.18,
-/// Algorithm 5). The condition is necessary, not sufficient: behind a thin object, lit points are removed too.
-/// Veil points: between an edge and what lies behind it. A point is removed when the line to one of its four neighbours
-/// is within veil_angle_rad of the line from the camera (eq. 3.19; the thesis' text says "higher than"). This takes the
-/// points on both sides of an edge.
-/// Both steps judge the image as it came. Each row needs itself and its two neighbours; nothing is kept between images.
+/// Method thesis. Shadow points: seen by the camera, not lit by the emitter. A point is removed when its angle from the
+/// emitter (eq. 3.16) is not beyond that of every point before it in its row, counted from the emitter's side
+/// (eq. 3.18, Algorithm 5). The condition is necessary, not sufficient: behind a thin object, lit points are removed
+/// too. Veil points: between an edge and what lies behind it. A point is removed when the line to one of its four
+/// neighbours is within veil_angle_rad of the line from the camera (eq. 3.19; the thesis' text says "higher than").
+/// This takes the points on both sides of an edge. Method surface. Of those shadow points, one stays that no visible
+/// surface keeps the light from and that lies on the background beside the shadow; and one that would be in shadow if
+/// the baseline were somewhat longer is removed where it lies on no surface. Of those veil points, one stays that lies
+/// on the surface of the next two pixels on one side. Both steps judge the image as it came. Each row needs itself and
+/// two neighbours on either side; nothing is kept between images.
 class DepthFilter {
  public:
   /// The camera of the depth images, without distortion. invalid_argument: see PinholeCamera and DepthFilterConfig.
@@ -66,6 +85,12 @@ class DepthFilter {
   DepthFilter(const PinholeCamera& camera, const DepthFilterConfig& config);
   void mark_shadow_points(const float* z, FilteredPixel* pixels) const;
   void mark_veil_points(const DepthImage& depth, int v, FilteredPixel* pixels) const;
+  [[nodiscard]] float jump_per_m(double step) const;
+  [[nodiscard]] Image<ShadowVerdict> judge_shadows(const DepthImage& depth, const Executor& executor) const;
+  void mark_unlit_points(const DepthImage& depth, const Image<ShadowVerdict>& verdicts, int v,
+                         FilteredPixel* pixels) const;
+  void mark_unsupported_points(const DepthImage& depth, const Image<ShadowVerdict>& verdicts, int v,
+                               FilteredPixel* pixels) const;
 
   DepthFilterConfig config_;
   std::vector<double> x_;  ///< of the ray through each column, at z = 1

@@ -95,7 +95,7 @@ TEST(KinectV2Filter, IsTheThesisFormulas) {
     const PinholeCamera camera{
         48,  30, 40.0 + 300.0 * share(random), 40.0 + 300.0 * share(random), 48.0 * share(random), 30.0 * share(random),
         0.5, 4.5};
-    DepthFilterConfig config;
+    DepthFilterConfig config{.method = DepthFilterMethod::thesis};
     config.baseline_m = 0.2 * share(random);
     config.emitter_side = n % 2 == 0 ? EmitterSide::left : EmitterSide::right;
     config.veil_angle_rad = (2.0 + 40.0 * share(random)) * kPi / 180.0;
@@ -142,7 +142,7 @@ TEST(KinectV2Filter, RemovesWhatTheEmitterDoesNotLight) {
   constexpr double kHalfWidth_m{0.08};
   const DepthImage depth = box_before_wall(kHalfWidth_m);
   for (const EmitterSide side : {EmitterSide::left, EmitterSide::right}) {
-    DepthFilterConfig config;
+    DepthFilterConfig config{.method = DepthFilterMethod::thesis};
     config.emitter_side = side;
     config.remove_veil_points = false;
     const FilteredDepth filtered = DepthFilter::create(kinect_v2(), config).value().filter(depth).value();
@@ -173,7 +173,7 @@ TEST(KinectV2Filter, RemovesWhatTheEmitterDoesNotLight) {
 }
 
 TEST(KinectV2Filter, RemovesPointsAtEdgesAndBetweenThem) {
-  DepthFilterConfig config;
+  DepthFilterConfig config{.method = DepthFilterMethod::thesis};
   config.remove_shadow_points = false;
   const DepthFilter filter = DepthFilter::create(kinect_v2(), config).value();
   DepthImage depth{512, 424, 2.0F};
@@ -195,7 +195,8 @@ TEST(KinectV2Filter, KeepsWallsThatAreNotGrazed) {
     scene.objects.push_back(
         {"wall", HalfSpace{Eigen::Vector3d{slope, 0.0, -1.0}.normalized(), -2.0 / std::sqrt(1.0 + slope * slope)}});
     const DepthImage depth = render(scene, kinect_v2(), Pose::Identity()).value().depth;
-    const FilteredDepth filtered = DepthFilter::create(kinect_v2()).value().filter(depth).value();
+    const FilteredDepth filtered =
+        DepthFilter::create(kinect_v2(), {.method = DepthFilterMethod::thesis}).value().filter(depth).value();
     EXPECT_GT(filtered.points, 30000U);
     EXPECT_EQ(filtered.kept(), filtered.points) << slope;
   }
@@ -203,7 +204,7 @@ TEST(KinectV2Filter, KeepsWallsThatAreNotGrazed) {
 
 TEST(KinectV2Filter, CanLeaveOutEitherStep) {
   const DepthImage depth = box_before_wall(0.08);
-  DepthFilterConfig config;
+  DepthFilterConfig config{.method = DepthFilterMethod::thesis};
   const FilteredDepth both = DepthFilter::create(kinect_v2(), config).value().filter(depth).value();
   EXPECT_GT(both.shadow_points, 0U);
   EXPECT_GT(both.veil_points, 0U);
@@ -216,7 +217,7 @@ TEST(KinectV2Filter, CanLeaveOutEitherStep) {
 
 TEST(KinectV2Filter, IsTheSameForEveryThreadCountAndEveryImageBefore) {
   std::mt19937_64 random{3};
-  const DepthFilter filter = DepthFilter::create(kinect_v2()).value();
+  const DepthFilter filter = DepthFilter::create(kinect_v2(), {.method = DepthFilterMethod::thesis}).value();
   const DepthImage depth = random_depth(kinect_v2(), random);
   const FilteredDepth once = filter.filter(depth).value();
   EXPECT_GT(once.shadow_points + once.veil_points, 1000U);
@@ -232,19 +233,21 @@ TEST(KinectV2Filter, IsTheSameForEveryThreadCountAndEveryImageBefore) {
 
 TEST(KinectV2Filter, TakesImagesWithNothingInThem) {
   const PinholeCamera one{1, 1, 100.0, 100.0, 0.0, 0.0, 0.5, 4.5};
-  const DepthFilter filter = DepthFilter::create(one).value();
+  const DepthFilter filter = DepthFilter::create(one, {.method = DepthFilterMethod::thesis}).value();
   EXPECT_EQ(filter.filter(DepthImage{1, 1, 1.0F}).value().kept(), 1U);
   EXPECT_EQ(filter.filter(DepthImage{1, 1}).value().points, 0U);
   EXPECT_EQ(filter.filter(DepthImage{1, 1, -2.0F}).value().depth(0, 0), -2.0F);
 }
 
 TEST(KinectV2Filter, RefusesWhatMakesNoSense) {
-  const auto with_baseline = [](double baseline_m) { return DepthFilterConfig{baseline_m}.validate().ok(); };
+  const auto with_baseline = [](double baseline_m) {
+    return DepthFilterConfig{.baseline_m = baseline_m}.validate().ok();
+  };
   EXPECT_TRUE(with_baseline(0.0));
   EXPECT_FALSE(with_baseline(-0.08));
   EXPECT_FALSE(with_baseline(8.0));
   EXPECT_FALSE(with_baseline(std::nan("")));
-  const auto with_angle = [](double rad) { return DepthFilterConfig{0.08, EmitterSide::left, rad}.validate().ok(); };
+  const auto with_angle = [](double rad) { return DepthFilterConfig{.veil_angle_rad = rad}.validate().ok(); };
   EXPECT_FALSE(with_angle(0.0));
   EXPECT_FALSE(with_angle(kPi / 2.0));
   EXPECT_FALSE(with_angle(std::nan("")));
