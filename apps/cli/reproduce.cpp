@@ -229,7 +229,7 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
       ->type_name("N");
   command
       ->add_option("--out", plots->folder,
-                   "folder for the plots of Table 2.1 (Fig. 2.12) and the pictures of Figs. 3.8, 3.9")
+                   "folder for the plots of Tables 2.1 (Fig. 2.12) and 3.5 and the pictures of Figs. 3.8, 3.9")
       ->type_name("DIR");
   command->add_flag("--force", plots->force, "let --out write among other files");
   command->add_option("--markdown", *markdown, "write the tables as Markdown to a file")->type_name("FILE");

@@ -17,7 +17,7 @@ void expect_in(const std::string& text, const Arguments& parts) {
 TEST(Reproduce, ListsTheTables) {
   const Outcome outcome = run_program({"reproduce"});
   EXPECT_EQ(outcome.status, 0) << outcome.err;
-  expect_in(outcome.out, {"2.1 ", "\n2.2 ", "\n2.6 ", "\n2.9 ", "\n2.10 "});
+  expect_in(outcome.out, {"2.1 ", "\n2.2 ", "\n2.6 ", "\n2.9 ", "\n2.10 ", "\n3.4 ", "\n3.5 "});
   const Outcome listed = run_program({"reproduce", "--json", "-"});
   expect_envelope(listed.json(), "reproduce");
   EXPECT_EQ(static_cast<std::ptrdiff_t>(listed.json().at("result").at("known").size()),
@@ -48,6 +48,43 @@ TEST(Reproduce, UpdatesStandBesideTheThesis) {
   }
   EXPECT_EQ(table.at("rows").at(3).at("thesis").at("views"), 3);
   EXPECT_NE(table.at("notes").dump().find("80 pixels wide"), std::string::npos);
+}
+
+TEST(Reproduce, FiltersOfDepthStandBesideTheThesis) {
+  if (kSanitized)
+    GTEST_SKIP() << "ninety simulated frames take long under sanitizers; shadow_doubt_test runs the filter";
+  const TempFolder folder;
+  const fs::path plots = folder / "plots";
+  const Outcome outcome = run_program({"reproduce", "3.4", "3.5", "--quiet", "--json", "-", "--out", plots.string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json tables = outcome.json().at("result").at("tables");
+  ASSERT_EQ(tables.size(), 2U);
+
+  const nlohmann::json& pipelines = tables.at(0).at("rows");
+  ASSERT_EQ(pipelines.size(), 5U);
+  const auto outliers = [&](std::size_t row) { return pipelines.at(row).at("outliers").get<int>(); };
+  const auto measurements = [&](std::size_t row) { return pipelines.at(row).at("measurements").get<int>(); };
+  EXPECT_GT(outliers(1), 200);
+  EXPECT_LT(outliers(2), outliers(1));
+  EXPECT_LT(outliers(3), 10);
+  EXPECT_LE(outliers(4), outliers(3));  // ours lets no more through
+  EXPECT_GT(measurements(1), measurements(2));
+  EXPECT_GT(measurements(4), measurements(3));
+  EXPECT_EQ(pipelines.at(3).at("thesis_outliers"), 182);
+
+  const nlohmann::json& rates = tables.at(1).at("rows");
+  ASSERT_EQ(rates.size(), 30U);
+  for (const nlohmann::json& row : rates) {
+    const double thesis = row.at("thesis").at("false_discovery_rate").get<double>();
+    const double surface = row.at("surface").at("false_discovery_rate").get<double>();
+    EXPECT_LE(surface, std::max(0.5 * thesis, 0.01)) << row;
+    if (row.at("width_m") == 0.04 && row.at("baseline_m") == 0.14) {
+      EXPECT_NEAR(thesis, row.at("printed").get<double>(), 0.16) << row;
+    }
+    EXPECT_GT(row.at("thesis").at("removed").get<int>(), 1000);
+  }
+  EXPECT_GE(tables.at(1).at("within_8_points").at("emitter_14_cm").get<int>(), 12);
+  EXPECT_EQ(names_in(plots), (std::vector<std::string>{"table-3-5.svg"}));
 }
 
 /// One run for both, with few poses.

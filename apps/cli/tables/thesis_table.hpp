@@ -29,7 +29,8 @@ struct ReproduceOptions {
 };
 
 /// Files that tables' plots go to, all there are.
-constexpr std::array<std::string_view, 2> kTablePlotFiles{"fig-2-12-translation.svg", "fig-2-12-rotation.svg"};
+constexpr std::array<std::string_view, 3> kTablePlotFiles{"fig-2-12-translation.svg", "fig-2-12-rotation.svg",
+                                                          "table-3-5.svg"};
 
 struct TablePlot {
   std::string_view file;
@@ -91,6 +92,10 @@ void print(std::ostream& out, const ReproducedTable& table);
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_10(const ReproduceOptions& options, const Executor& executor,
                                                            const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_3_4(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_3_5(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_figure_3_8(const ReproduceOptions& options, const Executor& executor,
                                                            const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_figure_3_9(const ReproduceOptions& options, const Executor& executor,
