@@ -23,25 +23,26 @@ constexpr int kFiguresRevision{2};
 std::string settings_of(const SimulatedRunConfig& config) {
   const TsdfConfig map = config.map();
   const ViewSphereConfig& sphere = config.sphere;
-  const json settings{{"revision", kFiguresRevision},
-                      {"camera", camera_to_json(config.camera)},
-                      {"noise", config.noise},
-                      {"voxel_size_m", config.voxel_size_m},
-                      {"truncation_vox", map.truncation_vox},
-                      {"max_weight", map.max_weight},
-                      {"free_weight", map.free_weight},
-                      {"truth_spacing_m", kTruthSpacing_m},
-                      {"radii_m", sphere.radii_m},
-                      {"longitude_step_rad", sphere.longitude_step_rad},
-                      {"latitude_step_rad", sphere.latitude_step_rad},
-                      {"latitude_min_rad", sphere.latitude_min_rad},
-                      {"latitude_max_rad", sphere.latitude_max_rad},
-                      {"roll_step_rad", sphere.roll_step_rad},
-                      {"gain_width_px", config.gain_width_px},
-                      {"min_gain", config.exploration.min_gain},
-                      {"max_views", config.exploration.max_views},
-                      {"oscillation_rad", config.exploration.oscillation_rad},
-                      {"oscillation_frames", config.exploration.oscillation_frames}};
+  json settings{{"revision", kFiguresRevision},
+                {"camera", camera_to_json(config.camera)},
+                {"noise", config.noise},
+                {"voxel_size_m", config.voxel_size_m},
+                {"truncation_vox", map.truncation_vox},
+                {"max_weight", map.max_weight},
+                {"free_weight", map.free_weight},
+                {"truth_spacing_m", kTruthSpacing_m},
+                {"radii_m", sphere.radii_m},
+                {"longitude_step_rad", sphere.longitude_step_rad},
+                {"latitude_step_rad", sphere.latitude_step_rad},
+                {"latitude_min_rad", sphere.latitude_min_rad},
+                {"latitude_max_rad", sphere.latitude_max_rad},
+                {"roll_step_rad", sphere.roll_step_rad},
+                {"gain_width_px", config.gain_width_px},
+                {"min_gain", config.exploration.min_gain},
+                {"max_views", config.exploration.max_views},
+                {"oscillation_rad", config.exploration.oscillation_rad},
+                {"oscillation_frames", config.exploration.oscillation_frames}};
+  if (config.sensor != DepthSensor::kinect_v1) settings["sensor"] = to_string(config.sensor);
   return settings.dump();
 }
 

@@ -158,6 +158,7 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"robot", options.robot_command.empty() ? options.robot : "external"},
           {"strategy", to_string(options.run.strategy)},
           {"noise", options.run.noise && options.camera_command.empty()},
+          {"sensor", options.camera_command.empty() ? json(to_string(options.run.sensor)) : json(nullptr)},
           {"camera", camera_to_json(devices.camera())},
           {"voxel_size_m", options.run.voxel_size_m},
           {"truth_spacing_m", subject.truth ? json(subject.truth->spacing_m()) : json(nullptr)},

@@ -151,7 +151,8 @@ Status write_report(const RunFolder& out, const json& document, const ExploreOpt
   report.strategy = result.at("strategy").get<std::string>();
   report.robot = result.at("robot").get<std::string>();
   report.draws_robot = options.has_arm();
-  report.noise = !options.camera_command.empty() ? "" : result.at("noise").get<bool>() ? "Kinect v1" : "none";
+  report.noise = noise_name(options.run);
+  if (!options.camera_command.empty()) report.noise.clear();
   report.seed = document.at("seed").get<std::uint64_t>();
   report.threads = document.at("threads").get<std::size_t>();
   report.version = document.at("version").get<std::string>();

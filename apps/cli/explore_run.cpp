@@ -26,25 +26,27 @@ json optional_json(const std::optional<double>& value) { return value ? json(*va
 /// All that decides how a run goes on.
 json settings_of(const ExploreOptions& options, const ExploreCase& subject, const PinholeCamera& camera) {
   const SimulatedRunConfig& run = options.run;
-  return {{"scene", subject.scene.name},
-          {"scene_hash", subject.rays ? scene_hash(*subject.rays) : ""},
-          {"strategy", to_string(run.strategy)},
-          {"robot", options.robot_command.empty() ? options.robot : options.robot_command},
-          {"fixtures", options.fixtures},
-          {"free", options.free},
-          {"obstacle_cell_m", options.arm.obstacles.cell_size_m},
-          {"unknown_is_obstacle", options.arm.obstacles.unknown_is_obstacle},
-          {"planner", options.arm.planner.planner},
-          {"camera", options.camera_command.empty() ? "simulated" : options.camera_command},
-          {"intrinsics", camera_to_json(camera)},
-          {"noise", run.noise},
-          {"seed", run.seed},
-          {"voxel_size_m", run.voxel_size_m},
-          {"truncation_vox", run.truncation_vox},
-          {"radii_m", run.sphere.radii_m},
-          {"gain_width_px", run.gain_width_px},
-          {"min_gain", run.exploration.min_gain},
-          {"good_enough", run.exploration.good_enough}};
+  json settings{{"scene", subject.scene.name},
+                {"scene_hash", subject.rays ? scene_hash(*subject.rays) : ""},
+                {"strategy", to_string(run.strategy)},
+                {"robot", options.robot_command.empty() ? options.robot : options.robot_command},
+                {"fixtures", options.fixtures},
+                {"free", options.free},
+                {"obstacle_cell_m", options.arm.obstacles.cell_size_m},
+                {"unknown_is_obstacle", options.arm.obstacles.unknown_is_obstacle},
+                {"planner", options.arm.planner.planner},
+                {"camera", options.camera_command.empty() ? "simulated" : options.camera_command},
+                {"intrinsics", camera_to_json(camera)},
+                {"noise", run.noise},
+                {"seed", run.seed},
+                {"voxel_size_m", run.voxel_size_m},
+                {"truncation_vox", run.truncation_vox},
+                {"radii_m", run.sphere.radii_m},
+                {"gain_width_px", run.gain_width_px},
+                {"min_gain", run.exploration.min_gain},
+                {"good_enough", run.exploration.good_enough}};
+  if (run.sensor != DepthSensor::kinect_v1) settings["sensor"] = to_string(run.sensor);
+  return settings;
 }
 
 Result<std::vector<ExploredView>> views_from_json(const json& views) {

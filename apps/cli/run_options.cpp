@@ -33,7 +33,18 @@ void add_run_options(CLI::App& command, RunOptions& options) {
   command.add_option("--truncation", options.run.truncation_vox, "truncation distance, voxels")
       ->type_name("VOXELS")
       ->capture_default_str();
-  command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of a Kinect v1");
+  command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of the sensor");
+  command
+      .add_option_function<std::string>(
+          "--sensor",
+          [&options](const std::string& text) {
+            const auto sensor = depth_sensor(text);
+            require_ok(sensor ? Status{} : Status{sensor.error()}, "--sensor");
+            options.run.sensor = *sensor;
+          },
+          "what the simulated camera's depth is like; a Kinect v2's goes through its filter (default: kinect-v1; the "
+          "image is --camera's)")
+      ->type_name("kinect-v1|kinect-v2");
   add_camera_options(command, options.camera, true);
 }
 
@@ -45,6 +56,11 @@ void check_run_options(RunOptions& options) {
   options.run.sphere.radii_m = {options.radius_m};
   options.run.camera = options.camera.camera(options.run.camera);
   require_ok(options.run.validate(), "the exploration");
+}
+
+std::string noise_name(const SimulatedRunConfig& run) {
+  if (!run.noise) return "none";
+  return run.sensor == DepthSensor::kinect_v2 ? "Kinect v2, filtered" : "Kinect v1";
 }
 
 }  // namespace saccade::cli

@@ -19,9 +19,11 @@ struct RunOptions {
   CameraOptions camera;
 };
 
-/// Adds --max-views, --min-gain, --gain-width, --radius, --voxel-size, --no-noise and the camera's options.
+/// Adds --max-views, --min-gain, --gain-width, --radius, --voxel-size, --no-noise, --sensor and the camera's options.
 void add_run_options(CLI::App& command, RunOptions& options);
 /// After parsing: fills `run` but for its strategy and seed, and throws a usage error for what makes no sense.
 void check_run_options(RunOptions& options);
+/// Of the simulated camera's depth, for people.
+[[nodiscard]] std::string noise_name(const SimulatedRunConfig& run);
 
 }  // namespace saccade::cli

@@ -181,6 +181,7 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"robot", options.robot},
               {"fuse_when", to_string(options.fuse_when)},
               {"noise", options.run.noise},
+              {"sensor", to_string(options.run.sensor)},
               {"camera", camera_to_json(devices.camera())},
               {"voxel_size_m", options.run.voxel_size_m},
               {"scan",

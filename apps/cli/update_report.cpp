@@ -75,7 +75,7 @@ void fill_head(UpdateReport& report, const UpdateOptions& options, const json& d
   report.fuse_when = result.at("fuse_when") == "motion" ? "at views and in motion (KFOM)" : "at views (KFOVP)";
   report.robot = result.at("robot").get<std::string>();
   report.draws_robot = options.has_arm();
-  report.noise = result.at("noise").get<bool>() ? "Kinect v1" : "none";
+  report.noise = noise_name(options.run);
   report.seed = document.at("seed").get<std::uint64_t>();
   report.threads = document.at("threads").get<std::size_t>();
   report.version = document.at("version").get<std::string>();

@@ -25,6 +25,21 @@ Arguments explore(const fs::path& out, Arguments more) {
 // Pictures take half of the time, and more under sanitizers.
 const Arguments kFewerPictures = kSanitized ? Arguments{"--no-pictures"} : Arguments{};
 
+TEST(ExploreCommand, TakesAKinectV2) {
+  const TempFolder folder;
+  const Arguments some{"--robot", "free", "--max-views", "1", "--json", "-"};
+  const Outcome v2 = run_program(explore(folder / "v2", Arguments{"--sensor", "kinect-v2"} + some));
+  ASSERT_EQ(v2.status, 0) << v2.err;
+  EXPECT_EQ(v2.json().at("result").at("sensor"), "kinect-v2");
+  const Outcome v1 = run_program(explore(folder / "v1", Arguments{"--no-pictures"} + some));
+  ASSERT_EQ(v1.status, 0) << v1.err;
+  EXPECT_EQ(v1.json().at("result").at("sensor"), "kinect-v1");
+  EXPECT_NE(v1.json().at("result").at("initial"), v2.json().at("result").at("initial"));
+  EXPECT_NE(text_of(folder / "v2" / "report.html").find("Kinect v2"), std::string::npos);
+  expect_failure(run_program(explore(folder / "v3", {"--sensor", "kinect-v3"})), 2, "explore",
+                 {"--sensor", "kinect-v1, kinect-v2"});
+}
+
 TEST(ExploreCommand, GoesFromViewToView) {
   const TempFolder folder;
   const fs::path run = folder / "run";

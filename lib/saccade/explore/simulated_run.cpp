@@ -15,6 +15,16 @@ Result<StrategyKind> strategy_kind(std::string_view name) {
   return Error{Errc::invalid_argument, "there is no strategy \"" + std::string{name} + "\"; known: sphere, random", ""};
 }
 
+std::string_view to_string(DepthSensor sensor) { return sensor == DepthSensor::kinect_v1 ? "kinect-v1" : "kinect-v2"; }
+
+Result<DepthSensor> depth_sensor(std::string_view name) {
+  for (const DepthSensor sensor : {DepthSensor::kinect_v1, DepthSensor::kinect_v2}) {
+    if (to_string(sensor) == name) return sensor;
+  }
+  return Error{Errc::invalid_argument, "there is no sensor \"" + std::string{name} + "\"; known: kinect-v1, kinect-v2",
+               ""};
+}
+
 Status SimulatedRunConfig::validate() const {
   SACCADE_CHECK(camera.validate());
   SACCADE_CHECK(sphere.validate());
@@ -54,6 +64,10 @@ Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedR
   SimulatedCameraConfig camera;
   camera.camera = config.camera;
   camera.noise = config.noise ? std::optional{kinect_v1_noise(config.seed)} : std::nullopt;
+  if (config.noise && config.sensor == DepthSensor::kinect_v2) {
+    camera.time_of_flight.emplace().noise.seed = config.seed;
+    camera.depth_filter.emplace();
+  }
   return SimulatedCamera::create(scene, camera);
 }
 

@@ -17,11 +17,21 @@ enum class StrategyKind : std::uint8_t { sphere, random };
 /// invalid_argument, with the known names, for any other.
 [[nodiscard]] Result<StrategyKind> strategy_kind(std::string_view name);
 
+/// What a simulated camera's depth is like.
+enum class DepthSensor : std::uint8_t {
+  kinect_v1,  ///< kinect_v1_noise
+  kinect_v2,  ///< TimeOfFlightConfig, and its frames through a DepthFilter
+};
+[[nodiscard]] std::string_view to_string(DepthSensor sensor);
+/// invalid_argument, with the known names, for any other.
+[[nodiscard]] Result<DepthSensor> depth_sensor(std::string_view name);
+
 struct SimulatedRunConfig {
   double voxel_size_m{0.0058};
   double truncation_vox{2.0};  ///< thin: within 2 m depth is better than that, and vessels have thin walls
   PinholeCamera camera{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 2.0};  ///< beyond 2 m depth is too coarse here
-  bool noise{true};
+  bool noise{true};                                                      ///< of `sensor`; else depth is exact
+  DepthSensor sensor{DepthSensor::kinect_v1};
   StrategyKind strategy{StrategyKind::sphere};
   ViewSphereConfig sphere;
   int gain_width_px{
