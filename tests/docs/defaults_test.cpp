@@ -29,6 +29,7 @@
 #include "saccade/robot/motion_planner.hpp"
 #include "saccade/robot/obstacle_map.hpp"
 #include "saccade/robot/swept_cells.hpp"
+#include "saccade/scene/time_of_flight.hpp"
 #include "saccade/segment/lccp.hpp"
 #include "saccade/segment/live_segments.hpp"
 #include "saccade/segment/supervoxels.hpp"
@@ -171,6 +172,15 @@ TEST(Defaults, OfDepthFiltersAreDocumented) {
   EXPECT_EQ(documented("DepthFilterConfig::emitter_side"),
             filter.emitter_side == EmitterSide::left ? " left " : " right ");
   expect_documented("DepthFilterConfig::veil_angle_rad", {degrees(filter.veil_angle_rad)});
+  expect_documented("DepthFilterConfig::baseline_uncertainty", {filter.baseline_uncertainty});
+  expect_documented("DepthFilterConfig::tolerance_m", {filter.tolerance_m, filter.tolerance_per_m});
+  const TimeOfFlightConfig measuring;
+  expect_documented("TimeOfFlightConfig::baseline_m", {measuring.baseline_m});
+  expect_documented("TimeOfFlightConfig::shadow_bias_m", {measuring.shadow_bias_m, measuring.shadow_sigma_m});
+  expect_documented("TimeOfFlightConfig::footprint_px", {measuring.footprint_px});
+  expect_documented("TimeOfFlightConfig::footprint_samples", {static_cast<double>(measuring.footprint_samples)});
+  expect_documented("TimeOfFlightConfig::veil_distance_m", {measuring.veil_distance_m});
+  expect_documented("TimeOfFlightConfig::noise", {measuring.noise.base_m});
 }
 
 TEST(Defaults, OfViewsAreDocumented) {
