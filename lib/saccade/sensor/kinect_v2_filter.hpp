@@ -64,11 +64,14 @@ struct FilteredDepth {
 /// (eq. 3.18, Algorithm 5). The condition is necessary, not sufficient: behind a thin object, lit points are removed
 /// too. Veil points: between an edge and what lies behind it. A point is removed when the line to one of its four
 /// neighbours is within veil_angle_rad of the line from the camera (eq. 3.19; the thesis' text says "higher than").
-/// This takes the points on both sides of an edge. Method surface. Of those shadow points, one stays that no visible
-/// surface keeps the light from and that lies on the background beside the shadow; and one that would be in shadow if
-/// the baseline were somewhat longer is removed where it lies on no surface. Of those veil points, one stays that lies
-/// on the surface of the next two pixels on one side. Both steps judge the image as it came. Each row needs itself and
-/// two neighbours on either side; nothing is kept between images.
+/// This takes the points on both sides of an edge.
+///
+/// Method surface. Of those shadow points, one stays that no visible surface keeps the light from and that lies on the
+/// background beside the shadow; and one that would be in shadow if the baseline were somewhat longer is removed where
+/// it lies on no surface. Of those veil points, one stays that lies on the surface of the next two pixels on one side.
+///
+/// Both judge the image as it came. Each row needs itself and two neighbours on either side; nothing is kept between
+/// images.
 class DepthFilter {
  public:
   /// The camera of the depth images, without distortion. invalid_argument: see PinholeCamera and DepthFilterConfig.
