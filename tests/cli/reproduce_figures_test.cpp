@@ -45,7 +45,8 @@ TEST(ReproduceFigures, OfSaliencyArePicturesWithFigures) {
 }
 
 TEST(ReproduceFigures, OnlyThoseWithPicturesTakeAFolder) {
-  expect_failure(run_program({"reproduce", "2.10", "--out", "nowhere"}), 2, "reproduce", {"--out", "2.1, 3.5, 3.8, 3.9"});
+  expect_failure(run_program({"reproduce", "2.10", "--out", "nowhere"}), 2, "reproduce",
+                 {"--out", "2.1, 3.5, 3.8, 3.9"});
 }
 
 }  // namespace
