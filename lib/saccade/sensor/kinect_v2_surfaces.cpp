@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kRowGrain{16};
+constexpr std::size_t kRowsAtOnce{16};
 constexpr int kHalf{4};  // of eight neighbours
 constexpr int kMost{6};
 
@@ -99,7 +99,7 @@ Image<ShadowVerdict> DepthFilter::judge_shadows(const DepthImage& depth, const E
                            config_.tolerance_m, config_.tolerance_per_m},
                           std::move(x)};
   Image<ShadowVerdict> verdicts{width, depth.height()};
-  executor.parallel_for(y_.size(), kRowGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(y_.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
     ShadowDoubt of_rows = doubt;
     std::vector<float> mirrored(left ? 0 : x_.size());
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
