@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments of labelled clouds (mOSD) beside PCL's, and of a map of 490,000 surface voxels: from scratch, and after
-// views of about 5 % of it were fused. What the segments are worth: program segmentation.
+// Segments of labelled clouds (mOSD) beside PCL's, and of a map of 490,000 surface voxels, without and with their
+// saliency: from scratch, and after views of about 5 % of it were fused. What the segments are worth: program
+// segmentation.
 #include <benchmark/benchmark.h>
 
+#include <algorithm>
 #include <cmath>
 #include <vector>
 
+#include "saccade/attention/saliency.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/segment/live_segments.hpp"
 #include "segmentation_peer.hpp"
@@ -124,6 +127,46 @@ void follow_views(benchmark::State& state) {
   state.counters["changed_share"] = changed / voxels / static_cast<double>(state.iterations());
 }
 
+/// Saliency (eq. 3.12) of the segments of a map, by its voxels.
+double most_salient(const LiveSegments& live, const Executor& executor) {
+  const VoxelSegments voxels = live.voxels(executor);
+  const SegmentedPoints points = SegmentedPoints::create(voxels.positions_m, voxels.labels, voxels.segments).value();
+  const MeasureConfig config;
+  const std::vector<SegmentMeasures> measures = measure_segments(points, config, executor).value();
+  const std::vector<Saliency> saliencies = objectness()({points, measures, config});
+  return std::max_element(saliencies.begin(), saliencies.end(),
+                          [](const Saliency& a, const Saliency& b) { return a.value < b.value; })
+      ->value;
+}
+
+/// Segments and saliency, from scratch.
+void attend_to_whole_map(benchmark::State& state) {
+  const Executor executor = threads_of(state, 1);
+  for (auto _ : state) {
+    LiveSegments live = LiveSegments::create(wanted_of(state)).value();
+    static_cast<void>(live.update(maps().front(), executor));
+    if (!(most_salient(live, executor) > 0.0)) return state.SkipWithError("nothing is salient");
+  }
+}
+
+/// Segments and saliency, after a view.
+void attend_after_views(benchmark::State& state) {
+  const Executor executor = threads_of(state, 1);
+  LiveSegments live = LiveSegments::create(wanted_of(state)).value();
+  static_cast<void>(live.update(maps().front(), executor));
+  std::size_t next{1};
+  for (auto _ : state) {
+    const Stopwatch stopwatch;
+    static_cast<void>(live.update(maps()[next], executor));
+    const double most = most_salient(live, executor);
+    state.SetIterationTime(1e-3 * stopwatch.elapsed_ms());
+    if (!(most > 0.0)) return state.SkipWithError("nothing is salient");
+    if (++next < maps().size()) continue;
+    static_cast<void>(live.update(maps().front(), executor));  // untimed
+    next = 1;
+  }
+}
+
 const bool kRegistered = [] {
   if (!clouds().empty()) {
     benchmark::RegisterBenchmark("clouds", segment_clouds)
@@ -143,6 +186,16 @@ const bool kRegistered = [] {
           ->UseRealTime()
           ->Unit(benchmark::kMillisecond);
       benchmark::RegisterBenchmark("map_after_view", follow_views)
+          ->ArgNames({"voxel_um", "threads"})
+          ->Args({voxel_um, threads})
+          ->UseManualTime()
+          ->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark("attention", attend_to_whole_map)
+          ->ArgNames({"voxel_um", "threads"})
+          ->Args({voxel_um, threads})
+          ->UseRealTime()
+          ->Unit(benchmark::kMillisecond);
+      benchmark::RegisterBenchmark("attention_after_view", attend_after_views)
           ->ArgNames({"voxel_um", "threads"})
           ->Args({voxel_um, threads})
           ->UseManualTime()

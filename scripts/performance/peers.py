@@ -36,6 +36,11 @@ ROWS = [
     ("segments:map_after_view/voxel_um:7500/threads:2", "these after one more view of about 5 % of it, in voxels of 7.2 mm",
      None, None, 20.0),
     ("segments:map_after_view/voxel_um:3600/threads:2", "the same in voxels of 3.6 mm", None, None, 20.0),
+    ("segments:attention/voxel_um:7500/threads:2", "segments and saliency of that map, in voxels of 7.2 mm", None, None, 250.0),
+    ("segments:attention/voxel_um:3600/threads:2", "the same in voxels of 3.6 mm", None, None, 250.0),
+    ("segments:attention_after_view/voxel_um:7500/threads:2",
+     "segments and saliency after one more view of about 5 % of it, in voxels of 7.2 mm", None, None, 20.0),
+    ("segments:attention_after_view/voxel_um:3600/threads:2", "the same in voxels of 3.6 mm", None, None, 20.0),
 ]
 PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only",
          "mapping:open3d_raycast": "Open3D VoxelBlockGrid",

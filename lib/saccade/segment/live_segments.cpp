@@ -243,6 +243,36 @@ void LiveSegments::join(const Executor& executor) {
   segments_ = join_convex(supervoxels_, {convex.begin(), convex.end()}, config_.lccp);
 }
 
+/// Of the supervoxel of each voxel.
+void LiveSegments::read_numbers(const SurfaceBlock& block, Slots& numbers) const {
+  numbers.clear();
+  for (const VoxelName name : block.labels) numbers.push_back(number(name));
+}
+
+VoxelSegments LiveSegments::voxels(const Executor& executor) const {
+  VoxelSegments made{{}, {}, segments_.segments};
+  std::vector<std::size_t> firsts;
+  std::size_t voxels{0};
+  for (const std::uint32_t slot : order_) {
+    firsts.push_back(voxels);
+    voxels += blocks_[slot].voxels.size();
+  }
+  made.positions_m.resize(voxels);
+  made.labels.resize(voxels);
+  executor.parallel_for(order_.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
+    Slots numbers;
+    for (std::size_t b = begin; b < end; ++b) {
+      const SurfaceBlock& block = blocks_[order_[b]];
+      read_numbers(block, numbers);
+      for (std::size_t i = 0; i < numbers.size(); ++i) {
+        made.positions_m[firsts[b] + i] = block.voxels[i].position_m;
+        made.labels[firsts[b] + i] = segments_.segment_of[numbers[i]];
+      }
+    }
+  });
+  return made;
+}
+
 MapSegments LiveSegments::segments(const Executor& executor) const {
   MapSegments made{{}, supervoxels_, segments_};
   std::vector<std::size_t> firsts;
@@ -259,11 +289,10 @@ MapSegments LiveSegments::segments(const Executor& executor) const {
   made.supervoxels.labels.resize(points);
   made.segments.labels.resize(points);
   executor.parallel_for(order_.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> numbers;
+    Slots numbers;
     for (std::size_t b = begin; b < end; ++b) {
       const SurfaceBlock& block = blocks_[order_[b]];
-      numbers.clear();
-      for (const VoxelName name : block.labels) numbers.push_back(number(name));
+      read_numbers(block, numbers);
       const auto first = static_cast<std::ptrdiff_t>(firsts[b]);
       std::copy(block.positions_m.begin(), block.positions_m.end(), made.points.positions_m.begin() + first);
       std::copy(block.normals.begin(), block.normals.end(), made.points.normals.begin() + first);

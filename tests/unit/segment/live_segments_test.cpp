@@ -109,6 +109,43 @@ TEST(LiveSegments, PointsAreThoseOfTheSurface) {
   }
 }
 
+TEST(LiveSegments, VoxelsStandForTheirPoints) {
+  const TsdfSnapshot map = table_with_things();
+  for (const double size_m : {kMapVoxel_m, 4.0 * kMapVoxel_m}) {
+    LiveSegments live = LiveSegments::create(with_voxels(size_m)).value();
+    static_cast<void>(live.update(map, Executor{}));
+    const MapSegments of_points = live.segments(Executor{});
+    const VoxelSegments of_voxels = live.voxels(Executor::with_threads(3));
+    ASSERT_EQ(of_voxels.positions_m.size(), of_points.supervoxels.voxels);
+    ASSERT_EQ(of_voxels.labels.size(), of_points.supervoxels.voxels);
+    ASSERT_EQ(of_voxels.segments, of_points.segments.segments);
+    std::vector<std::size_t> expected(of_voxels.segments, 0);
+    for (std::size_t s = 0; s < of_points.supervoxels.supervoxels.size(); ++s) {
+      expected[of_points.segments.segment_of[s]] += of_points.supervoxels.supervoxels[s].voxels;
+    }
+    std::vector<std::size_t> counted(of_voxels.segments, 0);
+    for (const std::uint32_t label : of_voxels.labels) counted.at(label) += 1;
+    EXPECT_EQ(counted, expected);
+
+    // Both go by blocks, and by voxels within: each voxel is the mean of the next points.
+    std::size_t next{0};
+    for (std::size_t v = 0; v < of_voxels.positions_m.size(); ++v) {
+      Eigen::Vector3d sum_m = Eigen::Vector3d::Zero();
+      const std::size_t first{next};
+      const auto is_mean = [&] {
+        const auto points = static_cast<double>(next - first);
+        return next > first && (sum_m / points - of_voxels.positions_m[v].cast<double>()).norm() < 1e-6;
+      };
+      while (!is_mean()) {
+        ASSERT_LT(next, of_points.points.positions_m.size());
+        ASSERT_EQ(of_points.segments.labels[next], of_voxels.labels[v]);
+        sum_m += of_points.points.positions_m[next++].cast<double>();
+      }
+    }
+    EXPECT_EQ(next, of_points.points.positions_m.size());
+  }
+}
+
 TEST(LiveSegments, ABallInTheAirIsOne) {
   const TsdfSnapshot map = test::map_of(fine(), {{-8, -24, -8}, {56, 24, 32}}, ball_sdf, true);
   const MapSegments found = segment_map(map, {}, with_voxels(kMapVoxel_m)).value();
