@@ -37,6 +37,7 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"planner", options.arm.planner.planner},
                 {"camera", options.camera_command.empty() ? "simulated" : options.camera_command},
                 {"intrinsics", camera_to_json(camera)},
+                {"sensor", to_string(run.sensor)},
                 {"noise", run.noise},
                 {"seed", run.seed},
                 {"voxel_size_m", run.voxel_size_m},
@@ -45,7 +46,6 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"gain_width_px", run.gain_width_px},
                 {"min_gain", run.exploration.min_gain},
                 {"good_enough", run.exploration.good_enough}};
-  if (run.sensor != DepthSensor::kinect_v1) settings["sensor"] = to_string(run.sensor);
   return settings;
 }
 
@@ -106,7 +106,9 @@ Result<ExploreRun> ExploreRun::create(const ExploreOptions& options, const Explo
 
 Status ExploreRun::resume(SavedExploration saved) {
   for (const auto& [key, value] : journal_.settings.items()) {
-    const json& then = saved.journal.settings.contains(key) ? saved.journal.settings.at(key) : json(nullptr);
+    // Journals did not name the sensor while there was but one.
+    const json missing = key == "sensor" ? json(to_string(DepthSensor::kinect_v1)) : json(nullptr);
+    const json then = saved.journal.settings.value(key, missing);
     if (then == value) continue;
     return Error{Errc::invalid_argument,
                  "the interrupted run had " + key + " " + then.dump() + ", not " + value.dump() +

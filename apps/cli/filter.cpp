@@ -65,11 +65,16 @@ Status check_names(const std::vector<InputFrame>& frames, const fs::path& out) {
   std::error_code ignored;
   for (const InputFrame& frame : frames) {
     const fs::path folder = frame.file.has_parent_path() ? frame.file.parent_path() : fs::path{"."};
-    if (fs::equivalent(folder, out, ignored) || fs::equivalent(folder, out / kPictureFolder, ignored)) {
+    const fs::path name = frame.file.filename();
+    for (const fs::path& results : {out, out / kPictureFolder}) {
+      if (!fs::equivalent(folder, results, ignored) && !fs::equivalent(frame.file, results / name, ignored)) continue;
       return Error{Errc::invalid_argument, "the results would replace the frames; name another folder with --out",
                    out.string()};
     }
-    names.push_back(frame.file.filename());
+    if (name == kFilterFile || name == kPictureFolder) {
+      return Error{Errc::invalid_argument, "results have this name; give the frame another one", frame.file.string()};
+    }
+    names.push_back(name);
   }
   std::sort(names.begin(), names.end());
   const auto twice = std::adjacent_find(names.begin(), names.end());
@@ -90,19 +95,13 @@ PinholeCamera camera_of(const FilterOptions& options, const Image16& samples) {
 
 struct DepthFrame {
   Image16 samples;
-  DepthImage depth;  ///< within the camera's range
+  DepthImage depth;
   PinholeCamera camera;
-  std::size_t out_of_range{0};
 };
-
-std::size_t count_returns(const DepthImage& depth) {
-  const auto& pixels = depth.pixels();
-  return static_cast<std::size_t>(std::count_if(pixels.begin(), pixels.end(), [](float z) { return z > 0.0F; }));
-}
 
 Result<DepthFrame> read_frame(const fs::path& file, const FilterOptions& options) {
   SACCADE_TRY(Image16 samples, read_png16(file));
-  DepthFrame frame{std::move(samples), {}, {}, 0};
+  DepthFrame frame{std::move(samples), {}, {}};
   frame.camera = camera_of(options, frame.samples);
   if (frame.samples.width() != frame.camera.width || frame.samples.height() != frame.camera.height) {
     return Error{Errc::size_mismatch,
@@ -112,10 +111,25 @@ Result<DepthFrame> read_frame(const fs::path& file, const FilterOptions& options
                  file.string()};
   }
   frame.depth = decode_depth(frame.samples, options.encoding);
-  const std::size_t returns = count_returns(frame.depth);
-  clip_to_range(frame.camera, frame.depth);
-  frame.out_of_range = returns - count_returns(frame.depth);
   return frame;
+}
+
+/// Points outside the camera's range are none any more, in both; they were there to throw shadows.
+/// @return how many.
+std::size_t remove_out_of_range(DepthFrame& frame, FilteredDepth& filtered) {
+  clip_to_range(frame.camera, frame.depth);
+  std::size_t removed{0};
+  for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+    FilteredPixel& pixel = filtered.pixels.data()[i];
+    if (frame.depth.data()[i] > 0.0F || pixel == FilteredPixel::no_return) continue;
+    filtered.points -= 1;
+    filtered.shadow_points -= pixel == FilteredPixel::shadow_point ? 1 : 0;
+    filtered.veil_points -= pixel == FilteredPixel::veil_point ? 1 : 0;
+    filtered.depth.data()[i] = 0.0F;
+    pixel = FilteredPixel::no_return;
+    ++removed;
+  }
+  return removed;
 }
 
 /// Samples that stay are those of the file, bit for bit; saturated ones are no points and stay.
@@ -140,16 +154,17 @@ Status write_picture(const RunFolder& out, const fs::path& name, const DepthFram
 
 Result<FilteredFrame> filter_frame(const fs::path& file, const FilterOptions& options, const RunFolder& out,
                                    const Executor& executor, bool with_picture) {
-  SACCADE_TRY(const DepthFrame frame, read_frame(file, options));
+  SACCADE_TRY(DepthFrame frame, read_frame(file, options));
   auto filter = DepthFilter::create(frame.camera, options.filter);
   if (!filter) return in_file(filter.error(), file);
   const Stopwatch watch;
-  SACCADE_TRY(const FilteredDepth filtered, filter->filter(frame.depth, executor));
+  SACCADE_TRY(FilteredDepth filtered, filter->filter(frame.depth, executor));
   const double ms = watch.elapsed_ms();
+  const std::size_t out_of_range = remove_out_of_range(frame, filtered);
   const fs::path name = file.filename();
   SACCADE_CHECK(write_png16(out.path() / name, kept_samples(frame, filtered)));
   if (with_picture) SACCADE_CHECK(write_picture(out, name, frame, filtered));
-  return FilteredFrame{file, filtered.points, filtered.shadow_points, filtered.veil_points, frame.out_of_range, ms};
+  return FilteredFrame{file, filtered.points, filtered.shadow_points, filtered.veil_points, out_of_range, ms};
 }
 
 /// A failed write ends the work; a file of a folder that cannot be used is left out.

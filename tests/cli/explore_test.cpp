@@ -146,6 +146,8 @@ TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
   expect_failure(run_program(explore(killed, options)), 3, "explore", {"interrupted run", "--resume", "--force"});
   expect_failure(run_program(explore(killed, options + Arguments{"--resume", "--seed", "7"})), 3, "explore",
                  {"seed 1, not 7"});
+  expect_failure(run_program(explore(killed, options + Arguments{"--resume", "--sensor", "kinect-v2"})), 3, "explore",
+                 {R"(sensor "kinect-v1", not "kinect-v2")"});
   const Outcome resumed = run_program(explore(killed, options + Arguments{"--resume"}));
   ASSERT_EQ(resumed.status, 0) << resumed.err;
   EXPECT_EQ(figures(killed), figures(folder / "whole"));
@@ -196,6 +198,16 @@ TEST(ExploreCommand, ADamagedJournalIsAnErrorAndNotACrash) {
   expect_failure(resumed_with(good), 3, "explore", {"checkpoint-1"});
   fs::rename(folder / "elsewhere", run / "checkpoint-1.sacmap");
   EXPECT_EQ(resumed_with(good).status, 0);
+}
+
+TEST(ExploreCommand, GoesOnWithTheSameSensorOnly) {
+  const TempFolder folder;
+  const fs::path run = folder / "run";
+  const Arguments options{"--robot", "free", "--max-views", "2", "--min-gain", "5", "--no-pictures"};
+  const Arguments stepping{"--sensor", "kinect-v2", "--step"};
+  ASSERT_EQ(run_program(explore(run, options + stepping), 0, "y\ny\ny\nq\n").status, 0);
+  expect_failure(run_program(explore(run, options + Arguments{"--resume"})), 3, "explore",
+                 {R"(sensor "kinect-v2", not "kinect-v1")"});
 }
 
 TEST(ExploreCommand, StepAsksBeforeEachMove) {

@@ -2,6 +2,8 @@
 // saccade filter as a user runs it, on rendered frames of the size of a Kinect v2's and on what is none.
 #include <gtest/gtest.h>
 
+#include <map>
+
 #include "cli/run_program.hpp"
 #include "saccade/io/depth_encoding.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
@@ -51,13 +53,18 @@ TEST_F(Filter, RemovesWhatTheLibraryRemoves) {
   std::size_t veil_points{0};
   for (int i = 0; i < kFrames; ++i) {
     DepthImage depth = decode_depth(read_png16(frame(i)).value(), {});
-    clip_to_range(camera_, depth);
-    const FilteredDepth expected = library.filter(depth).value();
+    FilteredDepth expected = library.filter(depth).value();
+    clip_to_range(camera_, expected.depth);
     EXPECT_EQ(decode_depth(read_png16(out() / name(i)).value(), {}), expected.depth);
-    EXPECT_EQ(result.at("details").at(static_cast<std::size_t>(i)).at("shadow"), expected.shadow_points);
-    points += expected.points;
-    shadow_points += expected.shadow_points;
-    veil_points += expected.veil_points;
+    clip_to_range(camera_, depth);
+    std::map<FilteredPixel, std::size_t> within;  // points in the camera's range
+    for (std::size_t p = 0; p < depth.size(); ++p) {
+      if (depth.pixels()[p] > 0.0F) within[expected.pixels.pixels()[p]] += 1;
+    }
+    EXPECT_EQ(result.at("details").at(static_cast<std::size_t>(i)).at("shadow"), within[FilteredPixel::shadow_point]);
+    for (const auto& [kind, count] : within) points += count;
+    shadow_points += within[FilteredPixel::shadow_point];
+    veil_points += within[FilteredPixel::veil_point];
   }
   EXPECT_EQ(result.at("points"), points);
   EXPECT_EQ(result.at("shadow"), shadow_points);
@@ -107,10 +114,35 @@ TEST_F(Filter, HasTheMethodOfTheThesisToo) {
   EXPECT_EQ(surface.json().at("result").at("method"), "surface");
   EXPECT_EQ(thesis.json().at("result").at("method"), "thesis");
   const DepthFilter library = DepthFilter::create(camera_, {.method = DepthFilterMethod::thesis}).value();
-  DepthImage depth = decode_depth(read_png16(frame(0)).value(), {});
-  clip_to_range(camera_, depth);
-  EXPECT_EQ(decode_depth(read_png16(out() / name(0)).value(), {}), library.filter(depth).value().depth);
+  DepthImage expected = library.filter(decode_depth(read_png16(frame(0)).value(), {})).value().depth;
+  clip_to_range(camera_, expected);
+  EXPECT_EQ(decode_depth(read_png16(out() / name(0)).value(), {}), expected);
   EXPECT_GT(thesis.json().at("result").at("veil"), surface.json().at("result").at("veil"));
+}
+
+TEST_F(Filter, WhatIsTooNearThrowsItsShadow) {
+  ASSERT_EQ(run_program(filter({"--pictures", "0", "--min-range", "0.9"})).status, 0);
+  PinholeCamera farther = camera_;
+  farther.min_range_m = 0.9;
+  const DepthFilter library = DepthFilter::create(farther).value();
+  const DepthImage whole = decode_depth(read_png16(frame(0)).value(), {});
+  DepthImage expected = library.filter(whole).value().depth;
+  clip_to_range(farther, expected);
+  EXPECT_EQ(decode_depth(read_png16(out() / name(0)).value(), {}), expected);
+  DepthImage clipped = whole;
+  clip_to_range(farther, clipped);
+  EXPECT_NE(library.filter(clipped).value().depth, expected);
+}
+
+TEST_F(Filter, NeverReplacesAFrameByAnotherName) {
+  fs::create_directories(folder_ / "links");
+  fs::create_symlink(frame(1), folder_ / "links" / name(1));
+  expect_failure(
+      run_program({"filter", (folder_ / "links").string(), "--out", frames().string(), "--quiet", "--force"}), 3,
+      "filter", {"would replace the frames"});
+  fs::copy_file(frame(0), folder_ / "filter.json");
+  expect_failure(run_program({"filter", (folder_ / "filter.json").string(), "--out", out().string(), "--quiet"}), 3,
+                 "filter", {"filter.json", "another one"});
 }
 
 TEST_F(Filter, LeavesOutWhatIsNoDepthImage) {

@@ -40,7 +40,7 @@ class ShadowDoubt {
   ShadowDoubt(const ShadowDoubtConfig& config, std::vector<double> x);
 
   /// z: depths of a row, as many as columns; verdicts: no_return where there is none, anything else elsewhere.
-  /// O(columns), but where a row holds nothing but noise.
+  /// O(columns + shadowed columns · runs before them in the row): a fence of many thin things is the worst.
   void judge(const float* z, ShadowVerdict* verdicts);
 
  private:
