@@ -182,16 +182,18 @@ json score_json(const ScoreOptions& options, const std::vector<ScoredPair>& pair
 void print_scores(const std::vector<ScoredPair>& pairs) {
   const Means means{pairs};
   std::cout << "WOv objects    WOv    F_os    F_us  cloud\n";
-  const auto row = [](double objects, double all, double fos, double fus, const std::string& name) {
-    std::cout << "      " << fixed(objects, 3) << "  " << fixed(all, 3) << "   " << fixed(fos, 3) << "   "
-              << fixed(fus, 3) << "  " << name << '\n';
+  const auto row = [](const SegmentOverlap& objects, const SegmentOverlap& all, const std::string& name) {
+    const auto shown = [](double value, const SegmentOverlap& of) {
+      return of.objects > 0 ? fixed(value, 3) : "    -";
+    };
+    std::cout << "      " << shown(objects.weighted_overlap, objects) << "  " << shown(all.weighted_overlap, all)
+              << "   " << shown(all.over_segmentation, all) << "   " << shown(all.under_segmentation, all) << "  "
+              << name << '\n';
   };
-  for (const ScoredPair& pair : pairs) {
-    row(pair.objects.weighted_overlap, pair.all.weighted_overlap, pair.all.over_segmentation,
-        pair.all.under_segmentation, pair.files.predicted.filename().string());
-  }
+  for (const ScoredPair& pair : pairs) row(pair.objects, pair.all, pair.files.predicted.filename().string());
   if (pairs.size() > 1) {
-    row(means.wov_objects, means.wov, means.fos, means.fus, "mean of " + std::to_string(means.clouds) + " clouds");
+    row({means.clouds_with_objects, 0, 0.0, 0.0, means.wov_objects}, {means.clouds, 0, means.fos, means.fus, means.wov},
+        "mean of " + std::to_string(means.clouds) + " clouds");
   }
 }
 

@@ -56,7 +56,7 @@ Status judge(const SegmentOptions& options, const SegmentInput& input, const Exe
   SACCADE_TRY(findings.measures, measure_segments(points, options.measures, executor));
   findings.saliencies = options.saliency.heuristic({points, findings.measures, options.measures});
   findings.saliency_ms = clock.elapsed_ms();
-  findings.points = points.positions_m().size();
+  findings.points = points.start_of(points.segments());  // those in no segment come last
   return {};
 }
 
@@ -81,6 +81,12 @@ Result<SegmentFindings> find_segments(const SegmentOptions& options, const Segme
   SACCADE_CHECK(judge(options, input, executor, findings));
   SACCADE_CHECK(stop_if_interrupted());
   return findings;
+}
+
+/// Whether the PLY has more than its points and a PCD is wanted.
+bool loses_elements(const CloudFile& cloud, const fs::path& out) {
+  const auto* ply = std::get_if<PlyFile>(&cloud.file);
+  return ply != nullptr && !out.empty() && out.extension() != ".ply" && ply->elements.size() > 1;
 }
 
 Status write_segment_files(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings,
@@ -111,6 +117,9 @@ Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& glob
     bar.note(
         "most supervoxels hold a point or two: are the coordinates metres? Else take larger --voxel-size and "
         "--seed-size");
+  }
+  if (loses_elements(input.file, options.out)) {
+    bar.note("a PCD holds points only; what else the PLY has, such as faces, stays behind (name a .ply with --out)");
   }
   bar.update("writing", 0, 0);
   SACCADE_CHECK(write_segment_files(options, input, findings, executor));

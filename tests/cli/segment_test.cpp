@@ -217,8 +217,21 @@ TEST_F(Segment, NothingToSegmentIsNoCrash) {
   EXPECT_EQ(one.status, 0) << one.err;
   EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "none.json")).at("result").at("segments").at(0).at("points"), 1);
   EXPECT_EQ(with_rows(std::vector<float>(3000, 0.25F)).status, 0);  // one place, many times
-  const Outcome behind = run_program({"segment", cloud().string(), "--quiet", "--transform"});
-  EXPECT_EQ(behind.status, 0) << behind.err;
+  const Outcome before = run_program({"segment", cloud().string(), "--quiet", "--transform"});
+  EXPECT_EQ(before.status, 0) << before.err;
+
+  // With a camera, what lies behind it is no point.
+  const auto from_camera = [&](const std::vector<float>& z) {
+    ColumnTable fields;
+    for (const char* name : {"x", "y"}) fields.add<float>(name, std::vector<float>(z.size(), 0.1F));
+    fields.add<float>("z", z);
+    EXPECT_TRUE(write_pcd(cloud(), fields));
+    return run_program({"segment", cloud().string(), "--quiet", "--transform", "--json", "-"});
+  };
+  const Outcome behind = from_camera({-1.0F, -1.2F});
+  EXPECT_EQ(behind.status, 5) << behind.err;
+  EXPECT_NE(behind.err.find("in front of the camera"), std::string::npos) << behind.err;
+  EXPECT_EQ(from_camera({-1.0F, 1.2F}).json().at("result").at("points"), 1);
 }
 
 TEST_F(Segment, WhatIsNoCloudIsBadInput) {

@@ -124,7 +124,14 @@ Status write_cloud(const std::filesystem::path& path, const CloudFile& cloud) {
   if (path.extension() == ".ply") {
     return pcd != nullptr ? write_ply(path, pcd->table) : write_ply(path, std::get<PlyFile>(cloud.file));
   }
-  return pcd != nullptr ? write_pcd(path, *pcd) : write_pcd(path, cloud.fields());
+  if (pcd != nullptr) return write_pcd(path, *pcd);
+  const PlyElement* vertices = std::get<PlyFile>(cloud.file).find("vertex");
+  if (vertices != nullptr && !vertices->lists.empty()) {
+    return Error{Errc::unsupported,
+                 "a PCD cannot hold the list " + vertices->lists.front().name + " of the points; name a .ply",
+                 path.string()};
+  }
+  return write_pcd(path, cloud.fields());
 }
 
 Result<PointCloud> cloud_from_fields(const ColumnTable& fields) {

@@ -31,7 +31,8 @@ struct CloudFile {
 /// as of read_pcd and read_ply. O(file).
 [[nodiscard]] Result<CloudFile> read_cloud(const std::filesystem::path& path);
 /// Atomic. PLY for a name that ends in .ply, else binary PCD. Binary keeps every bit of every field; a PLY written as
-/// PLY keeps its faces, lists and comments, too. unsupported for a field that a PLY cannot hold.
+/// PLY keeps its faces, lists and comments, too. unsupported for a field that a PLY cannot hold,
+/// or a list of points that a PCD cannot.
 [[nodiscard]] Status write_cloud(const std::filesystem::path& path, const CloudFile& cloud);
 
 /// Positions from x, y, z; normals from normal_x … or nx …; colours from rgb or rgba (packed, as PCL does) or red,

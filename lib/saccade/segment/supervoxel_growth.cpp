@@ -115,6 +115,7 @@ void SupervoxelGrowth::step() {
     const CloudVoxel& seed = cloud_.voxels[grown_.seeds[label]];
     for (const std::uint32_t other : cloud_.neighbours(voxel)) {
       if (grown_.labels[other] == label || distances_[other] == kOutside) continue;
+      if (distances_[other] == 0.0F && grown_.seeds[grown_.labels[other]] == other) continue;  // a seed keeps its own
       const float distance = difference_.of(cloud_.voxels[other], seed);
       if (std::pair{distance, label} >= std::pair{distances_[other], grown_.labels[other]}) continue;
       grown_.labels[other] = label;

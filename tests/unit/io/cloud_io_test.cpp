@@ -119,6 +119,19 @@ TEST(CloudFiles, PlyKeepsItsFaces) {
   }
 }
 
+TEST(CloudFiles, ListsOfPointsAreNotDropped) {
+  const test::TempFolder folder;
+  const std::string text =
+      "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\nproperty float y\nproperty float z\n"
+      "property list uchar float feature\nend_header\n1 2 3 2 0.5 0.25\n";
+  const CloudFile cloud = read_cloud(folder.write("lists.ply", text)).value();
+  EXPECT_TRUE(write_cloud(folder / "again.ply", cloud));
+  const Status refused = write_cloud(folder / "again.pcd", cloud);
+  ASSERT_FALSE(refused);
+  EXPECT_EQ(refused.error().code, Errc::unsupported);
+  EXPECT_NE(refused.error().to_string().find("feature"), std::string::npos) << refused.error().to_string();
+}
+
 TEST(CloudFiles, OthersAreErrorsThatNameTheFile) {
   const test::TempFolder folder;
   for (const auto& [name, text] : std::vector<std::pair<std::string, std::string>>{

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <limits>
 #include <numbers>
@@ -256,6 +257,25 @@ TEST(Segmentation, PointsThatComeTwiceChangeNoSegment) {
   EXPECT_EQ(found.lccp.segments, once.lccp.segments);
   for (std::size_t i = 0; i < once.lccp.labels.size(); ++i) {
     ASSERT_EQ(found.lccp.labels[i], found.lccp.labels[i + once.lccp.labels.size()]);
+  }
+}
+
+TEST(Segmentation, NoSupervoxelIsEmptyWhateverTheWeights) {
+  const Scene scene = two_boxes();
+  for (const std::array<double, 3>& weights : {std::array{0.0, 4.0, 0.0}, {0.0, 0.0, 1.0}, {1.0, 0.0, 0.0}}) {
+    SupervoxelConfig config;
+    config.spatial_weight = weights[0];
+    config.normal_weight = weights[1];
+    config.color_weight = weights[2];
+    const SupervoxelResult found = find_supervoxels(scene.cloud, config, Executor{}).value();
+    EXPECT_GT(found.supervoxels.size(), 50U);
+    std::size_t voxels{0};
+    for (const Supervoxel& supervoxel : found.supervoxels) {
+      EXPECT_GT(supervoxel.voxels, 0U);
+      EXPECT_TRUE(supervoxel.centroid_m.allFinite());
+      voxels += supervoxel.voxels;
+    }
+    EXPECT_EQ(voxels, found.voxels);
   }
 }
 
