@@ -192,6 +192,23 @@ Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const Fil
   return result;
 }
 
+/// What an earlier run left in the folder, by its filter.json: a new one leaves nothing of it.
+Status remove_earlier(const RunFolder& out) {
+  constexpr std::uintmax_t kMostBytes{std::uintmax_t{256} << 20U};
+  std::vector<std::string> names{std::string{kFilterFile}};
+  const auto text = read_text_file(out / kFilterFile, kMostBytes);
+  const nlohmann::json earlier = nlohmann::json::parse(text ? *text : "", nullptr, false);
+  const nlohmann::json::json_pointer details{"/result/details"};
+  if (earlier.is_object() && earlier.contains(details)) {
+    for (const nlohmann::json& frame : earlier.at(details)) {
+      if (!frame.is_object() || !frame.contains("frame") || !frame.at("frame").is_string()) continue;
+      const fs::path name = fs::path{frame.at("frame").get<std::string>()}.filename();
+      if (name.extension() == ".png") names.insert(names.end(), {name, fs::path{kPictureFolder} / name});
+    }
+  }
+  return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
+}
+
 /// Why there is not a single frame.
 Error nothing_filtered(const FilterResult& result) {
   if (interrupted()) return {Errc::cancelled, "interrupted", {}};
@@ -209,7 +226,7 @@ Result<int> run_filter(const FilterOptions& options, const GlobalOptions& global
   SACCADE_TRY(const std::vector<InputFrame> frames, input_frames(options));
   SACCADE_CHECK(check_names(frames, options.out));
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, std::array{kFilterFile}, kFilterFile, options.force));
-  SACCADE_CHECK(out.remove(std::array{kFilterFile}));
+  SACCADE_CHECK(remove_earlier(out));
   SACCADE_TRY(const FilterResult result, filter_all(frames, options, out, executor, bar));
   bar.finish();
   if (result.frames.empty()) return nothing_filtered(result);

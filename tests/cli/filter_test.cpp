@@ -145,6 +145,15 @@ TEST_F(Filter, NeverReplacesAFrameByAnotherName) {
                  "filter", {"filter.json", "another one"});
 }
 
+TEST_F(Filter, LeavesNothingOfAnEarlierRun) {
+  ASSERT_EQ(run_program(filter({"--pictures", "3"})).status, 0);
+  std::ofstream{out() / "notes.txt"} << "mine";
+  const Arguments one{"filter", frame(1).string(), "--out", out().string(), "--quiet", "--pictures", "0"};
+  ASSERT_EQ(run_program(one).status, 0);
+  EXPECT_EQ(names_in(out()), (std::vector<std::string>{name(1), "filter.json", "notes.txt", "pictures"}));
+  EXPECT_TRUE(names_in(out() / "pictures").empty());
+}
+
 TEST_F(Filter, LeavesOutWhatIsNoDepthImage) {
   ASSERT_TRUE(write_png(frames() / "color.png", ColorImage{512, 424}));
   std::ofstream{frames() / "broken.png"} << "no image";
