@@ -121,6 +121,8 @@ struct FreeBrick {
   void set_weight(int i, std::uint16_t w) {
     for (std::size_t bit = 0; bit < 3; ++bit) weight_bits[bit].assign(i, ((w >> bit) & 1U) != 0);
   }
+  /// The voxels of a slice whose weight is at least so much; least ≥ 1.
+  [[nodiscard]] std::uint64_t weight_at_least(std::size_t slice, std::uint16_t least) const;
   /// w ← min(w + 1, limit) for the voxels in `seen`; limit in [1, 7].
   void observe(const Mask512& seen, std::uint16_t limit);
   [[nodiscard]] static FreeBrick constant(std::uint16_t w);
@@ -141,9 +143,38 @@ struct DenseBrick {
   DenseBrick(const DenseBrick& other);
   DenseBrick& operator=(const DenseBrick&) = delete;
   [[nodiscard]] bool operator==(const DenseBrick& other) const;
+  /// The voxels of a slice whose weight is at least so much; least ≥ 1.
+  [[nodiscard]] std::uint64_t weight_at_least(std::size_t slice, std::uint16_t least) const;
   /// Recomputes both masks from v and w.
   void update_masks();
 };
+
+inline std::uint64_t FreeBrick::weight_at_least(std::size_t slice, std::uint16_t least) const {
+  std::uint64_t greater{0};
+  std::uint64_t equal{~std::uint64_t{0}};
+  for (std::size_t bit = 3; bit-- > 0;) {
+    const std::uint64_t plane = weight_bits[bit].words[slice];
+    const bool set = ((least >> bit) & 1U) != 0;
+    greater |= set ? 0 : equal & plane;
+    equal &= set ? plane : ~plane;
+  }
+  return least > 7 ? 0 : greater | equal;
+}
+
+inline std::uint64_t DenseBrick::weight_at_least(std::size_t slice, std::uint16_t least) const {
+  const std::uint64_t observed = ~unknown.words[slice];
+  const std::uint16_t* weights = &w[slice * 64];
+  const auto least_before = static_cast<std::uint16_t>(least - 1);
+  unsigned rarely{0};  // whether any was observed, but less often: vector code
+  for (std::size_t i = 0; i < 64; ++i) {
+    const auto before = static_cast<std::uint16_t>(weights[i] - 1);  // the greatest of all where unknown
+    rarely |= before < least_before ? 1U : 0U;
+  }
+  if (rarely == 0) return observed;
+  std::uint64_t enough{0};
+  for (std::size_t i = 0; i < 64; ++i) enough |= std::uint64_t{weights[i] >= least} << i;
+  return enough;
+}
 
 /// Shared, copy-on-write handle of one brick, 8 bytes: unknown and constant-free bricks are tagged values, the others
 /// point to a reference-counted block. Copies share; the non-const accessors give an unshared brick to write.

@@ -77,26 +77,6 @@ class VoxelBlock {
     return static_cast<std::size_t>(((z - kFirst) * kEdge + (y - kFirst)) * kEdge + (x - kFirst));
   }
 
-  /// The voxels of a slice whose weight is at least so much.
-  static std::uint64_t weight_at_least(const FreeBrick& free, std::size_t slice, std::uint16_t least) {
-    std::uint64_t greater{0};
-    std::uint64_t equal{~std::uint64_t{0}};
-    for (std::size_t bit = 3; bit-- > 0;) {
-      const std::uint64_t plane = free.weight_bits[bit].words[slice];
-      const bool set = ((least >> bit) & 1U) != 0;
-      greater |= set ? 0 : equal & plane;
-      equal &= set ? plane : ~plane;
-    }
-    return least > 7 ? 0 : greater | equal;
-  }
-
-  static std::uint64_t weight_at_least(const DenseBrick& dense, std::size_t slice, std::uint16_t least) {
-    if (least <= 1) return ~dense.unknown.words[slice];
-    std::uint64_t known{0};
-    for (std::size_t i = 0; i < 64; ++i) known |= std::uint64_t{dense.w[slice * 64 + i] >= least} << i;
-    return known;
-  }
-
   void copy(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight) {
     switch (origin.x) {  // along x a brick gives the last of its voxels, all, or the first two
       case -kBrickEdge: return copy_rows<1>(brick, origin, min_weight);
@@ -137,8 +117,8 @@ class VoxelBlock {
       std::int16_t* row = &values_[at(x0, y0, z)];
       const auto slice = static_cast<std::size_t>(z & 7);
       std::uint64_t known = constant_known ? ~std::uint64_t{0} : 0;
-      if (dense != nullptr) known = weight_at_least(*dense, slice, min_weight);
-      if (free != nullptr) known = weight_at_least(*free, slice, min_weight);
+      if (dense != nullptr) known = dense->weight_at_least(slice, min_weight);
+      if (free != nullptr) known = free->weight_at_least(slice, min_weight);
       int first = child_index({x0, y0, z});
       for (int y = y0; y < y1; ++y, row += kEdge, first += kBrickEdge) {
         copy_row<kCount>(values + first * step, static_cast<std::uint16_t>(known >> (first & 63)), row);

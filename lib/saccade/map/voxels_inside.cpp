@@ -143,5 +143,18 @@ Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_
   return std::visit([&](const auto& shape) { return mask_of(shape, lo, voxel_size_m); }, region);
 }
 
+Mask512 voxels_inside(const IndexBox& box, const Index3& lo) {
+  const Index3 first{std::max(box.lo.x - lo.x, 0), std::max(box.lo.y - lo.y, 0), std::max(box.lo.z - lo.z, 0)};
+  const Index3 end{std::min(box.hi.x - lo.x, kBrickEdge), std::min(box.hi.y - lo.y, kBrickEdge),
+                   std::min(box.hi.z - lo.z, kBrickEdge)};
+  Mask512 mask;
+  if (IndexBox{first, end}.empty()) return mask;
+  const std::uint64_t row = (0xFFU >> (kBrickEdge - end.x)) & (0xFFU << first.x);
+  for (int z = first.z; z < end.z; ++z) {
+    for (int y = first.y; y < end.y; ++y) mask.words[static_cast<std::size_t>(z)] |= row << (kBrickEdge * y);
+  }
+  return mask;
+}
+
 }  // namespace saccade
 #endif  // HWY_ONCE

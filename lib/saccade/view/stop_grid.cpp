@@ -32,20 +32,6 @@ IndexBox voxels_of_brick(const Index3& brick) {
   return {brick * kBrickEdge, brick * kBrickEdge + Index3{kBrickEdge, kBrickEdge, kBrickEdge}};
 }
 
-/// The voxels of a brick that lie in a box.
-Mask512 box_mask(const Index3& brick, const IndexBox& box) {
-  const IndexBox part = intersection(voxels_of_brick(brick), box);
-  Mask512 mask;
-  if (part.empty()) return mask;
-  const Index3 lo = part.lo - brick * kBrickEdge;
-  const Index3 hi = part.hi - brick * kBrickEdge;
-  const std::uint64_t row = (0xFFU >> (kBrickEdge - hi.x)) & (0xFFU << lo.x);
-  for (int z = lo.z; z < hi.z; ++z) {
-    for (int y = lo.y; y < hi.y; ++y) mask.words[static_cast<std::size_t>(z)] |= row << (kBrickEdge * y);
-  }
-  return mask;
-}
-
 IndexBox bounds_of_mask(const Mask512& mask, const Index3& brick) {
   if (mask.none()) return {};
   std::uint64_t plane{0};
@@ -155,7 +141,7 @@ class StopGrid::Builder {
     Mask512 occupied = ref == nullptr ? Mask512{} : ref->occupied_mask();
     const IndexBox voxels = voxels_of_brick(brick);
     if (workspace_ && !inside(voxels, *workspace_)) {
-      const Mask512 within = box_mask(brick, *workspace_);
+      const Mask512 within = voxels_inside(*workspace_, brick * kBrickEdge);
       unknown = unknown & within;
       occupied = occupied & within;
     }
