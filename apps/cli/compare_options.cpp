@@ -82,7 +82,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
                   "scenes, separated by commas: built-in ones, clutter:SEED, YAML files; all: every built-in one")
       ->required()
       ->type_name("LIST");
-  command.add_option("--strategies", options.strategy_list, "strategies, separated by commas: sphere, random")
+  command.add_option("--strategies", options.strategy_list, "strategies, separated by commas: " + strategy_names())
       ->type_name("LIST")
       ->capture_default_str();
   command.add_option("--seeds", options.seed_list, "seeds of noise and chance, each makes one run: 1-10,15")
@@ -91,7 +91,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
   command.add_option("--out", options.out, "folder for the results; runs that are in it already are not repeated")
       ->required()
       ->type_name("DIR");
-  add_run_options(command, options.run);
+  add_run_options(command, options.run, min_gain_by_strategy());
   command
       .add_flag("--equal-views,!--no-equal-views", options.equal_views,
                 "every other strategy gets as many views as sphere took (default)")

@@ -98,8 +98,9 @@ Result<Comparison> Comparison::create(const CompareOptions& options) {
 }
 
 SimulatedRunConfig Comparison::config_of(const PlannedRun& run) const {
-  SimulatedRunConfig config = options_.run.run;
-  config.strategy = run.strategy;
+  RunOptions options = options_.run;
+  choose_strategy(options, run.strategy);
+  SimulatedRunConfig config = options.run;
   config.seed = run.seed;
   config.exploration.max_views = run.max_views.value_or(config.exploration.max_views);
   return config;

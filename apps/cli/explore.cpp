@@ -53,7 +53,9 @@ Status make_room(const ExploreOptions& options, const RunFolder& out) {
 }
 
 std::string phases_text(const json& phases) {
-  constexpr std::array<std::pair<const char*, const char*>, 7> kPhases{{{"candidates", "candidates"},
+  constexpr std::array<std::pair<const char*, const char*>, 9> kPhases{{{"candidates", "candidates"},
+                                                                        {"segmentation", "segmentation"},
+                                                                        {"saliency", "saliency"},
                                                                         {"reachability", "reachability"},
                                                                         {"evaluation", "evaluation"},
                                                                         {"planner_map", "planner's map"},

@@ -2,7 +2,6 @@
 #include "explore_options.hpp"
 
 #include <CLI/CLI.hpp>
-#include <set>
 
 #include "robot_options.hpp"
 
@@ -57,10 +56,14 @@ void add_explore_options(CLI::App& command, ExploreOptions& options) {
       ->type_name("RUN");
   command
       .add_option("--strategy", options.strategy,
-                  "sphere: best gain on the view sphere around each region; random: its poses in random order")
-      ->check(CLI::IsMember(std::set<std::string>{"sphere", "random"}))
+                  "attention: views of the contours of what looks like an object, the most salient first; standard: "
+                  "of all contours, the view of most unknown space; sphere: best gain on the view sphere around each "
+                  "region; random, random-contours: poses of sphere and of standard in random order; oracle: what one "
+                  "would choose who knew the scene")
+      ->type_name("NAME")
       ->capture_default_str();
-  add_run_options(command, options);
+  add_saliency_options(command, options.saliency);
+  add_run_options(command, options, min_gain_by_strategy());
 
   command
       .add_option("--robot", options.robot,
@@ -92,7 +95,12 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   check_run_options(options);
   const auto strategy = strategy_kind(options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
-  options.run.strategy = *strategy;
+  choose_strategy(options, *strategy);
+  if (*strategy == StrategyKind::oracle && !options.camera_command.empty()) {
+    usage_error("--strategy", "oracle knows the true scene, which there is not with --camera-command");
+  }
+  check_saliency_options(options.saliency, false);
+  options.run.attention.saliency = options.saliency.heuristic;
   options.run.seed = global.seed;
   if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";
   check_arm_options(options, global);

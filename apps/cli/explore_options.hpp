@@ -9,6 +9,7 @@
 
 #include "command.hpp"
 #include "run_options.hpp"
+#include "segment_saliency.hpp"
 
 namespace saccade::cli {
 
@@ -26,7 +27,8 @@ struct ExploreOptions : RunOptions {
   bool resume{false};
   bool write_pictures{true};
   bool force{false};
-  std::string strategy{"sphere"};  ///< as it was given
+  std::string strategy{"attention"};  ///< as it was given
+  SaliencyOptions saliency;
 
   [[nodiscard]] bool has_arm() const { return robot_command.empty() && robot != "free"; }
   /// Boxes that are known to be free from the beginning.

@@ -7,11 +7,14 @@
 #include <sstream>
 #include <utility>
 
+#include "saccade/attention/nearest_segment.hpp"
+#include "saccade/explore/object_attention.hpp"
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/run_report.hpp"
+#include "saccade/report/saliency_picture.hpp"
 #include "saccade/robot/refusal.hpp"
 #include "summary.hpp"
 
@@ -46,6 +49,37 @@ std::vector<ReportPicture> pictures_of(const RunFolder& out, std::size_t number,
   return pictures;
 }
 
+/// "segment 12 of 40, rank 1 by saliency 0.52 (…), 24 of 600 contour points".
+std::string attention_text(const json& attention) {
+  return "segment " + std::to_string(attention.at("segment").get<std::size_t>() + 1) + " of " +
+         std::to_string(attention.at("segments").get<std::size_t>()) + ", number " +
+         std::to_string(attention.at("rank").get<std::size_t>() + 1) +
+         " by saliency: " + attention.at("why").get<std::string>() + "; " +
+         std::to_string(attention.at("contours_of_segment").get<std::size_t>()) + " of " +
+         std::to_string(attention.at("contours").get<std::size_t>()) + " contour points";
+}
+
+Status draw_saliency(const RunFolder& out, const ViewScenes& scenes, const Executor& executor) {
+  if (!scenes.proposals.attention) return {};
+  const ObjectAttention& attention = *scenes.proposals.attention;
+  const TriangleMesh mesh = extract_mesh(scenes.before, executor);
+  std::vector<Eigen::Vector3d> vertices;
+  for (const Eigen::Vector3f& vertex : mesh.vertices) vertices.emplace_back(vertex.cast<double>());
+  const std::vector<std::uint32_t> labels = nearest_segments(attention.surface, vertices, executor);
+  std::vector<double> saliency;
+  for (const Saliency& of_segment : attention.saliency) saliency.push_back(of_segment.value);
+  std::vector<DrawnContour> contours;
+  for (std::size_t i = 0; i < attention.contours.size(); ++i) {
+    const ContourPoint& contour = attention.contours[i];
+    const bool chosen = scenes.proposals.segment == attention.segment_of_contour[i];
+    contours.push_back({contour.position_m, contour.normal, chosen});
+  }
+  return write_png(
+      out / picture_name(scenes.number, "saliency"),
+      saliency_picture({mesh, labels, saliency, contours, scenes.workspace, scenes.view.T_world_camera, scenes.camera},
+                       executor));
+}
+
 }  // namespace
 
 ReportView report_view(const RunFolder& out, const json& view) {
@@ -57,14 +91,19 @@ ReportView report_view(const RunFolder& out, const json& view) {
   shown.unknown_left = view.at("unknown_left").get<std::size_t>();
   shown.unknown_near_objects = optional_of<std::size_t>(view.at("unknown_near_objects"));
   shown.points_at_object = optional_of<bool>(view.at("points_at_object"));
-  constexpr std::array<std::pair<const char*, const char*>, 7> kPhases{{{"planner_map", "planner's map"},
+  constexpr std::array<std::pair<const char*, const char*>, 9> kPhases{{{"planner_map", "planner's map"},
                                                                         {"candidates", "candidates"},
+                                                                        {"segmentation", "segmentation"},
+                                                                        {"saliency", "saliency"},
                                                                         {"reachability", "reachability"},
                                                                         {"evaluation", "evaluation"},
                                                                         {"planning", "motion planning"},
                                                                         {"motion", "motion"},
                                                                         {"fusion", "fusion"}}};
-  for (const auto& [key, name] : kPhases) shown.phases.push_back({name, view.at("ms").at(key).get<double>()});
+  for (const auto& [key, name] : kPhases) shown.phases.push_back({name, view.at("ms").value(key, 0.0)});
+  if (const json attention = view.value("attention", json(nullptr)); !attention.is_null()) {
+    shown.facts.emplace_back("attention", attention_text(attention));
+  }
   if (const double motion_s = view.value("motion_s", 0.0); motion_s > 0.0) {
     shown.facts.emplace_back(
         "robot", fixed(motion_s, 1) + " s, camera's way " + fixed(view.at("path_m").get<double>(), 2) + " m");
@@ -77,7 +116,11 @@ ReportView report_view(const RunFolder& out, const json& view) {
   }
   shown.pictures = pictures_of(
       out, shown.index,
-      {{{}, "The chosen view among its candidates", "The candidates around the region and the chosen view", "choice"},
+      {{{},
+        "What drew the attention: the surface by its saliency, with the contours of the chosen segment",
+        "The surface from outside, brighter where it is more salient",
+        "saliency"},
+       {{}, "The chosen view among its candidates", "The candidates around the region and the chosen view", "choice"},
        {{}, "What the camera saw: colour and depth", "Colour picture beside the depth picture", "seen"},
        {{}, "The map after the view, unknown in black", "The map from outside, unknown in black", "map"}});
   return shown;
@@ -95,6 +138,7 @@ Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor&
   candidates.reserve(scenes.proposals.views.size());
   for (const Proposal& proposal : scenes.proposals.views)
     candidates.push_back({proposal.T_world_camera, proposal.gain});
+  SACCADE_CHECK(draw_saliency(out, scenes, executor));
   CandidatesPictureConfig config;
   config.sensor = scenes.camera;
   SACCADE_CHECK(write_png(out / picture_name(scenes.number, "choice"),

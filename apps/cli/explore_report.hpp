@@ -27,7 +27,8 @@ struct ViewScenes {
   const RobotDrawing* robot{nullptr};  ///< drawn at the view; none: the camera flies
 };
 
-/// Writes view-NN-choice.png, view-NN-seen.png and view-NN-map.png. io_failure.
+/// Writes view-NN-choice.png, view-NN-seen.png and view-NN-map.png, and view-NN-saliency.png of a strategy that looks
+/// for objects. io_failure.
 [[nodiscard]] Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor& executor);
 /// Writes view-00-map.png.
 [[nodiscard]] Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace,

@@ -46,6 +46,7 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"gain_width_px", run.gain_width_px},
                 {"min_gain", run.exploration.min_gain},
                 {"good_enough", run.exploration.good_enough}};
+  if (run.strategy == StrategyKind::attention) settings["saliency"] = saliency_text(options.saliency);
   return settings;
 }
 
@@ -147,8 +148,9 @@ Result<StopReason> ExploreRun::run() {
     if (!scanned.complete) return StopReason::cancelled;
     SACCADE_CHECK(record_scan(scanned));
   }
-  const std::vector<Region> regions = regions_of(subject_.scene);
-  const std::unique_ptr<Strategy> strategy = make_strategy(options_.run, devices_.camera(), regions.size());
+  const std::vector<Region> regions = regions_of(subject_.scene, options_.run.strategy);
+  const std::unique_ptr<Strategy> strategy =
+      make_strategy(options_.run, devices_.camera(), regions.size(), subject_.truth ? &*subject_.truth : nullptr);
   SACCADE_TRY(std::vector<ExploredView> so_far, views_from_json(journal_.views));
   SACCADE_TRY(const ExplorationResult explored,
               explore(map_, cell, regions, *strategy, config, executor_, hooks, {}, std::move(so_far)));
@@ -208,7 +210,9 @@ Status ExploreRun::record_view(const ExploredView& view, const Proposals& propos
     record["unknown_near_objects"] = measured.metrics.unknown_near_objects;
     record["points_at_object"] = newly_known(*subject_.truth, before_, map(), executor_).points_at_object();
     record["coverage"] = measured.metrics.coverage;
+    record["looks_at_object"] = looks_at_object(*subject_.truth, view.T_world_camera);
   }
+  record["attention"] = attention_json(proposals);
   journal_.views.push_back(std::move(record));
   journal_.frames = devices_.frames();
   journal_.arm = configuration_json(devices_.robot().configuration());
@@ -235,7 +239,7 @@ Status ExploreRun::draw(const ExploredView& view, const Proposals& proposals, co
   SACCADE_TRY(std::vector<ExploredView> views, views_from_json(journal_.views));
   std::vector<Pose> earlier;
   for (std::size_t i = 0; i + 1 < views.size(); ++i) earlier.push_back(views[i].T_world_camera);
-  const Region region = regions_of(subject_.scene).at(view.region);
+  const Region region = proposals.gained.value_or(regions_of(subject_.scene, options_.run.strategy).at(view.region));
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.q, view.path);
   return draw_view(out_,
                    {views.size(), before_, map(), region, view, proposals, std::move(earlier), frames,

@@ -2,17 +2,31 @@
 #include "run_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
+
+#include "summary.hpp"
 
 namespace saccade::cli {
+namespace {
 
-void add_run_options(CLI::App& command, RunOptions& options) {
+std::vector<double> parse_distances(const std::string& text) {
+  const auto count = static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) + 1;
+  const std::vector<double> distances_m = parse_numbers("--radius", text, count);
+  for (const double distance_m : distances_m) require_positive(distance_m, "--radius");
+  return distances_m;
+}
+
+}  // namespace
+
+void add_run_options(CLI::App& command, RunOptions& options, const std::string& min_gain) {
   command.add_option("--max-views", options.run.exploration.max_views, "views at most, after the initial scan")
       ->check(CLI::Range(0, 1000))
       ->type_name("N")
       ->capture_default_str();
-  command.add_option("--min-gain", options.run.exploration.min_gain, "gain below which a region is done")
-      ->type_name("RAYS")
-      ->capture_default_str();
+  command
+      .add_option("--min-gain", options.min_gain,
+                  "gain below which a view is not worth going to (default: " + min_gain + ")")
+      ->type_name("RAYS");
   command
       .add_option("--good-enough", options.run.exploration.good_enough,
                   "share of the best view's gain at which another is as good, if the robot is there sooner")
@@ -24,8 +38,10 @@ void add_run_options(CLI::App& command, RunOptions& options) {
       ->check(CLI::Range(1, 100000))
       ->type_name("PIXELS")
       ->capture_default_str();
-  command.add_option("--radius", options.radius_m, "radius of the view sphere, metres")
-      ->type_name("METRES")
+  command
+      .add_option("--radius", options.distances,
+                  "distances of views from what they look at, metres: radii of the view sphere, and of contour views")
+      ->type_name("METRES[,METRES...]")
       ->capture_default_str();
   command.add_option("--voxel-size", options.run.voxel_size_m, "edge of a voxel, metres")
       ->type_name("METRES")
@@ -51,11 +67,22 @@ void add_run_options(CLI::App& command, RunOptions& options) {
 void check_run_options(RunOptions& options) {
   require_positive(options.run.voxel_size_m, "--voxel-size");
   require_positive(options.run.truncation_vox, "--truncation");
-  require_positive(options.radius_m, "--radius");
   require_ok(options.run.map().validate(), "--voxel-size, --truncation");
-  options.run.sphere.radii_m = {options.radius_m};
+  options.run.sphere.radii_m = parse_distances(options.distances);
+  options.run.contour_views.distances_m = options.run.sphere.radii_m;
   options.run.camera = options.camera.camera(options.run.camera);
   require_ok(options.run.validate(), "the exploration");
+}
+
+std::string min_gain_by_strategy() {
+  return fixed(min_gain_of(StrategyKind::attention), 0) + " for attention, " +
+         fixed(min_gain_of(StrategyKind::sphere), 0) + " for the others";
+}
+
+void choose_strategy(RunOptions& options, StrategyKind strategy) {
+  options.run = options.run.with(strategy);
+  if (options.min_gain) options.run.exploration.min_gain = *options.min_gain;
+  require_ok(options.run.exploration.validate(), "--min-gain");
 }
 
 std::string noise_name(const SimulatedRunConfig& run) {

@@ -15,14 +15,21 @@ struct RunOptions {
   SimulatedRunConfig run;
 
   // As they were given, before they are checked together.
-  double radius_m{0.8};
+  std::string distances{"0.8"};
+  std::optional<double> min_gain;  ///< nullopt: what goes with the strategy
   CameraOptions camera;
 };
 
 /// Adds --max-views, --min-gain, --gain-width, --radius, --voxel-size, --no-noise, --sensor and the camera's options.
-void add_run_options(CLI::App& command, RunOptions& options);
-/// After parsing: fills `run` but for its strategy and seed, and throws a usage error for what makes no sense.
+/// @param min_gain  what the default of --min-gain is, for --help.
+void add_run_options(CLI::App& command, RunOptions& options, const std::string& min_gain);
+/// After parsing: fills `run` but for its strategy, threshold and seed, and throws a usage error for what makes no
+/// sense.
 void check_run_options(RunOptions& options);
+/// "50 for attention, …"
+[[nodiscard]] std::string min_gain_by_strategy();
+/// Sets the strategy of `run`, and the threshold that goes with it unless one was given.
+void choose_strategy(RunOptions& options, StrategyKind strategy);
 /// Of the simulated camera's depth, for people.
 [[nodiscard]] std::string noise_name(const SimulatedRunConfig& run);
 

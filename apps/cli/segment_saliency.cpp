@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
+#include <sstream>
 
 #include "options.hpp"
 
@@ -101,6 +102,18 @@ void add_saliency_options(CLI::App& command, SaliencyOptions& options) {
           },
           "saliency region: centre and radius of a sphere, metres")
       ->type_name("X,Y,Z,RADIUS");
+}
+
+std::string saliency_text(const SaliencyOptions& options) {
+  std::ostringstream text;
+  text.precision(17);
+  text << options.names << " size " << options.size.size_m << " up " << options.height.up.transpose();
+  if (options.region) {
+    const Box box = bounds(*options.region);
+    text << (std::holds_alternative<Sphere>(*options.region) ? " sphere " : " box ") << box.min.transpose() << ' '
+         << box.max.transpose();
+  }
+  return text.str();
 }
 
 void check_saliency_options(SaliencyOptions& options, bool single_camera) {

@@ -23,6 +23,8 @@ struct SaliencyOptions {
 };
 
 void add_saliency_options(CLI::App& command, SaliencyOptions& options);
+/// All that decides the heuristic, after it was checked: equal for equal heuristics.
+[[nodiscard]] std::string saliency_text(const SaliencyOptions& options);
 /// Throws usage errors, and makes the heuristic.
 void check_saliency_options(SaliencyOptions& options, bool single_camera);
 

@@ -3,6 +3,8 @@
 
 #include <CLI/CLI.hpp>
 
+#include "summary.hpp"
+
 namespace saccade::cli {
 namespace {
 
@@ -24,6 +26,7 @@ void add_hand_options(CLI::App& command, UpdateOptions& options) {
 }  // namespace
 
 UpdateOptions::UpdateOptions() {
+  run.strategy = StrategyKind::sphere;
   run.exploration.max_views = kUpdateMaxViews;
   run.exploration.min_gain = kUpdateMinGain;
   robot = "comau";
@@ -50,7 +53,7 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
           "which is slower then (KFOM)")
       ->check(CLI::IsMember({"viewpoints", "motion"}))
       ->type_name("viewpoints|motion");
-  add_run_options(command, options);
+  add_run_options(command, options, fixed(kUpdateMinGain, 0));
   command.add_option("--robot", options.robot, "what carries the camera: comau, a URDF file, or free, which flies")
       ->type_name("ROBOT")
       ->capture_default_str();
@@ -61,6 +64,8 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
 
 void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
   check_run_options(options);
+  if (options.min_gain) options.run.exploration.min_gain = *options.min_gain;
+  require_ok(options.run.exploration.validate(), "--min-gain");
   check_arm_options(options, global);
   require_positive(options.region_radius_m, "--region-radius");
   options.run.seed = global.seed;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_json.hpp"
 
+#include <algorithm>
 #include <cmath>
 
+#include "saccade/explore/object_attention.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/robot/arm_mesh.hpp"
 
@@ -42,6 +44,7 @@ json view_json(const ExploredView& view, std::size_t index) {
           {"region", view.region},
           {"gain", gain_json(view.gain)},
           {"candidates", view.candidates},
+          {"evaluated", view.evaluated},
           {"refused", refused_json(view.refused)},
           {"frames", view.frames},
           {"frames_on_way", view.frames_on_way},
@@ -50,6 +53,7 @@ json view_json(const ExploredView& view, std::size_t index) {
           {"unknown_left", nullptr},
           {"unknown_near_objects", nullptr},
           {"points_at_object", nullptr},
+          {"looks_at_object", nullptr},
           {"coverage", nullptr},
           {"q", configuration_json(view.q)},
           {"motion_s", view.motion_s},
@@ -58,11 +62,28 @@ json view_json(const ExploredView& view, std::size_t index) {
           {"ms",
            {{"planner_map", view.planner_map_ms},
             {"candidates", view.candidates_ms},
+            {"segmentation", view.segmentation_ms},
+            {"saliency", view.saliency_ms},
             {"reachability", view.reachability_ms},
             {"evaluation", view.evaluation_ms},
             {"planning", view.planning_ms},
             {"motion", view.motion_ms},
             {"fusion", view.fusion_ms}}}};
+}
+
+json attention_json(const Proposals& proposals) {
+  if (!proposals.attention || !proposals.segment) return nullptr;
+  const ObjectAttention& attention = *proposals.attention;
+  const std::uint32_t segment = *proposals.segment;
+  const auto contours = std::count(attention.segment_of_contour.begin(), attention.segment_of_contour.end(), segment);
+  const auto rank = std::find(attention.order.begin(), attention.order.end(), segment) - attention.order.begin();
+  return {{"segments", attention.saliency.size()},
+          {"contours", attention.contours.size()},
+          {"segment", segment},
+          {"rank", rank},
+          {"saliency", attention.saliency[segment].value},
+          {"why", attention.saliency[segment].why},
+          {"contours_of_segment", contours}};
 }
 
 std::optional<RobotDrawing> drawing_of(const ArmModel* arm, const std::optional<Configuration>& q,

@@ -19,6 +19,9 @@ namespace saccade::cli {
 /// An entry of `result.views`; what is measured against the truth or in the map is null.
 [[nodiscard]] nlohmann::json view_json(const ExploredView& view, std::size_t index);
 
+/// `attention` of an entry: what the view was chosen for; null for strategies that do not look for objects.
+[[nodiscard]] nlohmann::json attention_json(const Proposals& proposals);
+
 /// The arm at the end of its camera's path; none where there is no arm.
 [[nodiscard]] std::optional<RobotDrawing> drawing_of(const ArmModel* arm, const std::optional<Configuration>& q,
                                                      const std::vector<Eigen::Vector3d>& path);

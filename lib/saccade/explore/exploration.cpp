@@ -7,74 +7,10 @@
 #include <utility>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/explore/look.hpp"
 
 namespace saccade {
 namespace {
-
-Pose tilted(const Pose& T_world_view, double tilt_rad) {
-  return T_world_view * Eigen::AngleAxisd{tilt_rad, Eigen::Vector3d::UnitX()};
-}
-
-/// One frame is taken from the view itself.
-double oscillation_rad(const ExplorationConfig& config) {
-  return config.oscillation_frames > 1 ? config.oscillation_rad : 0.0;
-}
-
-/// Tilts that are tried for one end of an oscillation, the farthest first: halves of halves.
-std::vector<double> tilts_towards(double farthest_rad) {
-  constexpr int kHalvings{3};
-  std::vector<double> tilts_rad;
-  for (int i = 0; farthest_rad != 0.0 && i <= kHalvings; ++i) tilts_rad.push_back(std::ldexp(farthest_rad, -i));
-  return tilts_rad;
-}
-
-/// How far the robot can tilt the camera at a view, of the tilts that are tried; 0: not at all.
-Result<double> farthest_tilt_rad(Robot& robot, const Pose& T_world_view, double wanted_rad) {
-  for (const double tilt_rad : tilts_towards(wanted_rad)) {
-    const Pose pose = tilted(T_world_view, tilt_rad);
-    SACCADE_TRY(const PlannedMotion planned, robot.plan(std::span{&pose, 1}, Way::straight));
-    if (planned.motion) return tilt_rad;
-  }
-  return 0.0;
-}
-
-/// Takes a picture where the camera is, and fuses it.
-Status fuse_frame(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_camera, const Executor& executor) {
-  SACCADE_TRY(const Frame frame, cell.observe(T_world_camera));
-  const ColorImage* color = frame.color ? &*frame.color : nullptr;
-  SACCADE_TRY([[maybe_unused]] const FusionStats stats,
-              map.integrate(cell.camera, frame.depth, frame.T_world_camera.value_or(T_world_camera), executor, color));
-  return {};
-}
-
-struct Look {
-  std::size_t frames{0};
-  Tilt tilt;
-  double motion_s{0.0};
-};
-
-/// PerformRobotOscillation about the camera's x axis: frames evenly from the least tilt to the greatest, each one
-/// fused.
-Result<Look> look(TsdfMap& map, ExplorationCell& cell, const Pose& T_world_view, const ExplorationConfig& config,
-                  const Executor& executor) {
-  Look seen;
-  SACCADE_TRY(seen.tilt.least_rad, farthest_tilt_rad(cell.robot, T_world_view, -oscillation_rad(config)));
-  SACCADE_TRY(seen.tilt.greatest_rad, farthest_tilt_rad(cell.robot, T_world_view, oscillation_rad(config)));
-  const double middle_rad = 0.5 * (seen.tilt.least_rad + seen.tilt.greatest_rad);
-  const double half_rad = 0.5 * (seen.tilt.greatest_rad - seen.tilt.least_rad);
-  for (int i = 0; i < config.oscillation_frames; ++i) {
-    const double share = config.oscillation_frames > 1 ? 2.0 * i / (config.oscillation_frames - 1) - 1.0 : 0.0;
-    const Pose wanted = tilted(T_world_view, middle_rad + share * half_rad);
-    SACCADE_TRY(const PlannedMotion planned, cell.robot.plan(std::span{&wanted, 1}, Way::straight));
-    if (!planned.motion) continue;
-    SACCADE_TRY(const std::optional<Arrival> arrival, cell.robot.execute(*planned.motion));
-    if (!arrival) continue;
-    seen.motion_s += arrival->motion_s;
-    SACCADE_CHECK(fuse_frame(map, cell, arrival->T_world_camera, executor));
-    ++seen.frames;
-  }
-  return seen;
-}
 
 /// A pose that was written to a file and read again is the same.
 bool is_same(const Pose& a, const Pose& b) {
@@ -221,11 +157,41 @@ struct Loop {
     return Choice{};
   }
 
+  /// What the strategy proposes now; adds to `view` what that took.
+  [[nodiscard]] Result<Proposals> ask(const OpenRegion& open, ExploredView& view) const {
+    const Stopwatch stopwatch;
+    SACCADE_TRY(Proposals proposals,
+                strategy.propose({map.content(), open.region, open.index, views_of(open.index), executor,
+                                  [this](std::span<const Pose> poses) { return cell.robot.test(poses, executor); },
+                                  [&](const Pose& pose) { return attempted(pose, open); }, config.min_gain}));
+    view.candidates = std::max(proposals.candidates, proposals.views.size());
+    view.evaluated = proposals.evaluated;
+    view.candidates_ms += proposals.candidates_ms;
+    view.segmentation_ms += proposals.segmentation_ms;
+    view.saliency_ms += proposals.saliency_ms;
+    view.reachability_ms += proposals.reachability_ms;
+    view.evaluation_ms += stopwatch.elapsed_ms() - proposals.candidates_ms - proposals.segmentation_ms -
+                          proposals.saliency_ms - proposals.reachability_ms;
+    return proposals;
+  }
+
+  /// Asks and tries until the robot stands at a view, or nothing is left that is worth going to.
+  [[nodiscard]] Result<Choice> next_best_view(OpenRegion& open, Proposals& proposals, ExploredView& view) const {
+    for (;;) {
+      SACCADE_TRY(proposals, ask(open, view));
+      const bool nothing_to_try = worth_trying(proposals, open).empty();
+      SACCADE_TRY(const Choice choice, move_to_best(proposals, open, view));
+      if (choice.view || choice.stop || nothing_to_try || proposals.complete) {
+        view.refused.add(proposals.refused);
+        return choice;
+      }
+    }
+  }
+
   /// NextBestView, move, look, until the region is done.
   [[nodiscard]] Result<StopReason> explore_region(OpenRegion open) const {
     RegionOutcome& outcome = result.regions[open.index];
     outcome.end = RegionEnd::interrupted;
-    const PoseTest test = [this](std::span<const Pose> poses) { return cell.robot.test(poses, executor); };
     while (views.size() < static_cast<std::size_t>(config.max_views)) {
       if (progress.cancelled()) return StopReason::cancelled;
       ExploredView view;
@@ -233,14 +199,8 @@ struct Loop {
       Stopwatch stopwatch;
       SACCADE_CHECK(cell.robot.follow(map.content(), executor));
       view.planner_map_ms = stopwatch.lap_ms();
-      SACCADE_TRY(const Proposals proposals,
-                  strategy.propose({map.content(), open.region, open.index, views_of(open.index), executor, test}));
-      view.candidates = std::max(proposals.candidates, proposals.views.size());
-      view.refused = proposals.refused;
-      view.candidates_ms = proposals.candidates_ms;
-      view.reachability_ms = proposals.reachability_ms;
-      view.evaluation_ms = stopwatch.lap_ms() - view.candidates_ms - view.reachability_ms;
-      SACCADE_TRY(const Choice choice, move_to_best(proposals, open, view));
+      Proposals proposals;
+      SACCADE_TRY(const Choice choice, next_best_view(open, proposals, view));
       outcome.gain_left = gain_left(proposals, open);
       if (choice.stop) return StopReason::cancelled;
       if (!choice.view) {

@@ -15,7 +15,7 @@
 namespace saccade {
 
 struct ExplorationConfig {
-  /// IncTh of Algorithm 1, in the strategy's unit: a region whose best view gains less is done.
+  /// IncTh of Algorithm 1, ScoreTH of Algorithm 4, in the strategy's unit: a region whose best view gains less is done.
   double min_gain{200.0};
   /// Views that gain at least this share of the best one's are as good as the best: among these the robot goes to the
   /// one that it reaches soonest. 1: to the best alone.
@@ -42,12 +42,15 @@ struct ExploredView {
   double gain{0.0};       ///< as predicted
   Pose T_world_camera{Pose::Identity()};
   std::size_t candidates{0};  ///< poses it was chosen from, those that the robot cannot take included
+  std::size_t evaluated{0};   ///< of those, the ones that the strategy judged
   RefusalCounts refused{};    ///< of those, by reason; with the ones for which no path was found
   std::size_t frames{0};      ///< fused at the view
   std::size_t frames_on_way{0};
   Tilt tilt{};                 ///< ±oscillation_rad, or as far towards either end as the robot could
   double planner_map_ms{0.0};  ///< what the robot must not touch brought up to date
   double candidates_ms{0.0};
+  double segmentation_ms{0.0};
+  double saliency_ms{0.0};
   double reachability_ms{0.0};
   double evaluation_ms{0.0};
   double planning_ms{0.0};  ///< of motions, those to views that were not reached included
@@ -128,7 +131,7 @@ struct ScanResult {
                                       const ExplorationHooks& hooks = {}, const Progress& progress = {});
 
 /// Thesis Algorithm 1, lines 4–17, for each region in turn. A pose is attempted once per region; after each view the
-/// strategy is asked anew.
+/// strategy is asked anew, and also when none of what it proposed could be reached but it has more to propose.
 /// @param so_far views that an earlier, interrupted call took; the map is as they left it. The exploration goes on
 ///               after them, and ends as if it had never been interrupted (but asks again for poses that could not be
 ///               reached).

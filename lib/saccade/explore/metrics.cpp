@@ -33,7 +33,7 @@ Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Execut
   if (objects.triangles.empty()) return Error{Errc::invalid_argument, "there is nothing but supports", "truth"};
   SACCADE_TRY(MeshDistance object_distance, MeshDistance::build(objects));
   SACCADE_TRY(Solids bodies, Solids::build(scene, [](const SceneObject&) { return true; }));
-  Data data{scene, std::move(bodies), spacing_m, {}, std::move(object_distance), std::nullopt};
+  Data data{scene, std::move(bodies), spacing_m, {}, {}, std::move(object_distance), std::nullopt};
   if (!supports.triangles.empty()) {
     SACCADE_TRY(data.supports, MeshDistance::build(supports));
   }
@@ -44,7 +44,9 @@ Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Execut
   const SurfaceSamples samples = sample_surfaces(wanted, spacing_m, scene.scene().workspace);
   const std::vector<std::uint8_t> seen = observable(scene, samples, {}, executor);
   for (std::size_t i = 0; i < seen.size(); ++i) {
-    if (seen[i] != 0) data.observable_points.push_back(samples.points[i]);
+    if (seen[i] == 0) continue;
+    data.observable_points.push_back(samples.points[i]);
+    data.observable_normals.push_back(samples.normals[i]);
   }
   if (data.observable_points.empty()) {
     return Error{Errc::invalid_argument,
@@ -124,6 +126,24 @@ NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const Tsd
     total.near_objects += layer.near_objects;
   }
   return total;
+}
+
+bool looks_at_object(const Truth& truth, const Pose& T_world_camera) {
+  constexpr double kStep_m{0.01};
+  const Box& workspace = truth.scene().scene().workspace;
+  const Vector3d origin = T_world_camera.translation();
+  const Vector3d axis = T_world_camera.linear().col(2);
+  const auto hit = truth.scene().cast(origin, axis);
+  const double past_m =
+      (0.5 * (workspace.min + workspace.max) - origin).norm() + (workspace.max - workspace.min).norm();
+  const double end_m = hit ? std::min(hit->t, past_m) : past_m;
+  const auto is_near = [&](double t_m) {
+    return truth.to_objects_m(origin + t_m * axis, 2.0 * kAtObject_m) <= kAtObject_m;
+  };
+  for (double t_m = 0.0; t_m < end_m; t_m += kStep_m) {
+    if (is_near(t_m)) return true;
+  }
+  return is_near(end_m);
 }
 
 Metrics measure(const Truth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {

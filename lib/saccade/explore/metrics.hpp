@@ -26,6 +26,8 @@ class Truth {
   [[nodiscard]] const RayScene& scene() const { return data_->scene; }
   /// Points of the objects (supports excluded) that lie in the workspace and can be seen.
   [[nodiscard]] const std::vector<Eigen::Vector3f>& observable_points() const { return data_->observable_points; }
+  /// One per point, outward.
+  [[nodiscard]] const std::vector<Eigen::Vector3f>& observable_normals() const { return data_->observable_normals; }
   [[nodiscard]] double spacing_m() const { return data_->spacing_m; }
 
   /// Distance to the nearest surface of an object, or of anything; beyond_m where there is none nearer.
@@ -40,6 +42,7 @@ class Truth {
     Solids bodies;
     double spacing_m;
     std::vector<Eigen::Vector3f> observable_points;
+    std::vector<Eigen::Vector3f> observable_normals;
     MeshDistance objects;
     std::optional<MeshDistance> supports;
   };
@@ -77,6 +80,10 @@ struct NewlyKnown {
   [[nodiscard]] bool points_at_object() const { return voxels > 0 && 4 * near_objects >= voxels; }
 };
 constexpr double kAtObject_m{0.05};
+
+/// Whether the optical axis comes within kAtObject_m of an object before it meets anything: the view points towards an
+/// object, whatever it made known. Thesis Table 3.3. O(log triangles per centimetre of the axis in the workspace).
+[[nodiscard]] bool looks_at_object(const Truth& truth, const Pose& T_world_camera);
 
 /// Compares the map before and after a view, within the workspace. O(voxels of the workspace).
 [[nodiscard]] NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,

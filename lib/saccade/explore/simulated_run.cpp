@@ -1,19 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/explore/simulated_run.hpp"
 
+#include "saccade/explore/attention_strategy.hpp"
+#include "saccade/explore/oracle_strategy.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/scene/fixture_boxes.hpp"
 
 namespace saccade {
-
-std::string_view to_string(StrategyKind kind) { return kind == StrategyKind::sphere ? "sphere" : "random"; }
-
-Result<StrategyKind> strategy_kind(std::string_view name) {
-  for (const StrategyKind kind : {StrategyKind::sphere, StrategyKind::random}) {
-    if (to_string(kind) == name) return kind;
-  }
-  return Error{Errc::invalid_argument, "there is no strategy \"" + std::string{name} + "\"; known: sphere, random", ""};
-}
 
 std::string_view to_string(DepthSensor sensor) { return sensor == DepthSensor::kinect_v1 ? "kinect-v1" : "kinect-v2"; }
 
@@ -28,12 +21,21 @@ Result<DepthSensor> depth_sensor(std::string_view name) {
 Status SimulatedRunConfig::validate() const {
   SACCADE_CHECK(camera.validate());
   SACCADE_CHECK(sphere.validate());
+  SACCADE_CHECK(attention.validate());
+  SACCADE_CHECK(contour_views.validate());
   SACCADE_CHECK(exploration.validate());
   SACCADE_CHECK(map().validate());
   if (gain_width_px < 1) {
     return Error{Errc::invalid_argument, "the virtual sensor must be one pixel wide at least", "exploration"};
   }
   return {};
+}
+
+SimulatedRunConfig SimulatedRunConfig::with(StrategyKind kind) const {
+  SimulatedRunConfig config = *this;
+  config.strategy = kind;
+  config.exploration.min_gain = min_gain_of(kind);
+  return config;
 }
 
 TsdfConfig SimulatedRunConfig::map() const {
@@ -43,21 +45,33 @@ TsdfConfig SimulatedRunConfig::map() const {
   return config;
 }
 
-std::vector<Region> regions_of(const Scene& scene) {
-  return scene.regions.empty() ? std::vector<Region>{scene.workspace} : scene.regions;
+std::vector<Region> regions_of(const Scene& scene, StrategyKind strategy) {
+  if (!looks_at_regions(strategy) || scene.regions.empty()) return {scene.workspace};
+  return scene.regions;
 }
 
 std::unique_ptr<Strategy> make_strategy(const SimulatedRunConfig& config, const PinholeCamera& camera,
-                                        std::size_t regions) {
+                                        std::size_t regions, const Truth* truth) {
   SACCADE_EXPECTS(regions > 0);
-  GainConfig config_of_gain;
-  config_of_gain.sensor = coarser(camera, std::min(config.gain_width_px, camera.width));
-  config_of_gain.tilt_rad = config.exploration.oscillation_rad;
-  GainFunction gain = ray_gain(config_of_gain);
-  if (config.strategy == StrategyKind::sphere) return std::make_unique<SphereStrategy>(config.sphere, std::move(gain));
+  GainConfig gain;
+  gain.sensor = coarser(camera, std::min(config.gain_width_px, camera.width));
+  gain.tilt_rad = config.exploration.oscillation_rad;
+  const ContourConfig& contours = config.attention.contours;
   const auto max_views = static_cast<std::size_t>(config.exploration.max_views);
   const std::size_t views_per_region = (max_views + regions - 1) / regions;
-  return std::make_unique<RandomStrategy>(config.sphere, std::move(gain), views_per_region, config.seed);
+  switch (config.strategy) {
+    case StrategyKind::attention:
+      return std::make_unique<AttentionStrategy>(config.attention, config.contour_views, ray_gain(gain));
+    case StrategyKind::standard: return std::make_unique<StandardStrategy>(contours, config.contour_views, gain);
+    case StrategyKind::sphere: return std::make_unique<SphereStrategy>(config.sphere, ray_gain(gain));
+    case StrategyKind::random:
+      return std::make_unique<RandomStrategy>(config.sphere, ray_gain(gain), views_per_region, config.seed);
+    case StrategyKind::random_contours:
+      return std::make_unique<RandomContourStrategy>(contours, config.contour_views, ray_gain(gain), config.seed);
+    default:
+      SACCADE_EXPECTS(truth != nullptr);
+      return std::make_unique<OracleStrategy>(*truth, camera, gain.tilt_rad, contours, config.contour_views);
+  }
 }
 
 Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedRunConfig& config) {
@@ -98,8 +112,8 @@ MeasuredMap measure_map(const Truth& truth, const TsdfSnapshot& map, const Execu
 Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Executor& executor,
                                    const Progress& progress) {
   SACCADE_CHECK(config.validate());
-  const std::size_t regions = regions_of(truth.scene().scene()).size();
-  return run_simulated(truth, config, *make_strategy(config, config.camera, regions), executor, progress);
+  const std::size_t regions = regions_of(truth.scene().scene(), config.strategy).size();
+  return run_simulated(truth, config, *make_strategy(config, config.camera, regions, &truth), executor, progress);
 }
 
 Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Strategy& strategy,
@@ -129,8 +143,8 @@ Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig&
     before = map.snapshot();
     return true;
   };
-  SACCADE_TRY(const ExplorationResult explored,
-              explore(map, cell, regions_of(scene), strategy, config.exploration, executor, hooks, progress));
+  SACCADE_TRY(const ExplorationResult explored, explore(map, cell, regions_of(scene, config.strategy), strategy,
+                                                        config.exploration, executor, hooks, progress));
   run.stopped_because = explored.stopped_because;
   return run;
 }

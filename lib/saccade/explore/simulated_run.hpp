@@ -6,16 +6,12 @@
 
 #include "saccade/explore/exploration.hpp"
 #include "saccade/explore/metrics.hpp"
+#include "saccade/explore/object_attention.hpp"
+#include "saccade/explore/strategy_kind.hpp"
 #include "saccade/robot/arm_robot.hpp"
 #include "saccade/scene/simulated_camera.hpp"
 
 namespace saccade {
-
-/// The strategies that have a name.
-enum class StrategyKind : std::uint8_t { sphere, random };
-[[nodiscard]] std::string_view to_string(StrategyKind kind);
-/// invalid_argument, with the known names, for any other.
-[[nodiscard]] Result<StrategyKind> strategy_kind(std::string_view name);
 
 /// What a simulated camera's depth is like.
 enum class DepthSensor : std::uint8_t {
@@ -32,24 +28,30 @@ struct SimulatedRunConfig {
   PinholeCamera camera{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 2.0};  ///< beyond 2 m depth is too coarse here
   bool noise{true};                                                      ///< of `sensor`; else depth is exact
   DepthSensor sensor{DepthSensor::kinect_v1};
-  StrategyKind strategy{StrategyKind::sphere};
-  ViewSphereConfig sphere;
+  StrategyKind strategy{StrategyKind::attention};
+  ViewSphereConfig sphere;          ///< of strategies that look at regions
+  ObjectAttentionConfig attention;  ///< its contours are those of all others
+  ContourViewConfig contour_views;
   int gain_width_px{
       160};  ///< width of the virtual sensor that views are chosen with; its field of view is the camera's
-  ExplorationConfig exploration;
+  ExplorationConfig exploration{.min_gain = min_gain_of(StrategyKind::attention)};
   std::uint64_t seed{1};  ///< of noise and chance
 
   [[nodiscard]] Status validate() const;
+  /// As it is for a strategy, exploration.min_gain included.
+  [[nodiscard]] SimulatedRunConfig with(StrategyKind kind) const;
   /// Of the map, but for the workspace, which is the scene's.
   [[nodiscard]] TsdfConfig map() const;
 };
 
-/// Where to look: the regions of the scene, or its whole workspace; never the true objects.
-[[nodiscard]] std::vector<Region> regions_of(const Scene& scene);
+/// Where to look: the regions of the scene, if it has some and the strategy heeds them, or its whole workspace; never
+/// the true objects.
+[[nodiscard]] std::vector<Region> regions_of(const Scene& scene, StrategyKind strategy);
 
 /// The strategy that config names, for a camera and so many regions (one at least).
+/// @param truth  what StrategyKind::oracle knows, which expects it; others do not look at it.
 [[nodiscard]] std::unique_ptr<Strategy> make_strategy(const SimulatedRunConfig& config, const PinholeCamera& camera,
-                                                      std::size_t regions);
+                                                      std::size_t regions, const Truth* truth = nullptr);
 
 /// The camera that config describes. Errors: those of SimulatedCamera::create.
 [[nodiscard]] Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedRunConfig& config);

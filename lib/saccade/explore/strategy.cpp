@@ -3,44 +3,24 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/explore/candidates.hpp"
 
 namespace saccade {
 namespace {
 
-/// All candidates that the robot may take in index order, none of them judged.
+/// All poses of the view sphere that the robot may take in index order, none of them judged.
 Result<Proposals> candidates_of(const Situation& situation, const ViewSphereConfig& sphere) {
   Proposals proposals;
-  Stopwatch stopwatch;
+  const Stopwatch stopwatch;
   const Box around = bounds(situation.region);
   SACCADE_TRY(const std::vector<ViewCandidate> candidates, view_sphere(0.5 * (around.min + around.max), sphere));
   const std::vector<Pose> poses = poses_of(candidates);
   proposals.candidates = poses.size();
-  proposals.candidates_ms = stopwatch.lap_ms();
-  std::vector<std::optional<Refusal>> refusals(poses.size());
-  if (situation.test) refusals = situation.test(poses);
-  SACCADE_EXPECTS(refusals.size() == poses.size());
-  proposals.refused.add(refusals);
-  proposals.views.reserve(poses.size());
-  for (std::size_t i = 0; i < poses.size(); ++i) {
-    if (!refusals[i]) proposals.views.push_back({poses[i], std::nan("")});
-  }
-  proposals.reachability_ms = stopwatch.lap_ms();
+  proposals.candidates_ms = stopwatch.elapsed_ms();
+  keep_reachable(poses, situation, proposals);
   return proposals;
-}
-
-/// Fills in the gains of the first `count` views.
-Status judge(Proposals& proposals, std::size_t count, const Situation& situation, const GainFunction& gain) {
-  std::vector<Pose> poses;
-  for (std::size_t i = 0; i < count; ++i) poses.push_back(proposals.views[i].T_world_camera);
-  SACCADE_TRY(const std::vector<double> gains, gain(situation.map, situation.region, poses, situation.executor));
-  if (gains.size() != count) {
-    return Error{Errc::size_mismatch, "the gain function must return one value per pose", "strategy"};
-  }
-  for (std::size_t i = 0; i < count; ++i) proposals.views[i].gain = gains[i];
-  return {};
 }
 
 }  // namespace
@@ -69,9 +49,8 @@ PinholeCamera coarser(const PinholeCamera& camera, int width_px) {
 
 Result<Proposals> SphereStrategy::propose(const Situation& situation) const {
   SACCADE_TRY(Proposals proposals, candidates_of(situation, sphere_));
-  SACCADE_CHECK(judge(proposals, proposals.views.size(), situation, gain_));
-  std::stable_sort(proposals.views.begin(), proposals.views.end(),
-                   [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
+  SACCADE_CHECK(judge(proposals, 0, proposals.views.size(), situation.region, situation, gain_));
+  order_by_gain(proposals.views);
   return proposals;
 }
 
@@ -79,15 +58,11 @@ Result<Proposals> RandomStrategy::propose(const Situation& situation) const {
   if (situation.views_of_region >= views_per_region_) return Proposals{};
   SACCADE_TRY(Proposals proposals, candidates_of(situation, sphere_));
   proposals.by_gain = false;
-  // A shuffle that is the same everywhere, other than std::shuffle's.
-  std::mt19937_64 random{seed_ + situation.region_index};
-  for (std::size_t i = proposals.views.size(); i > 1; --i) {
-    std::swap(proposals.views[i - 1], proposals.views[random() % i]);
-  }
+  shuffle(proposals.views, seed_ + situation.region_index);
   // Those that were taken, and some that the robot may not reach.
   constexpr std::size_t kSpare{16};
   const std::size_t next = std::min(proposals.views.size(), situation.views_of_region + kSpare);
-  SACCADE_CHECK(judge(proposals, next, situation, gain_));
+  SACCADE_CHECK(judge(proposals, 0, next, situation.region, situation, gain_));
   return proposals;
 }
 

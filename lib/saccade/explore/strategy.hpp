@@ -3,6 +3,7 @@
 // Strategy: where to look next; GainFunction: what a view is worth. Those of the library, and the seams for one's own.
 
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -14,6 +15,8 @@
 #include "saccade/view/view_sphere.hpp"
 
 namespace saccade {
+
+struct ObjectAttention;
 
 /// Expected gain of each pose in a region, in a unit of its own; larger is better. One value per pose, none of them
 /// NaN.
@@ -36,11 +39,18 @@ struct Proposal {
 /// Views in the order in which they are to be tried.
 struct Proposals {
   std::vector<Proposal> views;
-  bool by_gain{true};           ///< false: chosen without regard to gain, so that no threshold applies
-  std::size_t candidates{0};    ///< poses that were thought of, those that the robot cannot take included
-  RefusalCounts refused{};      ///< of those
-  double candidates_ms{0.0};    ///< spent on making candidates,
-  double reachability_ms{0.0};  ///< on asking the robot about them; the rest of the time was spent on judging them
+  bool by_gain{true};              ///< false: chosen without regard to gain, so that no threshold applies
+  bool complete{true};             ///< false: the strategy has more to propose once all of these were attempted
+  std::size_t candidates{0};       ///< poses that were thought of, those that the robot cannot take included
+  std::size_t evaluated{0};        ///< of those, the ones whose gain was determined, or bounded by less than the best
+  RefusalCounts refused{};         ///< of those that the robot was asked about
+  std::optional<Region> gained{};  ///< what gains are of; nullopt: the situation's region
+  std::optional<std::uint32_t> segment{};              ///< of `attention`, that the views are of
+  std::shared_ptr<const ObjectAttention> attention{};  ///< what drew it, of a strategy that looks for objects
+  double candidates_ms{0.0};                           ///< spent on making candidates,
+  double segmentation_ms{0.0};                         ///< on the surface in segments,
+  double saliency_ms{0.0};                             ///< on what these are worth,
+  double reachability_ms{0.0};  ///< on asking the robot; the rest of the time was spent on judging candidates
 };
 
 /// For each pose why the robot cannot take it, nullopt where it may: Robot::test.
@@ -56,6 +66,14 @@ struct Situation {
   /// Asking costs microseconds per pose, less than casting its rays. Empty: every pose may be taken. A strategy need
   /// not ask: what the robot cannot take is passed over later too.
   PoseTest test{};
+  /// Whether the pose was gone to, or tried, for this region. Empty: none was.
+  std::function<bool(const Pose& T_world_camera)> attempted{};
+  double min_gain{0.0};  ///< below which no view is worth going to
+
+  /// Whether the robot would go to this view if it found a way.
+  [[nodiscard]] bool is_worth_trying(const Proposal& view) const {
+    return view.gain >= min_gain && !(attempted && attempted(view.T_world_camera));
+  }
 };
 
 /// Decides where to look next. Asked again after every view; views that were taken or could not be reached are passed

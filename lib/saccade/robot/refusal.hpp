@@ -46,6 +46,9 @@ class RefusalCounts {
       if (refusal) add(*refusal);
     }
   }
+  void add(const RefusalCounts& others) {
+    for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += others.counts_[i];
+  }
   [[nodiscard]] std::size_t of(Refusal refusal) const { return counts_[static_cast<std::size_t>(refusal)]; }
   [[nodiscard]] std::size_t total() const { return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}); }
 

@@ -25,6 +25,7 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
   SimulatedRunConfig config;
   config.voxel_size_m = 0.01;
   config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.5, 2.0};
+  config.strategy = StrategyKind::sphere;
   config.gain_width_px = 80;
   config.sphere.roll_step_rad = 1.5707963267948966;
   config.exploration.min_gain = 20;
@@ -44,7 +45,7 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
                        robot};
   Explored explored;
   explored.scan = scan(map, cell, rays.scene().scan, config.exploration, executor).value();
-  const std::vector<Region> regions = regions_of(rays.scene());
+  const std::vector<Region> regions = regions_of(rays.scene(), config.strategy);
   explored.result =
       explore(map, cell, regions, *make_strategy(config, config.camera, regions.size()), config.exploration, executor)
           .value();
@@ -131,7 +132,7 @@ TEST(ArmExploration, IsTheSameForEveryThreadCount) {
     EXPECT_EQ(one.motions[i].duration_s(), two.motions[i].duration_s());
     EXPECT_EQ(one.motions[i].end(), two.motions[i].end());
   }
-  for (const Region& region : regions_of(clutter().scene())) {
+  for (const Region& region : regions_of(clutter().scene(), StrategyKind::sphere)) {
     EXPECT_EQ(count_unknown(one.map, region), count_unknown(two.map, region));
   }
 }

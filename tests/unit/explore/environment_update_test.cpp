@@ -262,6 +262,7 @@ UpdateResult update_with_arm(FuseWhen when, const Executor& executor, SimulatedR
   TsdfConfig map_config = config.map();
   map_config.workspace = rays.scene().workspace;
   TsdfMap map = TsdfMap::create(map_config).value();
+  config.strategy = StrategyKind::sphere;
   SimulatedCamera camera = simulated_camera(rays, config).value();
   std::optional<Configuration> q;
   ExplorationCell cell{config.camera,

@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// AttentionStrategy: the next best view of the most salient segment. Thesis §3.1, Algorithm 4.
+
+#include <mutex>
+
+#include "saccade/explore/object_attention.hpp"
+#include "saccade/explore/strategy.hpp"
+
+namespace saccade {
+
+/// Views of the contours of what looks like an object, segment by segment in decreasing saliency: of the first segment
+/// that has a view worth trying, by decreasing gain, the others of that segment behind it. Asked again when none of
+/// them could be reached, it goes on to the next segment. Gains count unknown voxels in the segment's surroundings
+/// alone (ObjectAttention::surroundings). When no segment has a view worth trying, all that were judged are returned,
+/// with `complete`. Follows the map from call to call; what it proposes depends on the situation alone. It does not
+/// heed the bounds of the situation's region: salient is what lies in the map's workspace.
+class AttentionStrategy final : public Strategy {
+ public:
+  /// Expects valid configurations.
+  AttentionStrategy(const ObjectAttentionConfig& attention, ContourViewConfig views, GainFunction gain);
+  [[nodiscard]] Result<Proposals> propose(const Situation& situation) const override;
+
+ private:
+  [[nodiscard]] Status judge_segment(const ObjectAttention& seen, std::uint32_t segment,
+                                     std::span<const std::uint32_t> contours, const Situation& situation,
+                                     Proposals& judged) const;
+
+  double reach_m_;
+  ContourViewConfig views_;
+  GainFunction gain_;
+  mutable std::mutex mutex_;
+  mutable LiveObjectAttention attention_;  ///< what it keeps saves time, and changes nothing
+};
+
+}  // namespace saccade
