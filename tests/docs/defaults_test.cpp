@@ -34,6 +34,8 @@
 #include "saccade/segment/live_segments.hpp"
 #include "saccade/segment/supervoxels.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
+#include "saccade/view/contour_views.hpp"
+#include "saccade/view/contours.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
 
@@ -190,6 +192,17 @@ TEST(Defaults, OfViewsAreDocumented) {
   expect_documented("ViewSphereConfig::latitude_step_rad", {degrees(sphere.latitude_step_rad)});
   expect_documented("ViewSphereConfig::roll_step_rad", {degrees(sphere.roll_step_rad)});
   expect_documented("GainConfig::tilt_rad", {degrees(GainConfig{}.tilt_rad)});
+}
+
+TEST(Defaults, OfContoursAreDocumented) {
+  const ContourConfig contours;
+  expect_documented("ContourConfig::known_weight", {static_cast<double>(contours.known_weight)});
+  expect_documented("ContourConfig::group_distance_m", {contours.group_distance_m});
+  expect_documented("ContourConfig::group_angle_rad", {degrees(contours.group_angle_rad)});
+  const ContourViewConfig views;
+  expect_documented("ContourViewConfig::distances_m", views.distances_m);
+  expect_documented("ContourViewConfig::cone_rad", {degrees(views.cone_rad)});
+  expect_documented("ContourViewConfig::roll_step_rad", {degrees(views.roll_step_rad)});
 }
 
 TEST(Defaults, OfObstaclesAreDocumented) {

@@ -36,7 +36,7 @@ struct ContourVoxel {
 /// Known is a voxel observed known_weight times or more, by the map's weights; where the map's free_weight is less than
 /// that, only voxels within the truncation are ever known to be empty. Outside the map's workspace nothing is unknown:
 /// a voxel there is no contour voxel, makes none, and counts nothing in a normal unless it is known. In eq. 3.6 free
-/// space whose weight is saturated counts W_th (docs/decisions/0009-contour-weights.md). A voxel whose normal vanishes
+/// space whose weight is saturated counts W_th (docs/decisions/0009-contours.md). A voxel whose normal vanishes
 /// says nothing about where to look from, and is left out.
 /// @return by sector, brick and voxel, each in z-y-x order; invalid_argument for a bad config.
 /// O(bricks near the surface + contour voxels). The thread count never changes a bit of the result.
