@@ -16,7 +16,7 @@ class NaiveContours {
   /// The map must outlive it.
   NaiveContours(const TsdfSnapshot& map, int known_weight) : map_{&map}, known_weight_{known_weight} {}
 
-  /// Looks around every occupied voxel.
+  /// Looks at the empty voxels around every occupied one.
   [[nodiscard]] std::vector<ContourVoxel> all() const {
     std::vector<Index3> candidates;
     for (const Index3& sector : map_->grid.sorted_sectors()) {
@@ -59,9 +59,9 @@ class NaiveContours {
     if (const int by = order(parent(a), parent(b)); by != 0) return by < 0;
     return order(a, b) < 0;
   }
-  static void add_around(const Index3& o, std::vector<Index3>& candidates) {
+  void add_around(const Index3& o, std::vector<Index3>& candidates) const {
     for (const Index3& e : around(o)) {
-      if (squared_distance(e, o) == 1 || squared_distance(e, o) == 2) candidates.push_back(e);
+      if (squared_distance(e, o) <= 2 && is_empty(e)) candidates.push_back(e);
     }
   }
 
@@ -75,7 +75,6 @@ class NaiveContours {
   [[nodiscard]] bool is_occupied(const Index3& i) const { return at(i).w >= known_weight_ && at(i).v <= 0; }
 
   [[nodiscard]] bool is_contour(const Index3& e) const {
-    if (!is_empty(e)) return false;
     bool frontier{false};
     bool surface{false};
     for (const Index3& c : around(e)) {

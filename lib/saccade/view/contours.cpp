@@ -14,7 +14,7 @@ namespace {
 /// Contour voxels by cells of a cube, so that those within a distance are in 27 cells. Voxels are taken out of it.
 class VoxelCells {
  public:
-  VoxelCells(std::span<const ContourVoxel> voxels, double distance_vox) : voxels_{voxels} {
+  VoxelCells(std::span<const ContourVoxel> voxels, double distance_vox) {
     constexpr double kLargest{1 << 28};
     edge_ = static_cast<std::int32_t>(std::clamp(std::ceil(distance_vox), 1.0, kLargest));
     for (std::size_t i = 0; i < voxels.size(); ++i) cells_[cell_of(voxels[i].voxel)].push_back(i);
@@ -33,12 +33,11 @@ class VoxelCells {
   }
 
  private:
+  /// Rounded towards zero: the cells around zero are larger, which does no harm.
   [[nodiscard]] Index3 cell_of(const Index3& voxel) const {
-    const auto along = [&](std::int32_t i) { return i >= 0 ? i / edge_ : -1 - (-1 - i) / edge_; };
-    return {along(voxel.x), along(voxel.y), along(voxel.z)};
+    return {voxel.x / edge_, voxel.y / edge_, voxel.z / edge_};
   }
 
-  std::span<const ContourVoxel> voxels_;
   std::int32_t edge_{1};
   std::unordered_map<Index3, std::vector<std::size_t>, Index3Hash> cells_;
 };

@@ -62,8 +62,8 @@ struct ContourPoint {
 ///
 /// The first voxel that is in no group yet starts one and takes all that are in none and similar to itself. Similarity
 /// to the first one bounds a group: if similar voxels were chained, one group would run along a whole edge, or all
-/// around a round thing, and its mean would lie on neither. So no group is wider than 2 D_th, and no normal of it is
-/// farther than A_th from another one's by more than A_th again, hence the mean of the normals never vanishes.
+/// around a round thing, and its mean would lie on neither. So no group is wider than 2 D_th, no two of its normals
+/// differ by 2 A_th, and their mean never vanishes (docs/decisions/0009-contours.md).
 /// Groups are in the order of their first voxels. For a valid configuration and voxels with unit normals (contract).
 /// O(voxels · groups within D_th of each). One thread.
 [[nodiscard]] std::vector<ContourPoint> contour_points(std::span<const ContourVoxel> voxels, double voxel_size_m,

@@ -133,6 +133,9 @@ TEST(Contours, NormalsPointAwayFromUnknownAndOccupiedVoxels) {
   // Observed three times is two less than enough.
   expected = {-7.0 - diagonal, -diagonal, 0.0};
   EXPECT_LT((normal_of(map_with({{x, {kNearSurface, 3}}, {xy, kSolid}})) - expected.normalized()).norm(), 1e-6);
+  // v = 0 is occupied.
+  expected = {-10.0 - diagonal, -diagonal, 0.0};
+  EXPECT_LT((normal_of(map_with({{x, {}}, {xy, {0, 9}}})) - expected.normalized()).norm(), 1e-6);
   // Near a surface seven observations are two more than enough, and a hundred count as ten do.
   expected = {-7.0 - diagonal, -diagonal, 0.0};
   const Index3 opposite = kMiddle - Index3{1, 0, 0};
@@ -140,6 +143,19 @@ TEST(Contours, NormalsPointAwayFromUnknownAndOccupiedVoxels) {
   EXPECT_LT((normal_of(map_with({{x, {}}, {xy, kSolid}, {opposite, seven}})) - expected.normalized()).norm(), 1e-6);
   expected = {-10.0 - diagonal, -diagonal, 0.0};
   EXPECT_LT((normal_of(map_with({{x, {}}, {xy, kSolid}, {opposite, kOften}})) - expected.normalized()).norm(), 1e-6);
+}
+
+/// Where the map's weight ends at five, five may be any number; it does so only where v = 1.
+TEST(Contours, SaturatedFreeSpaceCountsAsSeenOften) {
+  const Index3 x = kMiddle + Index3{1, 0, 0};
+  const Index3 y = kMiddle + Index3{0, 1, 0};
+  const auto normal_with = [&](const Voxel& opposite) {
+    return normal_of(map_with({{x, {}}, {y, kSolid}, {kMiddle - Index3{1, 0, 0}, opposite}}));
+  };
+  const auto expected = [](double opposite) { return Eigen::Vector3d{-5.0 - opposite, -10.0, 0.0}.normalized(); };
+  EXPECT_LT((normal_with({kTsdfOne, 5}) - expected(5.0)).norm(), 1e-6);
+  EXPECT_LT((normal_with({kTsdfOne, 7}) - expected(2.0)).norm(), 1e-6);
+  EXPECT_LT((normal_with({kNearSurface, 5}) - expected(0.0)).norm(), 1e-6);
 }
 
 TEST(Contours, UnknownSpaceOutsideTheWorkspaceCountsNothingInNormals) {
