@@ -57,11 +57,21 @@ TEST(ExploreCommand, GoesFromViewToView) {
     EXPECT_GE(view.at("gain").get<std::size_t>(), 5U);
     EXPECT_TRUE(pose_from_json(view.at("T_world_camera")));
     EXPECT_TRUE(view.at("points_at_object").is_boolean());
-    for (const char* phase :
-         {"planner_map", "candidates", "reachability", "evaluation", "planning", "motion", "fusion"}) {
+    for (const char* phase : {"planner_map", "candidates", "segmentation", "saliency", "reachability", "evaluation",
+                              "planning", "motion", "fusion"}) {
       EXPECT_GE(view.at("ms").at(phase).get<double>(), 0.0);
     }
-    EXPECT_EQ(view.at("candidates"), 960);
+    // 40 views of every contour point; the robot is asked about those of the segments that are looked at.
+    const auto candidates = view.at("candidates").get<std::size_t>();
+    EXPECT_EQ(candidates % 40, 0U);
+    const nlohmann::json& attention = view.at("attention");
+    EXPECT_EQ(candidates, 40 * attention.at("contours").get<std::size_t>());
+    EXPECT_LE(attention.at("contours_of_segment").get<std::size_t>(), attention.at("contours").get<std::size_t>());
+    EXPECT_GT(attention.at("contours_of_segment").get<std::size_t>(), 0U);
+    EXPECT_LT(attention.at("segment").get<std::size_t>(), attention.at("segments").get<std::size_t>());
+    EXPECT_GT(attention.at("saliency").get<double>(), 0.0);
+    EXPECT_GT(view.at("evaluated").get<std::size_t>(), 0U);
+    EXPECT_TRUE(view.at("looks_at_object").is_boolean());
     EXPECT_GT(view.at("refused").at("no_ik").get<int>(), 0);
     EXPECT_EQ(view.at("q").size(), 6U);
     EXPECT_GT(view.at("motion_s").get<double>(), 0.0);
@@ -88,9 +98,40 @@ TEST(ExploreCommand, GoesFromViewToView) {
   EXPECT_EQ(states.at("shape"), (nlohmann::json{22, 40, 60}));  // the workspace
   EXPECT_EQ(result.at("voxel_size_m"), states.at("voxel_size_m"));
   EXPECT_EQ(result.at("truth_spacing_m"), 0.004);
-  for (const char* picture :
-       {"view-00-map.png", "view-01-map.png", "view-01-choice.png", "view-02-seen.png", "run.json", "report.html"})
+  for (const char* picture : {"view-00-map.png", "view-01-map.png", "view-01-choice.png", "view-01-saliency.png",
+                              "view-02-seen.png", "run.json", "report.html"})
     EXPECT_TRUE(fs::exists(run / picture));
+}
+
+TEST(ExploreCommand, EveryStrategyTakesAView) {
+  const TempFolder folder;
+  for (const std::string strategy : {"attention", "standard", "sphere", "random", "random-contours", "oracle"}) {
+    const Outcome outcome =
+        run_program(explore(folder / strategy, {"--strategy", strategy, "--max-views", "1", "--no-pictures",
+                                                "--min-gain", "5", "--json", "-"}));
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json result = outcome.json().at("result");
+    EXPECT_EQ(result.at("strategy"), strategy);
+    ASSERT_EQ(result.at("views").size(), 1U) << strategy;
+    EXPECT_EQ(result.at("views")[0].at("attention").is_null(), strategy != "attention");
+    EXPECT_GT(result.at("views")[0].at("evaluated").get<std::size_t>(), 0U);
+  }
+  expect_failure(run_program(explore(folder / "x", {"--strategy", "saliency"})), 2, "explore",
+                 {"--strategy", "attention, standard"});
+  expect_failure(run_program(explore(folder / "x", {"--strategy", "oracle", "--camera-command", "true"})), 2, "explore",
+                 {"--strategy", "true scene"});
+}
+
+TEST(ExploreCommand, SaliencyDecidesWhatIsLookedAtFirst) {
+  const TempFolder folder;
+  const auto first_segment = [&](const char* name, const char* saliency) {
+    const Outcome outcome = run_program(explore(folder / name, {"--saliency", saliency, "--max-views", "1",
+                                                                "--no-pictures", "--min-gain", "5", "--json", "-"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    return outcome.json().at("result").at("views").at(0).at("attention").at("segment");
+  };
+  EXPECT_NE(first_segment("a", "objectness"), first_segment("b", "rough-first"));
+  expect_failure(run_program(explore(folder / "c", {"--saliency", "beauty"})), 2, "explore", {"--saliency", "beauty"});
 }
 
 TEST(ExploreCommand, AShorterRunLeavesNoPicturesOfALongerOne) {

@@ -59,8 +59,20 @@ Sphere ObjectAttention::surroundings(std::uint32_t segment, double reach_m) cons
 Result<LiveObjectAttention> LiveObjectAttention::create(const ObjectAttentionConfig& config) {
   SACCADE_CHECK(config.validate());
   SACCADE_TRY(LiveContours contours, LiveContours::create(config.contours));
-  SACCADE_TRY(LiveSegments segments, LiveSegments::create(config.segments));
-  return LiveObjectAttention{config, std::move(contours), std::move(segments)};
+  return LiveObjectAttention{config, std::move(contours)};
+}
+
+Status LiveObjectAttention::follow_segments(const TsdfSnapshot& map, const Executor& executor) {
+  const std::optional<Box>& workspace = map.config.workspace;
+  const std::optional<Box>& followed = config_.segments.within;
+  const bool same = workspace.has_value() == followed.has_value() &&
+                    (!workspace || (workspace->min == followed->min && workspace->max == followed->max));
+  if (!segments_ || !same) {
+    config_.segments.within = workspace;
+    SACCADE_TRY(segments_, LiveSegments::create(config_.segments));
+  }
+  segments_->update(map, executor);
+  return {};
 }
 
 Result<ObjectAttention> LiveObjectAttention::look(const TsdfSnapshot& map, const Executor& executor) {
@@ -68,8 +80,8 @@ Result<ObjectAttention> LiveObjectAttention::look(const TsdfSnapshot& map, const
   contours_.update(map, executor);
   std::vector<ContourPoint> contours = contours_.points();
   const double contours_ms = stopwatch.lap_ms();
-  segments_.update(map, executor);
-  const VoxelSegments voxels = segments_.voxels(executor);
+  SACCADE_CHECK(follow_segments(map, executor));
+  const VoxelSegments voxels = segments_->voxels(executor);
   SACCADE_TRY(SegmentedPoints surface, SegmentedPoints::create(voxels.positions_m, voxels.labels, voxels.segments));
   const double segmentation_ms = stopwatch.lap_ms();
   SACCADE_TRY(std::vector<SegmentMeasures> measures, measure_segments(surface, config_.measures, executor));

@@ -15,7 +15,7 @@ namespace saccade {
 
 struct ObjectAttentionConfig {
   ContourConfig contours;
-  MapSegmentsConfig segments;
+  MapSegmentsConfig segments;  ///< `within` is the map's workspace, where it has one
   MeasureConfig measures;
   SaliencyHeuristic saliency{objectness()};
   /// Segments that are no longer than this come last, whatever their saliency: scraps at the border of what was seen
@@ -45,7 +45,8 @@ struct ObjectAttention {
   [[nodiscard]] Sphere surroundings(std::uint32_t segment, double reach_m) const;
 };
 
-/// Follows a map; what it sees depends on the map alone. One thread at a time.
+/// Follows a map; what it sees depends on the map alone. Surface outside the workspace draws no attention. One thread
+/// at a time.
 class LiveObjectAttention {
  public:
   /// Errors of ObjectAttentionConfig::validate.
@@ -55,11 +56,13 @@ class LiveObjectAttention {
   [[nodiscard]] Result<ObjectAttention> look(const TsdfSnapshot& map, const Executor& executor);
 
  private:
-  LiveObjectAttention(ObjectAttentionConfig config, LiveContours contours, LiveSegments segments)
-      : config_{std::move(config)}, contours_{std::move(contours)}, segments_{std::move(segments)} {}
+  LiveObjectAttention(ObjectAttentionConfig config, LiveContours contours)
+      : config_{std::move(config)}, contours_{std::move(contours)} {}
+  [[nodiscard]] Status follow_segments(const TsdfSnapshot& map, const Executor& executor);
+
   ObjectAttentionConfig config_;
   LiveContours contours_;
-  LiveSegments segments_;
+  std::optional<LiveSegments> segments_;  ///< within config_.segments.within
 };
 
 }  // namespace saccade

@@ -42,8 +42,10 @@ ColorImage saliency_picture(const SaliencyScene& scene, const Executor& executor
     const bool known = label < scene.saliency.size();
     mesh.colors.push_back(known ? amount_colors()(scene.saliency[label] / bar.high) : kNoSegment);
   }
-  std::vector<Eigen::Vector3d> shown = corners_of(scene.workspace);
-  shown.push_back(scene.T_world_chosen.translation());
+  std::vector<Eigen::Vector3d> shown{scene.T_world_chosen.translation()};
+  for (const Eigen::Vector3f& vertex : mesh.vertices) {
+    if (contains(scene.workspace, vertex.cast<double>())) shown.emplace_back(vertex.cast<double>());
+  }
   Canvas canvas{overview_of(shown, config), kGround};
   draw_mesh(canvas, mesh, executor);
   draw_contours(canvas, scene.contours);

@@ -23,7 +23,7 @@ struct SaliencyScene {
   std::span<const std::uint32_t> labels;  ///< segment of each vertex; others than those with a saliency: grey
   std::span<const double> saliency;       ///< of each segment
   std::span<const DrawnContour> contours;
-  const Box& workspace;  ///< what is shown
+  const Box& workspace;  ///< all of the surface in it is in the picture
   Pose T_world_chosen{Pose::Identity()};
   PinholeCamera sensor;  ///< shape of the frustum
 };

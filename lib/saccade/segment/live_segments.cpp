@@ -53,6 +53,7 @@ Status MapSegmentsConfig::validate() const {
   if (!(std::isfinite(voxel_size_m) && voxel_size_m > 0.0)) {
     return Error{Errc::invalid_argument, "voxel_size_m must be positive", "segments of a map"};
   }
+  if (within) SACCADE_CHECK(saccade::validate(Region{*within}));
   SACCADE_CHECK(supervoxels(voxel_size_m).validate());
   return lccp.validate();
 }
@@ -116,12 +117,21 @@ std::vector<Index3> LiveSegments::keys_of(const SectorTable& table, std::span<co
       const Index3 brick = sector.sector * kSectorEdge + child_offset(static_cast<int>(i));
       const Index3 key{brick.x >> shift_, brick.y >> shift_, brick.z >> shift_};
       if (!keys.empty() && keys.back() == key) return;
+      if (!is_wanted(key)) return;
       if (crossed.test(static_cast<int>(i)) || blocks_.find(key) != SurfaceBlocks::kNone) keys.push_back(key);
     });
   }
   std::sort(keys.begin(), keys.end(), zyx_less);
   keys.erase(std::unique(keys.begin(), keys.end()), keys.end());
   return keys;
+}
+
+bool LiveSegments::is_wanted(const Index3& key) const {
+  if (!config_.within) return true;
+  const double edge_m = kBrickEdge * supervoxel_config_.voxels.voxel_size_m;
+  const Eigen::Vector3d low =
+      edge_m * Eigen::Vector3d{static_cast<double>(key.x), static_cast<double>(key.y), static_cast<double>(key.z)};
+  return overlap(*config_.within, {low, low.array() + edge_m}) != Overlap::none;
 }
 
 SurfaceBlock LiveSegments::read_block(const SectorTable& table, const Index3& key) const {

@@ -5,10 +5,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/region.hpp"
 #include "saccade/map/map_changes.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/segment/lccp.hpp"
@@ -25,9 +27,11 @@ struct MapSegmentsConfig {
   double color_weight{0.0};
   double min_seed_share{0.3};
   std::uint16_t min_weight{1};  ///< voxels of the map observed less often count as unknown
+  /// Surface away from this box does not count: blocks of 8³ voxels that do not meet it.
+  std::optional<Box> within{};
   LccpConfig lccp{};
 
-  /// @return invalid_argument as of SupervoxelConfig and LccpConfig.
+  /// @return invalid_argument as of SupervoxelConfig and LccpConfig, and for a box that is none.
   [[nodiscard]] Status validate() const;
   /// For a map with such voxels; voxel_size_m and seed_spacing_m are those that are taken.
   [[nodiscard]] SupervoxelConfig supervoxels(double map_voxel_size_m) const;
@@ -84,6 +88,7 @@ class LiveSegments {
   explicit LiveSegments(const MapSegmentsConfig& config) : config_{config} {}
 
   [[nodiscard]] std::vector<Index3> keys_of(const SectorTable& table, std::span<const SectorBricks> stale) const;
+  [[nodiscard]] bool is_wanted(const Index3& key) const;
   [[nodiscard]] SurfaceBlock read_block(const SectorTable& table, const Index3& key) const;
   [[nodiscard]] Slots renew_surface(const TsdfSnapshot& map, std::span<const SectorBricks> stale,
                                     const Executor& executor);

@@ -74,6 +74,26 @@ void expect_sound_segments(const MapSegments& found) {
             found.supervoxels.edges.size());
 }
 
+TEST(SegmentMap, LeavesOutTheSurfaceAwayFromABox) {
+  const TsdfSnapshot map = table_with_things();
+  MapSegmentsConfig around_ball = with_voxels(kMapVoxel_m);
+  around_ball.within = Box{{0.06, -0.06, -0.02}, {0.2, 0.06, 0.12}};
+  const MapSegments all = segment_map(map, Executor{}, with_voxels(kMapVoxel_m)).value();
+  const MapSegments some = segment_map(map, Executor{}, around_ball).value();
+  expect_sound_segments(some);
+  // Whole blocks of 8³ voxels; all of the surface in the box is there.
+  const auto in_box = [&](const MapSegments& found, double margin_m) {
+    const Box box{around_ball.within->min.array() - margin_m, around_ball.within->max.array() + margin_m};
+    return std::count_if(found.points.positions_m.begin(), found.points.positions_m.end(),
+                         [&](const Eigen::Vector3f& p) { return contains(box, p.cast<double>()); });
+  };
+  EXPECT_EQ(in_box(some, 0.0), in_box(all, 0.0));
+  EXPECT_EQ(in_box(some, 9.0 * kMapVoxel_m), std::ssize(some.points.positions_m));
+  EXPECT_LT(some.points.positions_m.size(), all.points.positions_m.size() / 2);
+  around_ball.within->max.x() = -1.0;
+  EXPECT_FALSE(segment_map(map, Executor{}, around_ball));
+}
+
 TEST(LiveSegments, KeepThingsOnATableApart) {
   const TsdfSnapshot map = table_with_things();
   for (const double size_m : {0.005, 0.01}) {
