@@ -96,7 +96,7 @@ std::vector<ContourPoint> contour_points(std::span<const ContourVoxel> voxels, d
   for (std::size_t first = 0; first < voxels.size(); ++first) {
     if (grouped[first]) continue;
     const ContourVoxel& seed = voxels[first];
-    ContourPoint point{Eigen::Vector3d::Zero(), Eigen::Vector3d::Zero(), 0};
+    ContourPoint point;
     left.take_near(seed.voxel, [&](std::size_t i) {
       const ContourVoxel& other = voxels[i];
       const bool similar = i == first || (squared_distance_vox(seed.voxel, other.voxel) < distance_vox * distance_vox &&

@@ -24,10 +24,10 @@ struct ContourConfig {
   [[nodiscard]] Status validate() const;
 };
 
-/// An empty voxel next to unknown space and near an occupied voxel.
+/// An empty voxel next to unknown space and near an occupied voxel. Its normal points towards known empty space.
 struct ContourVoxel {
   Index3 voxel;
-  Eigen::Vector3f normal;  ///< of the frontier, eq. 3.5: unit length, away from unknown and occupied voxels
+  Eigen::Vector3f normal{Eigen::Vector3f::Zero()};  ///< of the frontier (eq. 3.5), unit length
   [[nodiscard]] bool operator==(const ContourVoxel&) const = default;
 };
 
@@ -51,9 +51,9 @@ struct ContourVoxel {
 
 /// A group of similar contour voxels: their mean.
 struct ContourPoint {
-  Eigen::Vector3d position_m;
-  Eigen::Vector3d normal;   ///< unit length
-  std::uint32_t voxels{0};  ///< how many there are
+  Eigen::Vector3d position_m{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d normal{Eigen::Vector3d::Zero()};  ///< unit length
+  std::uint32_t voxels{0};                          ///< how many there are
   [[nodiscard]] bool operator==(const ContourPoint&) const = default;
 };
 
