@@ -50,7 +50,7 @@ TEST(ContoursProperty, EqualTheWalkOverAllVoxels) {
       TsdfSnapshot map = random.snapshot();
       map.config.workspace = workspace;
       const std::vector<ContourVoxel> expected = test::NaiveContours{map, config.known_weight}.all();
-      for (const std::size_t threads : {1, 2, 4}) {
+      for (std::size_t threads = 1; threads <= 4; threads *= 2) {
         const Executor executor = Executor::with_threads(threads, test::kParallelBackend);
         ASSERT_EQ(contour_voxels(map, config, executor).value(), expected) << threads << " threads";
       }
