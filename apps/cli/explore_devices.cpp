@@ -25,17 +25,6 @@ Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const E
   return std::unique_ptr<Robot>{std::make_unique<FreeRobot>(std::move(robot))};
 }
 
-/// None without an arm.
-Result<std::shared_ptr<const ArmSilhouette>> silhouette_of(const std::optional<ArmModel>& arm,
-                                                           const PinholeCamera& camera) {
-  std::shared_ptr<const ArmSilhouette> silhouette;
-  if (!arm) return silhouette;
-  auto made = ArmSilhouette::create(*arm, camera);
-  if (!made) return made.error();
-  silhouette = std::make_shared<const ArmSilhouette>(std::move(*made));
-  return silhouette;
-}
-
 }  // namespace
 
 Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options) {
@@ -58,58 +47,47 @@ Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& exe
 Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const ExploreCase& subject,
                                             const std::optional<ArmModel>& arm, const Executor& executor) {
   SACCADE_TRY(std::unique_ptr<Robot> robot, open_robot(options, subject, arm));
-  if (!options.camera_command.empty()) {
-    ExternalCameraConfig config;
-    config.command = options.camera_command;
-    config.start_timeout_s = config.capture_timeout_s = options.process_timeout_s;
-    SACCADE_TRY(ExternalCamera camera, ExternalCamera::start(config));
-    SACCADE_TRY(auto silhouette, silhouette_of(arm, camera.camera()));
-    return ExploreDevices{std::move(camera), std::move(robot), std::move(silhouette), executor};
+  const ArmModel* const own = arm ? &*arm : nullptr;
+  if (options.camera_command.empty()) {
+    SACCADE_TRY(SimulatedCamera camera, simulated_camera(*subject.rays, options.run));
+    SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::move(camera), std::move(robot), own));
+    return ExploreDevices{std::move(carried), executor};
   }
-  SACCADE_TRY(SimulatedCamera camera, simulated_camera(*subject.rays, options.run));
-  SACCADE_TRY(auto silhouette, silhouette_of(arm, camera.camera()));
-  return ExploreDevices{std::move(camera), std::move(robot), std::move(silhouette), executor};
-}
-
-const PinholeCamera& ExploreDevices::camera() const {
-  return std::visit([](const auto& camera) -> const PinholeCamera& { return camera.camera(); }, camera_);
-}
-
-Result<Frame> ExploreDevices::capture(const Pose& T_world_camera) {
-  auto* simulated = std::get_if<SimulatedCamera>(&camera_);
-  if (simulated == nullptr) return std::get<ExternalCamera>(camera_).capture(T_world_camera);
-  const std::optional<Configuration> q = robot_->configuration();
-  if (!silhouette_ || !q || !silhouette_->in_picture(*q)) return simulated->capture(T_world_camera, executor_);
-  return simulated->capture(T_world_camera, silhouette_->depth(*q, executor_), executor_);
+  ExternalCameraConfig config;
+  config.command = options.camera_command;
+  config.start_timeout_s = config.capture_timeout_s = options.process_timeout_s;
+  SACCADE_TRY(ExternalCamera started, ExternalCamera::start(config));
+  const auto camera = std::make_shared<ExternalCamera>(std::move(started));
+  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(
+                                         camera->camera(), [camera](const Pose& pose) { return camera->capture(pose); },
+                                         std::move(robot), own));
+  return ExploreDevices{std::move(carried), executor};
 }
 
 Result<Frame> ExploreDevices::observe(const Pose& T_world_camera) {
-  SACCADE_TRY(Frame frame, capture(T_world_camera));
-  if (const std::optional<Configuration> q = robot_->configuration(); silhouette_ && q) {
-    SACCADE_TRY([[maybe_unused]] const std::size_t masked, silhouette_->mask(*q, frame.depth, executor_));
-  }
+  SACCADE_TRY(Frame frame, camera_.capture(T_world_camera, executor_));
   ++frames_;
   seen_.push_back(frame);
   return frame;
 }
 
 Status ExploreDevices::change_scene(const RayScene& scene, const SimulatedRunConfig& config) {
-  SACCADE_EXPECTS(std::holds_alternative<SimulatedCamera>(camera_));
+  SACCADE_EXPECTS(camera_.simulated() != nullptr);
   SACCADE_TRY(SimulatedCamera camera, simulated_camera(scene, config));
   camera.resume_at(frames_);
-  camera_ = std::move(camera);
+  *camera_.simulated() = std::move(camera);
   return {};
 }
 
 Status ExploreDevices::place_arm(const Configuration& q) {
-  auto* arm = dynamic_cast<ArmRobot*>(robot_.get());
+  auto* arm = dynamic_cast<ArmRobot*>(&camera_.robot());
   if (arm == nullptr) return Error{Errc::invalid_argument, "there is no arm to be placed", "explore"};
   return arm->place(q);
 }
 
 void ExploreDevices::resume_at(std::size_t frames) {
   frames_ = frames;
-  if (auto* simulated = std::get_if<SimulatedCamera>(&camera_)) simulated->resume_at(frames);
+  if (SimulatedCamera* simulated = camera_.simulated()) simulated->resume_at(frames);
 }
 
 }  // namespace saccade::cli

@@ -4,13 +4,12 @@
 
 #include <memory>
 #include <optional>
-#include <variant>
 #include <vector>
 
 #include "explore_options.hpp"
+#include "saccade/explore/carried_camera.hpp"
 #include "saccade/io/external_camera.hpp"
 #include "saccade/io/external_robot.hpp"
-#include "saccade/robot/arm_silhouette.hpp"
 
 namespace saccade::cli {
 
@@ -32,17 +31,17 @@ class ExploreDevices {
   [[nodiscard]] static Result<ExploreDevices> open(const ExploreOptions& options, const ExploreCase& subject,
                                                    const std::optional<ArmModel>& arm, const Executor& executor);
 
-  [[nodiscard]] const PinholeCamera& camera() const;
-  [[nodiscard]] Robot& robot() { return *robot_; }
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_.camera(); }
+  [[nodiscard]] Robot& robot() { return camera_.robot(); }
   /// The same, as it moves in simulation.
   [[nodiscard]] const SimulatedRobot* simulated_arm() const {
-    return dynamic_cast<const SimulatedRobot*>(robot_.get());
+    return dynamic_cast<const SimulatedRobot*>(&camera_.robot());
   }
   /// What a simulated camera sees from now on; the fixtures that an arm keeps clear of stay. Errors: those of
   /// simulated_camera.
   [[nodiscard]] Status change_scene(const RayScene& scene, const SimulatedRunConfig& config);
   /// The arm, if it is one that we move ourselves.
-  [[nodiscard]] const ArmModel* arm() const { return silhouette_ ? &silhouette_->arm() : nullptr; }
+  [[nodiscard]] const ArmModel* arm() const { return camera_.arm(); }
   /// Takes a frame, without the arm where that stands in its own picture, and remembers it.
   [[nodiscard]] Result<Frame> observe(const Pose& T_world_camera);
   [[nodiscard]] std::size_t frames() const { return frames_; }
@@ -54,15 +53,9 @@ class ExploreDevices {
   std::vector<Frame> take_frames() { return std::exchange(seen_, {}); }
 
  private:
-  using Camera = std::variant<SimulatedCamera, ExternalCamera>;
-  ExploreDevices(Camera camera, std::unique_ptr<Robot> robot, std::shared_ptr<const ArmSilhouette> silhouette,
-                 const Executor& executor)
-      : camera_{std::move(camera)}, robot_{std::move(robot)}, silhouette_{std::move(silhouette)}, executor_{executor} {}
-  [[nodiscard]] Result<Frame> capture(const Pose& T_world_camera);
+  ExploreDevices(CarriedCamera camera, const Executor& executor) : camera_{std::move(camera)}, executor_{executor} {}
 
-  Camera camera_;
-  std::unique_ptr<Robot> robot_;
-  std::shared_ptr<const ArmSilhouette> silhouette_;  ///< of an arm that we move ourselves
+  CarriedCamera camera_;
   Executor executor_;
   std::size_t frames_{0};
   std::vector<Frame> seen_;

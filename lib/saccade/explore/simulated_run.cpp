@@ -1,12 +1,31 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/explore/simulated_run.hpp"
 
+#include <limits>
+
 #include "saccade/explore/attention_strategy.hpp"
 #include "saccade/explore/oracle_strategy.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/scene/fixture_boxes.hpp"
 
 namespace saccade {
+namespace {
+
+/// What carries the camera in run_simulated.
+Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRunConfig& config) {
+  if (!config.arm) {
+    SACCADE_TRY(FreeRobot robot, flying_camera(scene));
+    return std::unique_ptr<Robot>{std::make_unique<FreeRobot>(std::move(robot))};
+  }
+  ArmRobotConfig robot_config = config.arm_robot;
+  robot_config.planner.seed = config.seed;
+  // A search that ran out of time would depend on the machine and on what else runs there.
+  robot_config.planner.budget_s = std::numeric_limits<double>::infinity();
+  SACCADE_TRY(SimulatedRobot robot, simulated_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
+  return std::unique_ptr<Robot>{std::make_unique<SimulatedRobot>(std::move(robot))};
+}
+
+}  // namespace
 
 std::string_view to_string(DepthSensor sensor) { return sensor == DepthSensor::kinect_v1 ? "kinect-v1" : "kinect-v2"; }
 
@@ -25,6 +44,7 @@ Status SimulatedRunConfig::validate() const {
   SACCADE_CHECK(contour_views.validate());
   SACCADE_CHECK(exploration.validate());
   SACCADE_CHECK(map().validate());
+  if (arm) SACCADE_CHECK(arm_robot.validate());
   if (gain_width_px < 1) {
     return Error{Errc::invalid_argument, "the virtual sensor must be one pixel wide at least", "exploration"};
   }
@@ -123,15 +143,15 @@ Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig&
   TsdfConfig map_config = config.map();
   map_config.workspace = scene.workspace;
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
-  SACCADE_TRY(SimulatedCamera camera, simulated_camera(truth.scene(), config));
-  SACCADE_TRY(FreeRobot robot, flying_camera(truth.scene()));
-  ExplorationCell cell{config.camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); },
-                       robot};
+  SACCADE_TRY(SimulatedCamera sensor, simulated_camera(truth.scene(), config));
+  SACCADE_TRY(std::unique_ptr<Robot> robot, carrier(truth.scene(), config));
+  SACCADE_TRY(CarriedCamera camera, CarriedCamera::create(std::move(sensor), std::move(robot), config.arm.get()));
+  ExplorationCell cell{config.camera, [&](const Pose& pose) { return camera.capture(pose, executor); }, camera.robot()};
 
   SimulatedRun run;
-  SACCADE_TRY(const ScanResult scanned, scan(map, cell, scene.scan, config.exploration, executor, {}, progress));
+  SACCADE_TRY(run.scan, scan(map, cell, scene.scan, config.exploration, executor, {}, progress));
   run.initial = measure_map(truth, map.content(), executor);
-  if (!scanned.complete) {
+  if (!run.scan.complete) {
     run.stopped_because = StopReason::cancelled;
     return run;
   }
@@ -146,6 +166,7 @@ Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig&
   SACCADE_TRY(const ExplorationResult explored, explore(map, cell, regions_of(scene, config.strategy), strategy,
                                                         config.exploration, executor, hooks, progress));
   run.stopped_because = explored.stopped_because;
+  run.refused_at_end = explored.refused_at_end;
   return run;
 }
 

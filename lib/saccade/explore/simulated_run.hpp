@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "saccade/explore/exploration.hpp"
+#include "saccade/explore/carried_camera.hpp"
 #include "saccade/explore/metrics.hpp"
 #include "saccade/explore/object_attention.hpp"
 #include "saccade/explore/strategy_kind.hpp"
@@ -35,7 +35,10 @@ struct SimulatedRunConfig {
   int gain_width_px{
       160};  ///< width of the virtual sensor that views are chosen with; its field of view is the camera's
   ExplorationConfig exploration{.min_gain = min_gain_of(StrategyKind::attention)};
-  std::uint64_t seed{1};  ///< of noise and chance
+  std::uint64_t seed{1};                  ///< of noise and chance
+  std::shared_ptr<const ArmModel> arm{};  ///< carries the camera in run_simulated; null: it flies
+  /// Of that arm; its planner takes `seed` for its own, and all the time that max_motions take.
+  ArmRobotConfig arm_robot{};
 
   [[nodiscard]] Status validate() const;
   /// As it is for a strategy, exploration.min_gain included.
@@ -81,17 +84,19 @@ struct MeasuredView {
 };
 
 struct SimulatedRun {
+  ScanResult scan;
   MeasuredMap initial;  ///< after the initial scan
   std::vector<MeasuredView> views;
   StopReason stopped_because{StopReason::regions_done};
+  RefusalCounts refused_at_end{};  ///< ExplorationResult::refused_at_end
 
   [[nodiscard]] const MeasuredMap& final() const { return views.empty() ? initial : views.back().after; }
 };
 
-/// Explores the scene of `truth` with a flying camera, and measures after every view.
+/// Explores the scene of `truth` with the arm of config, or a flying camera, and measures after every view.
 /// @param strategy one of your own, in place of the one that config names
-/// @return errors of SimulatedRunConfig::validate, explore, and TsdfMap::create. The same figures for every thread
-///         count; deterministic by seed.
+/// @return errors of SimulatedRunConfig::validate, explore, TsdfMap::create, and with an arm of simulated_arm and
+///         CarriedCamera. The same figures for every thread count and on a busy machine; deterministic by seed.
 [[nodiscard]] Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config,
                                                  const Strategy& strategy, const Executor& executor,
                                                  const Progress& progress = {});
