@@ -72,7 +72,7 @@ step reproduce build/release/saccade --quiet reproduce 2.1 "${tables[@]}" --out 
 echo "Explorations: ten seeds, noise on"
 scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'import json, sys; print(",".join(s["name"] for s in json.load(sys.stdin)["result"]["scenes"] if not s["name"].endswith("-before")))')"
 step compare build/release/saccade --quiet compare --scenes "$scenes,clutter:1" --strategies sphere,random --seeds 1-10 --max-views 12 \
-  --out "$out/compare" --json "$out/compare.json"
+  --equal-views --robot free --out "$out/compare" --json "$out/compare.json"
 
 echo "Updates after a user's task: ten seeds, noise on"
 for scene in bottle jug; do

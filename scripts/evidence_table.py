@@ -95,7 +95,7 @@ def compare_section(folder, lines):
         return True
     result = json.loads(path.read_text())["result"]
     apart = {(gap["scene"], gap["b"]): gap["apart"] for gap in result["gaps"]}
-    summaries = {(s["scene"], s["strategy"]): s for s in result["summaries"]}
+    summaries = {(s["scene"], s["strategy"]): s for s in result["summaries"] if s["scene"] is not None}  # null: all scenes
     held = True
     lines += ["## Explorations", "", f"`{command_of(folder, 'compare')}`", "",
               "Coverage in per cent, mean and 95 % confidence interval. Held to: at most 60 after the scan, sphere at least "

@@ -1,18 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade compare: strategies × scenes × seeds, in one SQLite file that an interrupted comparison goes on from.
+// saccade compare: strategies × scenes × noises × seeds, in one SQLite file that an interrupted comparison goes on
+// from.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <memory>
 
-#include "compare_output.hpp"
+#include "compare_jobs.hpp"
+#include "compare_report.hpp"
 #include "comparison.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/io/atomic_file.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -20,12 +23,14 @@ namespace {
 using nlohmann::json;
 
 constexpr const char* kCampaignFile{"campaign.sqlite"};
+constexpr const char* kReportFile{"index.html"};
 
 json planned_json(const Comparison& comparison, const PlannedRun& run) {
   const ComparedScene& scene = comparison.scenes()[run.scene];
   return {{"scene", scene.name},
           {"scene_hash", scene.hash},
           {"strategy", to_string(run.strategy)},
+          {"noise", run.noise},
           {"seed", run.seed},
           {"max_views", run.max_views ? json(*run.max_views) : json(nullptr)},
           {"found", run.found}};
@@ -44,7 +49,7 @@ Result<int> list_runs(const Comparison& comparison, const GlobalOptions& global,
     rows.push_back(planned_json(comparison, run));
     if (global.json_to_stdout()) continue;
     std::cout << std::left << std::setw(18) << comparison.scenes()[run.scene].name << std::setw(10)
-              << to_string(run.strategy) << "seed " << std::setw(8) << run.seed
+              << to_string(run.strategy) << ' ' << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed
               << (run.max_views ? std::to_string(*run.max_views) + " views at most" : "as many views as sphere takes")
               << (run.found ? ", done" : "") << '\n';
   }
@@ -56,15 +61,17 @@ Result<int> list_runs(const Comparison& comparison, const GlobalOptions& global,
   return static_cast<int>(ExitStatus::done);
 }
 
-json result_json(const Comparison& comparison, std::size_t planned, std::size_t done, std::size_t now,
-                 std::span<const CampaignSummary> summaries, std::span<const StrategyGap> gaps) {
-  json result = comparison_json(summaries, gaps);
-  result["out"] = comparison.options().out.string();
-  result["campaign"] = (comparison.options().out / kCampaignFile).string();
-  result["equal_views"] = comparison.options().equal_views;
-  result["seeds"] = comparison.options().seeds;
-  result["runs"] = {{"planned", planned}, {"done", done}, {"done_now", now}};
-  result["interrupted"] = done < planned;
+json result_json(const Comparison& comparison, std::size_t planned, std::size_t now, const ComparedRuns& compared) {
+  const CompareOptions& options = comparison.options();
+  json result = comparison_json(compared);
+  result["out"] = options.out.string();
+  result["campaign"] = (options.out / kCampaignFile).string();
+  result["robot"] = comparison.robot_name();
+  result["max_views"] = compared.budget;
+  result["equal_views"] = options.equal_views;
+  result["seeds"] = options.seeds;
+  result["runs"] = {{"planned", planned}, {"done", compared.runs.size()}, {"done_now", now}};
+  result["interrupted"] = compared.runs.size() < planned;
   return result;
 }
 
@@ -78,22 +85,24 @@ Result<int> run_compare(const CompareOptions& options, const GlobalOptions& glob
   SACCADE_TRY(const Campaign campaign, Campaign::open(out / kCampaignFile));
 
   ProgressBar progress{global.quiet};
-  SACCADE_TRY(const std::size_t now, comparison.run(campaign, executor, progress));
-  SACCADE_TRY(const std::vector<CampaignRun> runs, comparison.finished(campaign));
-  const std::size_t planned = comparison.scenes().size() * options.seeds.size() * options.strategies.size();
-  const std::vector<CampaignSummary> summaries = summarize(runs);
-  const std::vector<StrategyGap> gaps = gaps_of(runs, summaries);
-  SACCADE_CHECK(write_comparison(out.path(), runs, summaries));
-  SACCADE_CHECK(
-      write_json_output(global, json_envelope("compare", global, executor, {{"total", clock.elapsed_ms()}},
-                                              result_json(comparison, planned, runs.size(), now, summaries, gaps))));
+  SACCADE_TRY(const std::size_t now, run_missing(comparison, campaign, executor.threads(), progress));
+  SACCADE_TRY(std::vector<CampaignRun> runs, comparison.finished(campaign));
+  const std::size_t done = runs.size();
+  const std::size_t planned =
+      comparison.scenes().size() * options.noises.size() * options.seeds.size() * options.strategies.size();
+  const ComparedRuns results = compared(std::move(runs), comparison.budget());
+  SACCADE_CHECK(write_comparison(out.path(), results));
+  const std::string page = comparison_report_html(comparison_report(comparison, results, planned));
+  SACCADE_CHECK(write_file_atomically(out / kReportFile, page));
+  SACCADE_CHECK(write_json_output(global, json_envelope("compare", global, executor, {{"total", clock.elapsed_ms()}},
+                                                        result_json(comparison, planned, now, results))));
   if (!global.json_to_stdout()) {
-    print_comparison(std::cout, summaries, gaps);
-    std::cout << "runs      " << now << " done now, " << runs.size() - now << " found\n"
-              << "results   " << options.out.string() << '\n';
+    print_comparison(std::cout, results);
+    std::cout << "runs      " << now << " done now, " << done - now << " found\n"
+              << "report    " << (options.out / kReportFile).string() << '\n';
   }
-  if (runs.size() == planned) return static_cast<int>(ExitStatus::done);
-  print_error("compare", "interrupted after " + std::to_string(runs.size()) + " of " + std::to_string(planned) +
+  if (done == planned) return static_cast<int>(ExitStatus::done);
+  print_error("compare", "interrupted after " + std::to_string(done) + " of " + std::to_string(planned) +
                              " runs; they are in " + options.out.string() + "; the same command goes on from there");
   return interrupt_status();
 }

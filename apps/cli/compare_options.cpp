@@ -36,50 +36,101 @@ std::optional<std::uint64_t> seed_of(std::string_view text) {
   return seed;
 }
 
+constexpr std::uint64_t kMostInRange{100000};
+constexpr std::string_view kClutter{"clutter:"};
+constexpr std::string_view kNoNoise{"none"};
+
+/// "3" and "1-10"; nullopt for anything else.
+std::optional<std::pair<std::uint64_t, std::uint64_t>> seed_range(std::string_view text) {
+  const std::size_t dash = text.find('-');
+  const auto first = seed_of(text.substr(0, dash));
+  const auto last = dash == std::string_view::npos ? first : seed_of(text.substr(dash + 1));
+  if (!first || !last || *first > *last) return std::nullopt;
+  return std::pair{*first, *last};
+}
+
+void add_once(std::vector<std::string>& names, std::string name) {
+  if (std::find(names.begin(), names.end(), name) == names.end()) names.push_back(std::move(name));
+}
+
 std::vector<std::string> scenes_of(const std::string& text) {
-  if (text != "all") return parts_of("--scenes", text);
   std::vector<std::string> names;
-  for (const BuiltinScene& builtin : builtin_scenes()) names.emplace_back(builtin.name);
+  for (const std::string& part : parts_of("--scenes", text)) {
+    if (part == "all") {
+      for (const BuiltinScene& builtin : builtin_scenes()) add_once(names, std::string{builtin.name});
+    } else if (part.starts_with(kClutter) && part.find('-') != std::string::npos) {
+      const auto range = seed_range(std::string_view{part}.substr(kClutter.size()));
+      if (!range || range->second - range->first >= kMostInRange) {
+        usage_error("--scenes", "clutter:1-30 is a range of at most " + std::to_string(kMostInRange) +
+                                    " seeds, the smaller first, not '" + part + "'");
+      }
+      for (std::uint64_t seed = range->first; seed <= range->second; ++seed) {
+        add_once(names, std::string{kClutter} + std::to_string(seed));
+      }
+    } else {
+      add_once(names, part);
+    }
+  }
   return names;
 }
 
-/// Sphere first: the others may have to know how many views it took.
-std::vector<StrategyKind> strategies_of(const std::string& text) {
+std::vector<StrategyKind> strategies_of(const CompareOptions& options) {
   std::vector<StrategyKind> strategies;
-  for (const std::string& name : parts_of("--strategies", text)) {
+  for (const std::string& name : parts_of("--strategies", options.strategy_list)) {
     const auto strategy = strategy_kind(name);
     if (!strategy) usage_error("--strategies", strategy.error().message);
     strategies.push_back(*strategy);
   }
-  std::stable_partition(strategies.begin(), strategies.end(),
-                        [](StrategyKind strategy) { return strategy == StrategyKind::sphere; });
+  if (!options.equal_views) return strategies;
+  const auto sphere = std::find(strategies.begin(), strategies.end(), StrategyKind::sphere);
+  if (sphere == strategies.end()) usage_error("--equal-views", "needs sphere among the strategies");
+  std::rotate(strategies.begin(), sphere, sphere + 1);  // the others have to know how many views it took
   return strategies;
+}
+
+std::vector<std::string> noises_of(const CompareOptions& options) {
+  if (options.noise_list.empty()) return {noise_key(options.run.run)};
+  std::vector<std::string> noises = parts_of("--noise", options.noise_list);
+  for (const std::string& noise : noises) {
+    if (noise != kNoNoise && !depth_sensor(noise)) {
+      usage_error("--noise", "there is no noise \"" + noise + "\"; known: none, kinect-v1, kinect-v2");
+    }
+  }
+  return noises;
 }
 
 }  // namespace
 
 std::vector<std::uint64_t> parse_seeds(const std::string& text) {
-  constexpr std::uint64_t kMost{100000};
   std::set<std::uint64_t> seeds;
   for (const std::string& part : parts_of("--seeds", text)) {
-    const std::size_t dash = part.find('-');
-    const auto first = seed_of(std::string_view{part}.substr(0, dash));
-    const auto last = dash == std::string::npos ? first : seed_of(std::string_view{part}.substr(dash + 1));
-    if (!first || !last || *first > *last) {
+    const auto range = seed_range(part);
+    if (!range) {
       usage_error("--seeds", "needs whole numbers and ranges of them below 2^63, such as 1-10,15, not '" + text + "'");
     }
-    if (*last - *first >= kMost || seeds.size() + (*last - *first) >= kMost) {
-      usage_error("--seeds", "at most " + std::to_string(kMost) + " seeds");
+    const std::uint64_t more = range->second - range->first;
+    if (more >= kMostInRange || seeds.size() + more >= kMostInRange) {
+      usage_error("--seeds", "at most " + std::to_string(kMostInRange) + " seeds");
     }
-    for (std::uint64_t seed = *first; seed <= *last; ++seed) seeds.insert(seed);
+    for (std::uint64_t seed = range->first; seed <= range->second; ++seed) seeds.insert(seed);
   }
   return {seeds.begin(), seeds.end()};
+}
+
+std::string noise_key(const SimulatedRunConfig& run) {
+  return std::string{run.noise ? to_string(run.sensor) : kNoNoise};
+}
+
+void set_noise(SimulatedRunConfig& run, const std::string& name) {
+  run.noise = name != kNoNoise;
+  if (run.noise) run.sensor = depth_sensor(name).value();
 }
 
 void add_compare_options(CLI::App& command, CompareOptions& options) {
   command
       .add_option("--scenes", options.scene_list,
-                  "scenes, separated by commas: built-in ones, clutter:SEED, YAML files; all: every built-in one")
+                  "scenes, separated by commas: built-in ones or all of them (all), clutter:SEED, clutter:1-30, YAML "
+                  "files, mesh files, and folders of meshes, each of which is put on a table")
       ->required()
       ->type_name("LIST");
   command.add_option("--strategies", options.strategy_list, "strategies, separated by commas: " + strategy_names())
@@ -93,17 +144,40 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
       ->type_name("DIR");
   add_run_options(command, options.run, min_gain_by_strategy());
   command
-      .add_flag("--equal-views,!--no-equal-views", options.equal_views,
-                "every other strategy gets as many views as sphere took (default)")
-      ->default_str("");
+      .add_option("--noise", options.noise_list,
+                  "noise of the depth, separated by commas: none, kinect-v1, kinect-v2 (default: that of --sensor)")
+      ->type_name("LIST")
+      ->excludes("--sensor")
+      ->excludes("--no-noise");
+  command.add_option("--robot", options.robot, "what carries the camera: free, which flies, comau, or a URDF file")
+      ->type_name("ROBOT")
+      ->capture_default_str();
+  command.add_option("--mesh-scale", options.mesh.scale, "metres per unit of mesh files")
+      ->type_name("METRES")
+      ->capture_default_str();
+  command
+      .add_option("--mesh-up", options.mesh_up,
+                  "the axis of mesh files that points up, y or z (default: z, but y for glTF)")
+      ->check(CLI::IsMember({"y", "z"}))
+      ->type_name("AXIS");
+  command
+      .add_option("--jobs", options.jobs,
+                  "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
+      ->check(CLI::Range(1, 256))
+      ->type_name("N");
+  command.add_flag("--equal-views", options.equal_views,
+                   "every other strategy gets as many views as sphere took, not --max-views");
   command.add_flag("--list", options.list, "say what would be run, and run nothing");
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
 
 void check_compare_options(CompareOptions& options) {
   options.scenes = scenes_of(options.scene_list);
-  options.strategies = strategies_of(options.strategy_list);
+  options.strategies = strategies_of(options);
+  options.noises = noises_of(options);
   options.seeds = parse_seeds(options.seed_list);
+  require_ok(options.mesh.validate(), "--mesh-scale");
+  if (!options.mesh_up.empty()) options.mesh.up = options.mesh_up == "y" ? UpAxis::y : UpAxis::z;
   check_run_options(options.run);
 }
 

@@ -8,24 +8,31 @@
 
 #include "command.hpp"
 #include "run_options.hpp"
+#include "saccade/io/mesh_scene.hpp"
 
 namespace saccade::cli {
 
 struct CompareOptions {
-  std::vector<std::string> scenes;  ///< as find_scene takes them, each once
+  std::vector<std::string> scenes;  ///< as they were given, each once; ranges of clutter and "all" taken apart
   std::vector<StrategyKind> strategies;
+  std::vector<std::string> noises;   ///< names, each once
   std::vector<std::uint64_t> seeds;  ///< ascending
   std::filesystem::path out;
   RunOptions run;
-  /// The other strategies get as many views as sphere took with the same scene and seed, if sphere is compared.
-  bool equal_views{true};
+  std::string robot{"free"};  ///< a built-in arm, a URDF, or free
+  MeshSceneConfig mesh;       ///< of scenes that are mesh files
+  std::size_t jobs{0};        ///< runs at once; 0: as many as threads
+  /// The other strategies get as many views as sphere took with the same scene, noise and seed.
+  bool equal_views{false};
   bool list{false};
   bool force{false};
 
   // As they were given.
   std::string scene_list;
   std::string strategy_list{"sphere,random"};
+  std::string noise_list;
   std::string seed_list{"1-10"};
+  std::string mesh_up;
 };
 
 void add_compare_options(CLI::App& command, CompareOptions& options);
@@ -34,5 +41,10 @@ void check_compare_options(CompareOptions& options);
 
 /// "1-10,15": seeds and ranges of them, sorted, each once. Throws a usage error of --seeds.
 [[nodiscard]] std::vector<std::uint64_t> parse_seeds(const std::string& text);
+
+/// "none", or the name of the sensor whose noise it is.
+[[nodiscard]] std::string noise_key(const SimulatedRunConfig& run);
+/// The inverse. Expects such a name.
+void set_noise(SimulatedRunConfig& run, const std::string& name);
 
 }  // namespace saccade::cli

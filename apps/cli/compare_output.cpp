@@ -6,13 +6,14 @@
 
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/campaign_csv.hpp"
-#include "saccade/report/plot.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
+
+constexpr std::string_view kAllScenes{"all scenes"};
 
 json estimate_json(const MeanEstimate& estimate) {
   const auto number = [](const std::optional<double>& value) { return value ? json(*value) : json(nullptr); };
@@ -22,12 +23,7 @@ json estimate_json(const MeanEstimate& estimate) {
           {"high", number(estimate.high())}};
 }
 
-/// "93.1 ± 0.8", in percent; without a half width where there is none.
-std::string percent_text(const MeanEstimate& estimate) {
-  std::string text = fixed(100.0 * estimate.mean, 1);
-  if (estimate.half_width) text += " ± " + fixed(100.0 * *estimate.half_width, 1);
-  return text;
-}
+json scene_json(const CampaignGroup& group) { return group.scene ? json(*group.scene) : json(nullptr); }
 
 /// Filled with blanks up to `width` characters; "±" is one of them.
 std::string padded(const std::string& text, std::size_t width) {
@@ -36,123 +32,203 @@ std::string padded(const std::string& text, std::size_t width) {
   return text + std::string(characters < width ? width - characters : 1, ' ');
 }
 
-PlotSeries curve_of(std::span<const CampaignRun> runs, const CampaignSummary& summary) {
-  PlotSeries series{summary.strategy, {}, {}};
-  const std::vector<MeanEstimate> means = coverage_over_views(runs, summary.scene, summary.strategy);
-  for (std::size_t taken = 0; taken < means.size(); ++taken) {
-    const MeanEstimate& estimate = means[taken];
-    series.x.push_back(static_cast<double>(taken));
-    series.y.push_back(100.0 * estimate.mean);
-    series.low.push_back(100.0 * estimate.low().value_or(std::nan("")));
-    series.high.push_back(100.0 * estimate.high().value_or(std::nan("")));
-  }
-  return series;
-}
-
-std::string picture_of(const std::string& scene, std::span<const CampaignRun> runs,
-                       std::span<const CampaignSummary> summaries) {
+Plot plot_of(const ComparedRuns& compared, const std::optional<std::string>& scene, MapFigure figure, double scale) {
   Plot plot;
-  plot.title = "Coverage of " + scene + ": mean over seeds, 95 % confidence";
   plot.x_label = "views after the initial scan";
-  plot.y_label = "coverage, %";
   plot.min_x_step = 1.0;
-  double lowest = 90.0;
-  double longest = 1.0;
-  for (const CampaignSummary& summary : summaries) {
-    if (summary.scene != scene) continue;
-    PlotSeries series = curve_of(runs, summary);
-    for (const std::vector<double>* values : {&series.y, &series.low}) {
-      for (const double value : *values) lowest = std::min(lowest, std::isfinite(value) ? value : lowest);
+  plot.width_px = 620;
+  plot.height_px = 380;
+  for (const CampaignSummary& summary : compared.summaries) {
+    if (summary.group.scene != scene) continue;
+    PlotSeries series{label_of(summary.group, compared), {}, {}};
+    const std::vector<MeanEstimate> means = over_views(compared.runs, summary.group, compared.budget, figure);
+    for (std::size_t taken = 0; taken < means.size(); ++taken) {
+      series.x.push_back(static_cast<double>(taken));
+      series.y.push_back(scale * means[taken].mean);
+      series.low.push_back(scale * means[taken].low().value_or(std::nan("")));
+      series.high.push_back(scale * means[taken].high().value_or(std::nan("")));
     }
-    longest = std::max(longest, series.x.back());
     plot.series.push_back(std::move(series));
   }
-  plot.x_range = {0.0, longest};
-  plot.y_range = {std::max(0.0, 10.0 * std::floor(0.1 * lowest)), 100.0};
-  return plot_svg(plot);
+  plot.x_range = {0.0, std::max(1.0, static_cast<double>(compared.budget))};
+  return plot;
+}
+
+/// The least and the greatest of the curves and their bands.
+std::pair<double, double> extent_of(const Plot& plot) {
+  std::pair<double, double> extent{0.0, 0.0};
+  bool first = true;
+  for (const PlotSeries& series : plot.series) {
+    for (const std::vector<double>* values : {&series.y, &series.low, &series.high}) {
+      for (const double value : *values) {
+        if (!std::isfinite(value)) continue;
+        extent =
+            first ? std::pair{value, value} : std::pair{std::min(extent.first, value), std::max(extent.second, value)};
+        first = false;
+      }
+    }
+  }
+  return extent;
+}
+
+std::string cell(const CampaignSummary& summary, std::string_view name) {
+  const std::size_t figure = run_figure_index(name);
+  const std::string text = estimate_text(run_figures()[figure], summary.figures[figure], summary.figures[figure].n);
+  return text.empty() ? "-" : text;
+}
+
+/// One line about a gap.
+void print_gap(std::ostream& out, const StrategyGap& gap, const ComparedRuns& compared) {
+  const MeanEstimate& coverage = gap.of("coverage");
+  if (coverage.n == 0) return;
+  const auto text = [&gap](std::string_view name) {
+    const std::size_t figure = run_figure_index(name);
+    return estimate_text(run_figures()[figure], gap.figures[figure], gap.figures[figure].n);
+  };
+  out << padded(gap.a.scene.value_or(std::string{kAllScenes}), 18) << gap_label(gap, compared, "-") << ": "
+      << text("coverage") << " points of coverage at the end, " << text("coverage_area")
+      << " of its area over views, by " << (gap.a.scene ? "seed" : "scene") << "; ";
+  if (coverage.half_width) {
+    out << "the intervals of the means are " << (gap.apart ? "apart\n" : "not apart\n");
+  } else {
+    out << "one " << (gap.a.scene ? "seed" : "scene") << " has no interval\n";
+  }
 }
 
 }  // namespace
 
-std::vector<StrategyGap> gaps_of(std::span<const CampaignRun> runs, std::span<const CampaignSummary> summaries) {
-  std::vector<StrategyGap> gaps;
-  for (std::size_t i = 0; i < summaries.size(); ++i) {
-    const CampaignSummary& b = summaries[i];
-    const auto a = std::find_if(summaries.begin(), summaries.end(),
-                                [&b](const CampaignSummary& summary) { return summary.scene == b.scene; });
-    if (a->strategy == b.strategy) continue;
-    gaps.push_back({b.scene, a->strategy, b.strategy, coverage_gap(runs, b.scene, a->strategy, b.strategy),
-                    are_apart(a->initial_coverage, b.initial_coverage), are_apart(a->coverage, b.coverage)});
+ComparedRuns compared(std::vector<CampaignRun> runs, std::size_t budget) {
+  ComparedRuns compared{std::move(runs), budget, {}, {}};
+  compared.summaries = summarize(compared.runs, budget);
+  for (const CampaignSummary& b : compared.summaries) {
+    const auto a = std::find_if(compared.summaries.begin(), compared.summaries.end(), [&b](const auto& summary) {
+      return summary.group.scene == b.group.scene && summary.group.noise == b.group.noise;
+    });
+    if (a->group == b.group) continue;
+    compared.gaps.push_back({a->group, b.group, paired_gaps(compared.runs, a->group, b.group, budget),
+                             are_apart(a->of("initial_coverage"), b.of("initial_coverage")),
+                             are_apart(a->of("coverage"), b.of("coverage"))});
   }
-  return gaps;
+  return compared;
 }
 
-std::string picture_name(const std::string& scene) {
+std::string label_of(const CampaignGroup& group, const ComparedRuns& compared) {
+  const bool several =
+      std::any_of(compared.summaries.begin(), compared.summaries.end(),
+                  [&group](const CampaignSummary& summary) { return summary.group.noise != group.noise; });
+  return several ? group.strategy + ", " + group.noise : group.strategy;
+}
+
+std::string gap_label(const StrategyGap& gap, const ComparedRuns& compared, const std::string& minus) {
+  return gap.a.strategy + ' ' + minus + ' ' + label_of(gap.b, compared);
+}
+
+Plot coverage_plot(const ComparedRuns& compared, const std::optional<std::string>& scene) {
+  Plot plot = plot_of(
+      compared, scene, [](const CampaignFigures& map) { return map.coverage; }, 100.0);
+  plot.title = "Coverage: " + scene.value_or("mean over all scenes");
+  plot.y_label = "coverage, %";
+  const double lowest = std::min(90.0, extent_of(plot).first);
+  plot.y_range = {std::max(0.0, 10.0 * std::floor(0.1 * lowest)), 100.0};
+  return plot;
+}
+
+Plot unknown_plot(const ComparedRuns& compared, const std::optional<std::string>& scene) {
+  Plot plot = plot_of(
+      compared, scene, [](const CampaignFigures& map) { return static_cast<double>(map.unknown_near_objects); }, 1.0);
+  plot.title = "Unknown near objects: " + scene.value_or("mean over all scenes");
+  plot.y_label = "voxels";
+  plot.y_range = {0.0, std::max(1.0, 1.05 * extent_of(plot).second)};
+  return plot;
+}
+
+std::string picture_name(const std::string& what, const std::string& scene) {
   constexpr std::string_view kPlain{"ABCDEFGHIJKLMNOPQRSTUVWXYZabcdefghijklmnopqrstuvwxyz0123456789._-"};
   std::string name = scene;
   std::replace_if(
       name.begin(), name.end(), [&](char c) { return kPlain.find(c) == std::string_view::npos; }, '-');
-  return "coverage-" + name + ".svg";
+  return what + '-' + name + ".svg";
 }
 
-Status write_comparison(const std::filesystem::path& folder, std::span<const CampaignRun> runs,
-                        std::span<const CampaignSummary> summaries) {
-  SACCADE_CHECK(runs_csv(runs).write(folder / "runs.csv"));
-  SACCADE_CHECK(views_csv(runs).write(folder / "views.csv"));
-  SACCADE_CHECK(summary_csv(summaries).write(folder / "summary.csv"));
+Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared) {
+  SACCADE_CHECK(runs_csv(compared.runs, compared.budget).write(folder / "runs.csv"));
+  SACCADE_CHECK(views_csv(compared.runs).write(folder / "views.csv"));
+  SACCADE_CHECK(summary_csv(compared.summaries).write(folder / "summary.csv"));
   std::string drawn;
-  for (const CampaignSummary& summary : summaries) {  // those of one scene follow each other
-    if (summary.scene == drawn) continue;
-    drawn = summary.scene;
-    SACCADE_CHECK(write_file_atomically(folder / picture_name(drawn), picture_of(drawn, runs, summaries)));
+  for (const CampaignSummary& summary : compared.summaries) {  // those of one scene follow each other
+    if (!summary.group.scene || *summary.group.scene == drawn) continue;
+    drawn = *summary.group.scene;
+    SACCADE_CHECK(
+        write_file_atomically(folder / picture_name("coverage", drawn), plot_svg(coverage_plot(compared, drawn))));
+    SACCADE_CHECK(
+        write_file_atomically(folder / picture_name("unknown", drawn), plot_svg(unknown_plot(compared, drawn))));
   }
   return {};
 }
 
-void print_comparison(std::ostream& out, std::span<const CampaignSummary> summaries,
-                      std::span<const StrategyGap> gaps) {
+std::string estimate_text(const RunFigure& figure, const MeanEstimate& estimate, std::size_t of) {
+  if (estimate.n == 0) return {};
+  std::string text = fixed(figure.scale * estimate.mean, figure.decimals);
+  if (text.find_first_of("123456789") == std::string::npos && text.front() == '-') text.erase(0, 1);
+  if (estimate.half_width) text += " ± " + fixed(figure.scale * *estimate.half_width, figure.decimals);
+  if (estimate.n != of) text += " (" + std::to_string(estimate.n) + " of " + std::to_string(of) + ")";
+  return text;
+}
+
+void print_comparison(std::ostream& out, const ComparedRuns& compared) {
   constexpr std::size_t kName{18};
-  constexpr std::size_t kFigure{16};
-  out << padded("scene", kName) << padded("strategy", kName) << padded("runs", 6) << padded("scan, %", kFigure)
-      << padded("end, %", kFigure) << "views\n";
-  for (const CampaignSummary& summary : summaries) {
-    out << padded(summary.scene, kName) << padded(summary.strategy, kName)
-        << padded(std::to_string(summary.coverage.n), 6) << padded(percent_text(summary.initial_coverage), kFigure)
-        << padded(percent_text(summary.coverage), kFigure) << fixed(summary.views.mean, 1) << '\n';
+  constexpr std::size_t kFigure{14};
+  std::size_t label = kName;
+  for (const CampaignSummary& summary : compared.summaries) {
+    label = std::max(label, label_of(summary.group, compared).size() + 2);
   }
-  for (const StrategyGap& gap : gaps) {
-    if (gap.coverage.n == 0) continue;
-    out << padded(gap.scene, kName) << gap.a << " - " << gap.b << ": " << percent_text(gap.coverage)
-        << " points of coverage, by seed; ";
-    if (gap.coverage.half_width) {
-      out << "the intervals of the means are " << (gap.apart ? "apart\n" : "not apart\n");
-    } else {
-      out << "one seed has no interval\n";
+  // Of many scenes only what they come to together: the page and the tables have each.
+  constexpr std::size_t kMostLines{24};
+  const bool brief = compared.summaries.size() > kMostLines;
+  const auto is_told = [&](const CampaignGroup& group) { return !brief || !group.scene; };
+  out << padded("scene", kName) << padded("strategy", label) << padded("runs", 6);
+  for (const char* head : {"scan, %", "end, %", "area, %", "views"}) out << padded(head, kFigure);
+  out << "unknown near objects\n";
+  for (const CampaignSummary& summary : compared.summaries) {
+    if (!is_told(summary.group)) continue;
+    out << padded(summary.group.scene.value_or(std::string{kAllScenes}), kName)
+        << padded(label_of(summary.group, compared), label) << padded(std::to_string(summary.runs), 6);
+    for (const char* name : {"initial_coverage", "coverage", "coverage_area", "views"}) {
+      out << padded(cell(summary, name), kFigure);
     }
+    out << cell(summary, "unknown_near_objects") << '\n';
+  }
+  for (const StrategyGap& gap : compared.gaps) {
+    if (is_told(gap.a)) print_gap(out, gap, compared);
   }
 }
 
-json comparison_json(std::span<const CampaignSummary> summaries, std::span<const StrategyGap> gaps) {
+json comparison_json(const ComparedRuns& compared) {
   json rows = json::array();
-  for (const CampaignSummary& summary : summaries) {
-    rows.push_back({{"scene", summary.scene},
-                    {"strategy", summary.strategy},
-                    {"initial_coverage", estimate_json(summary.initial_coverage)},
-                    {"coverage", estimate_json(summary.coverage)},
-                    {"unknown_near_objects", estimate_json(summary.unknown_near_objects)},
-                    {"f_score", estimate_json(summary.f_score)},
-                    {"accuracy_m", estimate_json(summary.accuracy_m)},
-                    {"views", estimate_json(summary.views)},
-                    {"seconds", estimate_json(summary.seconds)}});
+  for (const CampaignSummary& summary : compared.summaries) {
+    json row{{"scene", scene_json(summary.group)},
+             {"strategy", summary.group.strategy},
+             {"noise", summary.group.noise},
+             {"runs", summary.runs},
+             {"stopped_because", summary.stopped}};
+    for (std::size_t i = 0; i < summary.figures.size(); ++i) {
+      row[run_figures()[i].name] = estimate_json(summary.figures[i]);
+    }
+    json shares = json::array();
+    for (const MeanEstimate& share : object_view_shares(compared.runs, summary.group)) {
+      shares.push_back(estimate_json(share));
+    }
+    row["points_at_object"] = std::move(shares);
+    rows.push_back(std::move(row));
   }
   json differences = json::array();
-  for (const StrategyGap& gap : gaps) {
-    differences.push_back({{"scene", gap.scene},
-                           {"a", gap.a},
-                           {"b", gap.b},
-                           {"coverage", estimate_json(gap.coverage)},
-                           {"apart_initially", gap.apart_initially},
-                           {"apart", gap.apart}});
+  for (const StrategyGap& gap : compared.gaps) {
+    json row{{"scene", scene_json(gap.a)}, {"noise", gap.a.noise}, {"a", gap.a.strategy},
+             {"b", gap.b.strategy},        {"apart", gap.apart},   {"apart_initially", gap.apart_initially}};
+    for (const char* name : {"coverage", "coverage_area", "unknown_near_objects_at_5", "unknown_near_objects"}) {
+      row[name] = estimate_json(gap.of(name));
+    }
+    differences.push_back(std::move(row));
   }
   return {{"summaries", std::move(rows)}, {"gaps", std::move(differences)}};
 }

@@ -10,34 +10,55 @@
 #include <vector>
 
 #include "saccade/io/campaign_summary.hpp"
+#include "saccade/report/plot.hpp"
 
 namespace saccade::cli {
 
-/// Two strategies in one scene.
+/// Two strategies in one scene, or in all, with one noise.
 struct StrategyGap {
-  std::string scene;
-  std::string a;
-  std::string b;
-  MeanEstimate coverage;   ///< final coverage of a minus that of b, in the seeds that both have
-  bool apart_initially{};  ///< the intervals of the two means do not touch, after the initial scan
-  bool apart{};            ///< and at the end
+  CampaignGroup a;
+  CampaignGroup b;
+  std::vector<MeanEstimate> figures;  ///< paired_gaps
+  bool apart_initially{};             ///< the intervals of the mean coverages do not touch, after the initial scan
+  bool apart{};                       ///< and at the end
+
+  /// Expects the name of a figure.
+  [[nodiscard]] const MeanEstimate& of(std::string_view name) const { return figures[run_figure_index(name)]; }
 };
 
-/// The first strategy of each scene against each other one.
-[[nodiscard]] std::vector<StrategyGap> gaps_of(std::span<const CampaignRun> runs,
-                                               std::span<const CampaignSummary> summaries);
+/// A comparison that is done, or as far as it is.
+struct ComparedRuns {
+  std::vector<CampaignRun> runs;
+  std::size_t budget{0};  ///< views that every run might have taken
+  std::vector<CampaignSummary> summaries;
+  std::vector<StrategyGap> gaps;  ///< the first strategy of each scene and noise against each other one
+};
+[[nodiscard]] ComparedRuns compared(std::vector<CampaignRun> runs, std::size_t budget);
+
+/// "sphere", or "sphere, none" where several noises are compared.
+[[nodiscard]] std::string label_of(const CampaignGroup& group, const ComparedRuns& compared);
+
+/// "sphere - random", or "sphere - random, none", with whatever stands for the minus.
+[[nodiscard]] std::string gap_label(const StrategyGap& gap, const ComparedRuns& compared, const std::string& minus);
+
+/// Mean and confidence band over the views, a curve per strategy and noise of the scene; nullopt: all scenes.
+[[nodiscard]] Plot coverage_plot(const ComparedRuns& compared, const std::optional<std::string>& scene);
+/// The same of the unknown voxels near the objects, as Fig. 3.17.
+[[nodiscard]] Plot unknown_plot(const ComparedRuns& compared, const std::optional<std::string>& scene);
 
 /// "coverage-SCENE.svg", where what is neither a letter nor a digit of ASCII, nor one of "._-", becomes a hyphen.
-[[nodiscard]] std::string picture_name(const std::string& scene);
+[[nodiscard]] std::string picture_name(const std::string& what, const std::string& scene);
 
-/// Writes runs.csv, views.csv, summary.csv and a picture per scene into the folder. io_failure.
-[[nodiscard]] Status write_comparison(const std::filesystem::path& folder, std::span<const CampaignRun> runs,
-                                      std::span<const CampaignSummary> summaries);
+/// Writes runs.csv, views.csv, summary.csv and two pictures per scene into the folder. io_failure.
+[[nodiscard]] Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared);
 
-void print_comparison(std::ostream& out, std::span<const CampaignSummary> summaries, std::span<const StrategyGap> gaps);
+void print_comparison(std::ostream& out, const ComparedRuns& compared);
 
 /// {summaries: […], gaps: […]}.
-[[nodiscard]] nlohmann::json comparison_json(std::span<const CampaignSummary> summaries,
-                                             std::span<const StrategyGap> gaps);
+[[nodiscard]] nlohmann::json comparison_json(const ComparedRuns& compared);
+
+/// "93.1 ± 0.8", as the figure is shown to people, without its unit, without a half width where there is none, and
+/// with "(7 of 10)" where only so many runs have it; empty: none has.
+[[nodiscard]] std::string estimate_text(const RunFigure& figure, const MeanEstimate& estimate, std::size_t of);
 
 }  // namespace saccade::cli

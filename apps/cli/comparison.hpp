@@ -2,12 +2,12 @@
 #pragma once
 // Comparison: the runs of `saccade compare`, those that a campaign file has already and those still to be done.
 
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
 
 #include "compare_options.hpp"
-#include "progress_bar.hpp"
 #include "saccade/io/campaign.hpp"
 #include "saccade/scene/ray_scene.hpp"
 
@@ -23,40 +23,45 @@ struct ComparedScene {
 struct PlannedRun {
   std::size_t scene{0};  ///< index into Comparison::scenes()
   StrategyKind strategy{StrategyKind::sphere};
+  std::string noise;  ///< noise_key
   std::uint64_t seed{1};
   std::optional<int> max_views;  ///< nullopt: as many as a run that is still to be done will take
   bool found{false};             ///< the campaign has it
 };
 
-/// Runs scene by scene, seed by seed, strategy by strategy, the same for every thread count.
+/// Scene by scene, noise by noise, seed by seed, strategy by strategy.
 class Comparison {
  public:
-  /// Builds the scenes. Errors: those of find_scene and RayScene::build; invalid_argument for two different scenes
-  /// with one name.
+  /// Reads and builds the scenes and the arm. Errors: those of find_scene, mesh_scene, find_robot and RayScene::build;
+  /// invalid_argument for two different scenes with one name, and for one in which there is nothing but supports.
   [[nodiscard]] static Result<Comparison> create(const CompareOptions& options);
 
   [[nodiscard]] const CompareOptions& options() const { return options_; }
   [[nodiscard]] const std::vector<ComparedScene>& scenes() const { return scenes_; }
+  /// Views that every run might take, but for those with as many as sphere took.
+  [[nodiscard]] std::size_t budget() const { return static_cast<std::size_t>(options_.run.run.exploration.max_views); }
+  /// "free", or the arm's name.
+  [[nodiscard]] std::string robot_name() const { return arm_ ? arm_->name() : "free"; }
   /// All runs in their order. campaign: nullptr for one that is not there yet.
   [[nodiscard]] Result<std::vector<PlannedRun>> plan(const Campaign* campaign) const;
+  /// One of them as things are now.
+  [[nodiscard]] Result<PlannedRun> plan_again(const Campaign& campaign, const PlannedRun& run) const;
 
-  /// Does what the campaign lacks and stores it there, run by run, until everything is done or the user interrupts.
-  /// @return how many runs were done now.
-  [[nodiscard]] Result<std::size_t> run(const Campaign& campaign, const Executor& executor,
-                                        ProgressBar& progress) const;
+  /// Expects that max_views is known.
+  [[nodiscard]] SimulatedRunConfig config_of(const PlannedRun& run) const;
+  [[nodiscard]] CampaignKey key_of(const PlannedRun& run) const;
 
   /// The runs of this comparison that the campaign has, in their order.
   [[nodiscard]] Result<std::vector<CampaignRun>> finished(const Campaign& campaign) const;
 
  private:
   explicit Comparison(const CompareOptions& options) : options_{options} {}
-  [[nodiscard]] Result<PlannedRun> planned(const Campaign* campaign, std::size_t scene, std::uint64_t seed,
-                                           StrategyKind strategy) const;
-  [[nodiscard]] SimulatedRunConfig config_of(const PlannedRun& run) const;
-  [[nodiscard]] CampaignKey key_of(const PlannedRun& run) const;
+  [[nodiscard]] Status add_scene(Scene scene, const std::string& given_as);
 
   CompareOptions options_;
   std::vector<ComparedScene> scenes_;
+  std::shared_ptr<const ArmModel> arm_;  ///< null: the camera flies
+  std::string arm_hash_;
 };
 
 }  // namespace saccade::cli

@@ -31,13 +31,7 @@ json configuration_json(const std::optional<Configuration>& q) {
   return q ? json(std::vector<double>(q->begin(), q->end())) : json(nullptr);
 }
 
-json refused_json(const RefusalCounts& refused) {
-  json counts = json::object();
-  for (const Refusal refusal : kRefusals) {
-    if (refused.of(refusal) > 0) counts[std::string{to_string(refusal)}] = refused.of(refusal);
-  }
-  return counts;
-}
+json refused_json(const RefusalCounts& refused) { return refusals_to_json(refused); }
 
 json view_json(const ExploredView& view, std::size_t index) {
   return {{"index", index},

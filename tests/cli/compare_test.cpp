@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "run_program.hpp"
-#include "saccade/io/campaign.hpp"
+#include "saccade/io/campaign_figures.hpp"
 #include "saccade/io/json_io.hpp"
 
 namespace saccade::test {
@@ -13,9 +13,18 @@ namespace {
 
 const Arguments kCoarse{"--image-size", "96,72", "--voxel-size", "0.03"};
 
-Arguments compare(const fs::path& out, const Arguments& more) {
-  return Arguments{"compare", "--scenes", "clutter:5", "--out", out.string(), "--max-views", "1"} + kCoarse +
-         (std::count(more.begin(), more.end(), "--min-gain") > 0 ? more : more + Arguments{"--min-gain", "1"});
+/// One view at most, and one that gains little will do, unless told otherwise.
+Arguments compare_scenes(const fs::path& out, const std::string& scenes, const Arguments& more = {}) {
+  const bool choosy = std::count(more.begin(), more.end(), "--min-gain") > 0;
+  return Arguments{"compare", "--scenes", scenes, "--out", out.string(), "--max-views", "1"} + kCoarse + more +
+         (choosy ? Arguments{} : Arguments{"--min-gain", "1"});
+}
+
+Arguments compare(const fs::path& out, const Arguments& more) { return compare_scenes(out, "clutter:5", more); }
+
+/// One run of each scene.
+Arguments once(const fs::path& out, const std::string& scenes, const Arguments& more = {}) {
+  return compare_scenes(out, scenes, Arguments{"--seeds", "1", "--strategies", "sphere", "--quiet"} + more);
 }
 
 std::vector<CampaignRun> runs_in(const fs::path& out) {
@@ -56,14 +65,17 @@ TEST(CompareCommand, GoesOnWhereItStopped) {
   ASSERT_EQ(result.at("summaries").size(), 2U);
   const nlohmann::json& sphere = result.at("summaries")[0].at("coverage");
   EXPECT_EQ(sphere.at("n"), 2);
-  EXPECT_NEAR(sphere.at("mean").get<double>(), 0.5 * (after[0].final().coverage + after[2].final().coverage), 1e-12);
+  double sum = 0.0;  // runs that were done at once are stored in any order
+  for (const CampaignRun& run : after) sum += run.key.strategy == "sphere" ? run.final().coverage : 0.0;
+  EXPECT_NEAR(sphere.at("mean").get<double>(), 0.5 * sum, 1e-12);
   EXPECT_LT(sphere.at("low").get<double>(), sphere.at("mean").get<double>());
   EXPECT_EQ(result.at("gaps").at(0).at("coverage").at("n"), 2);
-  EXPECT_EQ(names_in(out),
-            (Arguments{"campaign.sqlite", "coverage-clutter-5.svg", "runs.csv", "summary.csv", "views.csv"}));
+  EXPECT_EQ(names_in(out), (Arguments{"campaign.sqlite", "coverage-clutter-5.svg", "index.html", "runs.csv",
+                                      "summary.csv", "unknown-clutter-5.svg", "views.csv"}));
   EXPECT_EQ(lines_of(out / "runs.csv"), 5);
   EXPECT_EQ(lines_of(out / "views.csv"), 9);  // the scan and one view of each run
-  EXPECT_EQ(lines_of(out / "summary.csv"), 3);
+  EXPECT_EQ(lines_of(out / "summary.csv"), 1 + 2 * std::ssize(run_figures()));
+  EXPECT_TRUE(text_of(out / "index.html").starts_with("<!DOCTYPE html>"));
   EXPECT_TRUE(text_of(out / "coverage-clutter-5.svg").starts_with("<svg "));
 
   // Other settings are other runs.
@@ -77,47 +89,104 @@ TEST(CompareCommand, AnInterruptionKeepsWhatIsDone) {
   const TempFolder folder;
   const fs::path out = folder / "out";
   RunningProgram program{compare(out, {"--seeds", "1-1000"})};
-  ASSERT_TRUE(program.wait_for("sphere, seed 2"));
+  ASSERT_TRUE(program.wait_for("sphere, seed 5"));
   program.send(SIGINT);
   const Outcome outcome = program.finish();
   EXPECT_EQ(outcome.status, 130) << outcome.err;
   EXPECT_NE(outcome.err.find("the same command goes on"), std::string::npos) << outcome.err;
   const std::vector<CampaignRun> runs = runs_in(out);
   EXPECT_GE(runs.size(), 2U);
-  EXPECT_LT(runs.size(), 20U);
+  EXPECT_LT(runs.size(), 40U);
   EXPECT_EQ(lines_of(out / "runs.csv"), static_cast<std::ptrdiff_t>(runs.size()) + 1);
   const Outcome listed = run_program(compare(out, {"--seeds", "1-1000", "--list"}));
   EXPECT_NE(listed.out.find("2000 runs, " + std::to_string(runs.size()) + " of them done"), std::string::npos);
 }
 
 TEST(CompareCommand, HasTheFiguresOfExplore) {
+  for (const char* robot : {"free", "comau"}) {
+    const TempFolder folder;
+    const Outcome compared = run_program(compare(
+        folder / "out", {"--seeds", "3", "--strategies", "random", "--robot", robot, "--quiet", "--threads", "1"}));
+    ASSERT_EQ(compared.status, 0) << compared.err;
+    const std::vector<CampaignRun> runs = runs_in(folder / "out");
+    ASSERT_EQ(runs.size(), 1U);
+    const Outcome explored = run_program(
+        Arguments{"explore", "clutter:5", "--out", (folder / "run").string(), "--quiet", "--robot", robot, "--seed",
+                  "3", "--strategy", "random", "--max-views", "1", "--min-gain", "1", "--no-pictures", "--json", "-"} +
+        kCoarse);
+    ASSERT_EQ(explored.status, 0) << explored.err;
+    const nlohmann::json result = explored.json().at("result");
+    EXPECT_EQ(runs[0].initial.coverage, result.at("initial").at("coverage").get<double>());
+    EXPECT_EQ(runs[0].scan_views, result.at("initial").at("views").get<std::size_t>());
+    EXPECT_EQ(runs[0].stopped_because, result.at("stopped_because").get<std::string>());
+    ASSERT_EQ(runs[0].views.size(), 1U);
+    ASSERT_EQ(result.at("views").size(), 1U);
+    const CampaignView& view = runs[0].views[0];
+    const nlohmann::json& told = result.at("views")[0];
+    const auto T_world_camera = pose_from_json(told.at("T_world_camera"));
+    ASSERT_TRUE(T_world_camera);
+    EXPECT_LT((view.T_world_camera.matrix() - T_world_camera->matrix()).norm(), 1e-12);
+    EXPECT_EQ(view.after.unknown_left, told.at("unknown_left").get<std::size_t>());
+    EXPECT_EQ(view.points_at_object, told.at("points_at_object").get<bool>());
+    EXPECT_EQ(refusals_to_json(view.refused), told.at("refused"));
+    EXPECT_EQ(view.motion_s, told.at("motion_s").get<double>());
+    if (view.motion_s > 0.0) {
+      EXPECT_NEAR(view.path_m, told.at("path_m").get<double>(), 1e-9);
+    }
+    EXPECT_EQ(view.motion_s > 0.0, std::string{robot} == "comau");
+    EXPECT_GT(view.path_m, 0.0);
+    const nlohmann::json& final = result.at("final");
+    EXPECT_EQ(runs[0].final().coverage, final.at("coverage").get<double>());
+    EXPECT_EQ(runs[0].final().unknown_near_objects, final.at("unknown_near_objects").get<std::size_t>());
+    EXPECT_EQ(runs[0].final().f_score.value(), final.at("f_score").get<double>());
+    EXPECT_EQ(runs[0].final().accuracy_m.value(), final.at("accuracy_m").get<double>());
+  }
+}
+
+/// The runs' figures, without times, in the order of their keys.
+std::vector<std::string> figures_in(const fs::path& out) {
+  std::vector<std::string> all;
+  for (CampaignRun run : runs_in(out)) {
+    std::string text = run.key.scene + run.key.strategy + run.key.noise + std::to_string(run.key.seed) + ' ' +
+                       run.key.settings + ' ' + run.stopped_because;
+    run.seconds = 0.0;
+    for (CampaignView& view : run.views) view.phases_ms = {};
+    for (const RunFigure& figure : run_figures()) text += ' ' + std::to_string(figure.of(run, 2).value_or(-1.0));
+    all.push_back(std::move(text));
+  }
+  std::sort(all.begin(), all.end());
+  return all;
+}
+
+TEST(CompareCommand, JobsAndThreadsChangeNoFigure) {
   const TempFolder folder;
-  const Outcome compared =
-      run_program(compare(folder / "out", {"--seeds", "3", "--strategies", "random", "--quiet", "--threads", "1"}));
-  ASSERT_EQ(compared.status, 0) << compared.err;
-  const std::vector<CampaignRun> runs = runs_in(folder / "out");
-  ASSERT_EQ(runs.size(), 1U);
-  const Outcome explored = run_program(
-      Arguments{"explore", "clutter:5", "--out", (folder / "run").string(), "--quiet", "--robot", "free", "--seed", "3",
-                "--strategy", "random", "--max-views", "1", "--min-gain", "1", "--no-pictures", "--json", "-"} +
-      kCoarse);
-  ASSERT_EQ(explored.status, 0) << explored.err;
-  const nlohmann::json result = explored.json().at("result");
-  EXPECT_EQ(runs[0].initial.coverage, result.at("initial").at("coverage").get<double>());
-  EXPECT_EQ(runs[0].stopped_because, result.at("stopped_because").get<std::string>());
-  ASSERT_EQ(runs[0].views.size(), 1U);
-  ASSERT_EQ(result.at("views").size(), 1U);
-  const CampaignView& view = runs[0].views[0];
-  const auto T_world_camera = pose_from_json(result.at("views")[0].at("T_world_camera"));
-  ASSERT_TRUE(T_world_camera);
-  EXPECT_LT((view.T_world_camera.matrix() - T_world_camera->matrix()).norm(), 1e-12);
-  EXPECT_EQ(view.after.unknown_left, result.at("views")[0].at("unknown_left").get<std::size_t>());
-  EXPECT_EQ(view.points_at_object, result.at("views")[0].at("points_at_object").get<bool>());
-  const nlohmann::json& final = result.at("final");
-  EXPECT_EQ(runs[0].final().coverage, final.at("coverage").get<double>());
-  EXPECT_EQ(runs[0].final().unknown_near_objects, final.at("unknown_near_objects").get<std::size_t>());
-  EXPECT_EQ(runs[0].final().f_score.value(), final.at("f_score").get<double>());
-  EXPECT_EQ(runs[0].final().accuracy_m.value(), final.at("accuracy_m").get<double>());
+  const Arguments wanted{"--seeds", "1-2", "--robot", "comau", "--noise", "none,kinect-v1", "--quiet"};
+  ASSERT_EQ(run_program(compare(folder / "one", wanted + Arguments{"--jobs", "1", "--threads", "1"})).status, 0);
+  ASSERT_EQ(run_program(compare(folder / "four", wanted + Arguments{"--jobs", "4", "--threads", "8"})).status, 0);
+  const std::vector<std::string> one = figures_in(folder / "one");
+  EXPECT_EQ(one.size(), 8U);
+  EXPECT_EQ(one, figures_in(folder / "four"));
+}
+
+TEST(CompareCommand, AKilledComparisonGoesOnWhereItStopped) {
+  const TempFolder folder;
+  const Arguments wanted{"--seeds", "1-6", "--jobs", "3"};
+  {
+    RunningProgram program{compare(folder / "killed", wanted)};
+    ASSERT_TRUE(program.wait_for("sphere, seed 4"));
+    program.send(SIGKILL);
+    EXPECT_EQ(program.finish().status, -1);
+  }
+  const std::size_t before = runs_in(folder / "killed").size();
+  EXPECT_GE(before, 3U);  // no more were at work than jobs
+  EXPECT_LT(before, 12U);
+  const Outcome again = run_program(compare(folder / "killed", wanted));
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find(std::to_string(12 - before) + " done now, " + std::to_string(before) + " found"),
+            std::string::npos)
+      << again.out;
+  ASSERT_EQ(run_program(compare(folder / "whole", wanted + Arguments{"--quiet"})).status, 0);
+  EXPECT_EQ(figures_in(folder / "killed"), figures_in(folder / "whole"));
 }
 
 TEST(CompareCommand, RandomGetsAsManyViewsAsSphereTook) {
@@ -125,12 +194,12 @@ TEST(CompareCommand, RandomGetsAsManyViewsAsSphereTook) {
   const fs::path out = folder / "out";
   // Nothing gains that much: sphere takes no view.
   const Arguments choosy{"--seeds", "1", "--min-gain", "1e9", "--quiet", "--no-noise"};
-  ASSERT_EQ(run_program(compare(out, choosy)).status, 0);
+  ASSERT_EQ(run_program(compare(out, choosy + Arguments{"--equal-views"})).status, 0);
   std::vector<CampaignRun> runs = runs_in(out);
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[0].key.strategy, "sphere");
   EXPECT_TRUE(runs[0].views.empty() && runs[1].views.empty());
-  ASSERT_EQ(run_program(compare(out, choosy + Arguments{"--no-equal-views"})).status, 0);
+  ASSERT_EQ(run_program(compare(out, choosy)).status, 0);
   runs = runs_in(out);
   ASSERT_EQ(runs.size(), 3U);
   EXPECT_EQ(runs[2].key.strategy, "random");
@@ -148,10 +217,23 @@ TEST(CompareCommand, RefusesWhatItCannotDo) {
   refused({"--scenes", "jug,,jug"}, 2, {"--scenes"});
   refused({"--scenes", "atrium"}, 3, {"no such scene"});
   refused({"--scenes", "jug", "--strategies", "best"}, 2, {"--strategies", "sphere"});
+  refused({"--scenes", "jug", "--strategies", "random", "--equal-views"}, 2, {"--equal-views", "needs sphere"});
+  for (const char* range : {"clutter:3-1", "clutter:1-", "clutter:1-x", "clutter:0-100000"})
+    refused({"--scenes", range}, 2, {"--scenes", "clutter:1-30"});
+  refused({"--scenes", "clutter:x"}, 3, {"a seed is a whole number"});
+  refused({"--scenes", "jug", "--noise", "some"}, 2, {"--noise", "kinect-v2"});
+  refused({"--scenes", "jug", "--noise", "none", "--no-noise"}, 2, {"--noise"});
+  refused({"--scenes", "jug", "--jobs", "0"}, 2, {"--jobs"});
+  refused({"--scenes", "jug", "--robot", "hal"}, 3, {"hal"});
+  refused({"--scenes", "jug", "--mesh-scale", "0"}, 2, {"--mesh-scale"});
   for (const char* seeds : {"", "x", "3-1", "1-", "-1", "1,,2", "9223372036854775808", "0-9223372036854775807"})
     refused({"--scenes", "jug", "--seeds", seeds}, 2, {"--seeds"});
   refused({"--scenes", "jug", "--voxel-size", "0"}, 2, {"--voxel-size"});
 
+  const Outcome ranges = run_program({"compare", "--out", out.string(), "--scenes", "clutter:1-30,clutter:7", "--seeds",
+                                      "1", "--noise", "none,kinect-v2", "--list"});
+  EXPECT_NE(ranges.out.find("120 runs, 0 of them done"), std::string::npos) << ranges.out << ranges.err;
+  EXPECT_NE(ranges.out.find("kinect-v2"), std::string::npos);
   const Outcome listed = run_program(compare(out, {"--list"}));
   EXPECT_EQ(listed.status, 0) << listed.err;
   EXPECT_NE(listed.out.find("20 runs, 0 of them done"), std::string::npos) << listed.out;
@@ -162,6 +244,83 @@ TEST(CompareCommand, RefusesWhatItCannotDo) {
   folder.write("text/campaign.sqlite", "mine");
   expect_failure(run_program(compare(folder / "text", {})), 3, "compare", {"campaign.sqlite", "not an SQLite file"});
   EXPECT_EQ(text_of(folder / "text/campaign.sqlite"), "mine");
+}
+
+/// A box of these sizes in an OBJ file.
+std::string box_obj(double x, double y, double z) {
+  std::string text;
+  for (int i = 0; i < 8; ++i) {
+    text +=
+        "v " + std::to_string(i % 2 * x) + ' ' + std::to_string(i / 2 % 2 * y) + ' ' + std::to_string(i / 4 * z) + '\n';
+  }
+  for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"})
+    text += std::string{"f "} + face + '\n';
+  return text;
+}
+
+TEST(CompareCommand, EveryMeshOfAFolderIsAScene) {
+  const TempFolder folder;
+  folder.write("meshes/box.obj", box_obj(120, 80, 150));
+  folder.write("meshes/flat.OBJ", box_obj(200, 200, 30));
+  folder.write("meshes/notes.txt", "not a mesh");
+  const std::string meshes = (folder / "meshes").string();
+  expect_failure(run_program(once(folder / "out", meshes)), 3, "compare",
+                 {"box.obj", "120 x 80 x 150 m", "0.001 (millimetres)"});
+  const Outcome done =
+      run_program(once(folder / "out", meshes, {"--mesh-scale", "0.001", "--robot", "comau", "--json", "-"}));
+  ASSERT_EQ(done.status, 0) << done.err;
+  const nlohmann::json result = done.json();
+  const nlohmann::json& summaries = result.at("result").at("summaries");
+  ASSERT_EQ(summaries.size(), 3U);
+  EXPECT_EQ(summaries[0].at("scene"), "box.obj");
+  EXPECT_EQ(summaries[1].at("scene"), "flat.OBJ");
+  EXPECT_TRUE(summaries[2].at("scene").is_null());  // both
+  EXPECT_GT(summaries[0].at("coverage").at("mean").get<double>(), 0.5);
+  const Outcome one =
+      run_program(once(folder / "out", meshes + "/box.obj", {"--mesh-scale", "0.001", "--robot", "comau", "--list"}));
+  EXPECT_NE(one.out.find("1 runs, 1 of them done"), std::string::npos) << one.out << one.err;
+}
+
+TEST(CompareCommand, ScenesInWhichThereIsNothing) {
+  const TempFolder folder;
+  const fs::path out = folder / "out";
+  fs::create_directory(folder / "empty");
+  expect_failure(run_program(once(out, (folder / "empty").string())), 3, "compare", {"holds no mesh"});
+  folder.write("broken/cup.stl", "solid? no");
+  expect_failure(run_program(once(out, (folder / "broken").string())), 3, "compare", {"cup.stl"});
+  folder.write("table.yaml",
+               "scene: table\nworkspace: {min: [-0.5, -0.5, 0], max: [0.5, 0.5, 0.4]}\nobjects:\n"
+               "  - {name: table, box: {size: [1, 1, 0.04]}, at: [0, 0, -0.04], support: true}\n");
+  expect_failure(run_program(once(out, (folder / "table.yaml").string())), 3, "compare", {"no object in the scene"});
+  folder.write("away.yaml",
+               "scene: away\nworkspace: {min: [-0.5, -0.5, 0], max: [0.5, 0.5, 0.4]}\nobjects:\n"
+               "  - {name: ball, sphere: {radius: 0.05}, at: [3, 0, 0]}\n");
+  expect_failure(run_program(once(out, (folder / "away.yaml").string())), 3, "compare",
+                 {"away", "no surface of an object can be seen"});
+}
+
+TEST(CompareCommand, AFullDiskIsSaidBeforeTheWork) {
+  const TempFolder folder;
+  const Outcome full = run_program(once(folder / "out", "clutter:5"), 100000);
+  EXPECT_NE(full.status, 0);
+  EXPECT_EQ(std::count(full.err.begin(), full.err.end(), '\n'), 1) << full.err;
+}
+
+TEST(CompareCommand, ThereIsNoViewWhereEverythingIsKnownOrNothingCanBeReached) {
+  const TempFolder folder;
+  // Nothing gains so much: to the strategy, everything is known.
+  const Outcome known = run_program(once(folder / "known", "clutter:5", {"--min-gain", "1e9", "--json", "-"}));
+  ASSERT_EQ(known.status, 0) << known.err;
+  nlohmann::json row = known.json().at("result").at("summaries").at(0);
+  EXPECT_EQ(row.at("stopped_because"), (nlohmann::json{{"regions_done", 1}}));
+  EXPECT_EQ(row.at("views").at("mean"), 0.0);
+  // Farther from the table than the arm is long.
+  const Outcome far = run_program(
+      once(folder / "far", "clutter:5", {"--robot", "comau", "--radius", "9", "--max-range", "12", "--json", "-"}));
+  ASSERT_EQ(far.status, 0) << far.err;
+  row = far.json().at("result").at("summaries").at(0);
+  EXPECT_EQ(row.at("stopped_because"), (nlohmann::json{{"no_candidate", 1}}));
+  EXPECT_GT(runs_in(folder / "far").at(0).refused_at_end.total(), 0U);
 }
 
 }  // namespace

@@ -3,14 +3,17 @@
 // Campaign: the runs of a comparison in one SQLite file, each stored once, whole or not at all. Tables:
 // docs/compare.md.
 
+#include <array>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saccade/core/pose.hpp"
 #include "saccade/io/sqlite_file.hpp"
+#include "saccade/robot/refusal.hpp"
 
 namespace saccade {
 
@@ -19,6 +22,7 @@ struct CampaignKey {
   std::string scene;
   std::string scene_hash;  ///< of the scene's content (scene_hash): an edited scene is another one
   std::string strategy;
+  std::string noise;      ///< of the simulated sensor: none, kinect-v1, …
   std::uint64_t seed{1};  ///< below 2⁶³
   std::string settings;   ///< canonical JSON of all that else changes the figures: keys sorted, no blanks
 
@@ -37,25 +41,35 @@ struct CampaignFigures {
   [[nodiscard]] bool operator==(const CampaignFigures&) const = default;
 };
 
+/// What the wall time of a view is spent on, in the order in which it is done.
+inline constexpr std::array<std::string_view, 9> kViewPhases{"planner_map", "candidates",   "segmentation",
+                                                             "saliency",    "reachability", "evaluation",
+                                                             "planning",    "motion",       "fusion"};
+using PhaseTimes = std::array<double, kViewPhases.size()>;  ///< ms
+
 struct CampaignView {
   std::size_t region{0};
   std::optional<double> gain;  ///< as predicted
   Pose T_world_camera{Pose::Identity()};
   std::size_t candidates{0};
+  std::size_t evaluated{0};  ///< of these, the poses whose gain was computed
+  RefusalCounts refused{};
   std::size_t frames{0};
   CampaignFigures after;
   bool points_at_object{false};
-  double candidates_ms{0.0};
-  double evaluation_ms{0.0};
-  double motion_ms{0.0};
-  double fusion_ms{0.0};
+  double path_m{0.0};    ///< of the camera, to the view
+  double motion_s{0.0};  ///< of an arm; 0 where that is not known
+  PhaseTimes phases_ms{};
 };
 
 struct CampaignRun {
   CampaignKey key;
-  CampaignFigures initial;  ///< after the initial scan
+  std::size_t scan_views{0};
+  RefusalCounts scan_refused{};  ///< poses of the scan that were passed over
+  CampaignFigures initial;       ///< after the initial scan
   std::vector<CampaignView> views;
   std::string stopped_because;
+  RefusalCounts refused_at_end{};  ///< where no view could be taken any more: why
   double seconds{0.0};
   std::string program_version;
   std::string finished_at;  ///< UTC, as 2024-06-30T12:00:00Z; set when the run is stored
@@ -68,8 +82,9 @@ struct CampaignRun {
 /// once; each waits up to ten seconds for the others. One thread. Errors carry the file's path: those of SqliteFile.
 class Campaign {
  public:
-  /// Opens the file, or creates it, and tries whether it can be written. invalid_argument for another program's
-  /// database; unsupported for one of a newer Saccade.
+  /// Opens the file, or creates it, and tries whether it can be written. One of an older Saccade is brought up to date:
+  /// its runs stay, and have 0 for what was not recorded then. invalid_argument for another program's database;
+  /// unsupported for one of a newer Saccade.
   [[nodiscard]] static Result<Campaign> open(const std::filesystem::path& path);
 
   [[nodiscard]] Result<bool> has(const CampaignKey& key) const;

@@ -4,45 +4,43 @@
 namespace saccade {
 namespace {
 
+constexpr std::array<std::string_view, 5> kKeyColumns{"scene", "scene_hash", "strategy", "noise", "seed"};
+constexpr std::array<std::string_view, 6> kMapColumns{"coverage",   "unknown_left", "unknown_near_objects",
+                                                      "accuracy_m", "chamfer_m",    "f_score"};
+/// Of a view, between its number and its phases.
+constexpr std::array<std::string_view, 9> kViewColumns{
+    "region", "gain", "candidates", "evaluated", "refused", "frames", "points_at_object", "path_m", "motion_s"};
+
 void add_key(CsvTable& table, const CampaignKey& key) {
-  table.add(key.scene).add(key.scene_hash).add(key.strategy).add(key.seed);
+  table.add(key.scene).add(key.scene_hash).add(key.strategy).add(key.noise).add(key.seed);
 }
 
-void add_figures(CsvTable& table, const CampaignFigures& figures) {
+void add_map(CsvTable& table, const CampaignFigures& figures) {
   table.add(figures.coverage).add(std::uint64_t{figures.unknown_left}).add(std::uint64_t{figures.unknown_near_objects});
   table.add(figures.accuracy_m).add(figures.chamfer_m).add(figures.f_score);
 }
 
+void add_view(CsvTable& table, const CampaignView& view) {
+  table.add(std::uint64_t{view.region}).add(view.gain).add(std::uint64_t{view.candidates});
+  table.add(std::uint64_t{view.evaluated}).add(std::uint64_t{view.refused.total()});
+  table.add(std::uint64_t{view.frames}).add(std::uint64_t{view.points_at_object ? 1U : 0U});
+  table.add(view.path_m).add(view.motion_s);
+  for (const double ms : view.phases_ms) table.add(ms);
+  add_map(table, view.after);
+}
+
 }  // namespace
 
-CsvTable runs_csv(std::span<const CampaignRun> runs) {
-  CsvTable table{{"scene",
-                  "scene_hash",
-                  "strategy",
-                  "seed",
-                  "views",
-                  "stopped_because",
-                  "seconds",
-                  "initial_coverage",
-                  "initial_unknown_left",
-                  "initial_unknown_near_objects",
-                  "initial_accuracy_m",
-                  "initial_chamfer_m",
-                  "initial_f_score",
-                  "coverage",
-                  "unknown_left",
-                  "unknown_near_objects",
-                  "accuracy_m",
-                  "chamfer_m",
-                  "f_score",
-                  "program_version",
-                  "finished_at",
-                  "settings"}};
+CsvTable runs_csv(std::span<const CampaignRun> runs, std::size_t budget) {
+  std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
+  columns.emplace_back("stopped_because");
+  for (const RunFigure& figure : run_figures()) columns.push_back(figure.name);
+  columns.insert(columns.end(), {"program_version", "finished_at", "settings"});
+  CsvTable table{columns};
   for (const CampaignRun& run : runs) {
     add_key(table, run.key);
-    table.add(std::uint64_t{run.views.size()}).add(run.stopped_because).add(run.seconds);
-    add_figures(table, run.initial);
-    add_figures(table, run.final());
+    table.add(run.stopped_because);
+    for (const RunFigure& figure : run_figures()) table.add(figure.of(run, budget));
     table.add(run.program_version).add(run.finished_at).add(run.key.settings);
     table.end_row();
   }
@@ -50,40 +48,25 @@ CsvTable runs_csv(std::span<const CampaignRun> runs) {
 }
 
 CsvTable views_csv(std::span<const CampaignRun> runs) {
-  CsvTable table{{"scene",
-                  "scene_hash",
-                  "strategy",
-                  "seed",
-                  "number",
-                  "region",
-                  "gain",
-                  "candidates",
-                  "frames",
-                  "points_at_object",
-                  "candidates_ms",
-                  "evaluation_ms",
-                  "motion_ms",
-                  "fusion_ms",
-                  "coverage",
-                  "unknown_left",
-                  "unknown_near_objects",
-                  "accuracy_m",
-                  "chamfer_m",
-                  "f_score"}};
+  std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
+  columns.emplace_back("number");
+  columns.insert(columns.end(), kViewColumns.begin(), kViewColumns.end());
+  std::vector<std::string> phases;
+  for (const std::string_view phase : kViewPhases) phases.push_back(std::string{phase} + "_ms");
+  columns.insert(columns.end(), phases.begin(), phases.end());
+  columns.insert(columns.end(), kMapColumns.begin(), kMapColumns.end());
+  CsvTable table{columns};
   for (const CampaignRun& run : runs) {
     add_key(table, run.key);
     table.add(std::uint64_t{0});
-    for (int field = 0; field < 9; ++field) table.add(std::nullopt);  // what a scan does not have
-    add_figures(table, run.initial);
+    // What a scan does not have.
+    for (std::size_t i = 0; i < kViewColumns.size() + kViewPhases.size(); ++i) table.add(std::nullopt);
+    add_map(table, run.initial);
     table.end_row();
     for (std::size_t i = 0; i < run.views.size(); ++i) {
-      const CampaignView& view = run.views[i];
       add_key(table, run.key);
-      table.add(std::uint64_t{i + 1}).add(std::uint64_t{view.region}).add(view.gain);
-      table.add(std::uint64_t{view.candidates}).add(std::uint64_t{view.frames});
-      table.add(std::uint64_t{view.points_at_object ? 1U : 0U});
-      table.add(view.candidates_ms).add(view.evaluation_ms).add(view.motion_ms).add(view.fusion_ms);
-      add_figures(table, view.after);
+      table.add(std::uint64_t{i + 1});
+      add_view(table, run.views[i]);
       table.end_row();
     }
   }
@@ -91,38 +74,16 @@ CsvTable views_csv(std::span<const CampaignRun> runs) {
 }
 
 CsvTable summary_csv(std::span<const CampaignSummary> summaries) {
-  CsvTable table{{"scene",
-                  "strategy",
-                  "n",
-                  "initial_coverage",
-                  "initial_coverage_low",
-                  "initial_coverage_high",
-                  "coverage",
-                  "coverage_low",
-                  "coverage_high",
-                  "unknown_near_objects",
-                  "unknown_near_objects_low",
-                  "unknown_near_objects_high",
-                  "f_score",
-                  "f_score_low",
-                  "f_score_high",
-                  "accuracy_m",
-                  "accuracy_m_low",
-                  "accuracy_m_high",
-                  "views",
-                  "views_low",
-                  "views_high",
-                  "seconds",
-                  "seconds_low",
-                  "seconds_high"}};
+  CsvTable table{{"scene", "strategy", "noise", "figure", "n", "mean", "low", "high"}};
   for (const CampaignSummary& summary : summaries) {
-    table.add(summary.scene).add(summary.strategy).add(std::uint64_t{summary.coverage.n});
-    for (const MeanEstimate* estimate : {&summary.initial_coverage, &summary.coverage, &summary.unknown_near_objects,
-                                         &summary.f_score, &summary.accuracy_m, &summary.views, &summary.seconds}) {
-      table.add(estimate->n == 0 ? std::nullopt : std::optional{estimate->mean});
-      table.add(estimate->low()).add(estimate->high());
+    for (std::size_t i = 0; i < summary.figures.size(); ++i) {
+      const MeanEstimate& estimate = summary.figures[i];
+      table.add(summary.group.scene.value_or("")).add(summary.group.strategy).add(summary.group.noise);
+      table.add(run_figures()[i].name).add(std::uint64_t{estimate.n});
+      table.add(estimate.n == 0 ? std::nullopt : std::optional{estimate.mean});
+      table.add(estimate.low()).add(estimate.high());
+      table.end_row();
     }
-    table.end_row();
   }
   return table;
 }

@@ -3,86 +3,128 @@
 
 #include <algorithm>
 
+#include "saccade/core/result.hpp"
+
 namespace saccade {
 namespace {
 
 using Runs = std::vector<const CampaignRun*>;
 
-Runs runs_of(std::span<const CampaignRun> runs, const std::string& scene, const std::string& strategy) {
+bool is_of(const CampaignRun& run, const CampaignGroup& group) {
+  return (!group.scene || run.key.scene == *group.scene) && run.key.strategy == group.strategy &&
+         run.key.noise == group.noise;
+}
+
+Runs runs_of(std::span<const CampaignRun> runs, const CampaignGroup& group) {
   Runs chosen;
   for (const CampaignRun& run : runs) {
-    if (run.key.scene == scene && run.key.strategy == strategy) chosen.push_back(&run);
+    if (is_of(run, group)) chosen.push_back(&run);
   }
   return chosen;
 }
 
-/// The mean of what `figure` makes of each run; runs without that figure are left out.
-template <class Figure>
-MeanEstimate mean_of(const Runs& runs, Figure figure) {
-  std::vector<double> values;
-  for (const CampaignRun* run : runs) {
-    const std::optional<double> value = figure(*run);
-    if (value) values.push_back(*value);
-  }
-  return estimate_mean(values);
+double mean(const std::vector<double>& values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return sum / static_cast<double>(values.size());
 }
 
-std::optional<double> as_number(std::size_t count) { return static_cast<double>(count); }
+/// The mean of what `figure` makes of each run, or of each scene; those without that figure are left out.
+template <class Figure>
+MeanEstimate mean_of(const Runs& runs, bool by_scene, const Figure& figure) {
+  std::vector<std::string> scenes;
+  std::vector<std::vector<double>> values;
+  for (const CampaignRun* run : runs) {
+    const std::optional<double> value = figure(*run);
+    if (!value) continue;
+    auto scene = by_scene ? std::find(scenes.begin(), scenes.end(), run->key.scene) : scenes.end();
+    if (scene == scenes.end()) {
+      scenes.push_back(run->key.scene);
+      values.emplace_back();
+      scene = std::prev(scenes.end());
+    }
+    values[static_cast<std::size_t>(scene - scenes.begin())].push_back(*value);
+  }
+  std::vector<double> means;
+  for (const std::vector<double>& of_scene : values) means.push_back(mean(of_scene));
+  return estimate_mean(means);
+}
 
-CampaignSummary summary_of(const Runs& runs) {
-  using Run = CampaignRun;
+CampaignSummary summary_of(const Runs& runs, CampaignGroup group, std::size_t budget) {
   CampaignSummary summary;
-  summary.scene = runs.front()->key.scene;
-  summary.strategy = runs.front()->key.strategy;
-  summary.initial_coverage = mean_of(runs, [](const Run& run) { return std::optional{run.initial.coverage}; });
-  summary.coverage = mean_of(runs, [](const Run& run) { return std::optional{run.final().coverage}; });
-  summary.unknown_near_objects =
-      mean_of(runs, [](const Run& run) { return as_number(run.final().unknown_near_objects); });
-  summary.f_score = mean_of(runs, [](const Run& run) { return run.final().f_score; });
-  summary.accuracy_m = mean_of(runs, [](const Run& run) { return run.final().accuracy_m; });
-  summary.views = mean_of(runs, [](const Run& run) { return as_number(run.views.size()); });
-  summary.seconds = mean_of(runs, [](const Run& run) { return std::optional{run.seconds}; });
+  const bool by_scene = !group.scene;
+  summary.group = std::move(group);
+  summary.runs = runs.size();
+  for (const RunFigure& figure : run_figures()) {
+    summary.figures.push_back(mean_of(runs, by_scene, [&](const CampaignRun& run) { return figure.of(run, budget); }));
+  }
+  for (const CampaignRun* run : runs) ++summary.stopped[run->stopped_because];
   return summary;
 }
 
 }  // namespace
 
-std::vector<CampaignSummary> summarize(std::span<const CampaignRun> runs) {
+std::vector<CampaignSummary> summarize(std::span<const CampaignRun> runs, std::size_t budget) {
+  std::vector<CampaignGroup> groups;
+  const auto add = [&groups](CampaignGroup group) {
+    if (std::find(groups.begin(), groups.end(), group) == groups.end()) groups.push_back(std::move(group));
+  };
+  for (const CampaignRun& run : runs) add({run.key.scene, run.key.strategy, run.key.noise});
+  const bool several = std::any_of(runs.begin(), runs.end(),
+                                   [&](const CampaignRun& run) { return run.key.scene != runs.front().key.scene; });
+  if (several) {
+    for (const CampaignRun& run : runs) add({std::nullopt, run.key.strategy, run.key.noise});
+  }
   std::vector<CampaignSummary> summaries;
-  for (const CampaignRun& run : runs) {
-    const bool known = std::any_of(summaries.begin(), summaries.end(), [&run](const CampaignSummary& summary) {
-      return summary.scene == run.key.scene && summary.strategy == run.key.strategy;
-    });
-    if (!known) summaries.push_back(summary_of(runs_of(runs, run.key.scene, run.key.strategy)));
+  for (CampaignGroup& group : groups) {
+    const Runs of_group = runs_of(runs, group);
+    summaries.push_back(summary_of(of_group, std::move(group), budget));
   }
   return summaries;
 }
 
-std::vector<MeanEstimate> coverage_over_views(std::span<const CampaignRun> runs, const std::string& scene,
-                                              const std::string& strategy) {
-  const Runs chosen = runs_of(runs, scene, strategy);
-  if (chosen.empty()) return {};
-  std::size_t longest = 0;
-  for (const CampaignRun* run : chosen) longest = std::max(longest, run->views.size());
+std::vector<MeanEstimate> over_views(std::span<const CampaignRun> runs, const CampaignGroup& group, std::size_t budget,
+                                     MapFigure figure) {
+  const Runs chosen = runs_of(runs, group);
   std::vector<MeanEstimate> curve;
-  for (std::size_t taken = 0; taken <= longest; ++taken) {
-    curve.push_back(mean_of(chosen, [taken](const CampaignRun& run) {
-      const std::size_t last = std::min(taken, run.views.size());
-      return std::optional{last == 0 ? run.initial.coverage : run.views[last - 1].after.coverage};
-    }));
+  if (chosen.empty()) return curve;
+  for (std::size_t taken = 0; taken <= budget; ++taken) {
+    curve.push_back(mean_of(chosen, !group.scene,
+                            [&](const CampaignRun& run) { return std::optional{figure(figures_after(run, taken))}; }));
   }
   return curve;
 }
 
-MeanEstimate coverage_gap(std::span<const CampaignRun> runs, const std::string& scene, const std::string& a,
-                          const std::string& b) {
-  const Runs of_b = runs_of(runs, scene, b);
-  return mean_of(runs_of(runs, scene, a), [&of_b](const CampaignRun& run) -> std::optional<double> {
-    const auto twin = std::find_if(of_b.begin(), of_b.end(),
-                                   [&run](const CampaignRun* other) { return other->key.seed == run.key.seed; });
-    if (twin == of_b.end()) return std::nullopt;
-    return run.final().coverage - (*twin)->final().coverage;
-  });
+std::vector<MeanEstimate> object_view_shares(std::span<const CampaignRun> runs, const CampaignGroup& group) {
+  const Runs chosen = runs_of(runs, group);
+  std::vector<MeanEstimate> shares;
+  for (std::size_t k = 0; k < kFirstViews; ++k) {
+    shares.push_back(mean_of(chosen, !group.scene, [k](const CampaignRun& run) -> std::optional<double> {
+      if (k >= run.views.size()) return std::nullopt;
+      return run.views[k].points_at_object ? 1.0 : 0.0;
+    }));
+  }
+  return shares;
+}
+
+std::vector<MeanEstimate> paired_gaps(std::span<const CampaignRun> runs, const CampaignGroup& a, const CampaignGroup& b,
+                                      std::size_t budget) {
+  SACCADE_EXPECTS(a.scene == b.scene);
+  std::map<std::pair<std::string, std::uint64_t>, const CampaignRun*> of_b;
+  for (const CampaignRun* run : runs_of(runs, b)) of_b.try_emplace({run->key.scene, run->key.seed}, run);
+  const Runs of_a = runs_of(runs, a);
+  std::vector<MeanEstimate> gaps;
+  for (const RunFigure& figure : run_figures()) {
+    gaps.push_back(mean_of(of_a, !a.scene, [&](const CampaignRun& run) -> std::optional<double> {
+      const auto twin = of_b.find({run.key.scene, run.key.seed});
+      if (twin == of_b.end()) return std::nullopt;
+      const std::optional<double> of_run = figure.of(run, budget);
+      const std::optional<double> of_twin = figure.of(*twin->second, budget);
+      if (!of_run || !of_twin) return std::nullopt;
+      return *of_run - *of_twin;
+    }));
+  }
+  return gaps;
 }
 
 }  // namespace saccade

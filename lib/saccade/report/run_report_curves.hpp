@@ -33,6 +33,6 @@ struct PhaseCurve {
 };
 /// Stacked bars; phase i in the colour of the class "p" and i mod kPhaseColors.
 [[nodiscard]] std::string stacked_svg(const PhaseCurve& curve);
-constexpr std::size_t kPhaseColors{6};
+constexpr std::size_t kPhaseColors{9};
 
 }  // namespace saccade

@@ -9,10 +9,12 @@ std::string_view run_report_style() {
   return R"css(
 :root { color-scheme: light dark;
   --page: #f5f6f8; --card: #ffffff; --ink: #1d232c; --soft: #5a6472; --line: #dfe3e9; --accent: #1f5fa8;
-  --dim: none; --p0: #8a97a8; --p1: #2f6fb5; --p2: #c9862b; --p3: #4b9366; --p4: #8a68b0; --p5: #b5566a; }
+  --dim: none; --p0: #8a97a8; --p1: #2f6fb5; --p2: #c9862b; --p3: #4b9366; --p4: #8a68b0; --p5: #b5566a;
+  --p6: #5fb3b8; --p7: #c4b44a; --p8: #6d5c4f; }
 @media (prefers-color-scheme: dark) { :root {
   --page: #13161b; --card: #1b2027; --ink: #e3e8ee; --soft: #9ba6b4; --line: #2e3540; --accent: #7db2ec;
-  --dim: brightness(0.86); --p0: #77859a; --p1: #5b9bdd; --p2: #d99c4a; --p3: #66b585; --p4: #a98ad0; --p5: #d17a8c; } }
+  --dim: brightness(0.86); --p0: #77859a; --p1: #5b9bdd; --p2: #d99c4a; --p3: #66b585; --p4: #a98ad0; --p5: #d17a8c;
+  --p6: #74c6cb; --p7: #d6c765; --p8: #a08b7a; } }
 * { box-sizing: border-box; }
 html { scroll-padding-top: 3.6rem; -webkit-text-size-adjust: 100%; text-size-adjust: 100%; }
 body { margin: 0; background: var(--page); color: var(--ink);
@@ -63,13 +65,18 @@ figcaption { font-size: 0.875rem; margin-top: 0.35rem; }
 .chart .threshold { stroke: var(--p5); stroke-width: 1.6; stroke-dasharray: 6 4; }
 .chart .p0, .p0 { fill: var(--p0); background: var(--p0); } .chart .p1, .p1 { fill: var(--p1); background: var(--p1); }
 .chart .p2, .p2 { fill: var(--p2); background: var(--p2); } .chart .p3, .p3 { fill: var(--p3); background: var(--p3); }
+.chart .p6, .p6 { fill: var(--p6); background: var(--p6); } .chart .p7, .p7 { fill: var(--p7); background: var(--p7); }
+.chart .p8, .p8 { fill: var(--p8); background: var(--p8); }
 .chart .p4, .p4 { fill: var(--p4); background: var(--p4); } .chart .p5, .p5 { fill: var(--p5); background: var(--p5); }
 .plot { margin-top: 0.9rem; } .plot svg { display: block; width: 100%; max-width: 48rem; height: auto;
   border-radius: 0.4rem; filter: var(--dim); }
 .scroll { overflow-x: auto; margin-top: 1.3rem; }
+details { margin-top: 0.9rem; } summary { cursor: pointer; color: var(--soft); }
+.bars { margin: 0.5rem 0; } .bars dt { font-size: 0.9375rem; } .bars dd { display: flex; height: 1.1rem; margin: 0.1rem 0 0.5rem;
+  print-color-adjust: exact; -webkit-print-color-adjust: exact; }
 table { border-collapse: collapse; width: 100%; font-size: 0.9375rem; }
 th, td { text-align: right; padding: 0.32rem 0 0.32rem 1.1rem; white-space: nowrap; border-bottom: 1px solid var(--line); }
-th { color: var(--soft); font-weight: 500; font-size: 0.8125rem; vertical-align: bottom; }
+th { color: var(--soft); font-weight: 500; font-size: 0.8125rem; vertical-align: bottom; white-space: normal; }
 th:first-child, td:first-child { text-align: left; padding-left: 0; }
 .facts { display: flex; flex-wrap: wrap; gap: 0.2rem 1.6rem; margin: 0.35rem 0 0.9rem; font-size: 0.9375rem; }
 .facts div { display: flex; gap: 0.45rem; } .facts dt { color: var(--soft); } .facts dd { margin: 0; }

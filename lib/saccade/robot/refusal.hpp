@@ -39,7 +39,7 @@ inline constexpr std::array kRefusals{
 /// Per reason.
 class RefusalCounts {
  public:
-  void add(Refusal refusal) { ++counts_[static_cast<std::size_t>(refusal)]; }
+  void add(Refusal refusal, std::size_t times = 1) { counts_[static_cast<std::size_t>(refusal)] += times; }
   /// Those that have one.
   void add(std::span<const std::optional<Refusal>> refusals) {
     for (const std::optional<Refusal>& refusal : refusals) {
@@ -50,6 +50,7 @@ class RefusalCounts {
     for (std::size_t i = 0; i < counts_.size(); ++i) counts_[i] += others.counts_[i];
   }
   [[nodiscard]] std::size_t of(Refusal refusal) const { return counts_[static_cast<std::size_t>(refusal)]; }
+  [[nodiscard]] bool operator==(const RefusalCounts&) const = default;
   [[nodiscard]] std::size_t total() const { return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}); }
 
  private:

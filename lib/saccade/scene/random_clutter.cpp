@@ -8,6 +8,8 @@
 #include <numbers>
 #include <random>
 
+#include "saccade/scene/tabletop.hpp"
+
 namespace saccade {
 namespace {
 
@@ -76,25 +78,6 @@ Rgb8 draw_color(Dice& dice) {
   return kPalette[dice.below(kPalette.size())];
 }
 
-/// Floor and walls around it, 6 m across: a depth camera that looks past the table sees them.
-void add_room(Scene& scene) {
-  const auto add = [&scene](const char* name, const Vector3d& size_m, const Vector3d& at) {
-    SceneObject part;
-    part.name = name;
-    part.shape = BoxShape{size_m};
-    part.T_world_object.translation() = at;
-    part.color = {205, 205, 198};
-    part.support = true;
-    part.fixture = true;
-    scene.objects.push_back(std::move(part));
-  };
-  add("floor", {6.2, 6.2, 0.1}, {0.0, 0.0, -0.85});
-  add("wall-left", {0.1, 6.2, 3.0}, {-3.05, 0.0, -0.75});
-  add("wall-right", {0.1, 6.2, 3.0}, {3.05, 0.0, -0.75});
-  add("wall-front", {6.0, 0.1, 3.0}, {0.0, -3.05, -0.75});
-  add("wall-back", {6.0, 0.1, 3.0}, {0.0, 3.05, -0.75});
-}
-
 }  // namespace
 
 Scene random_clutter(std::uint64_t seed, int objects) {
@@ -103,20 +86,7 @@ Scene random_clutter(std::uint64_t seed, int objects) {
   constexpr double kGap_m{0.03};
   constexpr int kTries{200};
   Dice dice{seed};
-  Scene scene;
-  scene.name = "clutter:" + std::to_string(seed);
-  scene.workspace = Box{{-0.6, -0.4, -0.03}, {0.6, 0.4, 0.40}};
-  SceneObject table;
-  table.name = "table";
-  table.shape = BoxShape{{1.2, 0.8, 0.04}};
-  table.T_world_object.translation() = Vector3d{0.0, 0.0, -0.04};
-  table.color = {196, 164, 120};
-  table.texture = {Texture::Kind::speckle, 0.04, 0.8};
-  table.support = true;
-  scene.objects.push_back(table);
-
-  add_room(scene);
-
+  Scene scene = empty_tabletop("clutter:" + std::to_string(seed));
   std::vector<std::pair<Vector2d, double>> taken;
   const std::size_t first_kind = dice.below(7);
   for (int i = 0; i < objects; ++i) {
@@ -141,7 +111,6 @@ Scene random_clutter(std::uint64_t seed, int objects) {
       break;
     }
   }
-  for (const double y : {0.0, -0.2}) scene.scan.push_back(look_at({-0.95, y, 0.17}, {-0.15, 0.0, 0.08}));
   return scene;
 }
 

@@ -22,7 +22,7 @@ namespace fs = std::filesystem;
 using test::TempFolder;
 
 CampaignKey key_of(std::uint64_t seed, const std::string& strategy = "sphere") {
-  return {"jug", "00ff00ff00ff00ff", strategy, seed, R"({"max_views":3,"voxel_size_m":0.01})"};
+  return {"jug", "00ff00ff00ff00ff", strategy, "kinect-v1", seed, R"({"max_views":3,"voxel_size_m":0.01})"};
 }
 
 CampaignRun run_of(const CampaignKey& key, std::size_t views = 2) {
@@ -44,13 +44,18 @@ CampaignRun run_of(const CampaignKey& key, std::size_t views = 2) {
                   0.0034,
                   0.9};
     view.points_at_object = i % 2 == 0;
-    view.candidates_ms = 0.1;
-    view.evaluation_ms = 20.25;
-    view.motion_ms = 0.0;
-    view.fusion_ms = 7.0;
+    view.evaluated = 700;
+    view.refused.add(Refusal::no_ik, 250);
+    view.refused.add(Refusal::no_path, 10 + i);
+    view.path_m = 1.5;
+    view.motion_s = 2.25;
+    view.phases_ms = {0.5, 0.1, 3.0, 4.0, 1.25, 20.25, 2.0, 0.0, 7.0};
     run.views.push_back(view);
   }
+  run.scan_views = 2;
+  run.scan_refused.add(Refusal::declined);
   run.stopped_because = "views_used_up";
+  run.refused_at_end.add(Refusal::outside_limits, 3);
   run.seconds = 1.5;
   run.program_version = "0.1.0";
   return run;
@@ -60,7 +65,10 @@ void expect_same(const CampaignRun& a, const CampaignRun& b) {
   EXPECT_EQ(a.key, b.key);
   EXPECT_EQ(a.initial, b.initial);
   EXPECT_EQ(a.final(), b.final());
+  EXPECT_EQ(a.scan_views, b.scan_views);
+  EXPECT_EQ(a.scan_refused, b.scan_refused);
   EXPECT_EQ(a.stopped_because, b.stopped_because);
+  EXPECT_EQ(a.refused_at_end, b.refused_at_end);
   EXPECT_EQ(a.seconds, b.seconds);
   EXPECT_EQ(a.program_version, b.program_version);
   ASSERT_EQ(a.views.size(), b.views.size());
@@ -72,10 +80,11 @@ void expect_same(const CampaignRun& a, const CampaignRun& b) {
     EXPECT_EQ(a.views[i].frames, b.views[i].frames);
     EXPECT_EQ(a.views[i].after, b.views[i].after);
     EXPECT_EQ(a.views[i].points_at_object, b.views[i].points_at_object);
-    EXPECT_EQ(a.views[i].candidates_ms, b.views[i].candidates_ms);
-    EXPECT_EQ(a.views[i].evaluation_ms, b.views[i].evaluation_ms);
-    EXPECT_EQ(a.views[i].motion_ms, b.views[i].motion_ms);
-    EXPECT_EQ(a.views[i].fusion_ms, b.views[i].fusion_ms);
+    EXPECT_EQ(a.views[i].evaluated, b.views[i].evaluated);
+    EXPECT_EQ(a.views[i].refused, b.views[i].refused);
+    EXPECT_EQ(a.views[i].path_m, b.views[i].path_m);
+    EXPECT_EQ(a.views[i].motion_s, b.views[i].motion_s);
+    EXPECT_EQ(a.views[i].phases_ms, b.views[i].phases_ms);
   }
 }
 
@@ -113,18 +122,20 @@ TEST(Campaign, EveryPartOfTheKeyTellsRunsApart) {
   CampaignRun again = run_of(key_of(1), 1);
   EXPECT_FALSE(*campaign->add(again));  // the first one stays
   EXPECT_EQ((**campaign->find(key_of(1))).views.size(), 2U);
-  std::vector<CampaignKey> others(5, key_of(1));
+  std::vector<CampaignKey> others(6, key_of(1));
   others[0].scene = "Jug";
   others[1].scene_hash += "0";
   others[2].strategy = "random";
   others[3].seed = static_cast<std::uint64_t>(std::numeric_limits<std::int64_t>::max());
   others[4].settings = R"({"max_views":3,"voxel_size_m":0.0100001})";
+  others[5].noise = "none";
+  others[5].settings = R"({"max_views":3,"noise":"none","voxel_size_m":0.01})";
   for (const CampaignKey& other : others) {
     EXPECT_FALSE(*campaign->has(other));
     EXPECT_TRUE(*campaign->add(run_of(other)));
     EXPECT_EQ((**campaign->find(other)).key, other);
   }
-  EXPECT_EQ(campaign->runs()->size(), 6U);
+  EXPECT_EQ(campaign->runs()->size(), 7U);
 }
 
 TEST(Campaign, RefusesWhatItCannotKeep) {
@@ -274,53 +285,59 @@ TEST(Campaign, TwoProcessesShareAFile) {
   EXPECT_EQ(SqliteFile::open(path, 0)->integer("SELECT count(*) FROM curves").value(), 2 * kRuns * 31);
 }
 
-TEST(Campaign, SummariesAreMeansOverSeeds) {
-  std::vector<CampaignRun> runs;
-  for (const std::uint64_t seed : {1U, 2U, 4U}) runs.push_back(run_of(key_of(seed), 2));
-  for (const std::uint64_t seed : {1U, 4U, 9U}) runs.push_back(run_of(key_of(seed, "random"), 1));
-  const std::vector<CampaignSummary> summaries = summarize(runs);
-  ASSERT_EQ(summaries.size(), 2U);
-  EXPECT_EQ(summaries[0].strategy, "sphere");
-  EXPECT_EQ(summaries[0].coverage.n, 3U);
-  EXPECT_NEAR(summaries[0].coverage.mean, 0.6 + 0.007 / 3.0, 1e-12);
-  EXPECT_NEAR(summaries[1].coverage.mean, 0.5 + 0.014 / 3.0, 1e-12);
-  EXPECT_EQ(summaries[0].initial_coverage.half_width.value(), 0.0);
-  EXPECT_EQ(summaries[1].views.mean, 1.0);
-  EXPECT_NEAR(summaries[1].accuracy_m.mean, 0.0012, 1e-15);
-  const std::vector<MeanEstimate> curve = coverage_over_views(runs, "jug", "sphere");
-  ASSERT_EQ(curve.size(), 3U);
-  EXPECT_EQ(curve[0].mean, 0.25);
-  EXPECT_NEAR(curve[1].mean, 0.5 + 0.007 / 3.0, 1e-12);
-  EXPECT_TRUE(coverage_over_views(runs, "jug", "none").empty());
-  const MeanEstimate gap = coverage_gap(runs, "jug", "sphere", "random");
-  EXPECT_EQ(gap.n, 2U);  // seeds 1 and 4
-  EXPECT_NEAR(gap.mean, 0.1, 1e-12);
-  EXPECT_NEAR(gap.half_width.value(), 0.0, 1e-12);
-  // A run that stopped earlier counts on with what it had.
-  runs.push_back(run_of(key_of(5), 0));
-  EXPECT_NEAR(coverage_over_views(runs, "jug", "sphere")[2].mean, (3.0 * 0.6 + 0.007 + 0.25) / 4.0, 1e-12);
+TEST(Campaign, AFileOfTheFirstVersionIsBroughtUpToDate) {
+  const TempFolder folder;
+  const fs::path path = folder / "c";
+  {
+    const SqliteFile file = SqliteFile::open(path, 0).value();
+    ASSERT_TRUE(file.run(*read_text_file(fs::path{SACCADE_SOURCE_DIR} / "tests/unit/io/campaign_version_1.sql")));
+  }
+  for (int round = 0; round < 2; ++round) {  // the second time there is nothing to do
+    const auto campaign = Campaign::open(path);
+    ASSERT_TRUE(campaign) << campaign.error().to_string();
+    const auto runs = campaign->runs();
+    ASSERT_TRUE(runs) << runs.error().to_string();
+    ASSERT_EQ(runs->size(), 4U + static_cast<std::size_t>(round));
+    EXPECT_EQ((*runs)[0].key.noise, "kinect-v1");
+    EXPECT_EQ((*runs)[1].key.noise, "kinect-v2");
+    EXPECT_EQ((*runs)[2].key.noise, "none");
+    EXPECT_EQ((*runs)[3].key.noise, "kinect-v1");  // its settings are no JSON
+    const CampaignRun& old = runs->front();
+    EXPECT_EQ(old.key.scene, "jug");
+    EXPECT_EQ(old.initial.coverage, 0.25);
+    ASSERT_EQ(old.views.size(), 1U);
+    EXPECT_EQ(old.views[0].candidates, 960U);
+    EXPECT_EQ(old.views[0].refused.total(), 0U);
+    EXPECT_EQ(old.views[0].phases_ms, (PhaseTimes{0.0, 0.5, 0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 7.0}));
+    EXPECT_EQ(*campaign->add(run_of(key_of(77))), round == 0);
+    expect_same(**campaign->find(key_of(77)), run_of(key_of(77)));
+  }
+  const SqliteFile file = SqliteFile::open(path, 0).value();
+  EXPECT_EQ(file.integer("SELECT count(*) FROM curves WHERE noise = 'kinect-v1' AND number = 1").value(), 2);
 }
 
 TEST(Campaign, TablesAreQuotedAndLeaveOutWhatIsNotThere) {
   CampaignRun run = run_of(key_of(7), 1);
   run.key.scene = "a \"jug\", large";
-  const std::string text = runs_csv({&run, 1}).text();
+  const std::string text = runs_csv({&run, 1}, 3).text();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);
-  EXPECT_NE(text.find("\n\"a \"\"jug\"\", large\",00ff00ff00ff00ff,sphere,7,1,views_used_up,1.5,0.25,1000,100,,,,"),
+  EXPECT_NE(text.find("\n\"a \"\"jug\"\", large\",00ff00ff00ff00ff,sphere,kinect-v1,7,views_used_up,0.25,0.507,"),
             std::string::npos)
       << text;
   EXPECT_NE(text.find(R"("{""max_views"":3,""voxel_size_m"":0.01}")"), std::string::npos) << text;
   const std::string views = views_csv({&run, 1}).text();
-  EXPECT_NE(views.find(",sphere,7,0,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
-  EXPECT_NE(views.find(",sphere,7,1,0,321.5,960,5,1,0.1,20.25,0,7,0.507,900,90,0.0012,0.0034,0.9\n"), std::string::npos)
+  EXPECT_NE(views.find(",sphere,kinect-v1,7,0,,,,,,,,,,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
+  EXPECT_NE(views.find(",sphere,kinect-v1,7,1,0,321.5,960,700,260,5,1,1.5,2.25,0.5,0.1,3,4,1.25,20.25,2,0,7,0.507,900,"
+                       "90,0.0012,0.0034,0.9\n"),
+            std::string::npos)
       << views;
   run.key.scene = "jug";
-  const std::string summary = summary_csv(summarize({&run, 1})).text();
-  EXPECT_NE(summary.find("\njug,sphere,1,0.25,,,0.507,,,90,,,0.9,,,0.0012,,,1,,,1.5,,\n"), std::string::npos)
-      << summary;
+  const std::string summary = summary_csv(summarize({&run, 1}, 3)).text();
+  EXPECT_NE(summary.find("\njug,sphere,kinect-v1,coverage,1,0.507,,\n"), std::string::npos) << summary;
+  EXPECT_NE(summary.find("\njug,sphere,kinect-v1,views_to_90,0,,,\n"), std::string::npos) << summary;
   const TempFolder folder;
-  ASSERT_TRUE(runs_csv({&run, 1}).write(folder / "runs.csv"));
-  EXPECT_EQ(*read_text_file(folder / "runs.csv"), runs_csv({&run, 1}).text());
+  ASSERT_TRUE(runs_csv({&run, 1}, 3).write(folder / "runs.csv"));
+  EXPECT_EQ(*read_text_file(folder / "runs.csv"), runs_csv({&run, 1}, 3).text());
 }
 
 }  // namespace

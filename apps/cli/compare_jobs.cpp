@@ -1,0 +1,260 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "compare_jobs.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <exception>
+#include <mutex>
+#include <thread>
+
+#include "interrupt.hpp"
+#include "saccade/core/clock.hpp"
+
+namespace saccade::cli {
+namespace {
+
+CampaignFigures figures_of(const MeasuredMap& map) {
+  return {map.metrics.coverage,   map.unknown_left,      map.metrics.unknown_near_objects,
+          map.metrics.accuracy_m, map.metrics.chamfer_m, map.metrics.f_score};
+}
+
+/// The camera's way to a view: as the robot went, or straight from where it was before; nullptr: that is not known.
+double path_m(const ExploredView& view, const Pose* before) {
+  double sum_m = 0.0;
+  for (std::size_t i = 1; i < view.path.size(); ++i) sum_m += (view.path[i] - view.path[i - 1]).norm();
+  if (view.path.size() < 2 && before != nullptr)
+    sum_m = (view.T_world_camera.translation() - before->translation()).norm();
+  return sum_m;
+}
+
+CampaignView campaign_view(const MeasuredView& measured, const Pose* before) {
+  const ExploredView& view = measured.view;
+  CampaignView stored;
+  stored.region = view.region;
+  stored.gain = std::isnan(view.gain) ? std::nullopt : std::optional{view.gain};
+  stored.T_world_camera = view.T_world_camera;
+  stored.candidates = view.candidates;
+  stored.refused = view.refused;
+  stored.frames = view.frames;
+  stored.after = figures_of(measured.after);
+  stored.points_at_object = measured.newly_known.points_at_object();
+  stored.path_m = path_m(view, before);
+  stored.motion_s = view.motion_s;
+  stored.phases_ms = {
+      view.planner_map_ms, view.candidates_ms, 0.0,           0.0, view.reachability_ms, view.evaluation_ms,
+      view.planning_ms,    view.motion_ms,     view.fusion_ms};
+  return stored;
+}
+
+CampaignRun campaign_run(CampaignKey key, const SimulatedRun& simulated, const std::vector<Pose>& scan,
+                         double seconds) {
+  CampaignRun run;
+  run.key = std::move(key);
+  run.scan_views = simulated.scan.views;
+  run.scan_refused = simulated.scan.refused;
+  run.initial = figures_of(simulated.initial);
+  // A camera that flies is at the last pose of the scan, unless that was passed over.
+  const bool scanned = !scan.empty() && simulated.scan.refused.total() == 0;
+  const Pose* before = scanned ? &scan.back() : nullptr;
+  for (const MeasuredView& measured : simulated.views) {
+    run.views.push_back(campaign_view(measured, before));
+    before = &measured.view.T_world_camera;
+  }
+  run.stopped_because = to_string(simulated.stopped_because);
+  run.refused_at_end = simulated.refused_at_end;
+  run.seconds = seconds;
+  run.program_version = SACCADE_VERSION;
+  return run;
+}
+
+/// "40 s", "12 min", "3.5 h".
+std::string duration_text(double seconds) {
+  constexpr double kMinute_s{60.0};
+  constexpr double kHour_s{3600.0};
+  if (seconds < 1.5 * kMinute_s) return std::to_string(std::lround(seconds)) + " s";
+  if (seconds < 1.5 * kHour_s) return std::to_string(std::lround(seconds / kMinute_s)) + " min";
+  const long tenths = std::lround(10.0 * seconds / kHour_s);
+  return std::to_string(tenths / 10) + '.' + std::to_string(tenths % 10) + " h";
+}
+
+/// Runs of which each waits for the one before.
+using Chain = std::vector<PlannedRun>;
+
+/// With as many views as sphere took: the runs of one scene, noise and seed; else each run alone.
+std::vector<Chain> chains_of(const std::vector<PlannedRun>& runs, bool equal_views) {
+  std::vector<Chain> chains;
+  for (const PlannedRun& run : runs) {
+    if (run.found) continue;
+    const auto goes_on = [&run](const PlannedRun& last) {
+      return last.scene == run.scene && last.noise == run.noise && last.seed == run.seed;
+    };
+    if (!equal_views || chains.empty() || !goes_on(chains.back().back())) chains.emplace_back();
+    chains.back().push_back(run);
+  }
+  return chains;
+}
+
+class Jobs {
+ public:
+  Jobs(const Comparison& comparison, const Campaign& campaign, std::vector<PlannedRun> runs, std::size_t threads,
+       ProgressBar& progress)
+      : comparison_{comparison},
+        campaign_{campaign},
+        progress_{progress},
+        total_{runs.size()},
+        chains_{chains_of(runs, comparison.options().equal_views)},
+        truths_(comparison.scenes().size()) {
+    std::size_t missing = 0;
+    for (const Chain& chain : chains_) {
+      ++truths_[chain.front().scene].chains_left;
+      missing += chain.size();
+    }
+    found_ = total_ - missing;
+    const std::size_t wanted = comparison.options().jobs == 0 ? threads : comparison.options().jobs;
+    jobs_ = std::max<std::size_t>(1, std::min(wanted, chains_.size()));
+    threads_of_job_ = std::max<std::size_t>(1, threads / jobs_);
+  }
+
+  [[nodiscard]] std::size_t found() const { return found_; }
+
+  Result<std::size_t> run() {
+    const CancelOnInterrupt guard{cancel_};
+    std::vector<std::thread> others;
+    for (std::size_t i = 1; i < jobs_; ++i) others.emplace_back([this] { work(); });
+    work();
+    for (std::thread& other : others) other.join();
+    progress_.finish();
+    if (thrown_) std::rethrow_exception(thrown_);
+    if (error_) return *error_;
+    return done_;
+  }
+
+ private:
+  struct SceneTruth {
+    std::mutex mutex;  ///< held while it is built
+    std::optional<Truth> truth;
+    std::size_t chains_left{0};
+  };
+
+  void work() {
+    const Executor executor = Executor::with_threads(threads_of_job_);  // its own: nobody waits for another's loop
+    while (const std::optional<std::size_t> next = take()) {
+      const Chain& chain = chains_[*next];
+      try {
+        for (const PlannedRun& run : chain) {
+          if (const Status status = do_run(run, executor); !status) fail(*next, run, status.error());
+          if (cancel_.cancelled()) break;
+        }
+      } catch (...) {
+        const std::lock_guard lock{mutex_};
+        if (!thrown_) thrown_ = std::current_exception();
+        cancel_.request_cancel();
+      }
+      let_go(chain.front().scene);
+    }
+  }
+
+  /// The next chain; none at the end, after an error, or when the user has interrupted.
+  std::optional<std::size_t> take() {
+    const std::lock_guard lock{mutex_};
+    if (cancel_.cancelled() || next_ == chains_.size()) return std::nullopt;
+    return next_++;
+  }
+
+  void fail(std::size_t chain, const PlannedRun& run, Error error) {
+    const std::lock_guard lock{mutex_};
+    cancel_.request_cancel();
+    if (error_ && failed_ <= chain) return;
+    const std::string& scene = comparison_.scenes()[run.scene].name;
+    error.context = error.context.empty() || error.context == scene ? scene : scene + ", " + error.context;
+    error_ = std::move(error);
+    failed_ = chain;
+  }
+
+  Status do_run(const PlannedRun& before, const Executor& executor) {
+    PlannedRun run = before;
+    {
+      const std::lock_guard lock{mutex_};
+      // Sphere has been run by now.
+      SACCADE_TRY(run, comparison_.plan_again(campaign_, before));
+      ++at_work_;
+      report(run);
+    }
+    const Stopwatch stopwatch;
+    SACCADE_TRY(const Truth truth, truth_of(run.scene, executor));
+    SACCADE_TRY(const SimulatedRun simulated, run_simulated(truth, comparison_.config_of(run), executor, cancel_));
+    const std::lock_guard lock{mutex_};
+    --at_work_;
+    if (simulated.stopped_because == StopReason::cancelled) return {};
+    const std::vector<Pose>& scan = comparison_.scenes()[run.scene].rays.scene().scan;
+    SACCADE_CHECK(campaign_.add(campaign_run(comparison_.key_of(run), simulated, scan, 1e-3 * stopwatch.elapsed_ms())));
+    ++done_;
+    return {};
+  }
+
+  /// Of a run that begins. The caller holds mutex_.
+  void report(const PlannedRun& run) {
+    std::string stage = comparison_.scenes()[run.scene].name + ", " + std::string{to_string(run.strategy)};
+    if (comparison_.options().noises.size() > 1) stage += ", " + run.noise;
+    stage += ", seed " + std::to_string(run.seed);
+    if (at_work_ > 1) stage += " and " + std::to_string(at_work_ - 1) + " more";
+    if (done_ > 0) {
+      const double left = static_cast<double>(total_ - found_ - done_);
+      stage += ", about " + duration_text(1e-3 * clock_.elapsed_ms() / static_cast<double>(done_) * left) + " left";
+    }
+    progress_.update(stage, found_ + done_, total_);
+  }
+
+  /// Built by the first run that needs it; the others wait.
+  Result<Truth> truth_of(std::size_t scene, const Executor& executor) {
+    SceneTruth& shared = truths_[scene];
+    const std::lock_guard lock{shared.mutex};
+    if (!shared.truth) {
+      SACCADE_TRY(shared.truth, Truth::build(comparison_.scenes()[scene].rays, kTruthSpacing_m, executor));
+    }
+    return *shared.truth;
+  }
+
+  /// A scene's truth goes with its last chain.
+  void let_go(std::size_t scene) {
+    SceneTruth& shared = truths_[scene];
+    const std::lock_guard lock{shared.mutex};
+    if (--shared.chains_left == 0) shared.truth.reset();
+  }
+
+  const Comparison& comparison_;
+  const Campaign& campaign_;  ///< under mutex_
+  ProgressBar& progress_;
+  std::size_t total_;
+  std::size_t found_{0};
+  std::vector<Chain> chains_;
+  std::vector<SceneTruth> truths_;
+  std::size_t jobs_{1};
+  std::size_t threads_of_job_{1};
+  Progress cancel_;
+  Stopwatch clock_;
+
+  std::mutex mutex_;
+  std::size_t next_{0};
+  std::size_t at_work_{0};
+  std::size_t done_{0};
+  std::optional<Error> error_;
+  std::size_t failed_{0};  ///< chain of the error
+  std::exception_ptr thrown_;
+};
+
+}  // namespace
+
+Result<std::size_t> run_missing(const Comparison& comparison, const Campaign& campaign, std::size_t threads,
+                                ProgressBar& progress) {
+  SACCADE_TRY(std::vector<PlannedRun> runs, comparison.plan(&campaign));
+  const std::size_t all = runs.size();
+  Jobs jobs{comparison, campaign, std::move(runs), threads, progress};
+  if (jobs.found() > 0) {
+    progress.note(std::to_string(jobs.found()) + " of " + std::to_string(all) + " runs found in " +
+                  campaign.path().string());
+  }
+  return jobs.run();
+}
+
+}  // namespace saccade::cli
