@@ -34,15 +34,17 @@ CampaignView campaign_view(const MeasuredView& measured, const Pose* before) {
   stored.gain = std::isnan(view.gain) ? std::nullopt : std::optional{view.gain};
   stored.T_world_camera = view.T_world_camera;
   stored.candidates = view.candidates;
+  stored.evaluated = view.evaluated;
   stored.refused = view.refused;
   stored.frames = view.frames;
   stored.after = figures_of(measured.after);
   stored.points_at_object = measured.newly_known.points_at_object();
+  stored.looks_at_object = measured.looks_at_object;
   stored.path_m = path_m(view, before);
   stored.motion_s = view.motion_s;
-  stored.phases_ms = {
-      view.planner_map_ms, view.candidates_ms, 0.0,           0.0, view.reachability_ms, view.evaluation_ms,
-      view.planning_ms,    view.motion_ms,     view.fusion_ms};
+  stored.phases_ms = {view.planner_map_ms, view.candidates_ms,   view.segmentation_ms,
+                      view.saliency_ms,    view.reachability_ms, view.evaluation_ms,
+                      view.planning_ms,    view.motion_ms,       view.fusion_ms};
   return stored;
 }
 
@@ -96,7 +98,7 @@ std::vector<Chain> chains_of(const std::vector<PlannedRun>& runs, bool equal_vie
 
 class Jobs {
  public:
-  Jobs(const Comparison& comparison, const Campaign& campaign, std::vector<PlannedRun> runs, std::size_t threads,
+  Jobs(const Comparison& comparison, const Campaign& campaign, const std::vector<PlannedRun>& runs, std::size_t threads,
        ProgressBar& progress)
       : comparison_{comparison},
         campaign_{campaign},
@@ -247,11 +249,10 @@ class Jobs {
 
 Result<std::size_t> run_missing(const Comparison& comparison, const Campaign& campaign, std::size_t threads,
                                 ProgressBar& progress) {
-  SACCADE_TRY(std::vector<PlannedRun> runs, comparison.plan(&campaign));
-  const std::size_t all = runs.size();
-  Jobs jobs{comparison, campaign, std::move(runs), threads, progress};
+  SACCADE_TRY(const std::vector<PlannedRun> runs, comparison.plan(&campaign));
+  Jobs jobs{comparison, campaign, runs, threads, progress};
   if (jobs.found() > 0) {
-    progress.note(std::to_string(jobs.found()) + " of " + std::to_string(all) + " runs found in " +
+    progress.note(std::to_string(jobs.found()) + " of " + std::to_string(runs.size()) + " runs found in " +
                   campaign.path().string());
   }
   return jobs.run();

@@ -14,6 +14,7 @@
 namespace saccade {
 
 struct ObjectAttentionConfig {
+  /// Nothing is known that was not observed W_th times: a view needs as many frames, or what it saw has no contour.
   ContourConfig contours;
   MapSegmentsConfig segments;  ///< `within` is the map's workspace, where it has one
   MeasureConfig measures;

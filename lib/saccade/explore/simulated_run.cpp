@@ -158,8 +158,9 @@ Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig&
   TsdfSnapshot before = map.snapshot();
   ExplorationHooks hooks;
   hooks.after_view = [&](const ExploredView& view, const Proposals&) {
-    run.views.push_back(
-        {view, measure_map(truth, map.content(), executor), newly_known(truth, before, map.content(), executor)});
+    run.views.push_back({view, measure_map(truth, map.content(), executor),
+                         newly_known(truth, before, map.content(), executor),
+                         looks_at_object(truth, view.T_world_camera)});
     before = map.snapshot();
     return true;
   };

@@ -81,6 +81,7 @@ struct MeasuredView {
   ExploredView view;
   MeasuredMap after;
   NewlyKnown newly_known;
+  bool looks_at_object{false};
 };
 
 struct SimulatedRun {

@@ -23,9 +23,9 @@ ON CONFLICT DO NOTHING)sql"};
 
 constexpr const char* kInsertView{R"sql(
 INSERT INTO views (run, number, region, gain, T_world_camera, candidates, evaluated, refused, frames, points_at_object,
-  path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms,
+  looks_at_object, path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms,
   planning_ms, motion_ms, fusion_ms, coverage, unknown_left, unknown_near_objects, accuracy_m, chamfer_m, f_score)
-VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?))sql"};
+VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?))sql"};
 
 constexpr const char* kSelectRuns{R"sql(
 SELECT id, scene, scene_hash, strategy, noise, seed, settings, stopped_because, seconds, program_version, finished_at,
@@ -34,8 +34,8 @@ SELECT id, scene, scene_hash, strategy, noise, seed, settings, stopped_because, 
 FROM runs )sql"};
 
 constexpr const char* kSelectViews{R"sql(
-SELECT region, gain, T_world_camera, candidates, evaluated, refused, frames, points_at_object, path_m, motion_s,
-  planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms, planning_ms, motion_ms,
+SELECT region, gain, T_world_camera, candidates, evaluated, refused, frames, points_at_object, looks_at_object, path_m,
+  motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms, planning_ms, motion_ms,
   fusion_ms, coverage, unknown_left, unknown_near_objects, accuracy_m, chamfer_m, f_score
 FROM views WHERE run = ? ORDER BY number)sql"};
 
@@ -116,6 +116,7 @@ Status insert_views(const SqliteFile& file, const std::vector<CampaignView>& vie
     statement.bind(refusals_to_json(view.refused).dump());
     statement.bind(whole(view.frames));
     statement.bind(std::int64_t{view.points_at_object ? 1 : 0});
+    statement.bind(std::int64_t{view.looks_at_object ? 1 : 0});
     statement.bind(view.path_m);
     statement.bind(view.motion_s);
     for (const double ms : view.phases_ms) statement.bind(ms);
@@ -142,6 +143,7 @@ Result<std::vector<CampaignView>> views_of(const SqliteFile& file, std::int64_t 
     SACCADE_TRY(view.refused, refusals_of(row));
     view.frames = static_cast<std::size_t>(row.integer());
     view.points_at_object = row.integer() != 0;
+    view.looks_at_object = row.integer() != 0;
     view.path_m = row.real();
     view.motion_s = row.real();
     for (double& ms : view.phases_ms) ms = row.real();

@@ -56,9 +56,10 @@ struct CampaignView {
   RefusalCounts refused{};
   std::size_t frames{0};
   CampaignFigures after;
-  bool points_at_object{false};
-  double path_m{0.0};    ///< of the camera, to the view
-  double motion_s{0.0};  ///< of an arm; 0 where that is not known
+  bool points_at_object{false};  ///< by what the view made known
+  bool looks_at_object{false};   ///< by its optical axis
+  double path_m{0.0};            ///< of the camera, to the view
+  double motion_s{0.0};          ///< of an arm; 0 where that is not known
   PhaseTimes phases_ms{};
 };
 

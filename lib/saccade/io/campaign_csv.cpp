@@ -8,8 +8,9 @@ constexpr std::array<std::string_view, 5> kKeyColumns{"scene", "scene_hash", "st
 constexpr std::array<std::string_view, 6> kMapColumns{"coverage",   "unknown_left", "unknown_near_objects",
                                                       "accuracy_m", "chamfer_m",    "f_score"};
 /// Of a view, between its number and its phases.
-constexpr std::array<std::string_view, 9> kViewColumns{
-    "region", "gain", "candidates", "evaluated", "refused", "frames", "points_at_object", "path_m", "motion_s"};
+constexpr std::array<std::string_view, 10> kViewColumns{"region",  "gain",    "candidates",       "evaluated",
+                                                        "refused", "frames",  "points_at_object", "looks_at_object",
+                                                        "path_m",  "motion_s"};
 
 void add_key(CsvTable& table, const CampaignKey& key) {
   table.add(key.scene).add(key.scene_hash).add(key.strategy).add(key.noise).add(key.seed);
@@ -24,7 +25,7 @@ void add_view(CsvTable& table, const CampaignView& view) {
   table.add(std::uint64_t{view.region}).add(view.gain).add(std::uint64_t{view.candidates});
   table.add(std::uint64_t{view.evaluated}).add(std::uint64_t{view.refused.total()});
   table.add(std::uint64_t{view.frames}).add(std::uint64_t{view.points_at_object ? 1U : 0U});
-  table.add(view.path_m).add(view.motion_s);
+  table.add(std::uint64_t{view.looks_at_object ? 1U : 0U}).add(view.path_m).add(view.motion_s);
   for (const double ms : view.phases_ms) table.add(ms);
   add_map(table, view.after);
 }

@@ -62,6 +62,11 @@ std::vector<RunFigure> map_figures() {
       {"unknown_near_objects", "unknown near objects at the end", "voxels", 1.0, 0, final(near)},
       {"object_views", "object-directed views of the first five", "", 1.0, 1,
        [](const Run& run, std::size_t) { return number(object_views(run)); }},
+      {"looking_views", "views of the first five whose axis meets an object", "", 1.0, 1,
+       [](const Run& run, std::size_t) {
+         return number(static_cast<std::size_t>(std::count_if(
+             run.views.begin(), first_views_end(run), [](const CampaignView& view) { return view.looks_at_object; })));
+       }},
       {"objects_first", "runs with all object-directed views first", "%", kPercent, 0,
        [](const Run& run, std::size_t) -> Value {
          const auto first = objects_come_first(run);

@@ -22,6 +22,7 @@ SimulatedRunConfig small_run(std::uint64_t seed, bool with_arm) {
   SimulatedRunConfig config;
   config.voxel_size_m = 0.015;
   config.camera = PinholeCamera{120, 90, 98.4375, 98.4375, 59.5, 44.5, 0.5, 2.0};
+  config.strategy = StrategyKind::sphere;
   config.gain_width_px = 60;
   config.sphere.roll_step_rad = 1.5707963267948966;
   config.exploration.min_gain = 10;
