@@ -249,9 +249,12 @@ TEST(CompareCommand, RefusesWhatItCannotDo) {
 /// A box of these sizes in an OBJ file.
 std::string box_obj(double x, double y, double z) {
   std::string text;
-  for (int i = 0; i < 8; ++i) {
-    text +=
-        "v " + std::to_string(i % 2 * x) + ' ' + std::to_string(i / 2 % 2 * y) + ' ' + std::to_string(i / 4 * z) + '\n';
+  for (const double height : {0.0, z}) {
+    for (const double across : {0.0, y}) {
+      for (const double along : {0.0, x}) {
+        text += "v " + std::to_string(along) + ' ' + std::to_string(across) + ' ' + std::to_string(height) + '\n';
+      }
+    }
   }
   for (const char* face : {"1 3 4 2", "5 6 8 7", "1 2 6 5", "3 7 8 4", "1 5 7 3", "2 4 8 6"})
     text += std::string{"f "} + face + '\n';

@@ -82,5 +82,20 @@ TEST(MeshScene, FilesOfAFolderByTheirNames) {
   EXPECT_EQ(mesh_files(folder / "empty").error().code, Errc::invalid_argument);
 }
 
+TEST(MeshScene, HouseholdObjectsStandOnTheTable) {
+  const std::filesystem::path folder = std::filesystem::path{SACCADE_SHARED_DATA} / "meshes_ycb";
+  if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
+  const auto files = mesh_files(folder);
+  ASSERT_TRUE(files);
+  EXPECT_GE(files->size(), 10U);
+  for (const std::filesystem::path& file : *files) {
+    const auto scene = mesh_scene(file);
+    ASSERT_TRUE(scene) << scene.error().to_string();
+    EXPECT_NEAR(placed(*scene).min.z(), 0.0, 1e-6) << file;
+    EXPECT_GT(placed(*scene).max.z(), 0.02) << file;
+    EXPECT_TRUE(scene->validate()) << file;
+  }
+}
+
 }  // namespace
 }  // namespace saccade
