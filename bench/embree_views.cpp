@@ -145,7 +145,7 @@ std::uint64_t EmbreeViews::Impl::gain(const Pose& T_world_camera, const PinholeC
   for (int row = 0; row < height; row += kPacketEdge) {
     ColumnRange any{width, 0};
     for (int j = row; j < std::min(row + kPacketEdge, height); ++j) {
-      const ColumnRange& range = window.columns[static_cast<std::size_t>(j)];
+      const ColumnRange range = window.columns_of(j);
       if (range.begin < range.end) any = {std::min(any.begin, range.begin), std::max(any.end, range.end)};
     }
     for (int column = any.begin; column < any.end; column += kPacketEdge) {
@@ -156,7 +156,7 @@ std::uint64_t EmbreeViews::Impl::gain(const Pose& T_world_camera, const PinholeC
         const int j = row + k / kPacketEdge;
         const float a = window.a[static_cast<std::size_t>(std::min(i, width - 1))];
         const float b = window.b[static_cast<std::size_t>(std::min(j, height - 1))];
-        const ColumnRange range = j < height ? window.columns[static_cast<std::size_t>(j)] : ColumnRange{};
+        const ColumnRange range = j < height ? window.columns_of(j) : ColumnRange{};
         valid[static_cast<std::size_t>(k)] = i >= range.begin && i < range.end ? -1 : 0;
         packet.ray.org_x[k] = origin_x;
         packet.ray.org_y[k] = origin_y;

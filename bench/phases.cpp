@@ -94,7 +94,8 @@ struct Walks {
   void add(const GainJob& job, const StopGrid& grid, float max_t) {
     const CastWindow& window = job.window;
     for (std::size_t j = 0; j < window.b.size(); ++j) {
-      for (int i = window.columns[j].begin; i < window.columns[j].end; ++i) {
+      const ColumnRange columns = window.columns_of(static_cast<int>(j));
+      for (int i = columns.begin; i < columns.end; ++i) {
         const LatticeRay ray = window.rays.ray(window.a[static_cast<std::size_t>(i)], window.b[j]);
         const RaySpan region = clip(ray, grid.scoring_voxels());
         if (region.empty()) continue;

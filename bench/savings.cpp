@@ -23,14 +23,15 @@ struct Saving {
   const char* name;
   bool GainSavings::*on;
 };
-constexpr std::array<Saving, 8> kSavings{{{"blocked_camera", &GainSavings::blocked_camera},
+constexpr std::array<Saving, 9> kSavings{{{"blocked_camera", &GainSavings::blocked_camera},
                                           {"region_rays", &GainSavings::region_rays},
                                           {"empty_bricks", &GainSavings::empty_bricks},
                                           {"region_exit", &GainSavings::region_exit},
                                           {"shared_lattice", &GainSavings::shared_lattice},
                                           {"tiles", &GainSavings::tiles},
                                           {"exposed_voxels", &GainSavings::exposed_voxels},
-                                          {"packets", &GainSavings::packets}}};
+                                          {"packets", &GainSavings::packets},
+                                          {"footprints", &GainSavings::footprints}}};
 
 /// Every n-th camera centre with all its rolls. 11 and 61 have no factor in common with the numbers of longitudes and
 /// latitudes.

@@ -153,7 +153,8 @@ std::vector<GainSavings> all_savings() {
   std::vector<GainSavings> list{GainSavings{}, GainSavings::none()};
   for (bool GainSavings::*const one :
        {&GainSavings::region_rays, &GainSavings::region_exit, &GainSavings::empty_bricks, &GainSavings::blocked_camera,
-        &GainSavings::shared_lattice, &GainSavings::exposed_voxels, &GainSavings::tiles, &GainSavings::packets}) {
+        &GainSavings::shared_lattice, &GainSavings::exposed_voxels, &GainSavings::tiles, &GainSavings::packets,
+        &GainSavings::footprints}) {
     GainSavings without;
     without.*one = false;
     list.push_back(without);

@@ -35,6 +35,12 @@ class BruteForceGain {
     return config_.count == GainCount::rays ? hits : voxels.size();
   }
 
+  /// Of a single ray.
+  [[nodiscard]] bool scores(const LatticeRay& ray) const {
+    Index3 voxel;
+    return scores(ray, voxel);
+  }
+
  private:
   enum class Meets { nothing, blocker, scoring };
 

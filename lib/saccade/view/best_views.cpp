@@ -2,7 +2,9 @@
 #include "saccade/view/best_views.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <numeric>
+#include <optional>
 
 #include "saccade/core/clock.hpp"
 #include "saccade/view/gain_problem.hpp"
@@ -10,9 +12,10 @@
 namespace saccade {
 namespace {
 
-constexpr int kLookOverPx{16};        // tiles of the first look
-constexpr std::size_t kBatch{4};      // jobs before bounds are compared with a new best; fixed: see best_views
-constexpr std::size_t kLookGrain{4};  // jobs
+constexpr int kLookOverPx{16};           // tiles of the first look
+constexpr std::size_t kLatticeGrain{4};  // lattices
+constexpr std::size_t kLeastBatch{4};    // jobs before bounds are compared with a new best; fixed: see best_views
+constexpr std::size_t kMostBatch{64};
 
 bool better(const RankedView& a, const RankedView& b) { return a.gain != b.gain ? a.gain > b.gain : a.index < b.index; }
 
@@ -51,34 +54,120 @@ Result<BestViews> evaluate_all(const TsdfSnapshot& map, const Region& region, st
   return best;
 }
 
+/// What a job gains at most, and about.
+struct GainBound {
+  std::uint64_t at_most{0};
+  double about{0.0};
+};
+
+/// The pixels of windows, when they fall on each other.
+std::optional<PixelGrid> common_grid(const GainProblem& problem, std::span<const std::size_t> jobs) {
+  constexpr double kOff_px{1e-3};
+  PixelGrid hull = problem.jobs[jobs.front()].window.grid();
+  double last_a{hull.first_a};
+  double last_b{hull.first_b};
+  for (const std::size_t job : jobs) {
+    const CastWindow& window = problem.jobs[job].window;
+    if (window.pixels_per_a != hull.pixels_per_a || window.pixels_per_b != hull.pixels_per_b) return std::nullopt;
+    const double columns = (static_cast<double>(window.a.front()) - hull.first_a) * hull.pixels_per_a;
+    const double rows = (static_cast<double>(window.b.front()) - hull.first_b) * hull.pixels_per_b;
+    if (std::abs(columns - std::round(columns)) > kOff_px || std::abs(rows - std::round(rows)) > kOff_px) {
+      return std::nullopt;
+    }
+    hull.first_a = std::min(hull.first_a, static_cast<double>(window.a.front()));
+    hull.first_b = std::min(hull.first_b, static_cast<double>(window.b.front()));
+    last_a = std::max(last_a, static_cast<double>(window.a.back()));
+    last_b = std::max(last_b, static_cast<double>(window.b.back()));
+  }
+  hull.columns = static_cast<int>(std::lround((last_a - hull.first_a) * hull.pixels_per_a)) + 1;
+  hull.rows = static_cast<int>(std::lround((last_b - hull.first_b) * hull.pixels_per_b)) + 1;
+  return hull;
+}
+
+ShownPixels pixels_of(const CastWindow& window, const PixelGrid& grid, const Footprint& footprint) {
+  return {&footprint,
+          static_cast<int>(std::lround((static_cast<double>(window.a.front()) - grid.first_a) * grid.pixels_per_a)),
+          static_cast<int>(std::lround((static_cast<double>(window.b.front()) - grid.first_b) * grid.pixels_per_b))};
+}
+
+void draw(const GainProblem& problem, const CastWindow& window, const PixelGrid& grid, Footprint& footprint) {
+  footprint.draw(problem.faces, window.rays, grid, problem.voxel_size_m, problem.limits.min_t, problem.limits.max_t);
+}
+
+GainBound bound_of(const CastWindow& window, const ShownPixels& shown) {
+  const auto columns = static_cast<int>(window.a.size());
+  const auto rows = static_cast<int>(window.b.size());
+  const std::uint64_t rays =
+      shown.footprint->count({shown.column, shown.column + columns, shown.row, shown.row + rows});
+  return {rays, static_cast<double>(rays)};
+}
+
+/// Of windows that have camera centre and axes in common.
+void bound_lattice(const GainProblem& problem, std::span<const std::size_t> jobs, Footprint& footprint,
+                   std::vector<GainBound>& bounds) {
+  const std::optional<PixelGrid> common = common_grid(problem, jobs);
+  if (common) draw(problem, problem.jobs[jobs.front()].window, *common, footprint);
+  for (const std::size_t job : jobs) {
+    const CastWindow& window = problem.jobs[job].window;
+    const PixelGrid grid = common ? *common : window.grid();
+    if (!common) draw(problem, window, grid, footprint);
+    bounds[job] = bound_of(window, pixels_of(window, grid, footprint));
+  }
+}
+
+std::vector<GainBound> bound_gains(const GainProblem& problem, const Executor& executor) {
+  std::vector<GainBound> bounds(problem.jobs.size());
+  executor.parallel_for(problem.lattices.size(), kLatticeGrain, [&](std::size_t begin, std::size_t end) {
+    Footprint footprint;
+    for (std::size_t i = begin; i < end; ++i) bound_lattice(problem, problem.lattices[i], footprint, bounds);
+  });
+  return bounds;
+}
+
+/// What came of deciding a job's rays.
+struct Refined {
+  std::optional<std::uint64_t> gain;  ///< none: it does not come up to the best
+  std::uint64_t rays_cast{0};
+};
+
+std::vector<Refined> refine(const GainProblem& problem, std::span<const std::size_t> jobs, const Podium& podium,
+                            const Executor& executor) {
+  std::vector<Refined> refined(jobs.size());
+  executor.parallel_for(jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const GainJob& job = problem.jobs[jobs[i]];
+      Footprint footprint;
+      draw(problem, job.window, job.window.grid(), footprint);
+      GainCaster caster{problem.grid, job.window, problem.limits, nullptr, {&footprint, 0, 0}};
+      caster.look_over(kLookOverPx);
+      caster.judge_open_tiles();
+      caster.refine(podium.entry(job.poses.front()));
+      refined[i].rays_cast = caster.rays_cast();
+      if (caster.decided()) refined[i].gain = caster.scored();
+    }
+  });
+  return refined;
+}
+
 }  // namespace
 
 Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std::span<const Pose> T_world_camera,
                              std::size_t count, const GainConfig& config, const Executor& executor) {
   if (count == 0) return Error{Errc::invalid_argument, "at least one view must be asked for", "view evaluation"};
   const GainSavings& savings = config.savings;
-  if (config.count != GainCount::rays || !savings.tiles || !savings.empty_bricks || !savings.region_rays) {
+  if (config.count != GainCount::rays || !savings.tiles || !savings.empty_bricks || !savings.region_rays ||
+      !savings.footprints) {
     return evaluate_all(map, region, T_world_camera, count, config, executor);
   }
   SACCADE_TRY(const GainProblem problem, GainProblem::prepare(map, region, T_world_camera, config, executor));
   BestViews best;
   best.prepare_ms = problem.prepare_ms;
   const Stopwatch clock;
-  const std::size_t jobs = problem.jobs.size();
-  std::vector<GainCaster> casters;
-  casters.reserve(jobs);
-  for (const GainJob& job : problem.jobs) casters.emplace_back(problem.grid, job.window, problem.limits, nullptr);
-
-  executor.parallel_for(jobs, kLookGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      casters[i].look_over(kLookOverPx);
-      casters[i].judge_open_tiles();
-    }
-  });
-  std::vector<std::size_t> order(jobs);
+  const std::vector<GainBound> bounds = bound_gains(problem, executor);
+  std::vector<std::size_t> order(problem.jobs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return casters[a].about() > casters[b].about(); });
+                   [&](std::size_t a, std::size_t b) { return bounds[a].about > bounds[b].about; });
 
   Podium podium{count, T_world_camera};
   std::vector<bool> in_a_job(T_world_camera.size());
@@ -88,21 +177,24 @@ Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std:
   for (std::size_t pose = 0; pose < T_world_camera.size(); ++pose) {
     if (!in_a_job[pose]) podium.add(pose, 0);
   }
-  for (std::size_t first = 0; first < jobs;) {
-    const std::size_t batch = std::min(std::max(kBatch, first), jobs - first);
-    executor.parallel_for(batch, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = first + begin; i < first + end; ++i) {
-        casters[order[i]].refine(podium.entry(problem.jobs[order[i]].poses.front()));
-      }
-    });
-    for (std::size_t i = first; i < first + batch; ++i) {
-      if (!casters[order[i]].decided()) continue;
-      for (const std::size_t pose : problem.jobs[order[i]].poses) podium.add(pose, casters[order[i]].scored());
-      best.poses_evaluated += problem.jobs[order[i]].poses.size();
+  const auto may_enter = [&](std::size_t job) {
+    return bounds[job].at_most >= podium.entry(problem.jobs[job].poses.front());
+  };
+  std::vector<std::size_t> batch;
+  for (auto next = order.begin(); next != order.end();) {
+    const std::size_t size = std::clamp(static_cast<std::size_t>(next - order.begin()), kLeastBatch, kMostBatch);
+    batch.clear();
+    for (; next != order.end() && batch.size() < size; ++next) {
+      if (may_enter(*next)) batch.push_back(*next);
     }
-    first += batch;
+    const std::vector<Refined> refined = refine(problem, batch, podium, executor);
+    for (std::size_t i = 0; i < batch.size(); ++i) {
+      best.rays_cast += refined[i].rays_cast;
+      if (!refined[i].gain) continue;
+      for (const std::size_t pose : problem.jobs[batch[i]].poses) podium.add(pose, *refined[i].gain);
+      best.poses_evaluated += problem.jobs[batch[i]].poses.size();
+    }
   }
-  for (const GainCaster& caster : casters) best.rays_cast += caster.rays_cast();
   best.views = podium.take();
   best.evaluate_ms = clock.elapsed_ms();
   return best;

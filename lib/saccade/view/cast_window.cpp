@@ -89,7 +89,7 @@ ImageRange box_range(const CameraFrame& camera, const IndexBox& voxels) {
 }
 
 /// Indices of the ascending, evenly spaced coordinates that lie in the range, and one more on either side.
-ColumnRange indices(const std::vector<float>& coordinates, double pixels_per_unit, const Range& range) {
+ColumnRange indices(std::span<const float> coordinates, double pixels_per_unit, const Range& range) {
   const auto size = static_cast<double>(coordinates.size());
   if (range.empty()) return {};
   const double first = static_cast<double>(coordinates.front());
@@ -98,14 +98,14 @@ ColumnRange indices(const std::vector<float>& coordinates, double pixels_per_uni
   return {static_cast<int>(begin), static_cast<int>(std::max(begin, end))};
 }
 
-std::vector<float> part(const std::vector<float>& values, const ColumnRange& range) {
-  return {values.begin() + range.begin, values.begin() + range.end};
+std::span<const float> part(std::span<const float> values, const ColumnRange& range) {
+  return values.subspan(static_cast<std::size_t>(range.begin), static_cast<std::size_t>(range.end - range.begin));
 }
 
 }  // namespace
 
 CastWindow whole_image(const SensorRays& rays, const PixelAxes& axes) {
-  return {rays, axes.a, axes.b, std::vector<ColumnRange>(axes.b.size(), {0, static_cast<int>(axes.a.size())})};
+  return {rays, axes.a, axes.b, axes.pixels_per_a, axes.pixels_per_b};
 }
 
 CastWindow window_of(const SensorRays& rays, const PixelAxes& axes, const IndexBox& voxels, const Region& region,
@@ -115,17 +115,14 @@ CastWindow window_of(const SensorRays& rays, const PixelAxes& axes, const IndexB
     range.a = range.a & disc_range(sphere->center.x(), sphere->center.z(), sphere->radius);
     range.b = range.b & disc_range(sphere->center.y(), sphere->center.z(), sphere->radius);
   }
-  return {rays,
-          part(axes.a, indices(axes.a, axes.pixels_per_a, range.a)),
-          part(axes.b, indices(axes.b, axes.pixels_per_b, range.b)),
-          {}};
+  return {rays, part(axes.a, indices(axes.a, axes.pixels_per_a, range.a)),
+          part(axes.b, indices(axes.b, axes.pixels_per_b, range.b)), axes.pixels_per_a, axes.pixels_per_b};
 }
 
 std::vector<ColumnRange> column_ranges(const CastWindow& window, const Region& region, double voxel_size_m) {
   const auto width = static_cast<int>(window.a.size());
-  std::vector<ColumnRange> ranges(window.b.size(), {0, width});
   const auto sphere = sphere_in_camera(window.rays, region, voxel_size_m);
-  if (!sphere || width < 2) return ranges;
+  if (!sphere || width < 2) return {};
   const double pixels_per_a =
       (width - 1) / (static_cast<double>(window.a.back()) - static_cast<double>(window.a.front()));
   const Eigen::Vector3d& c = sphere->center;
@@ -133,7 +130,8 @@ std::vector<ColumnRange> column_ranges(const CastWindow& window, const Region& r
   const double quadratic = c.x() * c.x() - squared_tangent;
   // Rays (a, b, 1) that meet the sphere satisfy (a·cx + b·cy + cz)² ≥ (a² + b² + 1)·(|c|² − R²); between two roots in
   // a, as long as the quadratic term is negative.
-  if (squared_tangent <= 0.0 || quadratic >= -1e-9 * squared_tangent) return ranges;
+  if (squared_tangent <= 0.0 || quadratic >= -1e-9 * squared_tangent) return {};
+  std::vector<ColumnRange> ranges(window.b.size(), {0, width});
   for (std::size_t j = 0; j < ranges.size(); ++j) {
     const double b = static_cast<double>(window.b[j]);
     const double along = b * c.y() + c.z();

@@ -76,6 +76,8 @@ class GainCaster::Sight {
     }
     return verdict_ == Verdict::open;
   }
+  /// Nothing can be said.
+  void differ() { verdict_ = Verdict::differs; }
   /// No slab is left.
   void finish() {
     if (verdict_ != Verdict::open) return;
@@ -92,11 +94,13 @@ class GainCaster::Sight {
   Verdict verdict_{Verdict::open};
 };
 
-GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const CastLimits& limits, VoxelSet* seen)
+GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const CastLimits& limits, VoxelSet* seen,
+                       const ShownPixels& shown)
     : grid_{grid},
       window_{window},
       limits_{limits},
       seen_{seen},
+      shown_{shown},
       use_packets_{limits.savings.packets && limits.savings.region_rays && limits.savings.region_exit &&
                    limits.savings.empty_bricks && limits.savings.tiles && seen == nullptr && !grid.flat().empty()},
       finest_slabs_{use_packets_ ? 2 : 1} {}
@@ -153,9 +157,9 @@ void GainCaster::judge(std::span<OpenTile> tiles) {
   for (const OpenTile& open : tiles) {
     const Tile& tile = open.tile;
     for (int j = tile.row_begin + kSamplePx / 2; j < tile.row_end; j += kSamplePx) {
-      const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
+      const ColumnRange range = window_.columns_of(j);
       for (int i = tile.column_begin + kSamplePx / 2; i < tile.column_end; i += kSamplePx) {
-        if (i >= range.begin && i < range.end) add_ray(i, j, packet);
+        if (i >= range.begin && i < range.end && shows(i, j)) add_ray(i, j, packet);
       }
     }
     ends.push_back(packet.count);
@@ -187,9 +191,13 @@ double GainCaster::about() const {
 }
 
 std::uint64_t GainCaster::rays_in(const Tile& tile) const {
+  if (shown_.footprint != nullptr) {
+    return shown_.footprint->count({tile.column_begin + shown_.column, tile.column_end + shown_.column,
+                                    tile.row_begin + shown_.row, tile.row_end + shown_.row});
+  }
   std::uint64_t rays{0};
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
-    const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
+    const ColumnRange range = window_.columns_of(j);
     const int columns = std::min(range.end, tile.column_end) - std::max(range.begin, tile.column_begin);
     rays += static_cast<std::uint64_t>(std::max(columns, 0));
   }
@@ -206,7 +214,9 @@ void GainCaster::cast_tile(const Tile& tile) {
   const RayBeam beam{window_, tile};
   Sight sight{beam, limits_, seen_ == nullptr, tile.slab};
   const int size = std::max(tile.columns(), tile.rows());
-  if (size > kFineTile) {
+  if (!beam.one_way()) {
+    sight.differ();
+  } else if (size > kFineTile) {
     look_by_bricks(beam, last_slab(beam), sight);
   } else {
     look_by_voxels(beam, last_slab(beam), sight);
@@ -278,18 +288,21 @@ void GainCaster::split(const Tile& tile) {
   const int row = (tile.row_begin + tile.row_end + 1) / 2;
   for (const auto& [row_begin, row_end] : {std::pair{tile.row_begin, row}, std::pair{row, tile.row_end}}) {
     for (const auto& [begin, end] : {std::pair{tile.column_begin, column}, std::pair{column, tile.column_end}}) {
-      if (begin < end && row_begin < row_end) cast_tile({begin, end, row_begin, row_end, tile.major, tile.slab});
+      if (begin == end || row_begin == row_end) continue;
+      Tile part{begin, end, row_begin, row_end, tile.major, tile.slab};
+      if (part.slab == 0) part.major = major_axis(window_, part);
+      cast_tile(part);
     }
   }
 }
 
 void GainCaster::cast_rays(const Tile& tile) {
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
-    const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
+    const ColumnRange range = window_.columns_of(j);
     const float b = window_.b[static_cast<std::size_t>(j)];
     const int end = std::min(range.end, tile.column_end);
     for (int i = std::max(range.begin, tile.column_begin); i < end; ++i) {
-      cast_ray(window_.a[static_cast<std::size_t>(i)], b, tile.major, tile.slab);
+      if (shows(i, j)) cast_ray(window_.a[static_cast<std::size_t>(i)], b, tile.major, tile.slab);
     }
   }
 }
@@ -297,9 +310,11 @@ void GainCaster::cast_rays(const Tile& tile) {
 void GainCaster::cast_packet(const Tile& tile) {
   RayPacket packet = no_rays(tile.major, tile.slab);
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
-    const ColumnRange& range = window_.columns[static_cast<std::size_t>(j)];
+    const ColumnRange range = window_.columns_of(j);
     const int end = std::min(range.end, tile.column_end);
-    for (int i = std::max(range.begin, tile.column_begin); i < end; ++i) add_ray(i, j, packet);
+    for (int i = std::max(range.begin, tile.column_begin); i < end; ++i) {
+      if (shows(i, j)) add_ray(i, j, packet);
+    }
   }
   const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
   scored_ += static_cast<std::uint64_t>(std::popcount(tally.scored));

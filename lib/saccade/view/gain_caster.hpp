@@ -24,6 +24,13 @@ class VoxelSet {
   std::vector<Mask512> masks_;
 };
 
+/// The pixels of a window that a footprint shows; window pixel (0, 0) is (column, row) of the footprint.
+struct ShownPixels {
+  const Footprint* footprint{nullptr};  ///< nullptr: all are shown
+  int column{0};
+  int row{0};
+};
+
 /// How far and by which savings rays are cast.
 struct CastLimits {
   float min_t{0.0F};
@@ -36,7 +43,9 @@ struct CastLimits {
 class GainCaster {
  public:
   /// `seen` takes the voxels in which rays end; nullptr: only rays are counted. All arguments outlive the caster.
-  GainCaster(const StopGrid& grid, const CastWindow& window, const CastLimits& limits, VoxelSet* seen);
+  /// Only rays through pixels that are shown are looked at.
+  GainCaster(const StopGrid& grid, const CastWindow& window, const CastLimits& limits, VoxelSet* seen,
+             const ShownPixels& shown = {});
 
   /// Casts rows [begin, end) of the window.
   void cast_rows(int begin, int end);
@@ -80,6 +89,9 @@ class GainCaster {
   void walk_voxels(const LatticeRay& ray, const RaySpan& span);
   [[nodiscard]] bool ends_in(const StopGrid::Brick& brick, const Index3& voxel, const RayEvent& entered);
   [[nodiscard]] std::uint64_t rays_in(const Tile& tile) const;
+  [[nodiscard]] bool shows(int column, int row) const {
+    return shown_.footprint == nullptr || shown_.footprint->test(column + shown_.column, row + shown_.row);
+  }
   [[nodiscard]] int last_slab(const RayBeam& beam) const;
   void score(const Index3& voxel, const RayEvent& entered);
 
@@ -87,6 +99,7 @@ class GainCaster {
   const CastWindow& window_;
   const CastLimits& limits_;
   VoxelSet* seen_;
+  ShownPixels shown_;
   bool use_packets_;
   int finest_slabs_;  ///< of voxels, that tiles look at
   int leave_open_px_{0};

@@ -102,31 +102,31 @@ LatticeKey key_of(const SensorRays& rays) {
   return key;
 }
 
-std::vector<GainJob> make_jobs(const Views& views, const StopGrid& grid, const PinholeCamera& sensor,
-                               const Region& region, double voxel_size_m, const GainSavings& savings) {
-  const std::array<PixelAxes, 4> axes{pixel_axes(sensor, 0), pixel_axes(sensor, 1), pixel_axes(sensor, 2),
-                                      pixel_axes(sensor, 3)};
-  std::vector<GainJob> jobs;
-  std::map<LatticeKey, std::vector<std::size_t>> jobs_of_lattice;
+void make_jobs(const Views& views, const Region& region, const GainSavings& savings, GainProblem& problem) {
+  const StopGrid& grid = problem.grid;
+  std::vector<GainJob>& jobs = problem.jobs;
+  std::map<LatticeKey, std::size_t> lattices;
   for (std::size_t i = 0; i < views.poses.size(); ++i) {
     const SensorRays& rays = views.rays[i];
     if (savings.blocked_camera && grid.stops(rays.origin.voxel)) continue;
-    const PixelAxes& pixels = axes[static_cast<std::size_t>(rays.quarter_turns)];
-    CastWindow window = savings.region_rays ? window_of(rays, pixels, grid.scoring_voxels(), region, voxel_size_m)
-                                            : whole_image(rays, pixels);
+    const PixelAxes& pixels = problem.axes[static_cast<std::size_t>(rays.quarter_turns)];
+    CastWindow window = savings.region_rays
+                            ? window_of(rays, pixels, grid.scoring_voxels(), region, problem.voxel_size_m)
+                            : whole_image(rays, pixels);
     if (window.empty()) continue;
-    std::vector<std::size_t>& same = jobs_of_lattice[key_of(rays)];
+    const auto [lattice, is_new] = lattices.try_emplace(key_of(rays), problem.lattices.size());
+    if (is_new) problem.lattices.emplace_back();
+    std::vector<std::size_t>& same = problem.lattices[lattice->second];
     const auto shared =
         std::find_if(same.begin(), same.end(), [&](std::size_t job) { return jobs[job].window.same_rays(window); });
     if (savings.shared_lattice && shared != same.end()) {
       jobs[*shared].poses.push_back(views.poses[i]);
       continue;
     }
-    if (savings.region_rays) window.columns = column_ranges(window, region, voxel_size_m);
+    if (savings.region_rays) window.columns = column_ranges(window, region, problem.voxel_size_m);
     same.push_back(jobs.size());
     jobs.push_back({std::move(window), {views.poses[i]}});
   }
-  return jobs;
 }
 
 }  // namespace
@@ -156,6 +156,7 @@ Result<GainProblem> GainProblem::prepare(const TsdfSnapshot& map, const Region& 
 
   GainProblem problem;
   problem.limits = {static_cast<float>(sensor.min_range_m), static_cast<float>(sensor.max_range_m), config.savings};
+  problem.voxel_size_m = voxel_size_m;
   problem.rays_total = std::uint64_t{T_world_camera.size()} * static_cast<std::uint64_t>(sensor.width) *
                        static_cast<std::uint64_t>(sensor.height);
   const IndexBox region_voxels = region_in_workspace(region, map.config);
@@ -164,9 +165,9 @@ Result<GainProblem> GainProblem::prepare(const TsdfSnapshot& map, const Region& 
   if (views.poses.empty()) return problem;
   SACCADE_TRY(problem.grid, StopGrid::build(map, region, config.unknown_outside, views.domain,
                                             config.savings.exposed_voxels, executor));
-  if (!problem.grid.scoring_voxels().empty()) {
-    problem.jobs = make_jobs(views, problem.grid, sensor, region, voxel_size_m, config.savings);
-  }
+  if (config.savings.footprints) problem.faces = EntryFaces{problem.grid, executor};
+  for (int turns = 0; turns < 4; ++turns) problem.axes[static_cast<std::size_t>(turns)] = pixel_axes(sensor, turns);
+  if (!problem.grid.scoring_voxels().empty()) make_jobs(views, region, config.savings, problem);
   problem.prepare_ms = clock.lap_ms();
   return problem;
 }

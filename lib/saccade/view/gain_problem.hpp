@@ -2,6 +2,7 @@
 #pragma once
 // GainProblem: poses, region and map turned into the rays to cast and what they meet.
 
+#include <array>
 #include <cstdint>
 #include <span>
 #include <string_view>
@@ -26,8 +27,12 @@ struct GainJob {
 /// Poses that are in no job gain nothing.
 struct GainProblem {
   StopGrid grid;
+  EntryFaces faces;               ///< only with footprints
+  std::array<PixelAxes, 4> axes;  ///< of the sensor, by quarter turns
   std::vector<GainJob> jobs;
+  std::vector<std::vector<std::size_t>> lattices;  ///< jobs whose windows have camera centre and axes in common
   CastLimits limits;
+  double voxel_size_m{0.0};
   std::uint64_t rays_total{0};  ///< pixels of all poses
   double prepare_ms{0.0};
 

@@ -10,6 +10,7 @@ namespace {
 // Far above what float32 crossings can be off by (a few 2⁻²⁴ of the distance), far below a voxel.
 constexpr float kSlack_vox{0.01F};
 constexpr float kSlackRate{2e-6F};
+constexpr float kSteepest{10.0F};  // of slopes; 1.4 where the major axis is that of the ray
 
 struct Direction {
   float d[3];
@@ -63,6 +64,8 @@ RayBeam::RayBeam(const CastWindow& window, const Tile& tile)
     }
     steepest = std::max({steepest, -minor.slope_lo, minor.slope_hi});
   }
+  for (const Direction& corner : corners) one_way_ = one_way_ && (corner.d[major_] > 0.0F) == positive_;
+  one_way_ = one_way_ && slowest_ > 0.0F && steepest <= kSteepest;
   slack_ = kSlack_vox;
   slack_rate_ = kSlackRate * (1.0F + steepest);
   const int in_brick = origin_[major_] & (kBrickEdge - 1);

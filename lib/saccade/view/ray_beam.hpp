@@ -28,6 +28,10 @@ class RayBeam {
  public:
   RayBeam(const CastWindow& window, const Tile& tile);
 
+  /// Whether all rays advance along the major axis, and not too slowly. Only then are they bounded as said; not so for
+  /// wide tiles of a sensor with few pixels.
+  [[nodiscard]] bool one_way() const { return one_way_; }
+
   /// Distance along the major axis, in voxels, at which slab n of voxels begins and ends.
   [[nodiscard]] float near(int n) const { return n == 0 ? 0.0F : first_ + static_cast<float>(n - 1); }
   [[nodiscard]] float far(int n) const { return first_ + static_cast<float>(n); }
@@ -79,6 +83,7 @@ class RayBeam {
 
   int major_;
   bool positive_;
+  bool one_way_{true};
   std::int32_t origin_[3];
   int skipped_;  // voxels of the camera's brick that lie behind its voxel
   float first_;  // distance at which the camera's own voxel ends

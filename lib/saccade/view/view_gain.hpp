@@ -38,8 +38,9 @@ struct GainSavings {
   bool exposed_voxels{true};  ///< heed only voxels that a ray can come to: with a neighbour that does not stop it
   bool tiles{true};           ///< go through empty, solid and wholly unknown space with whole tiles of rays
   bool packets{true};         ///< walk the rays that tiles leave over many at a time; only with all of the above
+  bool footprints{true};      ///< cast only rays that pass a face by which a voxel that scores can be entered
 
-  [[nodiscard]] static GainSavings none() { return {false, false, false, false, false, false, false, false}; }
+  [[nodiscard]] static GainSavings none() { return {false, false, false, false, false, false, false, false, false}; }
 };
 
 struct GainConfig {
