@@ -22,11 +22,17 @@ constexpr std::array kTables{
     ThesisTable{"2.9", "time to evaluate the views of a region: ours, PCL's octree, a fixed step (takes minutes)",
                 reproduce_table_2_9},
     ThesisTable{"2.10", "what it costs to keep unknown and empty apart while the map moves", reproduce_table_2_10},
+    ThesisTable{"3.1", "seconds of each phase of five views, attention and standard (takes minutes)",
+                reproduce_table_3_1},
+    ThesisTable{"3.2", "saliency and view poses of segments before the third view", reproduce_table_3_2},
+    ThesisTable{"3.3", "which views point towards objects (takes minutes)", reproduce_table_3_3},
     ThesisTable{"3.4", "points and outliers that filters leave of a Kinect v2's depth images", reproduce_table_3_4},
     ThesisTable{"3.5", "good points that its filter of shadow points removes", reproduce_table_3_5, false, true},
     ThesisTable{"3.8", "figure: saliency of segments by roundness, by isolation, and by both", reproduce_figure_3_8,
                 false, true},
     ThesisTable{"3.9", "figure: saliency for five distances of isolation", reproduce_figure_3_9, false, true},
+    ThesisTable{"3.17", "figure: unknown voxels near the objects over five views (takes minutes)",
+                reproduce_figure_3_17, false, true},
 };
 
 /// Characters, not bytes, of UTF-8.

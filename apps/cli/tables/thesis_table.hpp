@@ -24,13 +24,14 @@ struct ReproduceOptions {
   std::uint64_t seed{1};
   std::filesystem::path hands;  ///< folder of the thesis' recorded hands; see hand_data.hpp
   std::size_t noise_seeds{20};  ///< that noise on them is averaged over
-  int image_width_px{0};        ///< of the simulated camera of Tables 2.7 and 2.8; 0: 640, as the thesis' camera has
+  int image_width_px{0};        ///< of the simulated camera of Tables 2.7, 2.8 and 3.1 to 3.3; 0: as the thesis' has
   std::size_t frames{0};        ///< of the beginning of the scan of Table 2.1; 0: all
 };
 
 /// Files that tables' plots go to, all there are.
-constexpr std::array<std::string_view, 3> kTablePlotFiles{"fig-2-12-translation.svg", "fig-2-12-rotation.svg",
-                                                          "table-3-5.svg"};
+constexpr std::array<std::string_view, 7> kTablePlotFiles{
+    "fig-2-12-translation.svg", "fig-2-12-rotation.svg",   "table-3-5.svg",          "fig-3-17-tabletop-1.svg",
+    "fig-3-17-tabletop-2.svg",  "fig-3-17-tabletop-3.svg", "fig-3-17-tabletop-4.svg"};
 
 struct TablePlot {
   std::string_view file;
@@ -92,6 +93,14 @@ void print(std::ostream& out, const ReproducedTable& table);
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_2_10(const ReproduceOptions& options, const Executor& executor,
                                                            const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_3_1(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_3_3(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_3_17(const ReproduceOptions& options, const Executor& executor,
+                                                            const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_3_4(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_3_5(const ReproduceOptions& options, const Executor& executor,
