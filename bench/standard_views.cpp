@@ -150,6 +150,7 @@ void arguments(benchmark::internal::Benchmark* benchmark) {
   benchmark->ArgNames({"views", "threads"})
       ->ArgsProduct({{0, 1, 2, kMostViews}, {2}})
       ->Unit(benchmark::kMillisecond)
+      ->MeasureProcessCPUTime()
       ->UseRealTime();
 }
 BENCHMARK(best_of_all)->Apply(arguments)->Args({0, 1});

@@ -12,7 +12,8 @@ SAVINGS = [("blocked_camera", "a camera inside something gains nothing"),
            ("shared_lattice", "cast rays that poses share once"),
            ("tiles", "decide whole tiles of rays"),
            ("exposed_voxels", "heed only voxels that a ray can come to"),
-           ("packets", "walk the rest many rays at a time")]
+           ("packets", "walk the rest many rays at a time"),
+           ("footprints", "cast only rays that pass a face that can be entered to score")]
 # Rows that are the same as others are measured once.
 SAME = {"only_region_rays": "up_to_region_rays", "only_blocked_camera": "none", "up_to_blocked_camera": "none"}
 

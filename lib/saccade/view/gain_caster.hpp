@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// VoxelSet, CastLimits, and GainCaster, which counts the rays of a window that score.
+// CastLimits, ShownPixels, and GainCaster, which counts the rays of a window that score.
 
 #include <cstdint>
 #include <span>
@@ -9,20 +9,9 @@
 #include "saccade/view/ray_beam.hpp"
 #include "saccade/view/stop_grid.hpp"
 #include "saccade/view/view_gain.hpp"
+#include "saccade/view/voxel_set.hpp"
 
 namespace saccade {
-
-/// A set of voxels within a box.
-class VoxelSet {
- public:
-  explicit VoxelSet(const IndexBox& voxels);
-  void insert(const Index3& voxel);
-  [[nodiscard]] std::uint64_t count() const;
-
- private:
-  IndexBox bricks_;
-  std::vector<Mask512> masks_;
-};
 
 /// The pixels of a window that a footprint shows; window pixel (0, 0) is (column, row) of the footprint.
 struct ShownPixels {
