@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/campaign_csv.hpp"
@@ -54,18 +55,12 @@ Plot plot_of(const ComparedRuns& compared, const std::optional<std::string>& sce
   return plot;
 }
 
-/// The least and the greatest of the curves and their bands.
+/// The least and the greatest of the curves. Bands of two or three runs would leave them no room.
 std::pair<double, double> extent_of(const Plot& plot) {
-  std::pair<double, double> extent{0.0, 0.0};
-  bool first = true;
+  std::pair<double, double> extent{std::numeric_limits<double>::infinity(), 0.0};
   for (const PlotSeries& series : plot.series) {
-    for (const std::vector<double>* values : {&series.y, &series.low, &series.high}) {
-      for (const double value : *values) {
-        if (!std::isfinite(value)) continue;
-        extent =
-            first ? std::pair{value, value} : std::pair{std::min(extent.first, value), std::max(extent.second, value)};
-        first = false;
-      }
+    for (const double value : series.y) {
+      extent = {std::min(extent.first, value), std::max(extent.second, value)};
     }
   }
   return extent;
@@ -128,7 +123,7 @@ Plot coverage_plot(const ComparedRuns& compared, const std::optional<std::string
       compared, scene, [](const CampaignFigures& map) { return map.coverage; }, 100.0);
   plot.title = "Coverage: " + scene.value_or("mean over all scenes");
   plot.y_label = "coverage, %";
-  const double lowest = std::min(90.0, extent_of(plot).first);
+  const double lowest = std::min(90.0, extent_of(plot).first - 5.0);
   plot.y_range = {std::max(0.0, 10.0 * std::floor(0.1 * lowest)), 100.0};
   return plot;
 }
@@ -138,7 +133,7 @@ Plot unknown_plot(const ComparedRuns& compared, const std::optional<std::string>
       compared, scene, [](const CampaignFigures& map) { return static_cast<double>(map.unknown_near_objects); }, 1.0);
   plot.title = "Unknown near objects: " + scene.value_or("mean over all scenes");
   plot.y_label = "voxels";
-  plot.y_range = {0.0, std::max(1.0, 1.05 * extent_of(plot).second)};
+  plot.y_range = {0.0, std::max(1.0, 1.25 * extent_of(plot).second)};
   return plot;
 }
 

@@ -171,7 +171,7 @@ ComparisonReport comparison_report(const Comparison& comparison, const ComparedR
                   {"seeds", std::to_string(options.seeds.size())},
                   {"equal views", options.equal_views ? "every strategy as many as sphere took" : ""},
                   {"voxel size", millimetres(options.run.run.voxel_size_m)},
-                  {"gain threshold", gain_text(options.run.run.exploration.min_gain)}};
+                  {"gain threshold", options.run.min_gain ? gain_text(*options.run.min_gain) : min_gain_by_strategy()}};
   report.links = {{"runs.csv", "a row per run"},
                   {"views.csv", "a row per view"},
                   {"summary.csv", "means and intervals"},

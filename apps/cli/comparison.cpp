@@ -31,6 +31,7 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
                 {"free_weight", map.free_weight},
                 {"truth_spacing_m", kTruthSpacing_m},
                 {"radii_m", sphere.radii_m},
+                {"contour_distances_m", config.contour_views.distances_m},
                 {"longitude_step_rad", sphere.longitude_step_rad},
                 {"latitude_step_rad", sphere.latitude_step_rad},
                 {"latitude_min_rad", sphere.latitude_min_rad},

@@ -207,9 +207,10 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
   command
-      ->add_option("--image-width", options->image_width_px,
-                   "images of Tables 2.7, 2.8, 3.1 to 3.3 and Fig. 3.17 so many pixels wide: quicker, but no longer what the "
-                   "thesis did (default: 640, and 512 in chapter 3)")
+      ->add_option(
+          "--image-width", options->image_width_px,
+          "images of Tables 2.7, 2.8, 3.1 to 3.3 and Fig. 3.17 so many pixels wide: quicker, but no longer what the "
+          "thesis did (default: 640, and 512 in chapter 3)")
       ->check(CLI::Range(16, 640))
       ->type_name("PIXELS");
   command

@@ -326,7 +326,7 @@ TEST(Campaign, TablesAreQuotedAndLeaveOutWhatIsNotThere) {
       << text;
   EXPECT_NE(text.find(R"("{""max_views"":3,""voxel_size_m"":0.01}")"), std::string::npos) << text;
   const std::string views = views_csv({&run, 1}).text();
-  EXPECT_NE(views.find(",sphere,kinect-v1,7,0,,,,,,,,,,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
+  EXPECT_NE(views.find(",sphere,kinect-v1,7,0,,,,,,,,,,,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
   EXPECT_NE(
       views.find(",sphere,kinect-v1,7,1,0,321.5,960,700,260,5,1,0,1.5,2.25,0.5,0.1,3,4,1.25,20.25,2,0,7,0.507,900,"
                  "90,0.0012,0.0034,0.9\n"),
