@@ -20,7 +20,7 @@ ArmDescription described() {
 }
 
 TEST(ArmHash, ChangesWithAllThatAPlannerSees) {
-  const auto hash_of = [](ArmDescription arm) { return arm_hash(ArmModel::create(std::move(arm)).value()); };
+  const auto hash_of = [](const ArmDescription& arm) { return arm_hash(ArmModel::create(arm).value()); };
   const std::string hash = hash_of(described());
   EXPECT_EQ(hash.size(), 16U);
   EXPECT_EQ(hash_of(described()), hash);
