@@ -91,10 +91,13 @@ TEST(Defaults, OfArmsAreDocumented) {
 }
 
 TEST(Defaults, OfExplorationsAreDocumented) {
+  expect_documented("min_gain_of(StrategyKind::attention)", {min_gain_of(StrategyKind::attention)});
+  expect_documented("ObjectAttentionConfig::scrap_length_m", {ObjectAttentionConfig{}.scrap_length_m});
+  expect_documented("ObjectAttentionConfig::reach_m", {ObjectAttentionConfig{}.reach_m});
   const SimulatedRunConfig run;
   expect_documented("SimulatedRunConfig::truncation_vox", {run.truncation_vox});
   expect_documented("SimulatedRunConfig::gain_width_px", {static_cast<double>(run.gain_width_px)});
-  expect_documented("ExplorationConfig::min_gain", {run.exploration.min_gain});
+  expect_documented("ExplorationConfig::min_gain", {ExplorationConfig{}.min_gain});
   expect_documented("ExplorationConfig::good_enough", {run.exploration.good_enough});
   expect_documented("ExplorationConfig::max_views", {static_cast<double>(run.exploration.max_views)});
   expect_documented("ExplorationConfig::oscillation_frames", {static_cast<double>(run.exploration.oscillation_frames)});

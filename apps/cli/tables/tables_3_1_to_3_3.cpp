@@ -17,9 +17,23 @@
 #include "tables/thesis_table.hpp"
 
 namespace saccade::cli {
+
+struct ExplorationExperiment {
+  SimulatedRun run;
+  std::vector<Proposals> proposals;  ///< one per view, and one more where no view was left
+};
+
+/// Of the strategies, one experiment per scene.
+struct ExplorationExperiments {
+  std::vector<ExplorationExperiment> attention;
+  std::vector<ExplorationExperiment> standard;
+};
+
 namespace {
 
 using nlohmann::json;
+using Experiment = ExplorationExperiment;
+using Experiments = ExplorationExperiments;
 
 constexpr std::array<const char*, 4> kScenes{"tabletop-1", "tabletop-2", "tabletop-3", "tabletop-4"};
 constexpr int kViews{5};
@@ -42,11 +56,6 @@ class Recorded final : public Strategy {
  private:
   const Strategy& strategy_;
   mutable std::vector<Proposals> all_;
-};
-
-struct Experiment {
-  SimulatedRun run;
-  std::vector<Proposals> proposals;  ///< one per view, and one more where no view was left
 };
 
 /// As the thesis': a Kinect v2 on the Comau arm, all of whose rays count.
@@ -81,24 +90,20 @@ Result<Experiment> carry_out(const char* scene, StrategyKind kind, const Reprodu
   return Experiment{std::move(run), recorded.all()};
 }
 
-/// Of the strategies, in the order of kScenes.
-struct Experiments {
-  std::vector<Experiment> attention;
-  std::vector<Experiment> standard;
-};
-
-Result<Experiments> carry_out_all(const ReproduceOptions& options, const Executor& executor, const Progress& progress) {
-  Experiments all;
+Status carry_out_all(const ReproduceOptions& options, const Executor& executor, const Progress& progress) {
+  if (options.experiments) return {};
+  auto all = std::make_shared<Experiments>();
   std::size_t done = 0;
   for (const char* scene : kScenes) {
     for (const StrategyKind kind : {StrategyKind::attention, StrategyKind::standard}) {
       progress.report("experiments", done++, 2 * kScenes.size());
       SACCADE_TRY(Experiment experiment, carry_out(scene, kind, options, executor, {}));
-      (kind == StrategyKind::attention ? all.attention : all.standard).push_back(std::move(experiment));
+      (kind == StrategyKind::attention ? all->attention : all->standard).push_back(std::move(experiment));
       if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", scene};
     }
   }
-  return all;
+  options.experiments = std::move(all);
+  return {};
 }
 
 void add_common_notes(const ReproduceOptions& options, ReproducedTable& table) {
@@ -227,7 +232,8 @@ json experiments_json(const Experiments& all) {
 
 Result<ReproducedTable> reproduce_table_3_1(const ReproduceOptions& options, const Executor& executor,
                                             const Progress& progress) {
-  SACCADE_TRY(const Experiments all, carry_out_all(options, executor, progress));
+  SACCADE_CHECK(carry_out_all(options, executor, progress));
+  const Experiments& all = *options.experiments;
   ReproducedTable table;
   table.caption = "Table 3.1: seconds of each phase of five views, mean and standard deviation of four experiments";
   table.columns = {"phase", "proposed, thesis", "attention", "standard, thesis", "standard"};
@@ -314,7 +320,8 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
 Result<ReproducedTable> reproduce_table_3_3(const ReproduceOptions& options, const Executor& executor,
                                             const Progress& progress) {
   constexpr std::array<const char*, 8> kThesis{"✓✓✓✓×", "✓✓✓××", "✓✓✓××", "✓✓✓✓✓", "×✓×✓×", "✓×××✓", "××✓×✓", "××✓××"};
-  SACCADE_TRY(const Experiments all, carry_out_all(options, executor, progress));
+  SACCADE_CHECK(carry_out_all(options, executor, progress));
+  const Experiments& all = *options.experiments;
   ReproducedTable table;
   table.caption = "Table 3.3: views that point towards the objects (✓) or not (×)";
   table.columns = {"method", "experiment", "thesis", "by the axis", "by what became known"};
@@ -353,7 +360,8 @@ Result<ReproducedTable> reproduce_table_3_3(const ReproduceOptions& options, con
 
 Result<ReproducedTable> reproduce_figure_3_17(const ReproduceOptions& options, const Executor& executor,
                                               const Progress& progress) {
-  SACCADE_TRY(const Experiments all, carry_out_all(options, executor, progress));
+  SACCADE_CHECK(carry_out_all(options, executor, progress));
+  const Experiments& all = *options.experiments;
   ReproducedTable table;
   table.caption = "Fig. 3.17: unknown voxels near the objects after each of five views, attention / standard";
   table.columns = {"experiment", "scan", "1", "2", "3", "4", "5"};

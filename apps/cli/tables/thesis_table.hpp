@@ -5,6 +5,7 @@
 
 #include <array>
 #include <filesystem>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <ostream>
 #include <span>
@@ -19,6 +20,8 @@
 
 namespace saccade::cli {
 
+struct ExplorationExperiments;
+
 struct ReproduceOptions {
   std::size_t poses{0};  ///< view poses that are evaluated, evenly spread; 0: all that the thesis has
   std::uint64_t seed{1};
@@ -26,6 +29,8 @@ struct ReproduceOptions {
   std::size_t noise_seeds{20};  ///< that noise on them is averaged over
   int image_width_px{0};        ///< of the simulated camera of Tables 2.7, 2.8 and 3.1 to 3.3; 0: as the thesis' has
   std::size_t frames{0};        ///< of the beginning of the scan of Table 2.1; 0: all
+  /// Those of Tables 3.1 and 3.3 and Fig. 3.17, carried out by the first of them.
+  mutable std::shared_ptr<const ExplorationExperiments> experiments{};
 };
 
 /// Files that tables' plots go to, all there are.

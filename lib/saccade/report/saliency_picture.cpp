@@ -10,8 +10,8 @@
 namespace saccade {
 namespace {
 
-constexpr Rgb8 kGround{236, 239, 243};
-constexpr Rgb8 kNoSegment{150, 154, 160};
+constexpr Rgb8 kBackdrop{236, 239, 243};
+constexpr Rgb8 kUnsegmented{150, 154, 160};
 constexpr Rgb8 kChosenView{214, 28, 92};
 constexpr Rgb8 kChosenContour{0, 150, 136};
 constexpr Rgb8 kOtherContour{255, 255, 255};
@@ -40,17 +40,17 @@ ColorImage saliency_picture(const SaliencyScene& scene, const Executor& executor
   mesh.colors.clear();
   for (const std::uint32_t label : scene.labels) {
     const bool known = label < scene.saliency.size();
-    mesh.colors.push_back(known ? amount_colors()(scene.saliency[label] / bar.high) : kNoSegment);
+    mesh.colors.push_back(known ? amount_colors()(scene.saliency[label] / bar.high) : kUnsegmented);
   }
   std::vector<Eigen::Vector3d> shown{scene.T_world_chosen.translation()};
   for (const Eigen::Vector3f& vertex : mesh.vertices) {
     if (contains(scene.workspace, vertex.cast<double>())) shown.emplace_back(vertex.cast<double>());
   }
-  Canvas canvas{overview_of(shown, config), kGround};
+  Canvas canvas{overview_of(shown, config), kBackdrop};
   draw_mesh(canvas, mesh, executor);
   draw_contours(canvas, scene.contours);
   canvas.frustum(scene.sensor, scene.T_world_chosen, kFrustum_m, {kChosenView, 2.2, 0.4});
-  return with_scale(canvas.finish(), amount_colors(), bar, kGround);
+  return with_scale(canvas.finish(), amount_colors(), bar, kBackdrop);
 }
 
 }  // namespace saccade

@@ -7,10 +7,10 @@
 namespace saccade {
 namespace {
 
-constexpr std::int32_t kCellBricks{2};  // faces of so many bricks along each axis go into one group
-constexpr std::size_t kDirections{6};   // 2 · axis + forward
+constexpr std::int32_t kCellBricks{2};     // faces of so many bricks along each axis go into one group
+constexpr std::size_t kFaceDirections{6};  // 2 · axis + forward
 
-using Squares = std::array<std::vector<FaceSquare>, kDirections>;
+using Squares = std::array<std::vector<FaceSquare>, kFaceDirections>;
 
 std::int32_t& component(Index3& index, std::size_t axis) { return axis == 0 ? index.x : axis == 1 ? index.y : index.z; }
 
@@ -127,7 +127,7 @@ EntryFaces::EntryFaces(const StopGrid& grid, const Executor& executor) {
     }
   });
   for (const Squares& of_cell : found) {
-    for (std::size_t direction = 0; direction < kDirections; ++direction) {
+    for (std::size_t direction = 0; direction < kFaceDirections; ++direction) {
       if (of_cell[direction].empty()) continue;
       add_group(of_cell[direction], static_cast<int>(direction / 2), direction % 2 == 1);
     }
