@@ -5,7 +5,6 @@
 #include <array>
 #include <limits>
 #include <map>
-#include <utility>
 
 #include "saccade/explore/attention_strategy.hpp"
 #include "saccade/explore/simulated_run.hpp"
