@@ -74,6 +74,13 @@ scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'impor
 step compare build/release/saccade --quiet compare --scenes "$scenes,clutter:1" --strategies sphere,random --seeds 1-10 --max-views 12 \
   --equal-views --robot free --out "$out/compare" --json "$out/compare.json"
 
+echo "Attention beside others: the arm, ten seeds in the tabletop scenes, thirty scenes of random clutter, noise on"
+step attention build/release/saccade --quiet compare --scenes tabletop-1,tabletop-2,tabletop-3,tabletop-4 \
+  --strategies attention,standard,sphere,random-contours,oracle --robot comau --seeds 1-10 --max-views 5 --out "$out/attention" \
+  --json "$out/attention.json"
+step attention_clutter build/release/saccade --quiet compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle \
+  --robot comau --seeds 1 --max-views 5 --out "$out/attention_clutter" --json "$out/attention_clutter.json"
+
 echo "Updates after a user's task: ten seeds, noise on"
 for scene in bottle jug; do
   for when in viewpoints motion; do
