@@ -15,7 +15,7 @@ namespace {
 
 constexpr double kWidth{520.0};
 constexpr double kHeight{220.0};
-constexpr double kLeft{62.0};
+constexpr double kLeft{78.0};  // room for "1 000 000" and "1 000 ms"
 constexpr double kRight{14.0};
 constexpr double kTop{16.0};
 constexpr double kBottom{30.0};
