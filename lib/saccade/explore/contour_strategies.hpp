@@ -30,8 +30,8 @@ class ContourCandidates {
 class StandardStrategy final : public Strategy {
  public:
   /// Expects valid configurations.
-  StandardStrategy(const ContourConfig& contours, ContourViewConfig views, GainConfig gain)
-      : candidates_{contours, std::move(views)}, gain_{std::move(gain)} {}
+  StandardStrategy(const ContourConfig& contours, ContourViewConfig views, const GainConfig& gain)
+      : candidates_{contours, std::move(views)}, gain_{gain} {}
   /// The best few; more of them when it is asked again after these were attempted.
   [[nodiscard]] Result<Proposals> propose(const Situation& situation) const override;
 
