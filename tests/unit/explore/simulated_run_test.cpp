@@ -8,9 +8,12 @@
 
 #include "saccade/io/urdf.hpp"
 #include "saccade/scene/random_clutter.hpp"
+#include "support/effort.hpp"
 
 namespace saccade {
 namespace {
+
+constexpr std::size_t kViews{test::kSanitized ? 1 : 2};
 
 const Truth& small_truth() {
   static const Truth truth =
@@ -26,7 +29,7 @@ SimulatedRunConfig small_run(std::uint64_t seed, bool with_arm) {
   config.gain_width_px = 60;
   config.sphere.roll_step_rad = 1.5707963267948966;
   config.exploration.min_gain = 10;
-  config.exploration.max_views = 2;
+  config.exploration.max_views = static_cast<int>(kViews);
   config.exploration.oscillation_frames = 3;
   config.seed = seed;
   if (with_arm) config.arm = std::make_shared<const ArmModel>(find_robot("comau").value().arm);
@@ -58,7 +61,7 @@ void expect_equal(const SimulatedRun& a, const SimulatedRun& b) {
 TEST(SimulatedRun, AnArmCarriesTheCamera) {
   const SimulatedRun run = run_of(small_run(1, true), 2);
   EXPECT_GE(run.scan.views, 1U);
-  ASSERT_EQ(run.views.size(), 2U);
+  ASSERT_EQ(run.views.size(), kViews);
   for (const MeasuredView& measured : run.views) {
     EXPECT_TRUE(measured.view.q);
     EXPECT_GT(measured.view.motion_s, 0.0);
@@ -80,7 +83,7 @@ TEST(SimulatedRun, HasTheSameFiguresForEveryThreadCount) {
 }
 
 TEST(SimulatedRun, RunsThatGoOnAtOnceDoNotDisturbEachOther) {
-  constexpr std::size_t kRuns{4};
+  constexpr std::size_t kRuns{test::kSanitized ? 2 : 4};
   std::vector<SimulatedRun> at_once(kRuns);
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < kRuns; ++i) {
@@ -92,7 +95,7 @@ TEST(SimulatedRun, RunsThatGoOnAtOnceDoNotDisturbEachOther) {
 
 TEST(SimulatedRun, TakesAllTheTimeThatItsMotionsTake) {
   SimulatedRunConfig hasty = small_run(3, true);
-  hasty.exploration.max_views = 6;
+  hasty.exploration.max_views = test::kSanitized ? 1 : 6;
   const SimulatedRun run = run_of(hasty, 2);
   hasty.arm_robot.planner.budget_s = 1e-9;
   expect_equal(run_of(hasty, 2), run);
