@@ -107,8 +107,9 @@ TEST(ExternalProcess, AProgramThatHangs) {
 }
 
 TEST(ExternalProcess, AProgramWhoseHelperHangs) {
-  constexpr double kTimeToEnd_s{2.0};  // the program's, on a loaded machine; its helper keeps the answer open
-  expect_says(error_of("sh -c 'sleep 1000 & exit 2'", kTimeToEnd_s), Errc::io_failure,
+  // The program ends once it is asked, and its helper keeps the answer open.
+  constexpr double kTimeToEnd_s{2.0};
+  expect_says(error_of("sh -c 'read a; sleep 1000 & exit 2'", kTimeToEnd_s), Errc::io_failure,
               "the program itself ended with exit status 2");
 }
 
