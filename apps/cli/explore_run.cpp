@@ -46,7 +46,10 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"gain_width_px", run.gain_width_px},
                 {"min_gain", run.exploration.min_gain},
                 {"good_enough", run.exploration.good_enough}};
-  if (run.strategy == StrategyKind::attention) settings["saliency"] = saliency_text(options.saliency);
+  if (run.strategy == StrategyKind::attention) {
+    settings["saliency"] = saliency_text(options.saliency);
+    settings["rival_share"] = run.attention.rival_share;
+  }
   return settings;
 }
 

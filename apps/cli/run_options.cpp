@@ -33,6 +33,12 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
       ->type_name("SHARE")
       ->capture_default_str();
   command
+      .add_option("--rivals", options.run.attention.rival_share,
+                  "attention: the view of most gain is looked for among segments at least so salient, as a share of "
+                  "the most salient; 1: of the most salient alone, as in the thesis")
+      ->type_name("SHARE")
+      ->capture_default_str();
+  command
       .add_option("--gain-width", options.run.gain_width_px,
                   "pixels across of the virtual sensor that views are chosen with")
       ->check(CLI::Range(1, 100000))
@@ -71,6 +77,7 @@ void check_run_options(RunOptions& options) {
   options.run.sphere.radii_m = parse_distances(options.distances);
   options.run.contour_views.distances_m = options.run.sphere.radii_m;
   options.run.camera = options.camera.camera(options.run.camera);
+  require_ok(options.run.attention.validate(), "--rivals");
   require_ok(options.run.validate(), "the exploration");
 }
 

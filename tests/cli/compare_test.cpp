@@ -13,11 +13,13 @@ namespace {
 
 const Arguments kCoarse{"--image-size", "96,72", "--voxel-size", "0.03"};
 
-/// One view at most, and one that gains little will do, unless told otherwise.
+/// Sphere and random, one view at most, and one that gains little will do, unless told otherwise.
 Arguments compare_scenes(const fs::path& out, const std::string& scenes, const Arguments& more = {}) {
-  const bool choosy = std::count(more.begin(), more.end(), "--min-gain") > 0;
+  const auto unless_given = [&](const std::string& option, const std::string& value) {
+    return std::count(more.begin(), more.end(), option) > 0 ? Arguments{} : Arguments{option, value};
+  };
   return Arguments{"compare", "--scenes", scenes, "--out", out.string(), "--max-views", "1"} + kCoarse + more +
-         (choosy ? Arguments{} : Arguments{"--min-gain", "1"});
+         unless_given("--min-gain", "1") + unless_given("--strategies", "sphere,random");
 }
 
 Arguments compare(const fs::path& out, const Arguments& more) { return compare_scenes(out, "clutter:5", more); }
@@ -224,6 +226,7 @@ TEST(CompareCommand, RefusesWhatItCannotDo) {
   refused({"--scenes", "jug", "--noise", "some"}, 2, {"--noise", "kinect-v2"});
   refused({"--scenes", "jug", "--noise", "none", "--no-noise"}, 2, {"--noise"});
   refused({"--scenes", "jug", "--jobs", "0"}, 2, {"--jobs"});
+  refused({"--scenes", "jug", "--rivals", "0"}, 2, {"--rivals", "at most 1"});
   refused({"--scenes", "jug", "--robot", "hal"}, 3, {"hal"});
   refused({"--scenes", "jug", "--mesh-scale", "0"}, 2, {"--mesh-scale"});
   for (const char* seeds : {"", "x", "3-1", "1-", "-1", "1,,2", "9223372036854775808", "0-9223372036854775807"})
@@ -233,7 +236,8 @@ TEST(CompareCommand, RefusesWhatItCannotDo) {
   const Outcome ranges = run_program({"compare", "--out", out.string(), "--scenes", "clutter:1-30,clutter:7", "--seeds",
                                       "1", "--noise", "none,kinect-v2", "--list"});
   EXPECT_NE(ranges.out.find("120 runs, 0 of them done"), std::string::npos) << ranges.out << ranges.err;
-  EXPECT_NE(ranges.out.find("kinect-v2"), std::string::npos);
+  for (const char* part : {"kinect-v2", "attention", "standard"})
+    EXPECT_NE(ranges.out.find(part), std::string::npos) << part;
   const Outcome listed = run_program(compare(out, {"--list"}));
   EXPECT_EQ(listed.status, 0) << listed.err;
   EXPECT_NE(listed.out.find("20 runs, 0 of them done"), std::string::npos) << listed.out;

@@ -94,6 +94,7 @@ TEST(Defaults, OfExplorationsAreDocumented) {
   expect_documented("min_gain_of(StrategyKind::attention)", {min_gain_of(StrategyKind::attention)});
   expect_documented("ObjectAttentionConfig::scrap_length_m", {ObjectAttentionConfig{}.scrap_length_m});
   expect_documented("ObjectAttentionConfig::reach_m", {ObjectAttentionConfig{}.reach_m});
+  expect_documented("ObjectAttentionConfig::rival_share", {ObjectAttentionConfig{}.rival_share});
   const SimulatedRunConfig run;
   expect_documented("SimulatedRunConfig::truncation_vox", {run.truncation_vox});
   expect_documented("SimulatedRunConfig::gain_width_px", {static_cast<double>(run.gain_width_px)});

@@ -8,9 +8,29 @@
 #include "saccade/explore/candidates.hpp"
 
 namespace saccade {
+namespace {
+
+/// A segment whose views begin at `first` among those that were judged.
+struct Choice {
+  std::uint32_t segment;
+  std::size_t first;
+  std::size_t end;
+  double gain;  ///< of the best view worth trying
+};
+
+/// Leaves the views of one segment.
+void keep(const Choice& chosen, Proposals& judged) {
+  judged.views.resize(chosen.end);
+  judged.views.erase(judged.views.begin(), judged.views.begin() + static_cast<std::ptrdiff_t>(chosen.first));
+  judged.segment = chosen.segment;
+  judged.complete = false;
+}
+
+}  // namespace
 
 AttentionStrategy::AttentionStrategy(const ObjectAttentionConfig& attention, ContourViewConfig views, GainFunction gain)
     : reach_m_{attention.reach_m},
+      rival_share_{attention.rival_share},
       views_{std::move(views)},
       gain_{std::move(gain)},
       attention_{LiveObjectAttention::create(attention).value()} {
@@ -28,9 +48,7 @@ Status AttentionStrategy::judge_segment(const ObjectAttention& seen, std::uint32
   judged.candidates_ms += stopwatch.lap_ms();
   const std::size_t first = judged.views.size();
   keep_reachable(poses, situation, judged);
-  judged.gained = seen.surroundings(segment, reach_m_);
-  judged.segment = segment;
-  SACCADE_CHECK(judge(judged, first, judged.views.size(), *judged.gained, situation, gain_));
+  SACCADE_CHECK(judge(judged, first, judged.views.size(), seen.surroundings(segment, reach_m_), situation, gain_));
   order_by_gain(std::span{judged.views}.subspan(first));
   return {};
 }
@@ -46,21 +64,27 @@ Result<Proposals> AttentionStrategy::propose(const Situation& situation) const {
   judged.candidates_ms = seen->contours_ms;
   judged.segmentation_ms = seen->segmentation_ms;
   judged.saliency_ms = seen->saliency_ms;
-  for (const std::uint32_t segment : seen->order) {
+  std::optional<Choice> chosen;
+  double least_saliency{0.0};  // of a rival
+  for (std::size_t i = 0; i < seen->order.size(); ++i) {
+    const std::uint32_t segment = seen->order[i];
+    const bool is_scrap = i + seen->scraps >= seen->order.size();
+    if (chosen && (is_scrap || seen->saliency[segment].value < least_saliency)) break;
     if (contours_of[segment].empty()) continue;
     const std::size_t first = judged.views.size();
     SACCADE_CHECK(judge_segment(*seen, segment, contours_of[segment], situation, judged));
-    const std::span of_segment = std::span{judged.views}.subspan(first);
-    const auto worth = [&](const Proposal& view) { return situation.is_worth_trying(view); };
-    if (std::any_of(of_segment.begin(), of_segment.end(), worth)) {
-      judged.views.erase(judged.views.begin(), judged.views.begin() + static_cast<std::ptrdiff_t>(first));
-      judged.complete = false;
-      return judged;
-    }
+    const auto best = std::find_if(judged.views.begin() + static_cast<std::ptrdiff_t>(first), judged.views.end(),
+                                   [&](const Proposal& view) { return situation.is_worth_trying(view); });
+    if (best == judged.views.end()) continue;
+    if (!chosen) least_saliency = rival_share_ * seen->saliency[segment].value;
+    if (!chosen || best->gain > chosen->gain) chosen = Choice{segment, first, judged.views.size(), best->gain};
   }
-  judged.gained.reset();
-  judged.segment.reset();
-  order_by_gain(judged.views);
+  if (chosen) {
+    keep(*chosen, judged);
+    judged.gained = seen->surroundings(chosen->segment, reach_m_);
+  } else {
+    order_by_gain(judged.views);
+  }
   return judged;
 }
 

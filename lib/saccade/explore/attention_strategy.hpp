@@ -9,12 +9,12 @@
 
 namespace saccade {
 
-/// Views of the contours of what looks like an object, segment by segment in decreasing saliency: of the first segment
-/// that has a view worth trying, by decreasing gain, the others of that segment behind it. Asked again when none of
-/// them could be reached, it goes on to the next segment. Gains count unknown voxels in the segment's surroundings
-/// alone (ObjectAttention::surroundings). When no segment has a view worth trying, all that were judged are returned,
-/// with `complete`. Follows the map from call to call; what it proposes depends on the situation alone. It does not
-/// heed the bounds of the situation's region: salient is what lies in the map's workspace.
+/// Views of the contours of what looks like an object: of the most salient segment that has a view worth trying, or of
+/// that of its rivals (ObjectAttentionConfig::rival_share) whose best view gains more, by decreasing gain. Asked again
+/// when none of them could be reached, it goes on to the next segment. Gains count unknown voxels in the segment's
+/// surroundings alone (ObjectAttention::surroundings). When no segment has a view worth trying, all that were judged
+/// are returned, with `complete`. Follows the map from call to call; what it proposes depends on the situation alone.
+/// It does not heed the bounds of the situation's region: salient is what lies in the map's workspace.
 class AttentionStrategy final : public Strategy {
  public:
   /// Expects valid configurations.
@@ -27,6 +27,7 @@ class AttentionStrategy final : public Strategy {
                                      Proposals& judged) const;
 
   double reach_m_;
+  double rival_share_;
   ContourViewConfig views_;
   GainFunction gain_;
   mutable std::mutex mutex_;

@@ -11,14 +11,18 @@
 namespace saccade {
 namespace {
 
+bool is_scrap(const SegmentMeasures& measures, double scrap_length_m) {
+  return measures.sizes_m.maxCoeff() <= scrap_length_m;
+}
+
 /// Segments by decreasing saliency, scraps behind all others.
 std::vector<std::uint32_t> by_saliency(std::span<const SegmentMeasures> measures, std::span<const Saliency> saliency,
                                        double scrap_length_m) {
   std::vector<std::uint32_t> order(measures.size());
   std::iota(order.begin(), order.end(), 0U);
-  const auto is_scrap = [&](std::uint32_t segment) { return measures[segment].sizes_m.maxCoeff() <= scrap_length_m; };
   std::stable_sort(order.begin(), order.end(), [&](std::uint32_t a, std::uint32_t b) {
-    if (is_scrap(a) != is_scrap(b)) return is_scrap(b);
+    const bool is_last = is_scrap(measures[b], scrap_length_m);
+    if (is_scrap(measures[a], scrap_length_m) != is_last) return is_last;
     return saliency[a].value > saliency[b].value;
   });
   return order;
@@ -34,6 +38,7 @@ Status ObjectAttentionConfig::validate() const {
   if (!saliency) return fail("a heuristic of saliency is needed");
   if (!(scrap_length_m >= 0.0 && std::isfinite(scrap_length_m))) return fail("the length of scraps is not negative");
   if (!(reach_m > 0.0 && std::isfinite(reach_m))) return fail("the reach around a segment must be positive");
+  if (!(rival_share > 0.0 && rival_share <= 1.0)) return fail("the share that makes a rival lies above 0, at most 1");
   return {};
 }
 
@@ -90,12 +95,21 @@ Result<ObjectAttention> LiveObjectAttention::look(const TsdfSnapshot& map, const
     return Error{Errc::size_mismatch, "a heuristic of saliency must return one value per segment", "object attention"};
   }
   std::vector<std::uint32_t> order = by_saliency(measures, saliency, config_.scrap_length_m);
+  const auto scraps = static_cast<std::size_t>(std::count_if(
+      measures.begin(), measures.end(), [&](const SegmentMeasures& m) { return is_scrap(m, config_.scrap_length_m); }));
   std::vector<Eigen::Vector3d> places_m;
   for (const ContourPoint& contour : contours) places_m.push_back(contour.position_m);
   std::vector<std::uint32_t> owners = nearest_segments(surface, places_m, executor);
-  return ObjectAttention{std::move(contours), std::move(owners),   std::move(surface),
-                         std::move(measures), std::move(saliency), std::move(order),
-                         contours_ms,         segmentation_ms,     stopwatch.lap_ms()};
+  return ObjectAttention{std::move(contours),
+                         std::move(owners),
+                         std::move(surface),
+                         std::move(measures),
+                         std::move(saliency),
+                         std::move(order),
+                         scraps,
+                         contours_ms,
+                         segmentation_ms,
+                         stopwatch.lap_ms()};
 }
 
 }  // namespace saccade

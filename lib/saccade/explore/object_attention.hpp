@@ -23,6 +23,9 @@ struct ObjectAttentionConfig {
   /// stand alone and look round.
   double scrap_length_m{0.03};
   double reach_m{0.2};  ///< unknown space counts within the segment's bounding sphere enlarged by this; thesis §3.1
+  /// Among segments at least so salient, as a share of the most salient that has a view worth going to, the view that
+  /// gains most is next. Thesis Algorithm 4 takes the most salient segment alone: 1. Decision 11.
+  double rival_share{0.5};
 
   /// invalid_argument unless lengths are positive and finite and there is a heuristic; errors of the parts.
   [[nodiscard]] Status validate() const;
@@ -36,6 +39,7 @@ struct ObjectAttention {
   std::vector<SegmentMeasures> measures;          ///< one per segment, as the next
   std::vector<Saliency> saliency;
   std::vector<std::uint32_t> order;  ///< segments, the most salient first, scraps last, ties by index
+  std::size_t scraps{0};             ///< how many of these, at the end, are scraps
   double contours_ms{0.0};
   double segmentation_ms{0.0};
   double saliency_ms{0.0};

@@ -54,12 +54,6 @@ Result<BestViews> evaluate_all(const TsdfSnapshot& map, const Region& region, st
   return best;
 }
 
-/// What a job gains at most, and about.
-struct GainBound {
-  std::uint64_t at_most{0};
-  double about{0.0};
-};
-
 /// The pixels of windows, when they fall on each other.
 std::optional<PixelGrid> common_grid(const GainProblem& problem, std::span<const std::size_t> jobs) {
   constexpr double kOff_px{1e-3};
@@ -94,17 +88,15 @@ void draw(const GainProblem& problem, const CastWindow& window, const PixelGrid&
   footprint.draw(problem.faces, window.rays, grid, problem.voxel_size_m, problem.limits.min_t, problem.limits.max_t);
 }
 
-GainBound bound_of(const CastWindow& window, const ShownPixels& shown) {
+std::uint64_t bound_of(const CastWindow& window, const ShownPixels& shown) {
   const auto columns = static_cast<int>(window.a.size());
   const auto rows = static_cast<int>(window.b.size());
-  const std::uint64_t rays =
-      shown.footprint->count({shown.column, shown.column + columns, shown.row, shown.row + rows});
-  return {rays, static_cast<double>(rays)};
+  return shown.footprint->count({shown.column, shown.column + columns, shown.row, shown.row + rows});
 }
 
 /// Of windows that have camera centre and axes in common.
 void bound_lattice(const GainProblem& problem, std::span<const std::size_t> jobs, Footprint& footprint,
-                   std::vector<GainBound>& bounds) {
+                   std::vector<std::uint64_t>& bounds) {
   const std::optional<PixelGrid> common = common_grid(problem, jobs);
   if (common) draw(problem, problem.jobs[jobs.front()].window, *common, footprint);
   for (const std::size_t job : jobs) {
@@ -115,8 +107,9 @@ void bound_lattice(const GainProblem& problem, std::span<const std::size_t> jobs
   }
 }
 
-std::vector<GainBound> bound_gains(const GainProblem& problem, const Executor& executor) {
-  std::vector<GainBound> bounds(problem.jobs.size());
+/// What each job gains at most.
+std::vector<std::uint64_t> bound_gains(const GainProblem& problem, const Executor& executor) {
+  std::vector<std::uint64_t> bounds(problem.jobs.size());
   executor.parallel_for(problem.lattices.size(), kLatticeGrain, [&](std::size_t begin, std::size_t end) {
     Footprint footprint;
     for (std::size_t i = begin; i < end; ++i) bound_lattice(problem, problem.lattices[i], footprint, bounds);
@@ -163,11 +156,10 @@ Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std:
   BestViews best;
   best.prepare_ms = problem.prepare_ms;
   const Stopwatch clock;
-  const std::vector<GainBound> bounds = bound_gains(problem, executor);
+  const std::vector<std::uint64_t> bounds = bound_gains(problem, executor);
   std::vector<std::size_t> order(problem.jobs.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return bounds[a].about > bounds[b].about; });
+  std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bounds[a] > bounds[b]; });
 
   Podium podium{count, T_world_camera};
   std::vector<bool> in_a_job(T_world_camera.size());
@@ -177,9 +169,7 @@ Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std:
   for (std::size_t pose = 0; pose < T_world_camera.size(); ++pose) {
     if (!in_a_job[pose]) podium.add(pose, 0);
   }
-  const auto may_enter = [&](std::size_t job) {
-    return bounds[job].at_most >= podium.entry(problem.jobs[job].poses.front());
-  };
+  const auto may_enter = [&](std::size_t job) { return bounds[job] >= podium.entry(problem.jobs[job].poses.front()); };
   std::vector<std::size_t> batch;
   for (auto next = order.begin(); next != order.end();) {
     const std::size_t size = std::clamp(static_cast<std::size_t>(next - order.begin()), kLeastBatch, kMostBatch);

@@ -8,103 +8,69 @@
 
 #include "saccade/explore/contour_strategies.hpp"
 #include "saccade/explore/oracle_strategy.hpp"
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/scene/random_clutter.hpp"
-#include "saccade/view/view_order.hpp"
+#include "saccade/explore/strategy_kind.hpp"
+#include "unit/explore/scanned_clutter.hpp"
 
 namespace saccade {
 namespace {
 
-/// A clutter of four objects after its initial scan by a small camera.
-class Attention : public ::testing::Test {
- protected:
-  static const RayScene& rays() {
-    static const RayScene built = *RayScene::build(random_clutter(5, 4));
-    return built;
-  }
-  static const Truth& truth() {
-    static const Truth made = *Truth::build(rays(), 0.008, Executor::with_threads(2));
-    return made;
-  }
-  static SimulatedRunConfig config() {
-    SimulatedRunConfig config;
-    config.voxel_size_m = 0.012;
-    config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.4, 3.0};
-    config.gain_width_px = 80;
-    config.exploration.min_gain = 10.0;
-    config.exploration.oscillation_frames = 3;
-    return config;
-  }
-  static GainConfig gain() {
-    GainConfig gain;
-    gain.sensor = coarser(config().camera, config().gain_width_px);
-    gain.tilt_rad = config().exploration.oscillation_rad;
-    return gain;
-  }
-  static TsdfMap empty_map() {
-    TsdfConfig map = config().map();
-    map.workspace = rays().scene().workspace;
-    return *TsdfMap::create(map);
-  }
-  static const TsdfSnapshot& scanned() {
-    static const TsdfSnapshot after_scan = [] {
-      TsdfMap map = empty_map();
-      SimulatedCamera camera = *simulated_camera(rays(), config());
-      FreeRobot robot;
-      ExplorationCell cell{config().camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose); },
-                           robot};
-      EXPECT_TRUE(scan(map, cell, rays().scene().scan, config().exploration, Executor{})->complete);
-      return map.snapshot();
-    }();
-    return after_scan;
-  }
-
-  static const Region& workspace() {
-    static const Region region = rays().scene().workspace;
-    return region;
-  }
-  static Situation situation(const TsdfSnapshot& map) {
-    static const Executor executor;
-    Situation situation{map, workspace(), 0, 0, executor};
-    situation.min_gain = config().exploration.min_gain;
-    return situation;
-  }
-  static Proposals proposed(const Strategy& strategy, const Situation& situation) {
-    auto proposals = strategy.propose(situation);
-    EXPECT_TRUE(proposals) << proposals.error().to_string();
-    return *proposals;
-  }
-  static AttentionStrategy attention() { return {config().attention, config().contour_views, ray_gain(gain())}; }
-};
+using Attention = test::ScannedClutter;
 
 bool falls(const std::vector<Proposal>& views) {
   return std::is_sorted(views.begin(), views.end(),
                         [](const Proposal& a, const Proposal& b) { return a.gain > b.gain; });
 }
 
-TEST_F(Attention, ProposesViewsOfTheMostSalientSegmentThatHasAGoodOne) {
-  const AttentionStrategy strategy = attention();
-  const Proposals proposals = proposed(strategy, situation(scanned()));
-  ASSERT_TRUE(proposals.attention && proposals.segment && proposals.gained);
-  const ObjectAttention& seen = *proposals.attention;
-  EXPECT_FALSE(proposals.complete);
-  EXPECT_EQ(proposals.candidates, 40 * seen.contours.size());
-  ASSERT_FALSE(proposals.views.empty());
-  EXPECT_TRUE(falls(proposals.views));
-  EXPECT_GE(proposals.views.front().gain, config().exploration.min_gain);
+/// What each segment's best view gains, by its definition; -1: it has no contours.
+std::vector<double> best_gains(const ObjectAttention& seen, const TsdfSnapshot& map, const SimulatedRunConfig& config,
+                               const GainConfig& gain) {
+  std::vector<double> best(seen.measures.size(), -1.0);
   const auto contours_of = seen.contours_of_segments();
-  EXPECT_EQ(proposals.views.size(), 40 * contours_of[*proposals.segment].size());
-  // None of those before it had a view that gains enough.
-  for (const std::uint32_t segment : seen.order) {
-    if (segment == *proposals.segment) break;
+  for (std::uint32_t segment = 0; segment < best.size(); ++segment) {
     std::vector<ContourPoint> points;
     for (const std::uint32_t contour : contours_of[segment]) points.push_back(seen.contours[contour]);
-    const std::vector<Pose> poses = contour_views(points, config().contour_views).value();
-    const Region around = seen.surroundings(segment, config().attention.reach_m);
-    for (const std::uint64_t rays_gained : evaluate_views(scanned(), around, poses, gain(), Executor{})->gains) {
-      EXPECT_LT(static_cast<double>(rays_gained), config().exploration.min_gain);
+    if (points.empty()) continue;
+    const std::vector<Pose> poses = contour_views(points, config.contour_views).value();
+    const Region around = seen.surroundings(segment, config.attention.reach_m);
+    const auto gains = evaluate_views(map, around, poses, gain, Executor{})->gains;
+    best[segment] = static_cast<double>(*std::max_element(gains.begin(), gains.end()));
+  }
+  return best;
+}
+
+TEST_F(Attention, ProposesViewsOfTheMostSalientSegmentOrOfARivalThatGainsMore) {
+  ObjectAttentionConfig wanted = config().attention;
+  std::set<std::uint32_t> chosen;
+  for (const double min_gain : {10.0, 400.0}) {
+    for (const double share : {1.0, 0.5, 0.05}) {
+      SCOPED_TRACE("share " + std::to_string(share) + ", least gain " + std::to_string(min_gain));
+      wanted.rival_share = share;
+      const AttentionStrategy strategy{wanted, config().contour_views, ray_gain(gain())};
+      Situation asked = situation(scanned());
+      asked.min_gain = min_gain;
+      const Proposals proposals = proposed(strategy, asked);
+      ASSERT_TRUE(proposals.attention && proposals.segment && proposals.gained);
+      const ObjectAttention& seen = *proposals.attention;
+      const std::vector<double> best = best_gains(seen, scanned(), config(), gain());
+      const auto leader = std::find_if(seen.order.begin(), seen.order.end(),
+                                       [&](std::uint32_t segment) { return best[segment] >= min_gain; });
+      ASSERT_NE(leader, seen.order.end());
+      std::uint32_t expected = *leader;
+      for (auto rival = leader; rival != seen.order.end(); ++rival) {
+        if (seen.measures[*rival].sizes_m.maxCoeff() <= wanted.scrap_length_m) break;
+        if (seen.saliency[*rival].value < share * seen.saliency[*leader].value) break;
+        if (best[*rival] > best[expected]) expected = *rival;
+      }
+      EXPECT_EQ(*proposals.segment, expected);
+      chosen.insert(expected);
+      EXPECT_FALSE(proposals.complete);
+      EXPECT_EQ(proposals.candidates, 40 * seen.contours.size());
+      EXPECT_TRUE(falls(proposals.views));
+      EXPECT_EQ(proposals.views.front().gain, best[expected]);
+      EXPECT_EQ(proposals.views.size(), 40 * seen.contours_of_segments()[expected].size());
     }
   }
+  EXPECT_GT(chosen.size(), 1U);
 }
 
 TEST_F(Attention, GainsAreThoseWithinTheSegmentsSurroundings) {
@@ -125,25 +91,27 @@ TEST_F(Attention, GainsAreThoseWithinTheSegmentsSurroundings) {
 }
 
 TEST_F(Attention, GoesOnToTheNextSegmentWhenAllViewsOfOneWereAttempted) {
-  const AttentionStrategy strategy = attention();
-  std::vector<Pose> attempted;
-  Situation asked = situation(scanned());
-  asked.attempted = [&](const Pose& pose) {
-    return std::any_of(attempted.begin(), attempted.end(),
-                       [&](const Pose& other) { return other.matrix() == pose.matrix(); });
-  };
-  std::set<std::uint32_t> segments;
-  std::size_t rank{0};
-  for (int i = 0; i < 3; ++i) {
-    const Proposals proposals = proposed(strategy, asked);
-    ASSERT_TRUE(proposals.segment);
-    EXPECT_TRUE(segments.insert(*proposals.segment).second);
-    const std::vector<std::uint32_t>& order = proposals.attention->order;
-    const auto now =
-        static_cast<std::size_t>(std::find(order.begin(), order.end(), *proposals.segment) - order.begin());
-    EXPECT_TRUE(i == 0 || now > rank);
-    rank = now;
-    for (const Proposal& view : proposals.views) attempted.push_back(view.T_world_camera);
+  ObjectAttentionConfig wanted = config().attention;
+  for (const double share : {1.0, 0.5}) {
+    wanted.rival_share = share;
+    const AttentionStrategy strategy{wanted, config().contour_views, ray_gain(gain())};
+    std::vector<Pose> attempted;
+    Situation asked = situation(scanned());
+    asked.attempted = [&](const Pose& pose) {
+      return std::any_of(attempted.begin(), attempted.end(),
+                         [&](const Pose& other) { return other.matrix() == pose.matrix(); });
+    };
+    std::vector<std::size_t> ranks;
+    for (int i = 0; i < 3; ++i) {
+      const Proposals proposals = proposed(strategy, asked);
+      ASSERT_TRUE(proposals.segment);
+      const std::vector<std::uint32_t>& order = proposals.attention->order;
+      ranks.push_back(
+          static_cast<std::size_t>(std::find(order.begin(), order.end(), *proposals.segment) - order.begin()));
+      for (const Proposal& view : proposals.views) attempted.push_back(view.T_world_camera);
+    }
+    EXPECT_EQ(std::set(ranks.begin(), ranks.end()).size(), ranks.size());
+    EXPECT_EQ(std::is_sorted(ranks.begin(), ranks.end()), share == 1.0);
   }
 }
 
@@ -215,67 +183,33 @@ TEST_F(Attention, ScrapsComeLast) {
     scrap = is_scrap;
   }
   EXPECT_TRUE(scrap);
+  EXPECT_EQ(static_cast<std::ptrdiff_t>(seen.scraps),
+            std::count_if(seen.measures.begin(), seen.measures.end(),
+                          [](const SegmentMeasures& m) { return m.sizes_m.maxCoeff() <= 0.5; }));
 }
 
-TEST_F(Attention, StandardFindsTheBestOfAllContourViews) {
-  const StandardStrategy strategy{config().attention.contours, config().contour_views, gain()};
-  const Proposals proposals = proposed(strategy, situation(scanned()));
-  const std::vector<ContourVoxel> voxels = contour_voxels(scanned(), config().attention.contours, Executor{}).value();
-  const std::vector<Pose> poses =
-      contour_views(contour_points(voxels, config().voxel_size_m, config().attention.contours)).value();
-  EXPECT_EQ(proposals.candidates, poses.size());
-  const std::vector<RankedView> ranked =
-      order_views(evaluate_views(scanned(), workspace(), poses, gain(), Executor{})->gains, poses);
-  ASSERT_GE(ranked.size(), proposals.views.size());
-  ASSERT_GT(proposals.views.size(), 10U);
-  for (std::size_t i = 0; i < proposals.views.size(); ++i) {
-    EXPECT_EQ(proposals.views[i].gain, static_cast<double>(ranked[i].gain));
-    EXPECT_EQ(proposals.views[i].T_world_camera.matrix(), ranked[i].T_world_camera.matrix());
-  }
-  // Asked again, it goes on behind those.
-  Situation again = situation(scanned());
-  again.attempted = [&](const Pose& pose) {
-    return std::any_of(proposals.views.begin(), proposals.views.end(),
-                       [&](const Proposal& view) { return view.T_world_camera.matrix() == pose.matrix(); });
+TEST_F(Attention, AScrapIsNoRival) {
+  // One segment is the most salient, though others gain more.
+  const ObjectAttention seen = LiveObjectAttention::create(config().attention)->look(scanned(), Executor{}).value();
+  const std::vector<double> best = best_gains(seen, scanned(), config(), gain());
+  const auto gaining = std::find_if(seen.order.begin(), seen.order.end(), [&](std::uint32_t segment) {
+    return best[segment] >= config().exploration.min_gain &&
+           best[segment] < *std::max_element(best.begin(), best.end());
+  });
+  ASSERT_NE(gaining, seen.order.end());
+  const auto only = [&](const MeasuredSegments& segments) {
+    std::vector<Saliency> all(segments.measures.size(), Saliency{0.9, "all alike"});
+    all[*gaining].value = 1.0;
+    return all;
   };
-  EXPECT_EQ(proposed(strategy, again).views.front().gain, static_cast<double>(ranked[proposals.views.size()].gain));
-}
-
-TEST_F(Attention, RandomContoursAreAShuffleThatTheSeedDecides) {
-  const auto first_of = [](std::uint64_t seed, std::size_t taken) {
-    const RandomContourStrategy strategy{config().attention.contours, config().contour_views, ray_gain(gain()), seed};
-    Situation asked = situation(scanned());
-    asked.views_of_region = taken;
-    const Proposals proposals = proposed(strategy, asked);
-    EXPECT_FALSE(proposals.by_gain);
-    return proposals.views.front().T_world_camera.matrix().eval();
-  };
-  EXPECT_EQ(first_of(1, 0), first_of(1, 0));
-  EXPECT_NE(first_of(1, 0), first_of(2, 0));
-  EXPECT_NE(first_of(1, 0), first_of(1, 1));
-}
-
-TEST_F(Attention, TheOraclesFirstViewShowsMoreOfTheObjectsThanOthers) {
-  const OracleStrategy oracle{truth(), config().camera, config().exploration.oscillation_rad,
-                              config().attention.contours, config().contour_views};
-  const Proposals proposals = proposed(oracle, situation(scanned()));
-  ASSERT_GT(proposals.views.size(), 40U);
-  EXPECT_TRUE(falls(proposals.views));
-  const auto coverage_after = [](const Pose& pose) {
-    TsdfMap map{scanned()};
-    SimulatedRunConfig exact = config();
-    exact.noise = false;
-    SimulatedCamera camera = *simulated_camera(rays(), exact);
-    for (int i = 0; i < 3; ++i) {
-      const Frame frame = camera.capture(pose, Executor{});
-      EXPECT_TRUE(map.integrate(config().camera, frame.depth, pose, Executor{}));
-    }
-    return measure_map(truth(), map.content(), Executor{}).metrics.coverage;
-  };
-  const double best = coverage_after(proposals.views.front().T_world_camera);
-  const double middle = coverage_after(proposals.views[proposals.views.size() / 2].T_world_camera);
-  EXPECT_GT(best, coverage_after(proposals.views.back().T_world_camera));
-  EXPECT_GT(best, middle);
+  ObjectAttentionConfig scraps = config().attention;
+  scraps.saliency = only;
+  scraps.rival_share = 0.1;
+  const AttentionStrategy among_all{scraps, config().contour_views, ray_gain(gain())};
+  EXPECT_NE(proposed(among_all, situation(scanned())).segment, *gaining);
+  scraps.scrap_length_m = 10.0;  // all are: then they do not compete
+  const AttentionStrategy strategy{scraps, config().contour_views, ray_gain(gain())};
+  EXPECT_EQ(proposed(strategy, situation(scanned())).segment, *gaining);
 }
 
 TEST_F(Attention, ExploresWithAStrategyThatHasMoreToPropose) {
@@ -341,6 +275,11 @@ TEST(StrategyKinds, AreKnownByTheirNames) {
 TEST(ObjectAttentionConfig, RefusesWhatMakesNoSense) {
   ObjectAttentionConfig config;
   EXPECT_TRUE(config.validate().ok());
+  for (const double share : {0.0, 1.01, std::nan("")}) {
+    config.rival_share = share;
+    EXPECT_FALSE(config.validate().ok());
+  }
+  config.rival_share = 1.0;
   config.reach_m = 0.0;
   EXPECT_FALSE(config.validate().ok());
   config = {};

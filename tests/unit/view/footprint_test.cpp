@@ -151,6 +151,35 @@ TEST(Footprint, HoldsEveryPixelThatScoresAndFewOthers) {
   EXPECT_LT(shown, pixels * 2 / 3);
 }
 
+/// From the middle of the free voxel beside an unknown block, towards it: all rays score.
+TEST(Footprint, ShowsWhatTheCameraTouches) {
+  TsdfConfig config;
+  config.voxel_size_m = kFaceVoxel_m;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    for (const double side : {-1.0, 1.0}) {
+      SCOPED_TRACE("axis " + std::to_string(axis) + ", " + (side > 0.0 ? "from above" : "from below"));
+      const auto along = static_cast<Eigen::Index>(axis);
+      const Box block{Eigen::Vector3d::Constant(-0.2), Eigen::Vector3d::Constant(0.2)};
+      TsdfMap map = TsdfMap::create(config).value();
+      ASSERT_TRUE(map.free(Box{Eigen::Vector3d::Constant(-1.3), Eigen::Vector3d::Constant(1.3)}).ok());
+      ASSERT_TRUE(map.forget(block).ok());
+      Eigen::Vector3d from = Eigen::Vector3d::Constant(0.01);
+      from[along] = side * 0.21;
+      Eigen::Vector3d to = from;
+      to[along] = 0.0;
+      const StopGrid grid = grid_of(map.snapshot(), block);
+      const Eigen::Vector3d up = axis == 2 ? Eigen::Vector3d::UnitX() : Eigen::Vector3d::UnitZ();
+      const SensorRays rays = sensor_rays(look_at(from, to, up, 0.0), kFaceVoxel_m);
+      ASSERT_FALSE(grid.stops(rays.origin.voxel));
+      const PixelGrid pixels = whole_image(rays, pixel_axes(kFootprintCamera, rays.quarter_turns)).grid();
+      Footprint footprint;
+      footprint.draw(EntryFaces{grid, {}}, rays, pixels, kFaceVoxel_m, 0.0F, 2.0F);
+      const auto all = static_cast<std::uint64_t>(pixels.columns) * static_cast<std::uint64_t>(pixels.rows);
+      EXPECT_EQ(footprint.count({0, pixels.columns, 0, pixels.rows}), all);
+    }
+  }
+}
+
 TEST(Footprint, DoesNotShowWhatIsNearerThanTheSensorMeasuresOrFarther) {
   const TsdfSnapshot map = spotted_map(7);
   const StopGrid grid = grid_of(map, Box{{-0.4, -0.4, -0.4}, {0.5, 0.5, 0.5}});
