@@ -21,32 +21,15 @@ namespace {
 
 using namespace saccade;
 
-constexpr double kMapVoxel_m{0.0036};
 constexpr std::size_t kFewestVoxels{2000};
 
 Executor threads_of(const benchmark::State& state) {
   return Executor::with_threads(static_cast<std::size_t>(state.range(0)));
 }
 
-/// The table all seen but for a ball in its middle, then with one view after the other.
 const std::vector<TsdfSnapshot>& maps() {
-  static const std::vector<TsdfSnapshot> made = [] {
-    std::vector<TsdfSnapshot> snapshots{bench::table_map({.voxel_size_m = kMapVoxel_m})};
-    TsdfMap map{snapshots.front()};
-    const PinholeCamera camera;
-    for (int view = 0; view < 6; ++view) {
-      const double turn_rad = view * 1.2;
-      const Eigen::Vector3d target{0.3 * std::cos(turn_rad), 0.3 * std::sin(turn_rad), 0.05};
-      const Eigen::Vector3d eye{0.37 * std::cos(turn_rad + 0.3), 0.37 * std::sin(turn_rad + 0.3), 0.44};
-      const Pose T_world_camera = look_at(eye, target, Eigen::Vector3d::UnitZ());
-      const RenderedFrame seen = render(bench::table(), camera, T_world_camera, {}).value();
-      for (int frame = 0; frame < 5; ++frame) {  // known is what was seen five times
-        SACCADE_EXPECTS(map.integrate(camera, seen.depth, T_world_camera, {}).ok());
-      }
-      snapshots.push_back(map.snapshot());
-    }
-    return snapshots;
-  }();
+  constexpr int kFrames{5};  // known is what was seen five times
+  static const std::vector<TsdfSnapshot> made = bench::fine_maps_after_views(kFrames);
   return made;
 }
 
@@ -94,7 +77,7 @@ void points_and_views(benchmark::State& state) {
   std::vector<ContourPoint> points;
   std::vector<Pose> views;
   for (auto _ : state) {
-    points = contour_points(voxels, kMapVoxel_m, {});
+    points = contour_points(voxels, bench::kFineVoxel_m, {});
     views = contour_views(points).value();
   }
   if (views.size() < 40 * 50) return state.SkipWithError("too few views");

@@ -19,8 +19,6 @@ namespace {
 
 using namespace saccade;
 
-constexpr double kMapVoxel_m{0.0036};
-
 Executor threads_of(const benchmark::State& state, std::size_t argument) {
   return Executor::with_threads(static_cast<std::size_t>(state.range(argument)));
 }
@@ -65,23 +63,8 @@ void segment_clouds_with_pcl(benchmark::State& state) {
 }
 #endif
 
-/// The table all seen, then with one view after the other.
 const std::vector<TsdfSnapshot>& maps() {
-  static const std::vector<TsdfSnapshot> made = [] {
-    std::vector<TsdfSnapshot> snapshots{bench::table_map({.voxel_size_m = kMapVoxel_m})};
-    TsdfMap map{snapshots.front()};
-    const PinholeCamera camera;
-    for (int view = 0; view < 6; ++view) {
-      const double turn_rad = view * 1.2;
-      const Eigen::Vector3d target{0.3 * std::cos(turn_rad), 0.3 * std::sin(turn_rad), 0.05};
-      const Eigen::Vector3d eye{0.37 * std::cos(turn_rad + 0.3), 0.37 * std::sin(turn_rad + 0.3), 0.44};
-      const Pose T_world_camera = look_at(eye, target, Eigen::Vector3d::UnitZ());
-      const RenderedFrame seen = render(bench::table(), camera, T_world_camera, {}).value();
-      SACCADE_EXPECTS(map.integrate(camera, seen.depth, T_world_camera, {}).ok());
-      snapshots.push_back(map.snapshot());
-    }
-    return snapshots;
-  }();
+  static const std::vector<TsdfSnapshot> made = bench::fine_maps_after_views(1);
   return made;
 }
 

@@ -100,4 +100,23 @@ const TsdfSnapshot& map_after(std::size_t views) {
   return maps.at(views);
 }
 
+std::vector<TsdfSnapshot> fine_maps_after_views(int frames) {
+  constexpr int kViews{6};
+  std::vector<TsdfSnapshot> made{table_map({.voxel_size_m = kFineVoxel_m})};
+  TsdfMap map{made.front()};
+  const PinholeCamera camera;
+  for (int view = 0; view < kViews; ++view) {
+    const double turn_rad = view * 1.2;
+    const Eigen::Vector3d target{0.3 * std::cos(turn_rad), 0.3 * std::sin(turn_rad), 0.05};
+    const Eigen::Vector3d eye{0.37 * std::cos(turn_rad + 0.3), 0.37 * std::sin(turn_rad + 0.3), 0.44};
+    const Pose T_world_camera = look_at(eye, target, Eigen::Vector3d::UnitZ());
+    const RenderedFrame seen = render(table(), camera, T_world_camera, {}).value();
+    for (int frame = 0; frame < frames; ++frame) {
+      SACCADE_EXPECTS(map.integrate(camera, seen.depth, T_world_camera, {}).ok());
+    }
+    made.push_back(map.snapshot());
+  }
+  return made;
+}
+
 }  // namespace saccade::bench

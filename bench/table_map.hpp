@@ -30,6 +30,11 @@ struct TableMapConfig {
 /// unknown in front. Made at the first call.
 [[nodiscard]] const TsdfSnapshot& map_after(std::size_t views);
 
+/// The table in voxels of 3.6 mm (490,000 of its surface), then after each of six views of about 5 % of it, each fused
+/// `frames` times.
+constexpr double kFineVoxel_m{0.0036};
+[[nodiscard]] std::vector<TsdfSnapshot> fine_maps_after_views(int frames);
+
 /// The 960 poses of thesis §2.2.3 around the region; the eight rolls of a camera centre follow each other.
 [[nodiscard]] const std::vector<Pose>& all_poses();
 [[nodiscard]] std::vector<Pose> every_nth_pose(std::size_t n);

@@ -41,6 +41,11 @@ ROWS = [
     ("segments:attention_after_view/voxel_um:7500/threads:2",
      "segments and saliency after one more view of about 5 % of it, in voxels of 7.2 mm", None, None, 20.0),
     ("segments:attention_after_view/voxel_um:3600/threads:2", "the same in voxels of 3.6 mm", None, None, 20.0),
+    ("contours:from_scratch/threads:2", "contours of that map", "contours:voxel_by_voxel", None, None),
+    ("contours:after_view/threads:2", "contours after one more view of about 5 % of it", None, None, None),
+    ("standard_views:best_of_all/views:0/threads:2",
+     "the best of 95,728 views of all contours of a table, 512×424 rays, the whole workspace, after the scan", None, None, 10000.0),
+    ("standard_views:best_of_all/views:2/threads:2", "of 125,096 after two views more", None, None, 10000.0),
 ]
 PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only",
          "mapping:open3d_raycast": "Open3D VoxelBlockGrid",
@@ -52,7 +57,8 @@ PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only
          "view_evaluation:all_savings/views:0/threads:2": "all poses, as above",
          "regions:all_poses/again:0/threads:2": "all poses",
          "regions:best_pose/again:0/threads:2": "the first time",
-         "segments:pcl_clouds": "PCL"}
+         "segments:pcl_clouds": "PCL",
+         "contours:voxel_by_voxel": "voxel by voxel"}
 
 
 def target_row(results, row):
@@ -70,7 +76,8 @@ def target_row(results, row):
         held = held and (peer is None or least_ratio is None)
         cells = (f"{PEERS[peer]}: not installed" if peer else "–") + " | | "
     wanted = " and ".join(([f"≥ {least_ratio:g}×"] if least_ratio else []) + ([f"≤ {most_ms:g} ms"] if most_ms else []))
-    return f"| {what} | {spread(ours)} | {cells} | {wanted}: {'yes' if held else 'no'} |", held
+    answer = f"{wanted}: {'yes' if held else 'no'}" if wanted else "–"
+    return f"| {what} | {spread(ours)} | {cells} | {answer} |", held
 
 
 def differing(results):
