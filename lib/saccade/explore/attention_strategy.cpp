@@ -10,8 +10,8 @@
 namespace saccade {
 namespace {
 
-/// A segment whose views begin at `first` among those that were judged.
-struct Choice {
+/// Views of a segment, among those that were judged.
+struct SegmentViews {
   std::uint32_t segment;
   std::size_t first;
   std::size_t end;
@@ -19,7 +19,7 @@ struct Choice {
 };
 
 /// Leaves the views of one segment.
-void keep(const Choice& chosen, Proposals& judged) {
+void keep_only(const SegmentViews& chosen, Proposals& judged) {
   judged.views.resize(chosen.end);
   judged.views.erase(judged.views.begin(), judged.views.begin() + static_cast<std::ptrdiff_t>(chosen.first));
   judged.segment = chosen.segment;
@@ -64,7 +64,7 @@ Result<Proposals> AttentionStrategy::propose(const Situation& situation) const {
   judged.candidates_ms = seen->contours_ms;
   judged.segmentation_ms = seen->segmentation_ms;
   judged.saliency_ms = seen->saliency_ms;
-  std::optional<Choice> chosen;
+  std::optional<SegmentViews> chosen;
   double least_saliency{0.0};  // of a rival
   for (std::size_t i = 0; i < seen->order.size(); ++i) {
     const std::uint32_t segment = seen->order[i];
@@ -77,10 +77,10 @@ Result<Proposals> AttentionStrategy::propose(const Situation& situation) const {
                                    [&](const Proposal& view) { return situation.is_worth_trying(view); });
     if (best == judged.views.end()) continue;
     if (!chosen) least_saliency = rival_share_ * seen->saliency[segment].value;
-    if (!chosen || best->gain > chosen->gain) chosen = Choice{segment, first, judged.views.size(), best->gain};
+    if (!chosen || best->gain > chosen->gain) chosen = SegmentViews{segment, first, judged.views.size(), best->gain};
   }
   if (chosen) {
-    keep(*chosen, judged);
+    keep_only(*chosen, judged);
     judged.gained = seen->surroundings(chosen->segment, reach_m_);
   } else {
     order_by_gain(judged.views);
