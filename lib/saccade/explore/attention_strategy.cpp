@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/explore/attention_strategy.hpp"
 
-#include <algorithm>
+#include <optional>
 #include <utility>
 
 #include "saccade/core/clock.hpp"
@@ -10,47 +10,35 @@
 namespace saccade {
 namespace {
 
-/// Views of a segment, among those that were judged.
+/// The views of a segment that the robot can take, and what the best of them gains.
 struct SegmentViews {
-  std::uint32_t segment;
-  std::size_t first;
-  std::size_t end;
-  double gain;  ///< of the best view worth trying
+  std::uint32_t segment{0};
+  std::vector<Proposal> views;
+  double gain{0.0};
 };
-
-/// Leaves the views of one segment.
-void keep_only(const SegmentViews& chosen, Proposals& judged) {
-  judged.views.resize(chosen.end);
-  judged.views.erase(judged.views.begin(), judged.views.begin() + static_cast<std::ptrdiff_t>(chosen.first));
-  judged.segment = chosen.segment;
-  judged.complete = false;
-}
 
 }  // namespace
 
-AttentionStrategy::AttentionStrategy(const ObjectAttentionConfig& attention, ContourViewConfig views, GainFunction gain)
+AttentionStrategy::AttentionStrategy(const ObjectAttentionConfig& attention, ContourViewConfig views,
+                                     const GainConfig& gain)
     : reach_m_{attention.reach_m},
       rival_share_{attention.rival_share},
       views_{std::move(views)},
-      gain_{std::move(gain)},
+      gain_{gain},
       attention_{LiveObjectAttention::create(attention).value()} {
   SACCADE_EXPECTS(views_.validate().ok());
 }
 
-/// Lines 8 to 11 for one segment; its views come behind those that were judged before, in their order.
-Status AttentionStrategy::judge_segment(const ObjectAttention& seen, std::uint32_t segment,
-                                        std::span<const std::uint32_t> contours, const Situation& situation,
-                                        Proposals& judged) const {
-  Stopwatch stopwatch;
+Result<Proposals> AttentionStrategy::views_of(const ObjectAttention& seen, std::span<const std::uint32_t> contours,
+                                              const Situation& situation) const {
+  const Stopwatch stopwatch;
   std::vector<ContourPoint> points;
   for (const std::uint32_t contour : contours) points.push_back(seen.contours[contour]);
   SACCADE_TRY(const std::vector<Pose> poses, contour_views(points, views_));
-  judged.candidates_ms += stopwatch.lap_ms();
-  const std::size_t first = judged.views.size();
-  keep_reachable(poses, situation, judged);
-  SACCADE_CHECK(judge(judged, first, judged.views.size(), seen.surroundings(segment, reach_m_), situation, gain_));
-  order_by_gain(std::span{judged.views}.subspan(first));
-  return {};
+  Proposals proposals;
+  proposals.candidates_ms = stopwatch.elapsed_ms();
+  keep_reachable(poses, situation, proposals);
+  return proposals;
 }
 
 Result<Proposals> AttentionStrategy::propose(const Situation& situation) const {
@@ -71,20 +59,29 @@ Result<Proposals> AttentionStrategy::propose(const Situation& situation) const {
     const bool is_scrap = i + seen->scraps >= seen->order.size();
     if (chosen && (is_scrap || seen->saliency[segment].value < least_saliency)) break;
     if (contours_of[segment].empty()) continue;
-    const std::size_t first = judged.views.size();
-    SACCADE_CHECK(judge_segment(*seen, segment, contours_of[segment], situation, judged));
-    const auto best = std::find_if(judged.views.begin() + static_cast<std::ptrdiff_t>(first), judged.views.end(),
-                                   [&](const Proposal& view) { return situation.is_worth_trying(view); });
-    if (best == judged.views.end()) continue;
+    SACCADE_TRY(Proposals of_segment, views_of(*seen, contours_of[segment], situation));
+    std::vector<Proposal> views = of_segment.views;
+    SACCADE_CHECK(keep_best(of_segment, 1, seen->surroundings(segment, reach_m_), situation, gain_));
+    judged.candidates_ms += of_segment.candidates_ms;
+    judged.reachability_ms += of_segment.reachability_ms;
+    judged.refused.add(of_segment.refused);
+    judged.evaluated += of_segment.evaluated;
+    judged.views.insert(judged.views.end(), of_segment.views.begin(), of_segment.views.end());
+    if (of_segment.views.empty() || !situation.is_worth_trying(of_segment.views.front())) continue;
+    const double gain = of_segment.views.front().gain;
     if (!chosen) least_saliency = rival_share_ * seen->saliency[segment].value;
-    if (!chosen || best->gain > chosen->gain) chosen = SegmentViews{segment, first, judged.views.size(), best->gain};
+    if (!chosen || gain > chosen->gain) chosen = SegmentViews{segment, std::move(views), gain};
   }
   if (chosen) {
-    keep_only(*chosen, judged);
+    judged.views = std::move(chosen->views);
+    judged.segment = chosen->segment;
     judged.gained = seen->surroundings(chosen->segment, reach_m_);
-  } else {
-    order_by_gain(judged.views);
+    judged.complete = false;
+    const std::size_t evaluated = judged.evaluated;
+    SACCADE_CHECK(judge(judged, 0, judged.views.size(), *judged.gained, situation, ray_gain(gain_)));
+    judged.evaluated = evaluated;  // they were counted
   }
+  order_by_gain(judged.views);
   return judged;
 }
 

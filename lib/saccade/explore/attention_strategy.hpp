@@ -12,24 +12,25 @@ namespace saccade {
 /// Views of the contours of what looks like an object: of the most salient segment that has a view worth trying, or of
 /// that of its rivals (ObjectAttentionConfig::rival_share) whose best view gains more, by decreasing gain. Asked again
 /// when none of them could be reached, it goes on to the next segment. Gains count unknown voxels in the segment's
-/// surroundings alone (ObjectAttention::surroundings). When no segment has a view worth trying, all that were judged
-/// are returned, with `complete`. Follows the map from call to call; what it proposes depends on the situation alone.
-/// It does not heed the bounds of the situation's region: salient is what lies in the map's workspace.
+/// surroundings alone (ObjectAttention::surroundings). When no segment has a view worth trying, the best of each
+/// and those that were attempted are returned, with `complete`. Follows the map from call to call; what it proposes
+/// depends on the situation alone. It does not heed the bounds of the situation's region: salient is what lies in the
+/// map's workspace.
 class AttentionStrategy final : public Strategy {
  public:
-  /// Expects valid configurations.
-  AttentionStrategy(const ObjectAttentionConfig& attention, ContourViewConfig views, GainFunction gain);
+  /// Expects valid configurations. Gains are counted rays (ray_gain).
+  AttentionStrategy(const ObjectAttentionConfig& attention, ContourViewConfig views, const GainConfig& gain);
   [[nodiscard]] Result<Proposals> propose(const Situation& situation) const override;
 
  private:
-  [[nodiscard]] Status judge_segment(const ObjectAttention& seen, std::uint32_t segment,
-                                     std::span<const std::uint32_t> contours, const Situation& situation,
-                                     Proposals& judged) const;
+  /// Views of a segment that the robot can take.
+  [[nodiscard]] Result<Proposals> views_of(const ObjectAttention& seen, std::span<const std::uint32_t> contours,
+                                           const Situation& situation) const;
 
   double reach_m_;
   double rival_share_;
   ContourViewConfig views_;
-  GainFunction gain_;
+  GainConfig gain_;
   mutable std::mutex mutex_;
   mutable LiveObjectAttention attention_;  ///< what it keeps saves time, and changes nothing
 };

@@ -6,6 +6,7 @@
 #include <random>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/view/best_views.hpp"
 
 namespace saccade {
 
@@ -31,6 +32,31 @@ Status judge(Proposals& proposals, std::size_t first, std::size_t end, const Reg
   }
   for (std::size_t i = first; i < end; ++i) proposals.views[i].gain = gains[i - first];
   proposals.evaluated += poses.size();
+  return {};
+}
+
+Status keep_best(Proposals& proposals, std::size_t count, const Region& region, const Situation& situation,
+                 const GainConfig& gain) {
+  std::vector<Proposal> attempted;
+  std::vector<Pose> others;
+  for (const Proposal& view : proposals.views) {
+    if (situation.attempted && situation.attempted(view.T_world_camera)) {
+      attempted.push_back(view);
+    } else {
+      others.push_back(view.T_world_camera);
+    }
+  }
+  proposals.views = std::move(attempted);
+  if (!proposals.views.empty()) {
+    SACCADE_CHECK(judge(proposals, 0, proposals.views.size(), region, situation, ray_gain(gain)));
+  }
+  if (others.empty()) return {};
+  SACCADE_TRY(const BestViews best, best_views(situation.map, region, others, count, gain, situation.executor));
+  proposals.evaluated += others.size();
+  proposals.complete = best.views.size() == others.size();
+  std::vector<Proposal> kept;
+  for (const RankedView& view : best.views) kept.push_back({view.T_world_camera, static_cast<double>(view.gain)});
+  proposals.views.insert(proposals.views.begin(), kept.begin(), kept.end());
   return {};
 }
 

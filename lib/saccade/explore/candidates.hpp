@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// keep_reachable, judge, order_by_gain: the steps that strategies have in common.
+// keep_reachable, judge, keep_best, order_by_gain: the steps that strategies have in common.
 
 #include "saccade/explore/strategy.hpp"
 
@@ -14,6 +14,12 @@ void keep_reachable(std::span<const Pose> T_world_camera, const Situation& situa
 /// values than it got poses; its own errors.
 [[nodiscard]] Status judge(Proposals& proposals, std::size_t first, std::size_t end, const Region& region,
                            const Situation& situation, const GainFunction& gain);
+
+/// Leaves, of views that are not judged, the best that were not attempted, at most `count`, by decreasing gain, and
+/// behind them all that were attempted, judged; `complete` when no other was left out. Counts all as evaluated. Errors
+/// of best_views.
+[[nodiscard]] Status keep_best(Proposals& proposals, std::size_t count, const Region& region,
+                               const Situation& situation, const GainConfig& gain);
 
 /// The largest gain first, ties in their order.
 void order_by_gain(std::span<Proposal> views);

@@ -81,7 +81,7 @@ std::unique_ptr<Strategy> make_strategy(const SimulatedRunConfig& config, const 
   const std::size_t views_per_region = (max_views + regions - 1) / regions;
   switch (config.strategy) {
     case StrategyKind::attention:
-      return std::make_unique<AttentionStrategy>(config.attention, config.contour_views, ray_gain(gain));
+      return std::make_unique<AttentionStrategy>(config.attention, config.contour_views, gain);
     case StrategyKind::standard: return std::make_unique<StandardStrategy>(contours, config.contour_views, gain);
     case StrategyKind::sphere: return std::make_unique<SphereStrategy>(config.sphere, ray_gain(gain));
     case StrategyKind::random:

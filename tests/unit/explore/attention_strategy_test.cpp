@@ -45,7 +45,7 @@ TEST_F(Attention, ProposesViewsOfTheMostSalientSegmentOrOfARivalThatGainsMore) {
     for (const double share : {1.0, 0.5, 0.05}) {
       SCOPED_TRACE("share " + std::to_string(share) + ", least gain " + std::to_string(min_gain));
       wanted.rival_share = share;
-      const AttentionStrategy strategy{wanted, config().contour_views, ray_gain(gain())};
+      const AttentionStrategy strategy{wanted, config().contour_views, gain()};
       Situation asked = situation(scanned());
       asked.min_gain = min_gain;
       const Proposals proposals = proposed(strategy, asked);
@@ -94,7 +94,7 @@ TEST_F(Attention, GoesOnToTheNextSegmentWhenAllViewsOfOneWereAttempted) {
   ObjectAttentionConfig wanted = config().attention;
   for (const double share : {1.0, 0.5}) {
     wanted.rival_share = share;
-    const AttentionStrategy strategy{wanted, config().contour_views, ray_gain(gain())};
+    const AttentionStrategy strategy{wanted, config().contour_views, gain()};
     std::vector<Pose> attempted;
     Situation asked = situation(scanned());
     asked.attempted = [&](const Pose& pose) {
@@ -118,15 +118,28 @@ TEST_F(Attention, GoesOnToTheNextSegmentWhenAllViewsOfOneWereAttempted) {
 TEST_F(Attention, WhenNoViewGainsEnoughItSaysWhatItJudged) {
   Situation asked = situation(scanned());
   asked.min_gain = 1e9;
-  const Proposals proposals = proposed(attention(), asked);
+  const AttentionStrategy strategy = attention();
+  const Proposals proposals = proposed(strategy, asked);
   EXPECT_TRUE(proposals.complete);
   EXPECT_FALSE(proposals.segment);
   EXPECT_FALSE(proposals.gained);
   EXPECT_TRUE(falls(proposals.views));
-  EXPECT_EQ(proposals.views.size(), proposals.evaluated);
   const auto& owners = proposals.attention->segment_of_contour;
-  EXPECT_EQ(proposals.views.size(),
+  EXPECT_EQ(proposals.evaluated,
             40 * (owners.size() - static_cast<std::size_t>(std::count(owners.begin(), owners.end(), kUnlabelled))));
+  // The best view of each segment; those that were attempted are judged too, so that one can say what was out of reach.
+  std::set<std::uint32_t> segments{owners.begin(), owners.end()};
+  segments.erase(kUnlabelled);
+  EXPECT_EQ(proposals.views.size(), segments.size());
+  const Pose best = proposals.views.front().T_world_camera;
+  asked.attempted = [&](const Pose& pose) { return pose.matrix() == best.matrix(); };
+  const Proposals again = proposed(strategy, asked);
+  EXPECT_EQ(again.views.size(), proposals.views.size() + 1);
+  const auto attempted = std::find_if(again.views.begin(), again.views.end(), [&](const Proposal& view) {
+    return view.T_world_camera.matrix() == best.matrix();
+  });
+  ASSERT_NE(attempted, again.views.end());
+  EXPECT_EQ(attempted->gain, proposals.views.front().gain);
 }
 
 TEST_F(Attention, ViewsThatTheRobotRefusesAreNotJudged) {
@@ -205,10 +218,10 @@ TEST_F(Attention, AScrapIsNoRival) {
   ObjectAttentionConfig scraps = config().attention;
   scraps.saliency = only;
   scraps.rival_share = 0.1;
-  const AttentionStrategy among_all{scraps, config().contour_views, ray_gain(gain())};
+  const AttentionStrategy among_all{scraps, config().contour_views, gain()};
   EXPECT_NE(proposed(among_all, situation(scanned())).segment, *gaining);
   scraps.scrap_length_m = 10.0;  // all are: then they do not compete
-  const AttentionStrategy strategy{scraps, config().contour_views, ray_gain(gain())};
+  const AttentionStrategy strategy{scraps, config().contour_views, gain()};
   EXPECT_EQ(proposed(strategy, situation(scanned())).segment, *gaining);
 }
 

@@ -69,7 +69,7 @@ class ScannedClutter : public ::testing::Test {
     EXPECT_TRUE(proposals) << proposals.error().to_string();
     return *proposals;
   }
-  static AttentionStrategy attention() { return {config().attention, config().contour_views, ray_gain(gain())}; }
+  static AttentionStrategy attention() { return {config().attention, config().contour_views, gain()}; }
 };
 
 }  // namespace saccade::test
