@@ -59,13 +59,28 @@ std::string attention_text(const json& attention) {
          std::to_string(attention.at("contours").get<std::size_t>()) + " contour points";
 }
 
+/// Per vertex; what lies outside the workspace is in no segment, and not searched for.
+std::vector<std::uint32_t> segments_of(const TriangleMesh& mesh, const SegmentedPoints& surface, const Box& workspace,
+                                       const Executor& executor) {
+  std::vector<std::size_t> inside;
+  std::vector<Eigen::Vector3d> places_m;
+  for (std::size_t i = 0; i < mesh.vertices.size(); ++i) {
+    const Eigen::Vector3d vertex = mesh.vertices[i].cast<double>();
+    if (!contains(workspace, vertex)) continue;
+    inside.push_back(i);
+    places_m.push_back(vertex);
+  }
+  const std::vector<std::uint32_t> segments = nearest_segments(surface, places_m, executor);
+  std::vector<std::uint32_t> labels(mesh.vertices.size(), kUnlabelled);
+  for (std::size_t i = 0; i < inside.size(); ++i) labels[inside[i]] = segments[i];
+  return labels;
+}
+
 Status draw_saliency(const RunFolder& out, const ViewScenes& scenes, const Executor& executor) {
   if (!scenes.proposals.attention) return {};
   const ObjectAttention& attention = *scenes.proposals.attention;
   const TriangleMesh mesh = extract_mesh(scenes.before, executor);
-  std::vector<Eigen::Vector3d> vertices;
-  for (const Eigen::Vector3f& vertex : mesh.vertices) vertices.emplace_back(vertex.cast<double>());
-  const std::vector<std::uint32_t> labels = nearest_segments(attention.surface, vertices, executor);
+  const std::vector<std::uint32_t> labels = segments_of(mesh, attention.surface, scenes.workspace, executor);
   std::vector<double> saliency;
   for (const Saliency& of_segment : attention.saliency) saliency.push_back(of_segment.value);
   std::vector<DrawnContour> contours;
