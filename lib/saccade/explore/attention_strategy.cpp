@@ -10,6 +10,8 @@
 namespace saccade {
 namespace {
 
+constexpr std::size_t kAtATime{16};  // views of the segment that is next
+
 /// The views of a segment that the robot can take, and what the best of them gains.
 struct SegmentViews {
   std::uint32_t segment{0};
@@ -73,13 +75,14 @@ Result<Proposals> AttentionStrategy::propose(const Situation& situation) const {
     if (!chosen || gain > chosen->gain) chosen = SegmentViews{segment, std::move(views), gain};
   }
   if (chosen) {
-    judged.views = std::move(chosen->views);
+    Proposals next;
+    next.views = std::move(chosen->views);
+    const Region gained = seen->surroundings(chosen->segment, reach_m_);
+    SACCADE_CHECK(keep_best(next, kAtATime, gained, situation, gain_));
+    judged.views = std::move(next.views);
     judged.segment = chosen->segment;
-    judged.gained = seen->surroundings(chosen->segment, reach_m_);
+    judged.gained = gained;
     judged.complete = false;
-    const std::size_t evaluated = judged.evaluated;
-    SACCADE_CHECK(judge(judged, 0, judged.views.size(), *judged.gained, situation, ray_gain(gain_)));
-    judged.evaluated = evaluated;  // they were counted
   }
   order_by_gain(judged.views);
   return judged;

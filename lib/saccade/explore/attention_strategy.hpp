@@ -9,13 +9,13 @@
 
 namespace saccade {
 
-/// Views of the contours of what looks like an object: of the most salient segment that has a view worth trying, or of
-/// that of its rivals (ObjectAttentionConfig::rival_share) whose best view gains more, by decreasing gain. Asked again
-/// when none of them could be reached, it goes on to the next segment. Gains count unknown voxels in the segment's
-/// surroundings alone (ObjectAttention::surroundings). When no segment has a view worth trying, the best of each
-/// and those that were attempted are returned, with `complete`. Follows the map from call to call; what it proposes
-/// depends on the situation alone. It does not heed the bounds of the situation's region: salient is what lies in the
-/// map's workspace.
+/// The best few views of the contours of what looks like an object: of the most salient segment that has a view worth
+/// trying, or of that of its rivals (ObjectAttentionConfig::rival_share) whose best view gains more, by decreasing
+/// gain. Asked again when none of them could be reached, it proposes more, then those of the next segment. Gains count
+/// unknown voxels in the segment's surroundings alone (ObjectAttention::surroundings). When no segment has a view worth
+/// trying, the best of each and those that were attempted are returned, with `complete`. Follows the map from call to
+/// call; what it proposes depends on the situation alone. It does not heed the bounds of the situation's region:
+/// salient is what lies in the map's workspace.
 class AttentionStrategy final : public Strategy {
  public:
   /// Expects valid configurations. Gains are counted rays (ray_gain).
