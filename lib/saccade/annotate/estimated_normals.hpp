@@ -1,0 +1,19 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// estimate_normals: normals of points from their neighbours.
+
+#include <Eigen/Core>
+#include <vector>
+
+#include "saccade/annotate/nearest_neighbours.hpp"
+
+namespace saccade {
+
+/// The direction in which the points around a node vary least: least eigenvector of their covariance. `rounds` says how
+/// far around reaches: 1, the K nearest; each more, the neighbours of these as well, those that are reached in several
+/// ways counting as often. Either of the two directions; zero where there are fewer than three points around.
+/// One per node. The same for every thread count. O(n K rounds).
+[[nodiscard]] std::vector<Eigen::Vector3f> estimate_normals(const NearestNeighbours& neighbours, int rounds,
+                                                            const Executor& executor);
+
+}  // namespace saccade

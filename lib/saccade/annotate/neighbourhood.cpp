@@ -1,0 +1,208 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/annotate/neighbourhood.hpp"
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <limits>
+#include <string>
+
+#include "saccade/annotate/estimated_normals.hpp"
+#include "saccade/annotate/nearest_neighbours.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr std::size_t kGrain{1024};
+constexpr int kMostNeighbours{64};
+constexpr int kNormalRounds{2};
+constexpr std::uint32_t kNoNode{std::numeric_limits<std::uint32_t>::max()};
+
+bool is_weight(double value) { return std::isfinite(value) && value >= 0.0; }
+
+/// Eq. 4.17 between nodes.
+class EdgeCost {
+ public:
+  EdgeCost(const PointCloud& cloud, const NearestNeighbours& neighbours, const NeighbourhoodConfig& config,
+           const Executor& executor)
+      : config_{config}, neighbours_{neighbours} {
+    const std::size_t size = neighbours.order.size();
+    normals_are_oriented_ = !cloud.normals.empty();
+    if (config.normal_weight > 0.0) {
+      if (normals_are_oriented_) {
+        normals_.resize(size);
+      } else {
+        normals_ = estimate_normals(neighbours, kNormalRounds, executor);
+      }
+    }
+    if (config.color_weight > 0.0 && !cloud.colors.empty()) colors_.resize(size);
+    executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        const std::uint32_t point = neighbours.order[i];
+        if (!colors_.empty()) colors_[i] = cloud.colors[point];
+        if (!normals_.empty() && normals_are_oriented_) normals_[i] = unit_or_zero(cloud.normals[point]);
+      }
+    });
+    if (config.adapt_to_density && neighbours.count > 0) measure_spacing();
+  }
+
+  /// In path units, kPathUnits at most.
+  [[nodiscard]] std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const {
+    const double cost = config_.position_weight_per_m * distance_m(a, b) +
+                        config_.normal_weight * normal_difference(a, b) + config_.color_weight * color_difference(a, b);
+    const double units = cost / config_.max_path * kPathUnits;
+    return units < kPathUnits ? static_cast<std::uint32_t>(std::lround(units)) : kPathUnits;
+  }
+
+ private:
+  static Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& normal) {
+    const float length = normal.norm();
+    if (!(length > 0.0F) || !std::isfinite(length)) return Eigen::Vector3f::Zero();
+    return normal / length;
+  }
+
+  [[nodiscard]] double distance_m(std::uint32_t a, std::uint32_t b) const {
+    const auto distance = static_cast<double>((neighbours_.positions_m[a] - neighbours_.positions_m[b]).norm());
+    if (spacing_m_.empty()) return distance;
+    const auto local = static_cast<double>(std::max(spacing_m_[a], spacing_m_[b]));
+    return local > 0.0 ? distance / local * median_spacing_m_ : 0.0;
+  }
+
+  /// 1 − n_a · n_b. Estimated normals have no sides: the smaller of both ways to turn them.
+  [[nodiscard]] double normal_difference(std::uint32_t a, std::uint32_t b) const {
+    if (normals_.empty()) return 0.0;
+    const Eigen::Vector3f& n = normals_[a];
+    const Eigen::Vector3f& m = normals_[b];
+    if (n.isZero(0.0F) || m.isZero(0.0F)) return 0.0;
+    const float dot = n.dot(m);
+    return std::max(0.0, 1.0 - static_cast<double>(normals_are_oriented_ ? dot : std::abs(dot)));
+  }
+
+  [[nodiscard]] double color_difference(std::uint32_t a, std::uint32_t b) const {
+    return colors_.empty() ? 0.0 : static_cast<double>((colors_[a] - colors_[b]).norm());
+  }
+
+  void measure_spacing() {
+    spacing_m_.resize(neighbours_.order.size());
+    for (std::size_t i = 0; i < spacing_m_.size(); ++i) {
+      spacing_m_[i] = (neighbours_.positions_m[i] - neighbours_.positions_m[neighbours_.of(i).back()]).norm();
+    }
+    std::vector<float> sorted = spacing_m_;
+    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+    std::nth_element(sorted.begin(), middle, sorted.end());
+    median_spacing_m_ = static_cast<double>(*middle);
+  }
+
+  const NeighbourhoodConfig& config_;
+  const NearestNeighbours& neighbours_;
+  bool normals_are_oriented_{false};
+  std::vector<Eigen::Vector3f> normals_;
+  std::vector<Eigen::Vector3f> colors_;
+  std::vector<float> spacing_m_;
+  double median_spacing_m_{0.0};
+};
+
+bool has_neighbour(const NearestNeighbours& neighbours, std::uint32_t node, std::uint32_t other) {
+  const std::span<const std::uint32_t> row = neighbours.of(node);
+  return std::find(row.begin(), row.end(), other) != row.end();
+}
+
+struct Joined {
+  std::vector<std::uint64_t> starts;
+  std::vector<Neighbourhood::Edge> edges;
+};
+
+/// Both ways: a node's own nearest, then, in ascending order, the others that have it among theirs.
+Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCost& cost, const Executor& executor) {
+  const std::size_t size = neighbours.order.size();
+  const std::size_t k = neighbours.count;
+  std::vector<std::uint32_t> others(size, 0);
+  const auto for_one_sided = [&](const auto& body) {
+    executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+      for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
+        for (const std::uint32_t other : neighbours.of(node)) {
+          if (!has_neighbour(neighbours, other, node)) body(node, other);
+        }
+      }
+    });
+  };
+  for_one_sided([&](std::uint32_t /*node*/, std::uint32_t other) {
+    std::atomic_ref{others[other]}.fetch_add(1, std::memory_order_relaxed);
+  });
+  Joined joined;
+  joined.starts.resize(nodes + 1);
+  for (std::size_t i = 0; i < size; ++i) joined.starts[i + 1] = joined.starts[i] + k + others[i];
+  for (std::size_t i = size; i < nodes; ++i) joined.starts[i + 1] = joined.starts[i];
+  joined.edges.resize(joined.starts.back());
+  for_one_sided([&](std::uint32_t node, std::uint32_t other) {
+    const std::uint32_t left = std::atomic_ref{others[other]}.fetch_sub(1, std::memory_order_relaxed);
+    joined.edges[joined.starts[other] + k + left - 1].node = node;
+  });
+  executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
+      const auto first = joined.edges.begin() + static_cast<std::ptrdiff_t>(joined.starts[node]);
+      const auto last = joined.edges.begin() + static_cast<std::ptrdiff_t>(joined.starts[node + 1]);
+      const std::span<const std::uint32_t> nearest = neighbours.of(node);
+      for (std::size_t i = 0; i < k; ++i) first[static_cast<std::ptrdiff_t>(i)].node = nearest[i];
+      std::sort(first + static_cast<std::ptrdiff_t>(k), last,
+                [](const Neighbourhood::Edge& a, const Neighbourhood::Edge& b) { return a.node < b.node; });
+      for (auto edge = first; edge != last; ++edge) edge->cost = cost(node, edge->node);
+    }
+  });
+  return joined;
+}
+
+std::uint32_t median_of_sample(const std::vector<Neighbourhood::Edge>& edges) {
+  constexpr std::size_t kSamples{10007};
+  std::vector<std::uint32_t> costs;
+  for (std::size_t i = 0; i < edges.size(); i += 1 + edges.size() / kSamples) costs.push_back(edges[i].cost);
+  if (costs.empty()) return 1;
+  const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
+  std::nth_element(costs.begin(), middle, costs.end());
+  return *middle;
+}
+
+}  // namespace
+
+Status NeighbourhoodConfig::validate() const {
+  if (neighbours < 1 || neighbours > kMostNeighbours) {
+    return Error{Errc::invalid_argument, "a point has 1 to 64 neighbours, not " + std::to_string(neighbours),
+                 "neighbourhood"};
+  }
+  if (!is_weight(position_weight_per_m) || !is_weight(normal_weight) || !is_weight(color_weight) ||
+      position_weight_per_m + normal_weight + color_weight <= 0.0) {
+    return Error{Errc::invalid_argument, "weights must be finite and not negative, and one of them positive",
+                 "neighbourhood"};
+  }
+  if (!std::isfinite(max_path) || max_path <= 0.0) {
+    return Error{Errc::invalid_argument, "the longest path must be positive", "neighbourhood"};
+  }
+  return {};
+}
+
+Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const NeighbourhoodConfig& config,
+                                           const Executor& executor) {
+  SACCADE_CHECK(config.validate());
+  SACCADE_CHECK(cloud.validate());
+  const NearestNeighbours neighbours =
+      nearest_neighbours(cloud.positions_m, static_cast<std::size_t>(config.neighbours), executor);
+  const EdgeCost cost{cloud, neighbours, config, executor};
+  Neighbourhood graph;
+  graph.config_ = config;
+  const std::size_t size = cloud.positions_m.size();
+  graph.point_of_ = neighbours.order;
+  graph.node_of_.resize(size, kNoNode);
+  for (std::uint32_t node = 0; node < neighbours.order.size(); ++node) graph.node_of_[neighbours.order[node]] = node;
+  for (std::uint32_t point = 0; point < size; ++point) {  // those that have no neighbours come last
+    if (graph.node_of_[point] != kNoNode) continue;
+    graph.node_of_[point] = static_cast<std::uint32_t>(graph.point_of_.size());
+    graph.point_of_.push_back(point);
+  }
+  Joined joined = join(neighbours, size, cost, executor);
+  graph.starts_ = std::move(joined.starts);
+  graph.edges_ = std::move(joined.edges);
+  graph.median_cost_ = median_of_sample(graph.edges_);
+  return graph;
+}
+
+}  // namespace saccade

@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/annotate/shortest_path_forest.hpp"
+
+#include <algorithm>
+#include <bit>
+#include <cmath>
+#include <limits>
+
+namespace saccade {
+namespace {
+
+// A node's state is one number: ω above the root's point. That of a shorter path is less, at equal paths that of the
+// lower root, and one path further along an edge is one addition: least states are all that Algorithm 8 looks for.
+constexpr std::uint64_t kNoPath{std::numeric_limits<std::uint64_t>::max()};
+constexpr std::uint64_t kTooFar{std::uint64_t{kPathUnits} << 32U};
+constexpr int kMostBucketsLog2{13};
+
+std::uint32_t path_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 32U); }
+std::uint32_t root_of_state(std::uint64_t state) { return static_cast<std::uint32_t>(state); }
+std::uint64_t along(std::uint64_t state, const Neighbourhood::Edge& edge) {
+  return state + (std::uint64_t{edge.cost} << 32U);
+}
+
+/// Of equal length, half of the edges are not shorter: few nodes are looked at twice.
+unsigned bucket_shift(const Neighbourhood& neighbourhood) {
+  const int length = std::bit_width(neighbourhood.median_cost()) - 1;
+  const int least = std::bit_width(kPathUnits) - 1 - kMostBucketsLog2;
+  return static_cast<unsigned>(std::max(length, least));
+}
+
+}  // namespace
+
+ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood)
+    : neighbourhood_{std::move(neighbourhood)},
+      state_(neighbourhood_->size(), kNoPath),
+      start_(neighbourhood_->size(), kNoPath),
+      touched_in_(neighbourhood_->size(), 0),
+      shift_{bucket_shift(*neighbourhood_)},
+      buckets_((kPathUnits >> shift_) + 1) {}
+
+void ShortestPathForest::rebuild(std::span<const Root> roots) {
+  begin();
+  std::fill(state_.begin(), state_.end(), kNoPath);
+  std::fill(start_.begin(), start_.end(), kNoPath);
+  root_points_.clear();
+  for (const Root& root : roots) start_at(root);
+  spread();
+}
+
+void ShortestPathForest::add(const Root& root) {
+  begin();
+  start_at(root);
+  spread();
+}
+
+void ShortestPathForest::remove(std::uint32_t point) {
+  SACCADE_EXPECTS(is_root(point));
+  begin();
+  const std::uint32_t first = neighbourhood_->node_of(point);
+  start_[first] = kNoPath;
+  root_points_.erase(std::lower_bound(root_points_.begin(), root_points_.end(), point));
+  if (root_of_state(state_[first]) != point || state_[first] == kNoPath) return;  // nothing was its own
+  // Algorithm 9: the tree is cleared. It is connected: what belongs to a root is reached along what belongs to it.
+  cleared_.assign(1, first);
+  state_[first] = kNoPath;
+  for (std::size_t i = 0; i < cleared_.size(); ++i) {
+    touch(cleared_[i]);
+    for (const Neighbourhood::Edge& edge : neighbourhood_->edges(cleared_[i])) {
+      if (state_[edge.node] == kNoPath || root_of_state(state_[edge.node]) != point) continue;
+      state_[edge.node] = kNoPath;
+      cleared_.push_back(edge.node);
+    }
+  }
+  // Its border: where other trees enter, and roots that its tree had covered.
+  for (const std::uint32_t node : cleared_) {
+    std::uint64_t best = start_[node];
+    for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
+      const std::uint64_t beyond = state_[edge.node];
+      if (beyond != kNoPath) best = std::min(best, along(beyond, edge));
+    }
+    entered_.push_back(best);
+  }
+  for (std::size_t i = 0; i < cleared_.size(); ++i) {
+    if (entered_[i] < kTooFar) reach(cleared_[i], entered_[i]);
+  }
+  entered_.clear();
+  spread();
+}
+
+std::vector<Root> ShortestPathForest::roots() const {
+  std::vector<Root> roots;
+  const double unit = neighbourhood_->config().max_path / kPathUnits;
+  for (const std::uint32_t point : root_points_) {
+    roots.push_back({point, path_of(start_[neighbourhood_->node_of(point)]) * unit});
+  }
+  return roots;
+}
+
+bool ShortestPathForest::is_root(std::uint32_t point) const {
+  return point < state_.size() && start_[neighbourhood_->node_of(point)] != kNoPath;
+}
+
+std::optional<std::uint32_t> ShortestPathForest::root_of(std::uint32_t point) const {
+  const std::uint64_t state = state_[neighbourhood_->node_of(point)];
+  if (state == kNoPath) return std::nullopt;
+  return root_of_state(state);
+}
+
+double ShortestPathForest::path_length(std::uint32_t point) const {
+  const std::uint64_t state = state_[neighbourhood_->node_of(point)];
+  if (state == kNoPath) return std::numeric_limits<double>::infinity();
+  return path_of(state) * (neighbourhood_->config().max_path / kPathUnits);
+}
+
+void ShortestPathForest::begin() {
+  touched_.clear();
+  ++operation_;
+  last_ = 0;
+}
+
+void ShortestPathForest::start_at(const Root& root) {
+  const double max_path = neighbourhood_->config().max_path;
+  SACCADE_EXPECTS(root.point < state_.size() && !is_root(root.point));
+  SACCADE_EXPECTS(root.start_cost >= 0.0 && root.start_cost < max_path);
+  const auto units = static_cast<std::uint64_t>(root.start_cost / max_path * kPathUnits);
+  const std::uint32_t node = neighbourhood_->node_of(root.point);
+  start_[node] = std::min<std::uint64_t>(units, kPathUnits - 1) << 32U | root.point;
+  root_points_.insert(std::upper_bound(root_points_.begin(), root_points_.end(), root.point), root.point);
+  if (start_[node] < state_[node]) reach(node, start_[node]);
+}
+
+void ShortestPathForest::reach(std::uint32_t node, std::uint64_t state) {
+  state_[node] = state;
+  const std::size_t bucket = path_of(state) >> shift_;
+  buckets_[bucket].push_back({path_of(state), node});
+  last_ = std::max(last_, bucket);
+}
+
+/// Algorithm 8. Paths of nearly equal length are in one bucket, in no order: a node that is found to be nearer after
+/// all is looked at again.
+void ShortestPathForest::spread() {
+  for (std::size_t b = 0; b <= last_; ++b) {
+    std::vector<Reached>& bucket = buckets_[b];
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+      const Reached reached = bucket[i];
+      const std::uint64_t state = state_[reached.node];
+      if (path_of(state) != reached.path) continue;  // a shorter path came in between
+      touch(reached.node);
+      for (const Neighbourhood::Edge& edge : neighbourhood_->edges(reached.node)) {
+        const std::uint64_t further = along(state, edge);
+        if (further < state_[edge.node] && further < kTooFar) reach(edge.node, further);
+      }
+    }
+    bucket.clear();
+  }
+}
+
+void ShortestPathForest::touch(std::uint32_t node) {
+  if (touched_in_[node] == operation_) return;
+  touched_in_[node] = operation_;
+  touched_.push_back(neighbourhood_->point_of(node));
+}
+
+}  // namespace saccade

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ShortestPathForest: which control point each point belongs to, kept up to date. Thesis Algorithms 8 and 9.
+
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "saccade/annotate/neighbourhood.hpp"
+
+namespace saccade {
+
+/// A point from which a tree grows. It has no label here: labels follow from the root (thesis: L_i = L_{l_i}).
+struct Root {
+  std::uint32_t point{0};
+  double start_cost{0.0};  ///< ω_a, in [0, Ω_max): the larger, the less it takes from others
+  [[nodiscard]] bool operator==(const Root&) const = default;
+};
+
+/// The shortest-path forest of a neighbourhood from roots: each point belongs to the root from which a path is
+/// shortest, start cost included, and below Ω_max; of equal paths to the one of lower point index. Any sequence of
+/// add and remove leaves exactly what rebuild gives with the roots that are left. One writer.
+class ShortestPathForest {
+ public:
+  explicit ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood);
+
+  [[nodiscard]] const Neighbourhood& neighbourhood() const { return *neighbourhood_; }
+
+  /// From nothing: Algorithm 8 from all roots at once. Expects roots of different points, in the cloud, with start
+  /// costs in [0, Ω_max). O(edges of what is reached).
+  void rebuild(std::span<const Root> roots);
+  /// Algorithm 8 from one more root. Expects that the point is none. O(edges of the points that it takes).
+  void add(const Root& root);
+  /// Algorithm 9, then Algorithm 8 from the border. Expects that the point is a root. O(edges of its points).
+  void remove(std::uint32_t point);
+
+  /// In ascending order of points.
+  [[nodiscard]] std::vector<Root> roots() const;
+  [[nodiscard]] bool is_root(std::uint32_t point) const;
+  /// The root that a point belongs to; none: no path to it is short enough.
+  [[nodiscard]] std::optional<std::uint32_t> root_of(std::uint32_t point) const;
+  /// ω_i in the unit of the costs; infinite where there is no root.
+  [[nodiscard]] double path_length(std::uint32_t point) const;
+  /// Points whose root the last add, remove or rebuild may have changed, each once, in no particular order; rebuild:
+  /// those that it reached.
+  [[nodiscard]] std::span<const std::uint32_t> touched() const { return touched_; }
+
+ private:
+  struct Reached {
+    std::uint32_t path;  ///< in path units
+    std::uint32_t node;
+  };
+
+  void begin();
+  void start_at(const Root& root);
+  void reach(std::uint32_t node, std::uint64_t state);
+  void spread();
+  void touch(std::uint32_t node);
+
+  std::shared_ptr<const Neighbourhood> neighbourhood_;
+  std::vector<std::uint64_t> state_;        ///< per node: ω in path units above the root's point
+  std::vector<std::uint64_t> start_;        ///< per node: the same of a root that starts there
+  std::vector<std::uint32_t> root_points_;  ///< ascending
+  std::vector<std::uint32_t> touched_;
+  std::vector<std::uint32_t> touched_in_;  ///< per node: the operation that touched it last
+  std::uint32_t operation_{0};
+  unsigned shift_;
+  std::vector<std::vector<Reached>> buckets_;  ///< by ω; empty between operations
+  std::size_t last_{0};                        ///< bucket
+  std::vector<std::uint32_t> cleared_;
+  std::vector<std::uint64_t> entered_;
+};
+
+}  // namespace saccade
