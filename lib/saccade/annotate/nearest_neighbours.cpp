@@ -147,29 +147,39 @@ class Leaves {
   std::vector<float> lanes_;  ///< per leaf eight x, eight y, eight z
 };
 
-/// The nearest so far of one point, as squared distance (the bits of a float that is not negative sort as its value)
-/// above the node.
+/// The nearest so far of one point: squared distance (its bits, which sort as its value does) above the node, in a
+/// number that sorts in the same way as a double. So a new one takes its place by least and greatest, without a branch.
 class Nearest {
  public:
   void reset(std::size_t k) {
     k_ = k;
-    std::fill_n(found_.begin(), k, kNone);
+    farthest_ = kFar;
+    std::fill_n(found_.begin(), k, std::bit_cast<double>(entry_of(kFar, 0)));
   }
-  [[nodiscard]] float farthest() const {
-    return std::bit_cast<float>(static_cast<std::uint32_t>(found_[k_ - 1] >> 32U));
-  }
+  [[nodiscard]] float farthest() const { return farthest_; }
   void add(float squared_distance, std::uint32_t node) {
-    const std::uint64_t entry = std::uint64_t{std::bit_cast<std::uint32_t>(squared_distance)} << 32U | node;
-    std::size_t i{k_ - 1};
-    for (; i > 0 && found_[i - 1] > entry; --i) found_[i] = found_[i - 1];
-    found_[i] = entry;
+    const auto entry = std::bit_cast<double>(entry_of(squared_distance, node));
+    double before = found_[k_ - 1];
+    for (std::size_t i = k_ - 1; i > 0; --i) {
+      const double here = before;
+      before = found_[i - 1];
+      const double kept = here < entry ? here : entry;
+      found_[i] = before < kept ? kept : before;
+    }
+    found_[0] = before < entry ? before : entry;
+    farthest_ = std::bit_cast<float>(static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(found_[k_ - 1]) >> 32U));
   }
-  [[nodiscard]] std::uint32_t node(std::size_t i) const { return static_cast<std::uint32_t>(found_[i]); }
+  [[nodiscard]] std::uint32_t node(std::size_t i) const {
+    return static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(found_[i]));
+  }
 
  private:
-  static constexpr std::uint64_t kNone{std::uint64_t{std::bit_cast<std::uint32_t>(kFar)} << 32U};
+  static std::uint64_t entry_of(float squared_distance, std::uint32_t node) {
+    return std::uint64_t{std::bit_cast<std::uint32_t>(squared_distance)} << 32U | node;
+  }
   std::size_t k_{0};
-  std::array<std::uint64_t, kMostNeighbours> found_{};
+  float farthest_{kFar};
+  std::array<double, kMostNeighbours> found_{};
 };
 
 class LeafSearch {
@@ -222,10 +232,12 @@ class LeafSearch {
       const Eigen::Vector3f& p = leaves_.sites()[first_ + i].p;
       if (bounds.squared_distance(p) < nearest.farthest()) {
         const std::array<float, kLeaf> squared = leaves_.squared_distances(range.first, p);
-        for (std::size_t n = 0; n < kLeaf; ++n) {
-          if (squared[n] < nearest.farthest() && first + n != first_ + i) {
-            nearest.add(squared[n], static_cast<std::uint32_t>(first + n));
-          }
+        unsigned near{0};
+        for (unsigned n = 0; n < kLeaf; ++n) near |= (squared[n] < nearest.farthest() ? 1U : 0U) << n;
+        if (range.first == leaf_) near &= ~(1U << i);
+        for (; near != 0; near &= near - 1) {
+          const auto n = static_cast<std::size_t>(std::countr_zero(near));
+          if (squared[n] < nearest.farthest()) nearest.add(squared[n], static_cast<std::uint32_t>(first + n));
         }
       }
       farthest_ = std::max(farthest_, nearest.farthest());

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <atomic>
+#include <bit>
 #include <cmath>
 #include <limits>
 #include <string>
@@ -51,7 +52,7 @@ class EdgeCost {
     const double cost = config_.position_weight_per_m * distance_m(a, b) +
                         config_.normal_weight * normal_difference(a, b) + config_.color_weight * color_difference(a, b);
     const double units = cost / config_.max_path * kPathUnits;
-    return units < kPathUnits ? static_cast<std::uint32_t>(std::lround(units)) : kPathUnits;
+    return units < kPathUnits ? static_cast<std::uint32_t>(units + 0.5) : kPathUnits;
   }
 
  private:
@@ -102,9 +103,16 @@ class EdgeCost {
   double median_spacing_m_{0.0};
 };
 
-bool has_neighbour(const NearestNeighbours& neighbours, std::uint32_t node, std::uint32_t other) {
+/// Bit n: the node's neighbour n does not have it among its own.
+std::uint64_t one_sided(const NearestNeighbours& neighbours, std::uint32_t node) {
+  std::uint64_t bits{0};
   const std::span<const std::uint32_t> row = neighbours.of(node);
-  return std::find(row.begin(), row.end(), other) != row.end();
+  for (std::size_t n = 0; n < row.size(); ++n) {
+    bool mutual{false};
+    for (const std::uint32_t theirs : neighbours.of(row[n])) mutual |= theirs == node;
+    bits |= std::uint64_t{mutual ? 0U : 1U} << n;
+  }
+  return bits;
 }
 
 struct Joined {
@@ -117,26 +125,29 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
   const std::size_t size = neighbours.order.size();
   const std::size_t k = neighbours.count;
   std::vector<std::uint32_t> others(size, 0);
-  const auto for_one_sided = [&](const auto& body) {
-    executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
-      for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
-        for (const std::uint32_t other : neighbours.of(node)) {
-          if (!has_neighbour(neighbours, other, node)) body(node, other);
-        }
+  std::vector<std::uint64_t> one_sided_of(size);
+  executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
+      one_sided_of[node] = one_sided(neighbours, node);
+      for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t other = neighbours.of(node)[static_cast<std::size_t>(std::countr_zero(bits))];
+        std::atomic_ref{others[other]}.fetch_add(1, std::memory_order_relaxed);
       }
-    });
-  };
-  for_one_sided([&](std::uint32_t /*node*/, std::uint32_t other) {
-    std::atomic_ref{others[other]}.fetch_add(1, std::memory_order_relaxed);
+    }
   });
   Joined joined;
   joined.starts.resize(nodes + 1);
   for (std::size_t i = 0; i < size; ++i) joined.starts[i + 1] = joined.starts[i] + k + others[i];
   for (std::size_t i = size; i < nodes; ++i) joined.starts[i + 1] = joined.starts[i];
   joined.edges.resize(joined.starts.back());
-  for_one_sided([&](std::uint32_t node, std::uint32_t other) {
-    const std::uint32_t left = std::atomic_ref{others[other]}.fetch_sub(1, std::memory_order_relaxed);
-    joined.edges[joined.starts[other] + k + left - 1].node = node;
+  executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+    for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
+      for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
+        const std::uint32_t other = neighbours.of(node)[static_cast<std::size_t>(std::countr_zero(bits))];
+        const std::uint32_t left = std::atomic_ref{others[other]}.fetch_sub(1, std::memory_order_relaxed);
+        joined.edges[joined.starts[other] + k + left - 1].node = node;
+      }
+    }
   });
   executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {

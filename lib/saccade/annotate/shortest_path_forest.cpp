@@ -14,6 +14,7 @@ namespace {
 constexpr std::uint64_t kNoPath{std::numeric_limits<std::uint64_t>::max()};
 constexpr std::uint64_t kTooFar{std::uint64_t{kPathUnits} << 32U};
 constexpr int kMostBucketsLog2{13};
+constexpr std::size_t kEdgesPerLine{8};  // of the cache
 
 std::uint32_t path_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 32U); }
 std::uint32_t root_of_state(std::uint64_t state) { return static_cast<std::uint32_t>(state); }
@@ -34,9 +35,28 @@ ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neig
     : neighbourhood_{std::move(neighbourhood)},
       state_(neighbourhood_->size(), kNoPath),
       start_(neighbourhood_->size(), kNoPath),
-      touched_in_(neighbourhood_->size(), 0),
       shift_{bucket_shift(*neighbourhood_)},
       buckets_((kPathUnits >> shift_) + 1) {}
+
+/// Algorithm 8. Paths of nearly equal length are in one bucket, in no order: a node that is found to be nearer after
+/// all is looked at again.
+template <class Visit>
+void ShortestPathForest::spread(const Visit& visit) {
+  for (std::size_t b = 0; b <= last_; ++b) {
+    std::vector<Reached>& bucket = buckets_[b];
+    for (std::size_t i = 0; i < bucket.size(); ++i) {
+      const Reached reached = bucket[i];
+      const std::uint64_t state = state_[reached.node];
+      if (path_of(state) != reached.path) continue;  // a shorter path came in between
+      visit(reached.node);
+      for (const Neighbourhood::Edge& edge : neighbourhood_->edges(reached.node)) {
+        const std::uint64_t further = along(state, edge);
+        if (further < state_[edge.node] && further < kTooFar) reach(edge.node, further);
+      }
+    }
+    bucket.clear();
+  }
+}
 
 void ShortestPathForest::rebuild(std::span<const Root> roots) {
   begin();
@@ -44,13 +64,13 @@ void ShortestPathForest::rebuild(std::span<const Root> roots) {
   std::fill(start_.begin(), start_.end(), kNoPath);
   root_points_.clear();
   for (const Root& root : roots) start_at(root);
-  spread();
+  spread([this](std::uint32_t node) { touched_.push_back(neighbourhood_->point_of(node)); });
 }
 
 void ShortestPathForest::add(const Root& root) {
   begin();
   start_at(root);
-  spread();
+  spread([this](std::uint32_t node) { touched_.push_back(neighbourhood_->point_of(node)); });
 }
 
 void ShortestPathForest::remove(std::uint32_t point) {
@@ -61,30 +81,31 @@ void ShortestPathForest::remove(std::uint32_t point) {
   root_points_.erase(std::lower_bound(root_points_.begin(), root_points_.end(), point));
   if (root_of_state(state_[first]) != point || state_[first] == kNoPath) return;  // nothing was its own
   // Algorithm 9: the tree is cleared. It is connected: what belongs to a root is reached along what belongs to it.
+  // Where other trees enter, or start in what this one had covered, Algorithm 8 goes on.
   cleared_.assign(1, first);
+  entered_.clear();
   state_[first] = kNoPath;
   for (std::size_t i = 0; i < cleared_.size(); ++i) {
-    touch(cleared_[i]);
-    for (const Neighbourhood::Edge& edge : neighbourhood_->edges(cleared_[i])) {
-      if (state_[edge.node] == kNoPath || root_of_state(state_[edge.node]) != point) continue;
-      state_[edge.node] = kNoPath;
-      cleared_.push_back(edge.node);
-    }
-  }
-  // Its border: where other trees enter, and roots that its tree had covered.
-  for (const std::uint32_t node : cleared_) {
+    const std::uint32_t node = cleared_[i];
+    touched_.push_back(neighbourhood_->point_of(node));
     std::uint64_t best = start_[node];
     for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
-      const std::uint64_t beyond = state_[edge.node];
-      if (beyond != kNoPath) best = std::min(best, along(beyond, edge));
+      std::uint64_t& beyond = state_[edge.node];
+      if (beyond == kNoPath) continue;
+      if (root_of_state(beyond) == point) {
+        beyond = kNoPath;
+        cleared_.push_back(edge.node);
+        fetch_soon(edge.node);
+      } else {
+        best = std::min(best, along(beyond, edge));
+      }
     }
     entered_.push_back(best);
   }
   for (std::size_t i = 0; i < cleared_.size(); ++i) {
     if (entered_[i] < kTooFar) reach(cleared_[i], entered_[i]);
   }
-  entered_.clear();
-  spread();
+  spread([](std::uint32_t /*node*/) {});  // none but the cleared ones
 }
 
 std::vector<Root> ShortestPathForest::roots() const {
@@ -114,7 +135,6 @@ double ShortestPathForest::path_length(std::uint32_t point) const {
 
 void ShortestPathForest::begin() {
   touched_.clear();
-  ++operation_;
   last_ = 0;
 }
 
@@ -134,31 +154,14 @@ void ShortestPathForest::reach(std::uint32_t node, std::uint64_t state) {
   const std::size_t bucket = path_of(state) >> shift_;
   buckets_[bucket].push_back({path_of(state), node});
   last_ = std::max(last_, bucket);
+  fetch_soon(node);
 }
 
-/// Algorithm 8. Paths of nearly equal length are in one bucket, in no order: a node that is found to be nearer after
-/// all is looked at again.
-void ShortestPathForest::spread() {
-  for (std::size_t b = 0; b <= last_; ++b) {
-    std::vector<Reached>& bucket = buckets_[b];
-    for (std::size_t i = 0; i < bucket.size(); ++i) {
-      const Reached reached = bucket[i];
-      const std::uint64_t state = state_[reached.node];
-      if (path_of(state) != reached.path) continue;  // a shorter path came in between
-      touch(reached.node);
-      for (const Neighbourhood::Edge& edge : neighbourhood_->edges(reached.node)) {
-        const std::uint64_t further = along(state, edge);
-        if (further < state_[edge.node] && further < kTooFar) reach(edge.node, further);
-      }
-    }
-    bucket.clear();
-  }
-}
-
-void ShortestPathForest::touch(std::uint32_t node) {
-  if (touched_in_[node] == operation_) return;
-  touched_in_[node] = operation_;
-  touched_.push_back(neighbourhood_->point_of(node));
+/// Half of the time went into waiting for edges.
+void ShortestPathForest::fetch_soon(std::uint32_t node) const {
+  const Neighbourhood::Edge* edges = neighbourhood_->edges(node).data();
+  __builtin_prefetch(edges);
+  __builtin_prefetch(edges + kEdgesPerLine);
 }
 
 }  // namespace saccade

@@ -43,8 +43,8 @@ class ShortestPathForest {
   [[nodiscard]] std::optional<std::uint32_t> root_of(std::uint32_t point) const;
   /// ω_i in the unit of the costs; infinite where there is no root.
   [[nodiscard]] double path_length(std::uint32_t point) const;
-  /// Points whose root the last add, remove or rebuild may have changed, each once, in no particular order; rebuild:
-  /// those that it reached.
+  /// Points whose root the last add or remove may have changed, some of them twice, or that the last rebuild reached;
+  /// in no particular order.
   [[nodiscard]] std::span<const std::uint32_t> touched() const { return touched_; }
 
  private:
@@ -56,16 +56,15 @@ class ShortestPathForest {
   void begin();
   void start_at(const Root& root);
   void reach(std::uint32_t node, std::uint64_t state);
-  void spread();
-  void touch(std::uint32_t node);
+  void fetch_soon(std::uint32_t node) const;
+  template <class Visit>
+  void spread(const Visit& visit);
 
   std::shared_ptr<const Neighbourhood> neighbourhood_;
   std::vector<std::uint64_t> state_;        ///< per node: ω in path units above the root's point
   std::vector<std::uint64_t> start_;        ///< per node: the same of a root that starts there
   std::vector<std::uint32_t> root_points_;  ///< ascending
   std::vector<std::uint32_t> touched_;
-  std::vector<std::uint32_t> touched_in_;  ///< per node: the operation that touched it last
-  std::uint32_t operation_{0};
   unsigned shift_;
   std::vector<std::vector<Reached>> buckets_;  ///< by ω; empty between operations
   std::size_t last_{0};                        ///< bucket
