@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/annotate/estimated_normals.hpp"
 
-#include <Eigen/Eigenvalues>
+#include <Eigen/Geometry>
 #include <algorithm>
 
 namespace saccade {
@@ -30,18 +30,50 @@ struct Moments {
   }
 };
 
+/// The least eigenvalue of a covariance of trace 1: the least root of its characteristic polynomial. Newton's method
+/// comes from 0 upwards to it and not beyond, as the polynomial rises and is concave there.
+double least_eigenvalue(const Eigen::Matrix3d& c) {
+  constexpr int kSteps{20};
+  constexpr double kClose{1e-12};
+  const double determinant = c.determinant();
+  const double minors = c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1) + c(0, 0) * c(2, 2) - c(0, 2) * c(0, 2) +
+                        c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2);
+  double root{0.0};
+  for (int i = 0; i < kSteps; ++i) {
+    const double slope = (3.0 * root - 2.0) * root + minors;
+    const double value = ((root - 1.0) * root + minors) * root - determinant;
+    if (!(slope > 0.0) || value > -kClose * slope) break;
+    root -= value / slope;
+  }
+  return root;
+}
+
+/// What is perpendicular to the rows of a symmetric matrix of rank 2, or, of rank 1, to its largest.
+Eigen::Vector3d perpendicular_to_rows(const Eigen::Matrix3d& m) {
+  constexpr double kParallel{1e-10};
+  Eigen::Vector3d best = m.col(0).cross(m.col(1));
+  for (const Eigen::Vector3d& other :
+       {Eigen::Vector3d{m.col(1).cross(m.col(2))}, Eigen::Vector3d{m.col(2).cross(m.col(0))}}) {
+    if (other.squaredNorm() > best.squaredNorm()) best = other;
+  }
+  if (best.norm() > kParallel) return best.normalized();
+  Eigen::Index largest{0};
+  m.colwise().squaredNorm().maxCoeff(&largest);
+  if (m.col(largest).norm() < kParallel) return Eigen::Vector3d::Zero();  // the same in all directions
+  return m.col(largest).unitOrthogonal();
+}
+
 Eigen::Vector3f least_direction(const Moments& moments) {
   const Eigen::Vector3f mean = moments.sum / moments.count;
   const Eigen::Matrix<float, 6, 1>& p = moments.products;
   Eigen::Matrix3f covariance;
   covariance << p[0], p[1], p[2], p[1], p[3], p[4], p[2], p[4], p[5];
   covariance = covariance / moments.count - mean * mean.transpose();
-  const float scale = covariance.diagonal().sum();
-  if (!(scale > 0.0F)) return Eigen::Vector3f::Zero();
-  Eigen::SelfAdjointEigenSolver<Eigen::Matrix3f> solver;
-  solver.computeDirect(covariance / scale);
-  const Eigen::Vector3f normal = solver.eigenvectors().col(0);
-  return normal.allFinite() ? normal : Eigen::Vector3f::Zero();
+  const float trace = covariance.diagonal().sum();
+  if (!(trace > 0.0F) || !covariance.allFinite()) return Eigen::Vector3f::Zero();
+  Eigen::Matrix3d scaled = (covariance / trace).cast<double>();
+  scaled.diagonal().array() -= least_eigenvalue(scaled);
+  return perpendicular_to_rows(scaled).cast<float>();
 }
 
 }  // namespace
