@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "saccade/annotate/neighbourhood.hpp"
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/attention/dip_detector.hpp"
 #include "saccade/attention/dip_stream.hpp"
@@ -240,6 +241,15 @@ TEST(Defaults, OfTrackingAreDocumented) {
   expect_documented("IcpConfig::max_translation_m", {icp.max_translation_m});
   expect_documented("IcpConfig::max_rotation_rad", {icp.max_rotation_rad});
   expect_documented("kRotationTolerance", {kRotationTolerance});
+}
+
+TEST(Defaults, OfAnnotationAreDocumented) {
+  const NeighbourhoodConfig graph;
+  expect_documented("NeighbourhoodConfig::neighbours", {static_cast<double>(graph.neighbours)});
+  expect_documented("NeighbourhoodConfig::position_weight_per_m", {graph.position_weight_per_m});
+  expect_documented("NeighbourhoodConfig::normal_weight", {graph.normal_weight});
+  expect_documented("NeighbourhoodConfig::color_weight", {graph.color_weight});
+  expect_documented("NeighbourhoodConfig::max_path", {graph.max_path});
 }
 
 TEST(Defaults, ARowThatIsNotThereFails) { EXPECT_TRUE(documented("TsdfConfig::nothing").empty()); }
