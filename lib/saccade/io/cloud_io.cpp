@@ -5,14 +5,17 @@
 #include <array>
 #include <cmath>
 #include <cstring>
+#include <fstream>
 #include <utility>
 
 #include "saccade/io/file_io.hpp"
+#include "saccade/io/kitti_io.hpp"
 
 namespace saccade {
 
 namespace {
 
+namespace fs = std::filesystem;
 using Names = std::array<const char*, 3>;
 
 PlyElement* vertices_of(PlyFile& file) {
@@ -21,9 +24,40 @@ PlyElement* vertices_of(PlyFile& file) {
   return found == file.elements.end() ? nullptr : &*found;
 }
 
-bool looks_like_pcd(std::string_view text) {
-  return text.starts_with("#") || text.starts_with("VERSION") || text.starts_with("FIELDS") ||
-         text.starts_with("COLUMNS");
+std::string lower_suffix(const fs::path& path) {
+  std::string suffix = path.extension().string();
+  for (char& c : suffix) c = c >= 'A' && c <= 'Z' ? static_cast<char>(c - 'A' + 'a') : c;
+  return suffix;
+}
+
+enum class Kind { pcd, ply, text, kitti, other };
+
+/// What the first bytes say goes before what the name says; a comment in front may be a PCD's or a text's.
+Kind kind_of(const fs::path& path, std::string_view text) {
+  if (text.starts_with("ply\n") || text.starts_with("ply\r")) return Kind::ply;
+  if (text.starts_with("# .PCD")) return Kind::pcd;
+  if (has_text_cloud_suffix(path)) return Kind::text;
+  if (lower_suffix(path) == ".bin") return Kind::kitti;
+  if (text.starts_with("ply")) return Kind::ply;
+  for (const char* begin : {"#", "VERSION", "FIELDS", "COLUMNS"}) {
+    if (text.starts_with(begin)) return Kind::pcd;
+  }
+  return Kind::other;
+}
+
+/// Any text may end in .txt or .csv: its beginning decides.
+bool is_cloud_file(const fs::path& path) {
+  const std::string suffix = lower_suffix(path);
+  if (path.filename().string().starts_with(".")) return false;
+  if (suffix == ".txt" || suffix == ".csv") {
+    constexpr std::size_t kHeadBytes{1 << 16};
+    std::string head(kHeadBytes, '\0');
+    std::ifstream file{path, std::ios::binary};
+    file.read(head.data(), static_cast<std::streamsize>(head.size()));
+    head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+    return kind_of(path, head) != Kind::text || looks_like_text_cloud(head);
+  }
+  return suffix == ".pcd" || suffix == ".ply" || suffix == ".bin" || has_text_cloud_suffix(path);
 }
 
 /// Three columns with one number per row, or nothing.
@@ -77,7 +111,8 @@ std::vector<Eigen::Vector3f> point_colors(const ColumnTable& fields) {
       return unpacked_colors(*column, fields.rows);
     }
   }
-  const std::vector<const Column*> channels = find_three(fields, {"red", "green", "blue"});
+  std::vector<const Column*> channels = find_three(fields, {"red", "green", "blue"});
+  if (channels.empty()) channels = find_three(fields, {"r", "g", "b"});
   if (channels.empty()) return {};
   std::vector<Eigen::Vector3f> colors = vectors_of(channels, fields.rows, color_scale(channels[0]->type));
   for (Eigen::Vector3f& color : colors) {
@@ -90,6 +125,7 @@ std::vector<Eigen::Vector3f> point_colors(const ColumnTable& fields) {
 
 const ColumnTable& CloudFile::fields() const {
   if (const auto* pcd = std::get_if<PcdFile>(&file)) return pcd->table;
+  if (const auto* text = std::get_if<TextCloud>(&file)) return text->table;
   const PlyElement* vertices = std::get<PlyFile>(file).find("vertex");
   SACCADE_EXPECTS(vertices != nullptr);
   return vertices->table;
@@ -97,40 +133,71 @@ const ColumnTable& CloudFile::fields() const {
 
 ColumnTable& CloudFile::fields() {
   if (auto* pcd = std::get_if<PcdFile>(&file)) return pcd->table;
+  if (auto* text = std::get_if<TextCloud>(&file)) return text->table;
   PlyElement* vertices = vertices_of(std::get<PlyFile>(file));
   SACCADE_EXPECTS(vertices != nullptr);
   return vertices->table;
 }
 
-Result<CloudFile> read_cloud(const std::filesystem::path& path) {
-  SACCADE_TRY(const std::vector<std::byte> bytes, read_file(path));
-  const std::string_view text = as_text(bytes);
-  if (text.starts_with("ply")) {
-    auto ply = parse_ply(bytes);
-    if (!ply) return in_file(ply.error(), path);
-    if (vertices_of(*ply) == nullptr) {
-      return Error{Errc::corrupt_data, "is a PLY file without vertices", path.string()};
+Result<CloudFile> read_cloud(const fs::path& path) {
+  SACCADE_TRY(std::vector<std::byte> bytes, read_file(path));
+  switch (kind_of(path, as_text(bytes))) {
+    case Kind::ply: {
+      SACCADE_TRY(PlyFile ply, in_file(parse_ply(bytes), path));
+      if (vertices_of(ply) == nullptr) {
+        return Error{Errc::corrupt_data, "is a PLY file without vertices", path.string()};
+      }
+      return CloudFile{std::move(ply)};
     }
-    return CloudFile{std::move(*ply)};
+    case Kind::pcd: {
+      SACCADE_TRY(PcdFile pcd, in_file(parse_pcd(bytes), path));
+      return CloudFile{std::move(pcd)};
+    }
+    case Kind::text: {
+      SACCADE_TRY(TextCloud text, in_file(parse_text_cloud(std::move(bytes)), path));
+      return CloudFile{std::move(text)};
+    }
+    case Kind::kitti: {
+      SACCADE_TRY(ColumnTable scan, in_file(parse_kitti_scan(bytes), path));
+      PcdFile pcd;
+      pcd.width = scan.rows;
+      pcd.table = std::move(scan);
+      return CloudFile{std::move(pcd)};
+    }
+    case Kind::other: break;
   }
-  if (!looks_like_pcd(text)) return Error{Errc::corrupt_data, "is no point cloud in PCD or PLY", path.string()};
-  auto pcd = parse_pcd(bytes);
-  if (!pcd) return in_file(pcd.error(), path);
-  return CloudFile{std::move(*pcd)};
+  return Error{Errc::corrupt_data, "is no point cloud in PCD or PLY, nor named .xyz, .txt, .csv, .pts or .bin",
+               path.string()};
 }
 
-Status write_cloud(const std::filesystem::path& path, const CloudFile& cloud) {
-  const auto* pcd = std::get_if<PcdFile>(&cloud.file);
-  if (path.extension() == ".ply") {
-    return pcd != nullptr ? write_ply(path, pcd->table) : write_ply(path, std::get<PlyFile>(cloud.file));
+Result<std::vector<fs::path>> list_clouds(const fs::path& folder) {
+  std::error_code code;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry{folder, code}, end; !code && entry != end; entry.increment(code)) {
+    std::error_code unknown;
+    if (entry->is_regular_file(unknown) && is_cloud_file(entry->path())) files.push_back(entry->path());
   }
-  if (pcd != nullptr) return write_pcd(path, *pcd);
-  const PlyElement* vertices = std::get<PlyFile>(cloud.file).find("vertex");
+  if (code == std::errc::no_such_file_or_directory) return Error{Errc::not_found, "is not there", folder.string()};
+  if (code) return Error{Errc::io_failure, "the folder cannot be read: " + code.message(), folder.string()};
+  if (files.empty()) {
+    return Error{Errc::not_found, "the folder holds no cloud (.pcd, .ply, .xyz, .txt, .csv, .pts, .bin)",
+                 folder.string()};
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+Status write_cloud(const fs::path& path, const CloudFile& cloud) {
+  const auto* ply = std::get_if<PlyFile>(&cloud.file);
+  if (path.extension() == ".ply") return ply != nullptr ? write_ply(path, *ply) : write_ply(path, cloud.fields());
+  const PlyElement* vertices = ply != nullptr ? ply->find("vertex") : nullptr;
   if (vertices != nullptr && !vertices->lists.empty()) {
     return Error{Errc::unsupported,
-                 "a PCD cannot hold the list " + vertices->lists.front().name + " of the points; name a .ply",
+                 "only a PLY can hold the list " + vertices->lists.front().name + " of the points; name a .ply",
                  path.string()};
   }
+  if (has_text_cloud_suffix(path)) return write_text_cloud(path, cloud.fields());
+  if (const auto* pcd = std::get_if<PcdFile>(&cloud.file)) return write_pcd(path, *pcd);
   return write_pcd(path, cloud.fields());
 }
 
@@ -163,19 +230,22 @@ Result<std::vector<std::uint32_t>> labels_from_fields(const ColumnTable& fields,
 }
 
 std::string add_labels(CloudFile& cloud, std::span<const std::uint32_t> labels) {
-  ColumnTable& fields = cloud.fields();
-  SACCADE_EXPECTS(labels.size() == fields.rows);
-  std::string kept_as;
-  for (Column& column : fields.columns) {
-    if (column.name != kLabelField) continue;
-    kept_as = "label_input";
-    for (int i = 2; fields.find(kept_as) != nullptr; ++i) kept_as = "label_input" + std::to_string(i);
-    column.name = kept_as;
-  }
   std::vector<std::uint32_t> shown(labels.begin(), labels.end());
   for (std::uint32_t& label : shown) label += 1;  // kUnlabelled becomes 0
   static_assert(kUnlabelled + 1 == 0);
-  fields.add<std::uint32_t>(std::string{kLabelField}, shown);
+  return add_label_field(cloud, shown);
+}
+
+std::string add_label_field(CloudFile& cloud, std::span<const std::uint32_t> numbers) {
+  ColumnTable& fields = cloud.fields();
+  SACCADE_EXPECTS(numbers.size() == fields.rows);
+  std::string kept_as;
+  for (Column& column : fields.columns) {
+    if (column.name != kLabelField) continue;
+    kept_as = fields.unused_name(kEarlierLabelField);
+    column.name = kept_as;
+  }
+  fields.add<std::uint32_t>(std::string{kLabelField}, numbers);
   if (auto* ply = std::get_if<PlyFile>(&cloud.file)) {
     std::vector<int>& order = vertices_of(*ply)->order;
     if (!order.empty()) order.push_back(static_cast<int>(fields.columns.size()) - 1);

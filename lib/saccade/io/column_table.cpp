@@ -73,6 +73,12 @@ const Column* ColumnTable::find(std::string_view name) const {
   return found == columns.end() ? nullptr : &*found;
 }
 
+std::string ColumnTable::unused_name(std::string_view name) const {
+  std::string unused{name};
+  for (int i = 2; find(unused) != nullptr; ++i) unused = std::string{name} + std::to_string(i);
+  return unused;
+}
+
 std::size_t ColumnTable::row_bytes() const {
   std::size_t bytes = 0;
   for (const Column& column : columns) bytes += column.row_bytes();

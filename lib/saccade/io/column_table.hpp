@@ -59,6 +59,8 @@ struct ColumnTable {
 
   /// nullptr when there is none.
   [[nodiscard]] const Column* find(std::string_view name) const;
+  /// The name, or with 2, 3 … behind it, that no column has.
+  [[nodiscard]] std::string unused_name(std::string_view name) const;
   [[nodiscard]] std::size_t row_bytes() const;
   /// Appends a column of `values` (count per row). Expects as many as rows·count; the first column sets the rows.
   template <class T>

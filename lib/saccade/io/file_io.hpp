@@ -26,6 +26,10 @@ constexpr std::uintmax_t kMaxFileBytes{std::uintmax_t{8} << 30U};
 
 /// The same error with the path in front of its context.
 [[nodiscard]] Error in_file(Error error, const std::filesystem::path& path);
+template <class T>
+[[nodiscard]] Result<T> in_file(Result<T> result, const std::filesystem::path& path) {
+  return result ? std::move(result) : Result<T>{in_file(result.error(), path)};
+}
 
 /// Borrows text as bytes, and bytes as text.
 [[nodiscard]] std::span<const std::byte> as_byte_span(std::string_view text);

@@ -38,7 +38,6 @@ char type_letter(ColumnType type) {
 
 struct Header {
   PcdFile file;  ///< columns without values
-  PcdFormat format{PcdFormat::ascii};
   std::size_t body_offset{0};
   std::size_t body_line{1};
 };
@@ -113,7 +112,7 @@ class PcdHeaderParser {
       return Error{Errc::unsupported, "unknown kind of data " + in_quotes(kind),
                    "line " + std::to_string(lines_.line())};
     }
-    header_.format =
+    header_.file.format =
         kind == "ascii" ? PcdFormat::ascii : (kind == "binary" ? PcdFormat::binary : PcdFormat::binary_compressed);
     header_.body_offset = lines_.offset();
     header_.body_line = lines_.line() + 1;
@@ -305,7 +304,7 @@ Result<PcdFile> parse_pcd(std::span<const std::byte> bytes) {
   SACCADE_TRY(Header header, PcdHeaderParser{as_text(bytes)}.parse());
   const auto body = bytes.subspan(header.body_offset);
   ColumnTable& table = header.file.table;
-  switch (header.format) {
+  switch (header.file.format) {
     case PcdFormat::ascii: SACCADE_CHECK(read_ascii(as_text(body), header.body_line, table)); break;
     case PcdFormat::binary: SACCADE_CHECK(read_binary(body, header.body_offset, table)); break;
     case PcdFormat::binary_compressed: SACCADE_CHECK(read_compressed(body, header.body_offset, table)); break;
@@ -315,13 +314,7 @@ Result<PcdFile> parse_pcd(std::span<const std::byte> bytes) {
 
 Result<PcdFile> read_pcd(const std::filesystem::path& path) {
   SACCADE_TRY(const auto bytes, read_file(path));
-  auto file = parse_pcd(bytes);
-  if (!file) {
-    Error error = file.error();
-    error.context = path.string() + ", " + error.context;
-    return error;
-  }
-  return file;
+  return in_file(parse_pcd(bytes), path);
 }
 
 Status write_pcd(const std::filesystem::path& path, const PcdFile& file, PcdFormat format) {

@@ -12,14 +12,15 @@
 
 namespace saccade {
 
+enum class PcdFormat { ascii, binary, binary_compressed };
+
 struct PcdFile {
   ColumnTable table;  ///< fields in order, padding ("_") included; rows = width · height
   std::size_t width{0};
   std::size_t height{1};                                               ///< 1: not organised
   std::array<double, 7> viewpoint{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};  ///< tx ty tz qw qx qy qz
+  PcdFormat format{PcdFormat::binary};                                 ///< that it was read in
 };
-
-enum class PcdFormat { ascii, binary, binary_compressed };
 
 /// Reads versions 0.6 and 0.7. corrupt_data with the line or byte for a bad header, fields that do not match, wrong
 /// numbers of points, and truncated data; unsupported for another kind of data. Memory is bounded by what the file can

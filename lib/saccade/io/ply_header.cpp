@@ -104,7 +104,7 @@ class PlyHeaderParser {
       return Error{Errc::unsupported, "unknown format " + in_quotes(words[1]) + " " + in_quotes(words[2]),
                    "line " + std::to_string(lines_.line())};
     }
-    header_.format = *known;
+    header_.file.format = *known;
     has_format_ = true;
     return {};
   }

@@ -10,7 +10,6 @@
 namespace saccade {
 
 struct PlyHeader {
-  PlyFormat format{PlyFormat::ascii};
   PlyFile file;                ///< elements with their properties and row counts, without values
   std::size_t body_offset{0};  ///< first byte after the header
   std::size_t body_line{1};    ///< number of the line that starts there

@@ -32,14 +32,15 @@ struct PlyElement {
   std::vector<int> order;
 };
 
+enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
+
 struct PlyFile {
   std::vector<std::string> comments;
   std::vector<PlyElement> elements;
+  PlyFormat format{PlyFormat::binary_little_endian};  ///< that it was read in
   /// nullptr when there is none.
   [[nodiscard]] const PlyElement* find(std::string_view name) const;
 };
-
-enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
 
 /// Reads any PLY; every property is kept. corrupt_data with the line or byte for a bad header, a number that does not
 /// fit, negative counts and truncated data; unsupported for a version other than 1.0. Memory is bounded by the size of

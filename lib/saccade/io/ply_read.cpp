@@ -121,7 +121,7 @@ Status read_element(Values& values, PlyElement& element, std::size_t least_bytes
 template <class Values>
 Result<PlyFile> read_elements(Values values, PlyHeader header) {
   for (PlyElement& element : header.file.elements) {
-    SACCADE_CHECK(read_element(values, element, least_row_bytes(element, header.format)));
+    SACCADE_CHECK(read_element(values, element, least_row_bytes(element, header.file.format)));
   }
   return std::move(header.file);
 }
@@ -176,14 +176,6 @@ Status add_faces(const PlyList& list, TriangleMesh& mesh) {
   return {};
 }
 
-template <class T>
-Result<T> with_path(Result<T> result, const std::filesystem::path& path) {
-  if (result) return result;
-  Error error = result.error();
-  error.context = error.context.empty() ? path.string() : path.string() + ", " + error.context;
-  return error;
-}
-
 }  // namespace
 
 const PlyElement* PlyFile::find(std::string_view name) const {
@@ -195,11 +187,11 @@ Result<PlyFile> parse_ply(std::span<const std::byte> file) {
   const std::string_view text = as_text(file);
   SACCADE_TRY(PlyHeader header, parse_ply_header(text));
   const std::string_view body = text.substr(header.body_offset);
-  if (header.format == PlyFormat::ascii) {
+  if (header.file.format == PlyFormat::ascii) {
     const AsciiValues values{body, header.body_line};
     return read_elements(values, std::move(header));
   }
-  const bool little = header.format == PlyFormat::binary_little_endian;
+  const bool little = header.file.format == PlyFormat::binary_little_endian;
   const bool swapped = little != (std::endian::native == std::endian::little);
   const BinaryValues values{body, header.body_offset, swapped};
   return read_elements(values, std::move(header));
@@ -207,7 +199,7 @@ Result<PlyFile> parse_ply(std::span<const std::byte> file) {
 
 Result<PlyFile> read_ply(const std::filesystem::path& path) {
   SACCADE_TRY(const auto bytes, read_file(path));
-  return with_path(parse_ply(bytes), path);
+  return in_file(parse_ply(bytes), path);
 }
 
 Result<TriangleMesh> mesh_from_ply(const PlyFile& file) {
@@ -226,7 +218,7 @@ Result<TriangleMesh> mesh_from_ply(const PlyFile& file) {
 
 Result<TriangleMesh> read_mesh(const std::filesystem::path& path) {
   SACCADE_TRY(const PlyFile file, read_ply(path));
-  return with_path(mesh_from_ply(file), path);
+  return in_file(mesh_from_ply(file), path);
 }
 
 }  // namespace saccade

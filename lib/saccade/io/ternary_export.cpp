@@ -11,6 +11,7 @@
 
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/little_endian.hpp"
+#include "saccade/io/npy_io.hpp"
 
 namespace saccade {
 namespace {
@@ -185,20 +186,6 @@ Result<IndexBox> volume_box(const TsdfSnapshot& map, const TernaryVolumeConfig& 
   return box;
 }
 
-std::string npy_header(const IndexBox& box) {
-  const auto [z, y, x] = shape_of(box);
-  std::string dict = "{'descr': '|u1', 'fortran_order': False, 'shape': (" + std::to_string(z) + ", " +
-                     std::to_string(y) + ", " + std::to_string(x) + "), }";
-  constexpr std::size_t kPrefix{10};
-  dict.append(63 - (kPrefix + dict.size()) % 64, ' ');
-  dict += '\n';
-  std::string header{"\x93NUMPY\x01"};
-  header += '\0';
-  header += static_cast<char>(dict.size() & 0xFFU);
-  header += static_cast<char>(dict.size() >> 8U);
-  return header + dict;
-}
-
 /// The states of one row of voxels along x.
 void fill_row(const TsdfGrid& grid, const IndexBox& box, std::int32_t y, std::int32_t z, std::uint8_t* row) {
   for (std::int32_t x = box.lo.x; x < box.hi.x;) {
@@ -276,7 +263,7 @@ Result<IndexBox> write_ternary_volume(const TsdfSnapshot& map, const std::filesy
   json.replace_extension(".json");
   if (json == path) return bad_box("the volume needs a name that does not end in .json, for example ternary.npy");
   SACCADE_TRY(AtomicFile file, AtomicFile::create(path));
-  SACCADE_CHECK(file.write(npy_header(box)));
+  SACCADE_CHECK(file.write(npy_header("|u1", shape_of(box))));
   const auto [depth, height, width] = shape_of(box);
   std::vector<std::uint8_t> slice(static_cast<std::size_t>(height * width));
   for (std::int32_t z = box.lo.z; z < box.hi.z; ++z) {

@@ -9,6 +9,7 @@
 #include <cstring>
 #include <limits>
 
+#include "saccade/io/file_io.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -146,6 +147,63 @@ TEST(CloudFiles, OthersAreErrorsThatNameTheFile) {
     EXPECT_NE(read.error().to_string().find(name), std::string::npos) << read.error().to_string();
   }
   EXPECT_EQ(read_cloud(folder / "missing.pcd").error().code, Errc::not_found);
+}
+
+TEST(CloudFiles, AreToldBySuffixWhereTheirContentDoesNot) {
+  const test::TempFolder folder;
+  const std::vector<float> scan{0.1F, 0.2F, 0.3F, 0.4F, 1.0F, 2.0F, std::nanf(""), 0.0F};
+  const std::string bytes{as_text(std::as_bytes(std::span{scan}))};
+  const CloudFile kitti = read_cloud(folder.write("000000.bin", bytes)).value();
+  EXPECT_EQ(kitti.fields().find("y")->values<float>(), (std::vector<float>{0.2F, 2.0F}));
+  EXPECT_EQ(kitti.fields().find("intensity")->values<float>(), (std::vector<float>{0.4F, 0.0F}));
+  EXPECT_EQ(cloud_from_fields(kitti.fields()).value().positions_m.size(), 2U);
+  ASSERT_TRUE(write_cloud(folder / "again.pcd", kitti));
+  EXPECT_EQ(read_pcd(folder / "again.pcd").value().table.find("x")->bytes, kitti.fields().find("x")->bytes);
+  for (const std::string& wrong : {std::string{}, bytes.substr(1), bytes + "1234"}) {
+    const auto read = read_cloud(folder.write("wrong.bin", wrong));
+    ASSERT_FALSE(read) << wrong.size();
+    EXPECT_EQ(read.error().code, Errc::corrupt_data);
+    EXPECT_NE(read.error().to_string().find("wrong.bin: a scan of KITTI"), std::string::npos)
+        << read.error().to_string();
+  }
+  EXPECT_EQ(read_cloud(folder.write("A.XYZ", "# no PCD\n1 2 3\n")).value().fields().rows, 1U);
+  EXPECT_EQ(read_cloud(folder.write("a.pts", "1\n1 2 3 4 5 6 7\n")).value().fields().columns.size(), 7U);
+  ASSERT_TRUE(write_pcd(folder / "pcd.txt", made_fields()));
+  EXPECT_TRUE(std::holds_alternative<PcdFile>(read_cloud(folder / "pcd.txt").value().file));
+  const auto broken = read_cloud(folder.write("broken.csv", "x,y,z\n1,2\n"));
+  EXPECT_NE(broken.error().to_string().find("broken.csv, line 2"), std::string::npos) << broken.error().to_string();
+}
+
+TEST(CloudFiles, TextGainsLabelsAsAFieldToo) {
+  const test::TempFolder folder;
+  CloudFile cloud = read_cloud(folder.write("a.csv", "x,y,z,label\n1,2,3,4\n5,6,7,8\n9,10,11,12\n")).value();
+  EXPECT_EQ(add_labels(cloud, kLabels), "label_input");
+  for (const char* name : {"out.ply", "out.pcd", "out.csv"}) {
+    ASSERT_TRUE(write_cloud(folder / name, cloud));
+    const CloudFile written = read_cloud(folder / name).value();
+    EXPECT_EQ(labels_from_fields(written.fields()).value(), (std::vector<std::uint32_t>{1, kUnlabelled, 2})) << name;
+    EXPECT_EQ(written.fields().find("label_input")->value(2), 12.0) << name;
+  }
+}
+
+TEST(CloudFolders, AreListedInOrder) {
+  const test::TempFolder folder;
+  EXPECT_EQ(list_clouds(folder.path()).error().code, Errc::not_found);
+  EXPECT_EQ(list_clouds(folder / "missing").error().code, Errc::not_found);
+  for (const char* name :
+       {"b.pcd", "a.ply", "d.bin", "c.XYZ", "e.pts", ".hidden.pcd", "z.npy", "no/f.pcd", "g.pcd.tmp"}) {
+    folder.write(name, "anything");
+  }
+  folder.write("names.txt", "1 cup\n2 table\n");
+  folder.write("README.txt", "Clouds of a table.\n");
+  folder.write("values.csv", "frame,seconds\n1,2\n");
+  folder.write("h.txt", "1 2 3\nbroken\n");
+  folder.write("i.csv", "X,Y,Z\n1,2,3\n");
+  std::vector<std::string> names;
+  const std::vector<std::filesystem::path> clouds = list_clouds(folder.path()).value();
+  for (const auto& path : clouds) names.push_back(path.filename().string());
+  EXPECT_EQ(names, (std::vector<std::string>{"a.ply", "b.pcd", "c.XYZ", "d.bin", "e.pts", "h.txt", "i.csv"}));
+  EXPECT_EQ(list_clouds(folder / "a.ply").error().code, Errc::io_failure);
 }
 
 }  // namespace
