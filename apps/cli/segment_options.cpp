@@ -68,7 +68,7 @@ void check_extensions(const SegmentOptions& options) {
 }  // namespace
 
 void add_segment_options(CLI::App& command, SegmentOptions& options) {
-  command.add_option("input", options.input, "a point cloud (PCD, PLY), or a saved map (.sacmap)")
+  command.add_option("input", options.input, "a point cloud (PCD, PLY, text, KITTI .bin), or a saved map (.sacmap)")
       ->required()
       ->type_name("CLOUD|MAP");
   command.add_option("--method", options.method, "how: lccp, supervoxels joined where surfaces bend outwards")

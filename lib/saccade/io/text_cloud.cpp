@@ -107,7 +107,8 @@ class TextCloudParser {
     if (names_.empty() && !are_numbers(line, cloud_.separator)) {
       names_ = column_names(line);
       cloud_.header_line = lines_.line();
-      if (!have_positions(names_)) return fail("this is neither a row of numbers nor names of columns with x, y and z");
+      if (!have_positions(names_))
+        return fail("no point cloud in text: neither a row of numbers nor names of columns with x, y and z");
       return {};
     }
     const std::size_t columns = fields_of(line, cloud_.separator).size();

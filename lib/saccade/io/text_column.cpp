@@ -13,11 +13,14 @@ namespace {
 
 /// What one more in the last digit of a token is worth.
 double last_digit(std::string_view token) {
-  const std::size_t exponent_at = std::min(token.find_first_of("eE"), token.size());
-  const std::size_t point = token.substr(0, exponent_at).find('.');
+  std::size_t point = token.size();
+  std::size_t end = 0;
+  for (; end < token.size() && token[end] != 'e' && token[end] != 'E'; ++end) {
+    if (token[end] == '.') point = end;
+  }
   int power = 0;
-  if (exponent_at < token.size()) power = parse_integer<int>(token.substr(exponent_at + 1)).value_or(0);
-  if (point != std::string_view::npos) power -= static_cast<int>(exponent_at - point - 1);
+  if (end < token.size()) power = parse_integer<int>(token.substr(end + 1)).value_or(0);
+  if (point < end) power -= static_cast<int>(end - point - 1);
   constexpr std::array<double, 17> kPowers{1.0,  1e-1,  1e-2,  1e-3,  1e-4,  1e-5,  1e-6,  1e-7, 1e-8,
                                            1e-9, 1e-10, 1e-11, 1e-12, 1e-13, 1e-14, 1e-15, 1e-16};
   if (power <= 0 && -power < static_cast<int>(kPowers.size())) return kPowers[static_cast<std::size_t>(-power)];

@@ -8,10 +8,13 @@
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/hand_trajectory_io.hpp"
 #include "saccade/io/image_io.hpp"
+#include "saccade/io/kitti_io.hpp"
+#include "saccade/io/npy_io.hpp"
 #include "saccade/io/pcd_io.hpp"
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/process_messages.hpp"
 #include "saccade/io/scene_yaml.hpp"
+#include "saccade/io/text_cloud.hpp"
 #include "saccade/io/urdf.hpp"
 
 namespace saccade {
@@ -41,6 +44,20 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
             3U);
   EXPECT_GE(check_seeds("pcd", [](const auto& content, const auto&) { return parse_pcd(as_byte_span(content)).ok(); }),
             3U);
+  EXPECT_GE(check_seeds("text_cloud",
+                        [](const std::string& content, const auto&) {
+                          const auto bytes = as_byte_span(content);
+                          return parse_text_cloud({bytes.begin(), bytes.end()}).ok();
+                        }),
+            5U);
+  EXPECT_GE(check_seeds("kitti",
+                        [](const std::string& content, const std::string& name) {
+                          const auto bytes = as_byte_span(content);
+                          return name == "scan.bin" ? parse_kitti_scan(bytes).ok() : parse_kitti_labels(bytes).ok();
+                        }),
+            2U);
+  EXPECT_GE(check_seeds("npy", [](const auto& content, const auto&) { return parse_npy(as_byte_span(content)).ok(); }),
+            4U);
   EXPECT_GE(check_seeds("poses", [](const auto& content, const auto&) { return parse_pose_list(content).ok(); }), 5U);
   EXPECT_GE(check_seeds("camera",
                         [](const std::string& content, const std::string& name) {
