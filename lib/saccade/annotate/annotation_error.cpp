@@ -1,0 +1,173 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/annotate/annotation_error.hpp"
+
+#include <algorithm>
+#include <map>
+
+namespace saccade {
+
+namespace {
+
+/// Of the root mean square distance of the points that so many steps lead to: their mean is farther where a cloud ends.
+/// 0.6 at the straight border of a half-disc; 0.44 finds 99 of 100 border points of scattered ones, and 2 of 100
+/// inside.
+constexpr int kEndSteps{3};
+constexpr double kEndShare{0.44};
+
+/// Whether labels differ from the truth where there is one; no label may stand for the background.
+class Comparison {
+ public:
+  Comparison(std::span<const std::uint32_t> labels, std::span<const std::uint32_t> truth,
+             std::optional<std::uint32_t> background)
+      : labels_{labels}, truth_{truth}, background_{background.value_or(0)} {}
+
+  [[nodiscard]] std::uint32_t label(std::size_t point) const {
+    return labels_[point] == 0 ? background_ : labels_[point];
+  }
+  [[nodiscard]] bool is_wrong(std::size_t point) const { return truth_[point] != 0 && label(point) != truth_[point]; }
+
+ private:
+  std::span<const std::uint32_t> labels_, truth_;
+  std::uint32_t background_;
+};
+
+Status same_size(std::size_t labels, std::size_t truth) {
+  if (labels == truth) return {};
+  return Error{Errc::size_mismatch, "as many labels as true labels are needed", "annotation"};
+}
+
+}  // namespace
+
+Result<AnnotationScore> score_annotation(std::span<const std::uint32_t> labels, std::span<const std::uint32_t> truth,
+                                         std::optional<std::uint32_t> background) {
+  SACCADE_CHECK(same_size(labels.size(), truth.size()));
+  const Comparison compared{labels, truth, background};
+  AnnotationScore score;
+  std::map<std::uint32_t, ObjectScore> of_label;
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (truth[i] == 0) continue;
+    score.points += 1;
+    score.wrong += compared.is_wrong(i) ? 1 : 0;
+    of_label[truth[i]].points += 1;
+    of_label[compared.label(i)].labelled += 1;
+    if (!compared.is_wrong(i)) of_label[truth[i]].shared += 1;
+  }
+  double sum{0.0};
+  for (auto& [label, object] : of_label) {
+    if (object.points == 0) continue;  // no object of the truth
+    object.label = label;
+    score.objects.push_back(object);
+    sum += object.iou();
+  }
+  if (!score.objects.empty()) score.mean_iou = sum / static_cast<double>(score.objects.size());
+  return score;
+}
+
+Result<std::vector<ErrorRegion>> error_regions(const Neighbourhood& neighbourhood,
+                                               std::span<const std::uint32_t> labels,
+                                               std::span<const std::uint32_t> truth,
+                                               std::optional<std::uint32_t> background) {
+  SACCADE_CHECK(same_size(labels.size(), truth.size()));
+  SACCADE_CHECK(same_size(labels.size(), neighbourhood.size()));
+  const Comparison compared{labels, truth, background};
+  std::vector<char> left(labels.size());  // wrong, and in no region yet
+  for (std::size_t i = 0; i < left.size(); ++i) left[i] = compared.is_wrong(i) ? 1 : 0;
+  std::vector<ErrorRegion> regions;
+  for (std::uint32_t first = 0; first < left.size(); ++first) {
+    if (left[first] == 0) continue;
+    left[first] = 0;
+    ErrorRegion region{truth[first], {first}};
+    for (std::size_t next = 0; next < region.points.size(); ++next) {
+      for (const Neighbourhood::Edge& edge : neighbourhood.edges(neighbourhood.node_of(region.points[next]))) {
+        const std::uint32_t point = neighbourhood.point_of(edge.node);
+        if (left[point] == 0 || truth[point] != region.truth || edge.cost >= kPathUnits) continue;
+        left[point] = 0;
+        region.points.push_back(point);
+      }
+    }
+    std::sort(region.points.begin(), region.points.end());
+    regions.push_back(std::move(region));
+  }
+  std::stable_sort(regions.begin(), regions.end(),
+                   [](const ErrorRegion& a, const ErrorRegion& b) { return a.points.size() > b.points.size(); });
+  return regions;
+}
+
+std::vector<std::uint8_t> cloud_ends(const Neighbourhood& neighbourhood, std::span<const Eigen::Vector3f> positions_m,
+                                     std::span<const Eigen::Vector3f> normals) {
+  SACCADE_EXPECTS(positions_m.size() == neighbourhood.size());
+  SACCADE_EXPECTS(normals.empty() || normals.size() == positions_m.size());
+  /// Of the ways from a point along so many steps: sums of what they lead over, of its squares, and their number.
+  struct Ways {
+    Eigen::Vector3d sum{Eigen::Vector3d::Zero()};
+    double squares{0.0};
+    double count{1.0};
+  };
+  const auto position = [&](std::uint32_t node) -> Eigen::Vector3d {
+    return positions_m[neighbourhood.point_of(node)].cast<double>();
+  };
+  const auto nodes = static_cast<std::uint32_t>(neighbourhood.size());
+  std::vector<Ways> ways(nodes), farther(nodes);
+  for (int steps = 1; steps <= kEndSteps; ++steps) {
+    for (std::uint32_t node = 0; node < nodes; ++node) {
+      Ways all{Eigen::Vector3d::Zero(), 0.0, 0.0};
+      for (const Neighbourhood::Edge& edge : neighbourhood.edges(node)) {
+        const Eigen::Vector3d step = position(edge.node) - position(node);
+        const Ways& on = ways[edge.node];
+        all.sum += on.sum + on.count * step;
+        all.squares += on.squares + 2.0 * step.dot(on.sum) + on.count * step.squaredNorm();
+        all.count += on.count;
+      }
+      farther[node] = all;
+    }
+    ways.swap(farther);
+  }
+  std::vector<std::uint8_t> ends(nodes, 0);
+  for (std::uint32_t node = 0; node < nodes; ++node) {
+    const std::uint32_t point = neighbourhood.point_of(node);
+    Eigen::Vector3d along = ways[node].sum;
+    if (!normals.empty() && normals[point].allFinite()) {
+      const Eigen::Vector3d normal = normals[point].cast<double>();
+      along -= normal * normal.dot(along);
+    }
+    const double limit = kEndShare * kEndShare * ways[node].squares * ways[node].count;
+    ends[point] = along.squaredNorm() > limit ? 1 : 0;
+  }
+  return ends;
+}
+
+std::uint32_t region_centre(const Neighbourhood& neighbourhood, std::span<const std::uint8_t> ends,
+                            const ErrorRegion& region) {
+  SACCADE_EXPECTS(!region.points.empty() && (ends.empty() || ends.size() == neighbourhood.size()));
+  enum : char { kOutside, kInside, kReached };
+  std::vector<char> state(neighbourhood.size(), kOutside);  // of nodes
+  for (const std::uint32_t point : region.points) state[neighbourhood.node_of(point)] = kInside;
+
+  const auto is_outermost = [&](std::uint32_t node) {
+    const auto edges = neighbourhood.edges(node);
+    return (!ends.empty() && ends[neighbourhood.point_of(node)] != 0) ||
+           std::any_of(edges.begin(), edges.end(), [&](const auto& edge) { return state[edge.node] == kOutside; });
+  };
+  std::vector<std::uint32_t> front;
+  for (std::uint32_t node = 0; node < state.size(); ++node) {  // in the order in which edges lie in memory
+    if (state[node] == kInside && is_outermost(node)) front.push_back(node);
+  }
+  if (front.empty()) return region.points.front();
+  for (const std::uint32_t node : front) state[node] = kReached;
+  for (std::vector<std::uint32_t> next; true; next.clear()) {
+    for (const std::uint32_t node : front) {
+      for (const Neighbourhood::Edge& edge : neighbourhood.edges(node)) {
+        if (state[edge.node] != kInside) continue;
+        state[edge.node] = kReached;
+        next.push_back(edge.node);
+      }
+    }
+    if (next.empty()) break;
+    front.swap(next);
+  }
+  std::uint32_t first = neighbourhood.point_of(front.front());
+  for (const std::uint32_t node : front) first = std::min(first, neighbourhood.point_of(node));
+  return first;
+}
+
+}  // namespace saccade
