@@ -139,7 +139,9 @@ std::vector<std::uint8_t> cloud_ends(const Neighbourhood& neighbourhood, std::sp
 std::uint32_t region_centre(const Neighbourhood& neighbourhood, std::span<const std::uint8_t> ends,
                             const ErrorRegion& region) {
   SACCADE_EXPECTS(!region.points.empty() && (ends.empty() || ends.size() == neighbourhood.size()));
-  enum : char { kOutside, kInside, kReached };
+  constexpr char kOutside{0};
+  constexpr char kInside{1};
+  constexpr char kReached{2};
   std::vector<char> state(neighbourhood.size(), kOutside);  // of nodes
   for (const std::uint32_t point : region.points) state[neighbourhood.node_of(point)] = kInside;
 
@@ -148,25 +150,28 @@ std::uint32_t region_centre(const Neighbourhood& neighbourhood, std::span<const 
     return (!ends.empty() && ends[neighbourhood.point_of(node)] != 0) ||
            std::any_of(edges.begin(), edges.end(), [&](const auto& edge) { return state[edge.node] == kOutside; });
   };
-  std::vector<std::uint32_t> front;
+  std::vector<std::uint32_t> reached(region.points.size() + 1);  // nodes, level by level; one more to write into
+  std::size_t end{0};
   for (std::uint32_t node = 0; node < state.size(); ++node) {  // in the order in which edges lie in memory
-    if (state[node] == kInside && is_outermost(node)) front.push_back(node);
+    if (state[node] == kInside && is_outermost(node)) reached[end++] = node;
   }
-  if (front.empty()) return region.points.front();
-  for (const std::uint32_t node : front) state[node] = kReached;
-  for (std::vector<std::uint32_t> next; true; next.clear()) {
-    for (const std::uint32_t node : front) {
-      for (const Neighbourhood::Edge& edge : neighbourhood.edges(node)) {
-        if (state[edge.node] != kInside) continue;
-        state[edge.node] = kReached;
-        next.push_back(edge.node);
+  if (end == 0) return region.points.front();
+  for (std::size_t i = 0; i < end; ++i) state[reached[i]] = kReached;
+  std::size_t level{0};  // where the last one begins
+  for (std::size_t level_end = end; true; level_end = end) {
+    for (std::size_t i = level; i < level_end; ++i) {
+      for (const Neighbourhood::Edge& edge : neighbourhood.edges(reached[i])) {  // without branches: few are new
+        const bool is_new = state[edge.node] == kInside;
+        reached[end] = edge.node;
+        end += is_new ? 1 : 0;
+        state[edge.node] = is_new ? kReached : state[edge.node];
       }
     }
-    if (next.empty()) break;
-    front.swap(next);
+    if (end == level_end) break;
+    level = level_end;
   }
-  std::uint32_t first = neighbourhood.point_of(front.front());
-  for (const std::uint32_t node : front) first = std::min(first, neighbourhood.point_of(node));
+  std::uint32_t first = neighbourhood.point_of(reached[level]);
+  for (std::size_t i = level; i < end; ++i) first = std::min(first, neighbourhood.point_of(reached[i]));
   return first;
 }
 
