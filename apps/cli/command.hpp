@@ -30,6 +30,7 @@ using Action = std::function<Result<int>()>;
 
 // `global` and `action` outlive the parsing. Options are checked while they are parsed; what is wrong with them is
 // thrown as CLI::ValidationError.
+void add_annotate(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_attend(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_filter(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_fuse(CLI::App& program, const GlobalOptions& global, Action& action);

@@ -61,6 +61,7 @@ int run(int argc, char** argv, CLI::App& program) {
   program.fallthrough();
   program.footer(kFooter);
   add_global_options(program, global);
+  saccade::cli::add_annotate(program, global, action);
   saccade::cli::add_attend(program, global, action);
   saccade::cli::add_compare(program, global, action);
   saccade::cli::add_explore(program, global, action);

@@ -89,7 +89,7 @@ Result<Experiment> carry_out(const char* scene, StrategyKind kind, const Reprodu
   return Experiment{std::move(run), recorded.all()};
 }
 
-Status carry_out_all(const ReproduceOptions& options, const Executor& executor, const Progress& progress) {
+Status carry_out_explorations(const ReproduceOptions& options, const Executor& executor, const Progress& progress) {
   if (options.experiments) return {};
   auto all = std::make_shared<Experiments>();
   std::size_t done = 0;
@@ -105,7 +105,7 @@ Status carry_out_all(const ReproduceOptions& options, const Executor& executor, 
   return {};
 }
 
-void add_common_notes(const ReproduceOptions& options, ReproducedTable& table) {
+void add_exploration_notes(const ReproduceOptions& options, ReproducedTable& table) {
   table.notes.emplace_back(
       "Here the four tabletop scenes, the arm and the Kinect v2 with its filter are simulated; the thesis' were real, "
       "with other objects. Figures compare in kind.");
@@ -231,7 +231,7 @@ json experiments_json(const Experiments& all) {
 
 Result<ReproducedTable> reproduce_table_3_1(const ReproduceOptions& options, const Executor& executor,
                                             const Progress& progress) {
-  SACCADE_CHECK(carry_out_all(options, executor, progress));
+  SACCADE_CHECK(carry_out_explorations(options, executor, progress));
   const Experiments& all = *options.experiments;
   ReproducedTable table;
   table.caption = "Table 3.1: seconds of each phase of five views, mean and standard deviation of four experiments";
@@ -255,7 +255,7 @@ Result<ReproducedTable> reproduce_table_3_1(const ReproduceOptions& options, con
           range_text(all.attention, evaluated) + " (the thesis: \"rarely more than two hundred\").",
       "Views generation: with the question which of them the arm can take, which the thesis asked afterwards. Robot "
       "motion: of the simulated arm, oscillation included. Fusion is in neither total."};
-  add_common_notes(options, table);
+  add_exploration_notes(options, table);
   table.figures = experiments_json(all);
   table.figures["rows"] = std::move(rows);
   return table;
@@ -307,7 +307,7 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
           ", of which the arm can take " + std::to_string(proposals.views.size()) +
           ". Segments without contour points are left out.",
       "A segment is of the object that most of its points are nearest to."};
-  add_common_notes(options, table);
+  add_exploration_notes(options, table);
   table.figures = {{"rows", std::move(rows)},
                    {"candidates", proposals.candidates},
                    {"of_objects", of_objects},
@@ -319,7 +319,7 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
 Result<ReproducedTable> reproduce_table_3_3(const ReproduceOptions& options, const Executor& executor,
                                             const Progress& progress) {
   constexpr std::array<const char*, 8> kThesis{"✓✓✓✓×", "✓✓✓××", "✓✓✓××", "✓✓✓✓✓", "×✓×✓×", "✓×××✓", "××✓×✓", "××✓××"};
-  SACCADE_CHECK(carry_out_all(options, executor, progress));
+  SACCADE_CHECK(carry_out_explorations(options, executor, progress));
   const Experiments& all = *options.experiments;
   ReproducedTable table;
   table.caption = "Table 3.3: views that point towards the objects (✓) or not (×)";
@@ -352,14 +352,14 @@ Result<ReproducedTable> reproduce_table_3_3(const ReproduceOptions& options, con
       "quarter "
       "of the voxels lie within 5 cm of an object. The thesis does not say how it judged; by the second rule hardly a "
       "first view points at an object, since it also shows what was hidden behind (docs/metrics.md)."};
-  add_common_notes(options, table);
+  add_exploration_notes(options, table);
   table.figures = experiments_json(all);
   return table;
 }
 
 Result<ReproducedTable> reproduce_figure_3_17(const ReproduceOptions& options, const Executor& executor,
                                               const Progress& progress) {
-  SACCADE_CHECK(carry_out_all(options, executor, progress));
+  SACCADE_CHECK(carry_out_explorations(options, executor, progress));
   const Experiments& all = *options.experiments;
   ReproducedTable table;
   table.caption = "Fig. 3.17: unknown voxels near the objects after each of five views, attention / standard";
@@ -391,7 +391,7 @@ Result<ReproducedTable> reproduce_figure_3_17(const ReproduceOptions& options, c
   table.notes = {
       "The thesis shows curves without figures: its proposed method ends below the standard one in every "
       "experiment, and is above it here and there before."};
-  add_common_notes(options, table);
+  add_exploration_notes(options, table);
   table.figures = experiments_json(all);
   return table;
 }

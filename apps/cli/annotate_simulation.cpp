@@ -1,0 +1,120 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
+
+#include "annotate.hpp"
+#include "interrupt.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/file_io.hpp"
+#include "saccade/io/label_input.hpp"
+
+namespace saccade::cli {
+namespace {
+
+constexpr std::uint32_t kLabelsPerObject{10};
+constexpr std::uint32_t kFirstObjectPart{20};
+
+/// mOSD's: 1 to 9 are parts of the table, ten labels from 20 on are parts of one object each.
+bool are_parts_in_tens(const std::vector<std::uint32_t>& labels) {
+  bool table{false};
+  bool objects{false};
+  for (const std::uint32_t label : labels) {
+    if (label >= kLabelsPerObject && label < kFirstObjectPart) return false;
+    table |= label > 0 && label < kLabelsPerObject;
+    objects |= label >= kFirstObjectPart;
+  }
+  return table && objects;
+}
+
+Result<std::vector<std::uint32_t>> read_truth(const AnnotateOptions& options, std::size_t points, ProgressBar& bar) {
+  SACCADE_TRY(std::vector<std::uint32_t> truth, read_labels(options.truth, points));
+  if (options.tens == Tens::keep || (options.tens == Tens::detect && !are_parts_in_tens(truth))) return truth;
+  if (options.tens == Tens::detect) {
+    bar.note("labels are 1 to 9 and from 20 on, as parts of objects in tens (mOSD): each ten is one; --tens keep: not");
+  }
+  for (std::uint32_t& label : truth) label = label == 0 ? 0 : std::max(1U, label / kLabelsPerObject);
+  return truth;
+}
+
+Error interrupted_error() { return Error{Errc::cancelled, "interrupted", {}}; }
+
+Status click(const AnnotateOptions& options, std::shared_ptr<const Neighbourhood> graph, const PointCloud& cloud,
+             std::vector<std::uint32_t> truth, SimulatedAnnotation& annotation, ProgressBar& bar) {
+  SACCADE_TRY(SimulatedAnnotator annotator, SimulatedAnnotator::create(std::move(graph), cloud, std::move(truth)));
+  const std::size_t clicks = static_cast<std::size_t>(options.clicks) * annotation.objects;
+  while (annotation.clicks.size() < clicks) {
+    if (interrupted()) return interrupted_error();
+    bar.update("clicks", annotation.clicks.size(), clicks);
+    const std::optional<SimulatedClick> next = annotator.next();
+    if (!next) break;
+    annotation.add_ms.push_back(next->add_ms);
+    annotation.clicks.push_back({next->label, next->score.mean_iou, next->score.wrong});
+  }
+  annotation.labels = annotator.labels();
+  ShortestPathForest& forest = annotator.forest();
+  const std::vector<Root> roots = forest.roots();
+  for (const Root& root : roots) {
+    Stopwatch stopwatch;
+    forest.remove(root.point);
+    annotation.delete_ms.push_back(stopwatch.elapsed_ms());
+    forest.add(root);
+  }
+  const Stopwatch stopwatch;
+  forest.rebuild(roots);
+  annotation.full_ms = stopwatch.elapsed_ms();
+  return {};
+}
+
+Status drag_rectangles(const AnnotateOptions& options, const PointCloud& cloud, const std::vector<std::uint32_t>& truth,
+                       const Executor& executor, SimulatedAnnotation& annotation, ProgressBar& bar) {
+  SACCADE_TRY(RectangleAnnotator annotator, RectangleAnnotator::create(cloud.positions_m, truth, {}, executor));
+  const std::size_t actions = static_cast<std::size_t>(options.clicks) * annotation.objects;
+  while (annotation.clicks.size() < actions) {
+    if (interrupted()) return interrupted_error();
+    bar.update("rectangles", annotation.clicks.size(), actions);
+    const std::optional<RectangleAction> next = annotator.next(executor);
+    if (!next) break;
+    SACCADE_TRY(const AnnotationScore score, score_annotation(annotator.labels(), truth));
+    annotation.clicks.push_back({next->label, score.mean_iou, score.wrong});
+  }
+  annotation.labels = annotator.labels();
+  return {};
+}
+
+}  // namespace
+
+std::optional<std::size_t> SimulatedAnnotation::clicks_to(double iou_mean) const {
+  const auto reached = std::find_if(clicks.begin(), clicks.end(),
+                                    [iou_mean](const AnnotationStep& step) { return step.iou_mean >= iou_mean; });
+  if (reached == clicks.end()) return std::nullopt;
+  return static_cast<std::size_t>(reached - clicks.begin()) + 1;
+}
+
+Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudFile& file,
+                                                const Executor& executor, ProgressBar& bar) {
+  auto cloud = cloud_from_fields(file.fields());
+  if (!cloud) return in_file(cloud.error(), options.cloud);
+  SACCADE_TRY(std::vector<std::uint32_t> truth, read_truth(options, cloud->positions_m.size(), bar));
+  for (std::size_t i = 0; i < truth.size(); ++i) {
+    if (!cloud->positions_m[i].allFinite()) truth[i] = 0;
+  }
+  SACCADE_TRY(const AnnotationScore none, score_annotation(std::vector<std::uint32_t>(truth.size(), 0), truth));
+  if (none.points == 0) {
+    return Error{Errc::invalid_argument, "no point of the cloud has a label but 0 in it", options.truth.string()};
+  }
+  SimulatedAnnotation annotation;
+  annotation.points = none.points;
+  annotation.objects = none.objects.size();
+  if (options.method == AnnotationMethod::rectangle) {
+    SACCADE_CHECK(drag_rectangles(options, *cloud, truth, executor, annotation, bar));
+    return annotation;
+  }
+  bar.update("graph", 0, 0);
+  const Stopwatch stopwatch;
+  SACCADE_TRY(Neighbourhood built, Neighbourhood::build(*cloud, options.graph, executor));
+  annotation.graph_ms = stopwatch.elapsed_ms();
+  const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
+  SACCADE_CHECK(click(options, graph, *cloud, std::move(truth), annotation, bar));
+  return annotation;
+}
+
+}  // namespace saccade::cli
