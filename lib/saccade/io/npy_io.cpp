@@ -15,7 +15,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::string_view kMagic{"\x93NUMPY"};
+constexpr std::string_view kNpyMagic{"\x93NUMPY"};
 
 Error unsupported(std::string what) { return {Errc::unsupported, std::move(what), {}}; }
 
@@ -133,7 +133,7 @@ std::string npy_header(std::string_view type, std::span<const std::size_t> shape
   constexpr std::size_t kPrefix{10};
   dict.append(63 - (kPrefix + dict.size()) % 64, ' ');
   dict += '\n';
-  std::string header{kMagic};
+  std::string header{kNpyMagic};
   for (const std::size_t byte : {std::size_t{1}, std::size_t{0}, dict.size() & 0xFFU, dict.size() >> 8U}) {
     header += static_cast<char>(byte);
   }
@@ -142,8 +142,8 @@ std::string npy_header(std::string_view type, std::span<const std::size_t> shape
 
 Result<Column> parse_npy(std::span<const std::byte> file) {
   const Error cut{Errc::corrupt_data, "the file ends within its header", "byte " + std::to_string(file.size())};
-  if (!as_text(file).starts_with(kMagic)) return Error{Errc::corrupt_data, "not an array of NumPy (.npy)", "byte 0"};
-  ByteReader reader{file, kMagic.size()};
+  if (!as_text(file).starts_with(kNpyMagic)) return Error{Errc::corrupt_data, "not an array of NumPy (.npy)", "byte 0"};
+  ByteReader reader{file, kNpyMagic.size()};
   if (!reader.has(4)) return cut;
   const auto version = reader.value<std::uint8_t>();
   const auto minor = reader.value<std::uint8_t>();

@@ -31,7 +31,7 @@ bool is_packed_color(const Column& column) {
   return (column.name == "rgb" || column.name == "rgba") && column.type == ColumnType::f32;
 }
 
-std::string header_of(const ColumnTable& table, char separator) {
+std::string names_line(const ColumnTable& table, char separator) {
   std::string header;
   for (const Column& column : table.columns) {
     if (column.name == "_") continue;
@@ -75,17 +75,20 @@ std::string extended(std::string_view line, char separator, char wanted, std::st
   return row.append(added);
 }
 
-/// The line that names the columns, with label as the last name, and no other one of that name.
+/// The line that names the columns, with label as the last name, and no other one of that name. With another separator
+/// the names are those of the table, which have no blanks.
 std::string labelled_header(std::string_view line, const ColumnTable& table, char wanted) {
   const bool commented = is_comment(line);
   const std::string_view names = commented ? comment_text(line) : line;
   const char separator = separator_of(names);
   std::string text{names};
   const std::vector<std::string_view> fields = fields_of(names, separator);
-  for (std::size_t i = fields.size(); i-- > 0;) {
-    if (table.columns[i].name != kLabelField) continue;
+  for (std::size_t i = fields.size(); i-- > 0;) {  // from the last one, so that the places of others stay
+    const std::string& name = table.columns[i].name;
+    const bool is_label = name == kLabelField;
+    if (!is_label && separator == wanted) continue;
     text.replace(static_cast<std::size_t>(fields[i].data() - names.data()), fields[i].size(),
-                 table.unused_name(kEarlierLabelField));
+                 is_label ? table.unused_name(kEarlierLabelField) : header_name(name));
   }
   const std::string mark{line.substr(0, line.size() - names.size())};
   return mark + extended(text, separator, wanted, kLabelField);
@@ -104,7 +107,7 @@ Status write_text_cloud(const std::filesystem::path& path, const ColumnTable& ta
   SACCADE_CHECK(table.validate());
   const char separator = is_csv(path) ? ',' : ' ';
   SACCADE_TRY(AtomicFile out, AtomicFile::create(path));
-  SACCADE_CHECK(out.write((is_csv(path) ? "" : "# ") + header_of(table, separator) + "\n"));
+  SACCADE_CHECK(out.write((is_csv(path) ? "" : "# ") + names_line(table, separator) + "\n"));
   std::string row;
   for (std::size_t i = 0; i < table.rows; ++i) {
     row.clear();
@@ -130,7 +133,7 @@ Status write_labelled_text(const std::filesystem::path& path, const TextCloud& c
       text = extended(*line, cloud.separator, wanted, std::to_string(labels[row++]));
     }
     if (lines.line() == cloud.first_row_line && cloud.header_line == 0) {
-      text.insert(0, "# " + header_of(cloud.table, wanted) + wanted + std::string{kLabelField} + "\n");
+      text.insert(0, "# " + names_line(cloud.table, wanted) + wanted + std::string{kLabelField} + "\n");
     }
     SACCADE_CHECK(out.write(text.append("\n")));
   }
