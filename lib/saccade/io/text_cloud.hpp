@@ -44,8 +44,9 @@ struct TextCloud {
 /// name_0, name_1 …; padding (_) is left out; colours packed in a float are written as the whole number of their bits.
 [[nodiscard]] Status write_text_cloud(const std::filesystem::path& path, const ColumnTable& table);
 /// Atomic. The lines of the cloud as they were, with a last column label; where the suffix asks for another separator
-/// (comma or semicolon in a .csv, blanks in a .xyz) the words are kept and the separator is not. An earlier column
-/// label gets another name. Names that no line gave are added as a comment. Expects one label per point.
+/// (comma or semicolon in a .csv, blanks in a .xyz) the numbers are kept letter by letter and the names are those of
+/// the table. An earlier column label gets another name. Names that no line gave are added as a comment. Expects one
+/// label per point.
 [[nodiscard]] Status write_labelled_text(const std::filesystem::path& path, const TextCloud& cloud,
                                          std::span<const std::uint32_t> labels);
 
