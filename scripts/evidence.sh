@@ -94,11 +94,14 @@ done
 
 echo "Arms beside FCL: 100,000 configurations each"
 scripts/install_packages.sh program tests
-configure release -DSACCADE_BUILD_TESTS=ON && compile release parity >"$out/build_parity.log" || failed=1
+configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io >"$out/build_parity.log" || failed=1
 step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity '--gtest_filter=ArmCollision*'
 
 echo "Motions of the arm beside FCL: ten seeds, all built-in scenes"
 step motion_planning env SACCADE_PLANNING_SEEDS=10 build/release/tests/parity '--gtest_filter=MotionPlanning*'
+
+echo "Annotation sessions: a thousand processes killed while they annotate"
+step annotation_kills env SACCADE_KILL_CASES=1000 build/release/tests/unit_io '--gtest_filter=AnnotationSessionKilled*'
 
 echo "Fuzzing"
 { configure asan-ubsan && compile asan-ubsan tests/fuzz/all; } >"$out/build_fuzzers.log" || failed=1

@@ -256,6 +256,13 @@ def planning_section(folder, lines):
         lambda line: line.startswith(shown))
 
 
+def kill_section(folder, lines):
+    log_section(folder, lines, "annotation_kills", "Annotation sessions", [
+        "Processes that annotate are killed (SIGKILL) at random instants, and their session is opened again. The step fails",
+        "unless it holds every action that was acknowledged, at most the one at hand beyond, and the state that they leave."],
+        lambda line: " processes killed: " in line)
+
+
 def fuzz_section(folder, lines):
     logs = sorted(folder.glob("fuzz_*.log"))
     if not logs:
@@ -279,6 +286,7 @@ def main():
     held = update_section(folder, lines) and held
     arm_section(folder, lines)
     planning_section(folder, lines)
+    kill_section(folder, lines)
     fuzz_section(folder, lines)
     document.write_text("\n".join(lines))
     if not held:

@@ -24,6 +24,7 @@ class Fnv1a {
       for (Eigen::Index i = 0; i < values.rows(); ++i) add(static_cast<double>(values(i, j)));
     }
   }
+  [[nodiscard]] std::uint64_t value() const { return state_; }
   /// 16 hexadecimal digits.
   [[nodiscard]] std::string text() const {
     constexpr char kDigits[] = "0123456789abcdef";

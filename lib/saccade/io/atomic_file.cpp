@@ -119,20 +119,42 @@ Status AtomicFile::write(std::string_view text) {
   return {};
 }
 
-Status AtomicFile::commit() {
+/// All is on the disk under the temporary's name, and the file is closed.
+Status AtomicFile::finish() {
   if (fd_ < 0) return Error{Errc::io_failure, "cannot write: an earlier write failed", shown_.string()};
   SACCADE_CHECK(flush());
-  const auto give_up = [this](const char* what) {
-    Error error = failure(what);
+  const bool synced = ::fsync(fd_) == 0 || errno == EINVAL || errno == EROFS;
+  if (synced && ::close(std::exchange(fd_, -1)) == 0) return {};
+  Error error = failure("cannot write");
+  discard();
+  return error;
+}
+
+Status AtomicFile::rename() {
+  if (::rename(temporary_.c_str(), destination_.c_str()) != 0) {
+    Error error = failure("cannot rename the finished file");
     discard();
     return error;
-  };
-  if (::fsync(fd_) != 0 && errno != EINVAL && errno != EROFS) return give_up("cannot write");
-  if (::close(std::exchange(fd_, -1)) != 0) return give_up("cannot write");
-  if (::rename(temporary_.c_str(), destination_.c_str()) != 0) return give_up("cannot rename the finished file");
+  }
   temporary_.clear();
   sync_folder(destination_.parent_path());
   return {};
+}
+
+Status AtomicFile::commit() {
+  SACCADE_CHECK(finish());
+  return rename();
+}
+
+Result<bool> AtomicFile::commit_new() {
+  SACCADE_CHECK(finish());
+  // A second name is refused where there is a file already; where a file system has none, the safety is lost.
+  const bool linked = ::link(temporary_.c_str(), destination_.c_str()) == 0;
+  const bool taken = !linked && errno == EEXIST;
+  if (!linked && !taken) SACCADE_CHECK(rename());
+  discard();
+  sync_folder(destination_.parent_path());
+  return !taken;
 }
 
 Status write_file_atomically(const std::filesystem::path& destination, std::span<const std::byte> bytes) {

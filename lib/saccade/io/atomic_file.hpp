@@ -33,10 +33,15 @@ class AtomicFile {
   }
   /// To be called once, at the end.
   [[nodiscard]] Status commit();
+  /// The same, but what is at the destination by now stays, and the file that was written goes.
+  /// @return whether the destination is the file that was written.
+  [[nodiscard]] Result<bool> commit_new();
 
  private:
   AtomicFile() = default;
   [[nodiscard]] Status flush();
+  [[nodiscard]] Status finish();
+  [[nodiscard]] Status rename();
   [[nodiscard]] Error failure(const char* what) const;
   void discard() noexcept;
 

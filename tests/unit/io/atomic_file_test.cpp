@@ -2,44 +2,24 @@
 #include "saccade/io/atomic_file.hpp"
 
 #include <gtest/gtest.h>
-#include <sys/resource.h>
 #include <sys/stat.h>
 
 #include <algorithm>
-#include <csignal>
 
 #include "saccade/io/file_io.hpp"
+#include "support/small_disk.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
+using test::SmallDisk;
 using test::TempFolder;
 
 std::size_t entries(const fs::path& folder) {
   return static_cast<std::size_t>(std::distance(fs::directory_iterator{folder}, fs::directory_iterator{}));
 }
-
-/// Until its end, no file of this process may grow beyond some bytes: writes fail as on a full disk.
-class SmallDisk {
- public:
-  explicit SmallDisk(rlim_t bytes) : handler_{std::signal(SIGXFSZ, SIG_IGN)} {
-    ::getrlimit(RLIMIT_FSIZE, &before_);
-    const rlimit limit{bytes, before_.rlim_max};
-    ::setrlimit(RLIMIT_FSIZE, &limit);
-  }
-  SmallDisk(const SmallDisk&) = delete;
-  SmallDisk& operator=(const SmallDisk&) = delete;
-  ~SmallDisk() {
-    ::setrlimit(RLIMIT_FSIZE, &before_);
-    std::signal(SIGXFSZ, handler_);
-  }
-
- private:
-  rlimit before_{};
-  void (*handler_)(int);
-};
 
 TEST(AtomicFile, AppearsWithItsContentAndNothingElse) {
   const TempFolder folder;
@@ -90,6 +70,19 @@ TEST(AtomicFile, FullDiskIsAnErrorThatNamesThePath) {
     EXPECT_EQ(*read_text_file(folder / "a"), "old");
     EXPECT_EQ(entries(folder.path()), 1U);
   }
+}
+
+TEST(AtomicFile, ANewFileReplacesNone) {
+  const TempFolder folder;
+  auto first = AtomicFile::create(folder / "a");
+  auto second = AtomicFile::create(folder / "a");
+  ASSERT_TRUE(first && second);
+  ASSERT_TRUE(first->write(std::string_view{"first"}));
+  ASSERT_TRUE(second->write(std::string_view{"second"}));
+  EXPECT_TRUE(*first->commit_new());
+  EXPECT_FALSE(*second->commit_new());
+  EXPECT_EQ(*read_text_file(folder / "a"), "first");
+  EXPECT_EQ(entries(folder.path()), 1U);
 }
 
 TEST(AtomicFile, FolderThatCannotBeWrittenIsAnError) {

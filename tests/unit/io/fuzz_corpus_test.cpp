@@ -4,11 +4,13 @@
 
 #include <filesystem>
 
+#include "saccade/io/annotation_journal.hpp"
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/hand_trajectory_io.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/io/kitti_io.hpp"
+#include "saccade/io/label_presets.hpp"
 #include "saccade/io/npy_io.hpp"
 #include "saccade/io/pcd_io.hpp"
 #include "saccade/io/ply_io.hpp"
@@ -76,6 +78,15 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
             5U);
   EXPECT_GE(check_seeds("scene", [](const auto& content, const auto&) { return parse_scene(content).ok(); }), 3U);
   EXPECT_GE(check_seeds("urdf", [](const auto& content, const auto&) { return parse_urdf(content).ok(); }), 3U);
+  EXPECT_GE(check_seeds("annotation_journal",
+                        [](const std::string& content, const std::string&) {
+                          const auto saved = decode_journal(as_byte_span(content).subspan(1));
+                          return saved && saved->actions.size() > 3;
+                        }),
+            2U);
+  EXPECT_GE(
+      check_seeds("label_presets", [](const auto& content, const auto&) { return parse_label_presets(content).ok(); }),
+      2U);
   EXPECT_GE(check_seeds("process_message",
                         [](const std::string& content, const std::string& name) {
                           const std::string line = content.substr(0, content.find('\n'));

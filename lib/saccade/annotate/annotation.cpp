@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/annotate/annotation.hpp"
+
+#include <algorithm>
+#include <numeric>
+#include <string>
+
+namespace saccade {
+namespace {
+
+/// Fewer changes of control points than this are made one by one.
+constexpr std::size_t kLeastRebuild{8};
+
+Error refused(std::string why) { return {Errc::invalid_argument, std::move(why), "action"}; }
+
+std::vector<std::uint32_t> in_order(std::span<const std::uint32_t> numbers) {
+  std::vector<std::uint32_t> sorted{numbers.begin(), numbers.end()};
+  std::sort(sorted.begin(), sorted.end());
+  sorted.erase(std::unique(sorted.begin(), sorted.end()), sorted.end());
+  return sorted;
+}
+
+}  // namespace
+
+Annotation::Annotation(std::shared_ptr<const Neighbourhood> neighbourhood)
+    : forest_{neighbourhood}, history_{neighbourhood->size()}, labels_(neighbourhood->size(), kNoLabel) {}
+
+Status Annotation::validate(const AnnotationAction& action) const {
+  const Neighbourhood& graph = forest_.neighbourhood();
+  SACCADE_CHECK(check_action(action, graph.size(), graph.config().max_path));
+  const auto check_joined = [&](std::span<const std::uint32_t> points) -> Status {
+    for (const std::uint32_t point : points) {
+      if (graph.edges(graph.node_of(point)).empty()) {
+        return refused("point " + std::to_string(point) + " has no neighbours; is its position finite?");
+      }
+    }
+    return {};
+  };
+  const auto is_control_point = [this](std::uint32_t point) { return control_.contains(point); };
+  if (const auto* set = std::get_if<SetControlPoints>(&action.change)) return check_joined(set->points);
+  if (const auto* paint = std::get_if<PaintPoints>(&action.change)) return check_joined(paint->points);
+  if (const auto* remove = std::get_if<RemoveControlPoints>(&action.change)) {
+    if (std::none_of(remove->points.begin(), remove->points.end(), is_control_point)) {
+      return refused("there is no control point to remove");
+    }
+  }
+  if (const auto* move = std::get_if<MoveControlPoint>(&action.change)) {
+    if (!is_control_point(move->from)) {
+      return refused("point " + std::to_string(move->from) + " is no control point that could be moved");
+    }
+    return check_joined({&move->to, 1});
+  }
+  return {};
+}
+
+Applied Annotation::apply(AnnotationAction action) {
+  changed_points_.clear();
+  changed_control_points_.clear();
+  changed_labels_.clear();
+  const std::optional<SlotChanges> changes = history_.push(std::move(action));
+  if (!changes) return {false, history_.size(), {}, {}, {}};
+  change_slots(*changes);
+  return {true, history_.size(), changed_points_, changed_control_points_, changed_labels_};
+}
+
+void Annotation::restore(std::span<const AnnotationAction> actions) {
+  SACCADE_EXPECTS(history_.size() == 0);
+  for (const AnnotationAction& action : actions) history_.push(action);
+  change_slots(history_.written());
+}
+
+void Annotation::change_slots(const SlotChanges& slots) {
+  change_definitions(slots.labels);
+  if (!slots.painted.empty() && painted_.empty()) painted_.assign(labels_.size(), kNoLabel);
+  for (const std::uint32_t point : slots.painted) painted_[point] = history_.painted(point);
+  suspects_ = slots.painted;
+  change_control_points(slots.control_points);
+  relabel();
+}
+
+void Annotation::change_definitions(std::span<const std::uint32_t> slots) {
+  for (const std::uint32_t label : in_order(slots)) {
+    const LabelInfo* info = history_.definition(label);
+    const auto before = table_.defined().find(label);
+    const bool was_defined = before != table_.defined().end();
+    if (info == nullptr ? !was_defined : was_defined && before->second == *info) continue;
+    if (info != nullptr) {
+      table_.define(label, *info);
+    } else {
+      table_.undefine(label);
+    }
+    changed_labels_.push_back(label);
+  }
+}
+
+void Annotation::change_control_points(std::span<const std::uint32_t> slots) {
+  std::vector<ControlPoint> placed;
+  std::vector<std::uint32_t> removed;
+  for (const std::uint32_t point : in_order(slots)) {
+    const std::optional<ControlPoint> now = history_.control_point(point);
+    if (now == control_point(point)) continue;
+    changed_control_points_.push_back(point);
+    if (now) {
+      placed.push_back(*now);
+    } else {
+      removed.push_back(point);
+    }
+  }
+  change_forest(placed, removed);
+}
+
+void Annotation::change_forest(const std::vector<ControlPoint>& placed, const std::vector<std::uint32_t>& removed) {
+  const std::size_t changes = placed.size() + removed.size();
+  const bool rebuild = changes >= kLeastRebuild && 2 * changes > control_.size() + placed.size();
+  const auto note = [&] { suspects_.insert(suspects_.end(), forest_.touched().begin(), forest_.touched().end()); };
+  // New ones first: what they take need not be taken by others in between.
+  for (const ControlPoint& point : placed) {
+    const bool there = control_.contains(point.point);
+    control_[point.point] = point;
+    if (rebuild) continue;
+    if (there) {
+      forest_.remove(point.point);
+      note();
+    }
+    forest_.add({point.point, point.start_cost});
+    note();
+  }
+  for (const std::uint32_t point : removed) {
+    control_.erase(point);
+    if (rebuild) continue;
+    forest_.remove(point);
+    note();
+  }
+  if (rebuild) {
+    std::vector<Root> roots;
+    for (const ControlPoint& point : control_points()) roots.push_back({point.point, point.start_cost});
+    forest_.rebuild(roots);
+    suspects_.resize(labels_.size());
+    std::iota(suspects_.begin(), suspects_.end(), 0U);
+  }
+}
+
+std::uint32_t Annotation::found_label(std::uint32_t point) const {
+  if (const std::uint32_t paint = painted(point); paint != kNoLabel) return paint;
+  const std::optional<std::uint32_t> root = forest_.root_of(point);
+  return root ? control_.at(*root).label : kNoLabel;
+}
+
+void Annotation::relabel() {
+  for (const std::uint32_t point : suspects_) {
+    const std::uint32_t now = found_label(point);
+    const std::uint32_t before = labels_[point];
+    if (now == before) continue;
+    if (before != kNoLabel) {
+      const auto count = counts_.find(before);
+      if (--count->second == 0) counts_.erase(count);
+    }
+    if (now != kNoLabel) ++counts_[now];
+    labels_[point] = now;
+    changed_points_.push_back(point);
+  }
+}
+
+std::vector<ControlPoint> Annotation::control_points() const {
+  std::vector<ControlPoint> points;
+  points.reserve(control_.size());
+  for (const auto& [point, control] : control_) points.push_back(control);
+  std::sort(points.begin(), points.end(), [](const auto& a, const auto& b) { return a.point < b.point; });
+  return points;
+}
+
+std::optional<ControlPoint> Annotation::control_point(std::uint32_t point) const {
+  const auto found = control_.find(point);
+  if (found == control_.end()) return std::nullopt;
+  return found->second;
+}
+
+}  // namespace saccade
