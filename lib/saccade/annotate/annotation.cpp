@@ -22,7 +22,7 @@ std::vector<std::uint32_t> in_order(std::span<const std::uint32_t> numbers) {
 
 }  // namespace
 
-Annotation::Annotation(std::shared_ptr<const Neighbourhood> neighbourhood)
+Annotation::Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood)
     : forest_{neighbourhood}, history_{neighbourhood->size()}, labels_(neighbourhood->size(), kNoLabel) {}
 
 Status Annotation::validate(const AnnotationAction& action) const {

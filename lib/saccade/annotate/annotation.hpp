@@ -32,7 +32,7 @@ struct Applied {
 /// (ActionHistory). The state depends on the actions alone. One writer; about 40 bytes per point.
 class Annotation {
  public:
-  explicit Annotation(std::shared_ptr<const Neighbourhood> neighbourhood);
+  explicit Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood);
 
   /// invalid_argument as check_action; for control points and paint on points without neighbours, as those that are not
   /// finite; for removing where no control point is, and moving from where none is.

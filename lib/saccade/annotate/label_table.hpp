@@ -38,7 +38,7 @@ struct NumberedLabel {
 };
 
 /// A colour for every label, always the same. Each of the first 256 is as far as can be, in CIELAB, from those before
-/// it and from greys; further labels share some 3000 colours by a hash of their number. Made in about 10 ms.
+/// it and from greys; further labels share some 3000 colours by a hash of their number. Made in some milliseconds.
 class DistinctColors {
  public:
   DistinctColors();

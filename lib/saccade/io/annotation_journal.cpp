@@ -77,7 +77,7 @@ Result<AnnotationJournal::Opened> AnnotationJournal::open_or_create(const fs::pa
     SACCADE_TRY(opened.created, file.commit_new());
     status = journal.open(path);
   }
-  SACCADE_CHECK(status);
+  if (!status) return status.error();
   SACCADE_TRY(opened.saved, read_journal(path));
   if (const Status same = check_same_subject(opened.saved.subject, subject); !same) {
     return in_file(same.error(), path);

@@ -7,10 +7,10 @@ namespace saccade {
 
 Result<AnnotationSession> AnnotationSession::open_or_create(const std::filesystem::path& path, std::string cloud_name,
                                                             std::uint64_t positions_hash,
-                                                            std::shared_ptr<const Neighbourhood> neighbourhood) {
+                                                            const std::shared_ptr<const Neighbourhood>& neighbourhood) {
   const SessionSubject subject{std::move(cloud_name), neighbourhood->size(), positions_hash, neighbourhood->config()};
   SACCADE_TRY(AnnotationJournal::Opened opened, AnnotationJournal::open_or_create(path, subject));
-  Annotation annotation{std::move(neighbourhood)};
+  Annotation annotation{neighbourhood};
   annotation.restore(opened.saved.actions);
   const SessionOpening opening{opened.created, annotation.history().size(), opened.saved.torn_bytes};
   return AnnotationSession{std::move(opened.journal), std::move(annotation), opening};

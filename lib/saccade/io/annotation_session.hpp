@@ -29,9 +29,9 @@ class AnnotationSession {
   /// Opens the session in this file, or begins one. A session that exists must be of the same positions and graph: its
   /// graph's configuration is in read_journal(path)->subject.
   /// @return errors of AnnotationJournal::open_or_create. 10⁴ actions: milliseconds, and one build of the forest.
-  [[nodiscard]] static Result<AnnotationSession> open_or_create(const std::filesystem::path& path,
-                                                                std::string cloud_name, std::uint64_t positions_hash,
-                                                                std::shared_ptr<const Neighbourhood> neighbourhood);
+  [[nodiscard]] static Result<AnnotationSession> open_or_create(
+      const std::filesystem::path& path, std::string cloud_name, std::uint64_t positions_hash,
+      const std::shared_ptr<const Neighbourhood>& neighbourhood);
 
   /// Errors of Annotation::validate; io_failure when the action could not be written: it was not done, and the session
   /// is read-only from then on. Undo and redo with nothing to do are no errors (Applied::done) and are not written.

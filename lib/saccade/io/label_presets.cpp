@@ -3,6 +3,7 @@
 
 #include <charconv>
 #include <cmath>
+#include <optional>
 #include <set>
 #include <string>
 
@@ -43,7 +44,7 @@ Color color_from(const YAML::Node& node) {
   return color;
 }
 
-NumberedLabel label_from(const YAML::Node& node, const DistinctColors& generated) {
+NumberedLabel label_from(const YAML::Node& node, std::optional<DistinctColors>& generated) {
   YamlMap map{node, "a label"};
   NumberedLabel label;
   label.number = whole_number(map.need("number"), 1, kMaxLabel);
@@ -56,8 +57,12 @@ NumberedLabel label_from(const YAML::Node& node, const DistinctColors& generated
   if (const YAML::Node value = map.find("instance"); value.IsDefined()) {
     label.info.instance = whole_number(value, 0, 4294967295.0);
   }
-  const YAML::Node color = map.find("color");
-  label.info.color = color.IsDefined() ? color_from(color) : generated(label.number);
+  if (const YAML::Node color = map.find("color"); color.IsDefined()) {
+    label.info.color = color_from(color);
+  } else {
+    if (!generated) generated.emplace();
+    label.info.color = (*generated)(label.number);
+  }
   map.finish();
   if (const Status valid = label.info.validate(); !valid) yaml_problem(node, valid.error().message);
   return label;
@@ -68,7 +73,7 @@ std::vector<NumberedLabel> labels_from(const YAML::Node& document) {
   const YAML::Node list = map.need("labels");
   map.finish();
   if (!list.IsSequence() || list.size() == 0) yaml_problem(list, "labels is a list of at least one label");
-  const DistinctColors generated;
+  std::optional<DistinctColors> generated;  // made when a label needs it
   std::vector<NumberedLabel> labels;
   std::set<std::uint32_t> numbers;
   for (const YAML::Node& node : list) {

@@ -125,8 +125,9 @@ TEST(AnnotationSession, TruncatedAnywhereItHoldsTheWholeRecordsAndGoesOn) {
     }
   }
   const std::vector<std::byte> whole = read_file(path).value();
+  constexpr std::size_t kStep{test::kSanitized ? 13 : 1};
   std::size_t cut = 0;
-  for (std::size_t size = ends[0]; size <= whole.size(); ++size, ++cut) {
+  for (std::size_t size = ends[0]; size <= whole.size(); size += kStep, ++cut) {
     SCOPED_TRACE(size);
     folder.write("a", as_text(std::span{whole}.first(size)));
     const auto records = static_cast<std::size_t>(std::upper_bound(ends.begin(), ends.end(), size) - ends.begin()) - 1;
@@ -145,7 +146,7 @@ TEST(AnnotationSession, TruncatedAnywhereItHoldsTheWholeRecordsAndGoesOn) {
     ASSERT_EQ(again->opening().torn_bytes, 0U);
     ASSERT_EQ(again->annotation().label_of(0), 99U);
   }
-  EXPECT_GT(cut, 200U);
+  EXPECT_GT(cut, 200U / kStep);
 }
 
 TEST(AnnotationSession, TenThousandActionsAreThereAtOnce) {
