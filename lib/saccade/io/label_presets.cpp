@@ -63,6 +63,7 @@ NumberedLabel label_from(const YAML::Node& node, std::optional<DistinctColors>& 
     if (!generated) generated.emplace();
     label.info.color = (*generated)(label.number);
   }
+  static_cast<void>(map.find("points"));  // as write_label_names_json counts them
   map.finish();
   if (const Status valid = label.info.validate(); !valid) yaml_problem(node, valid.error().message);
   return label;
@@ -71,6 +72,7 @@ NumberedLabel label_from(const YAML::Node& node, std::optional<DistinctColors>& 
 std::vector<NumberedLabel> labels_from(const YAML::Node& document) {
   YamlMap map{document, "a file of labels"};
   const YAML::Node list = map.need("labels");
+  static_cast<void>(map.find("schema"));
   map.finish();
   if (!list.IsSequence() || list.size() == 0) yaml_problem(list, "labels is a list of at least one label");
   std::optional<DistinctColors> generated;  // made when a label needs it

@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "saccade/io/label_output.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -31,6 +32,16 @@ TEST(LabelPresets, YamlAndJsonAreRead) {
       R"({"number": 1}, {"number": 4294967294, "name": "Schlüssel", "color": [1, 2, 3]}]})");
   ASSERT_TRUE(json) << json.error().to_string();
   EXPECT_EQ(*json, expected);
+}
+
+TEST(LabelPresets, LabelsOfAnotherCloudAreRead) {
+  const test::TempFolder folder;
+  const std::vector<NamedLabel> names{{3, "White box", "box", 2, {255, 0, 16}, 4711}, {9, "", "", 0, {1, 2, 3}, 0}};
+  ASSERT_TRUE(write_label_names_json(folder / "labels.json", names));
+  const auto presets = read_label_presets(folder / "labels.json");
+  ASSERT_TRUE(presets) << presets.error().to_string();
+  EXPECT_EQ(*presets,
+            (std::vector<NumberedLabel>{{3, {"White box", {255, 0, 16}, "box", 2}}, {9, {"", {1, 2, 3}, "", 0}}}));
 }
 
 TEST(LabelPresets, MistakesAreToldWithTheirPlace) {
