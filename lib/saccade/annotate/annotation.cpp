@@ -11,7 +11,7 @@ namespace {
 /// Fewer changes of control points than this are made one by one.
 constexpr std::size_t kLeastRebuild{8};
 
-Error refused(std::string why) { return {Errc::invalid_argument, std::move(why), "action"}; }
+Error cannot(std::string why) { return {Errc::invalid_argument, std::move(why), "action"}; }
 
 std::vector<std::uint32_t> in_order(std::span<const std::uint32_t> numbers) {
   std::vector<std::uint32_t> sorted{numbers.begin(), numbers.end()};
@@ -31,7 +31,7 @@ Status Annotation::validate(const AnnotationAction& action) const {
   const auto check_joined = [&](std::span<const std::uint32_t> points) -> Status {
     for (const std::uint32_t point : points) {
       if (graph.edges(graph.node_of(point)).empty()) {
-        return refused("point " + std::to_string(point) + " has no neighbours; is its position finite?");
+        return cannot("point " + std::to_string(point) + " has no neighbours; is its position finite?");
       }
     }
     return {};
@@ -41,12 +41,12 @@ Status Annotation::validate(const AnnotationAction& action) const {
   if (const auto* paint = std::get_if<PaintPoints>(&action.change)) return check_joined(paint->points);
   if (const auto* remove = std::get_if<RemoveControlPoints>(&action.change)) {
     if (std::none_of(remove->points.begin(), remove->points.end(), is_control_point)) {
-      return refused("there is no control point to remove");
+      return cannot("there is no control point to remove");
     }
   }
   if (const auto* move = std::get_if<MoveControlPoint>(&action.change)) {
     if (!is_control_point(move->from)) {
-      return refused("point " + std::to_string(move->from) + " is no control point that could be moved");
+      return cannot("point " + std::to_string(move->from) + " is no control point that could be moved");
     }
     return check_joined({&move->to, 1});
   }

@@ -7,7 +7,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kGrain{1024};
+constexpr std::size_t kNormalGrain{1024};
 
 /// Of points relative to one of them, so that single precision is enough: number, sum, and sum of products.
 struct Moments {
@@ -87,7 +87,7 @@ std::vector<Eigen::Vector3f> estimate_normals(const NearestNeighbours& neighbour
   for (Moments& moments : around) moments.count = 1.0F;
   for (int round = 0; round < rounds; ++round) {
     std::vector<Moments> wider(round + 1 < rounds ? size : 0);
-    executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+    executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         Moments moments = around[i];
         for (const std::uint32_t node : neighbours.of(i)) {

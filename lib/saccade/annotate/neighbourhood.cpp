@@ -14,8 +14,8 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kGrain{1024};
-constexpr int kMostNeighbours{64};
+constexpr std::size_t kNodeGrain{1024};
+constexpr int kMaxNeighbours{64};
 constexpr int kNormalRounds{2};
 constexpr std::uint32_t kNoNode{std::numeric_limits<std::uint32_t>::max()};
 
@@ -37,7 +37,7 @@ class EdgeCost {
       }
     }
     if (config.color_weight > 0.0 && !cloud.colors.empty()) colors_.resize(size);
-    executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+    executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t point = neighbours.order[i];
         if (!colors_.empty()) colors_[i] = cloud.colors[point];
@@ -126,7 +126,7 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
   const std::size_t k = neighbours.count;
   std::vector<std::uint32_t> others(size, 0);
   std::vector<std::uint64_t> one_sided_of(size);
-  executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
       one_sided_of[node] = one_sided(neighbours, node);
       for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
@@ -140,7 +140,7 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
   for (std::size_t i = 0; i < size; ++i) joined.starts[i + 1] = joined.starts[i] + k + others[i];
   for (std::size_t i = size; i < nodes; ++i) joined.starts[i + 1] = joined.starts[i];
   joined.edges.resize(joined.starts.back());
-  executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
       for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
         const std::uint32_t other = neighbours.of(node)[static_cast<std::size_t>(std::countr_zero(bits))];
@@ -149,7 +149,7 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
       }
     }
   });
-  executor.parallel_for(size, kGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
       const auto first = joined.edges.begin() + static_cast<std::ptrdiff_t>(joined.starts[node]);
       const auto last = joined.edges.begin() + static_cast<std::ptrdiff_t>(joined.starts[node + 1]);
@@ -176,7 +176,7 @@ std::uint32_t median_of_sample(const std::vector<Neighbourhood::Edge>& edges) {
 }  // namespace
 
 Status NeighbourhoodConfig::validate() const {
-  if (neighbours < 1 || neighbours > kMostNeighbours) {
+  if (neighbours < 1 || neighbours > kMaxNeighbours) {
     return Error{Errc::invalid_argument, "a point has 1 to 64 neighbours, not " + std::to_string(neighbours),
                  "neighbourhood"};
   }
