@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kAtATime{16};  // views of the segment that is next
+constexpr std::size_t kNextViews{16};  // views of the segment that is next
 
 /// The views of a segment that the robot can take, and what the best of them gains.
 struct SegmentViews {
@@ -78,7 +78,7 @@ Result<Proposals> AttentionStrategy::propose(const Situation& situation) const {
     Proposals next;
     next.views = std::move(chosen->views);
     const Region gained = seen->surroundings(chosen->segment, reach_m_);
-    SACCADE_CHECK(keep_best(next, kAtATime, gained, situation, gain_));
+    SACCADE_CHECK(keep_best(next, kNextViews, gained, situation, gain_));
     judged.views = std::move(next.views);
     judged.segment = chosen->segment;
     judged.gained = gained;
