@@ -86,7 +86,8 @@ class Balls {
     }
   }
   [[nodiscard]] bool contain(const Eigen::Vector3d& p) const {
-    if ((p.array() < least_.array()).any() || (p.array() > greatest_.array()).any()) return false;
+    const bool near = (p.array() >= least_.array()).all() && (p.array() <= greatest_.array()).all();
+    if (!near) return false;  // as every point that is not finite
     const auto cell = cells_.find(key(cell_of(p)));
     return cell != cells_.end() && std::any_of(cell->second.begin(), cell->second.end(), [&](const auto& centre) {
              return (p - centre).squaredNorm() <= radius2_m2_;

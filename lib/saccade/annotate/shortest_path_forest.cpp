@@ -159,9 +159,9 @@ void ShortestPathForest::reach(std::uint32_t node, std::uint64_t state) {
 
 /// Half of the time went into waiting for edges.
 void ShortestPathForest::fetch_soon(std::uint32_t node) const {
-  const Neighbourhood::Edge* edges = neighbourhood_->edges(node).data();
-  __builtin_prefetch(edges);
-  __builtin_prefetch(edges + kEdgesPerLine);
+  const std::span<const Neighbourhood::Edge> edges = neighbourhood_->edges(node);
+  if (!edges.empty()) __builtin_prefetch(edges.data());
+  if (edges.size() > kEdgesPerLine) __builtin_prefetch(edges.data() + kEdgesPerLine);
 }
 
 }  // namespace saccade
