@@ -11,7 +11,6 @@
 #include "json_output.hpp"
 #include "options.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/atomic_file.hpp"
 #include "saccade/io/label_output.hpp"
 
 namespace saccade::cli {
@@ -19,16 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Fails early where the file cannot be written, or is one that is read.
-Status check_out(const AnnotateOptions& options) {
-  if (options.out.empty()) return {};
-  std::error_code ignored;
-  for (const fs::path& input : {options.cloud, options.truth}) {
-    if (fs::weakly_canonical(options.out, ignored) != fs::weakly_canonical(input, ignored)) continue;
-    return Error{Errc::invalid_argument, "would be replaced by --out; name another file there", input.string()};
-  }
-  SACCADE_TRY(const AtomicFile probe, AtomicFile::create(options.out));
-  return {};
+Status check_outputs(const AnnotateOptions& options, const GlobalOptions& global) {
+  if (!options.out.empty()) SACCADE_CHECK(check_labels_path(options.out));
+  SACCADE_CHECK(check_output(options.out, "--out", {options.cloud, options.truth}));
+  const fs::path json_file = global.json_to_stdout() ? "" : global.json;
+  SACCADE_CHECK(check_output(json_file, "--json", {options.cloud, options.truth, options.out}));
+  return check_json_output(global);
 }
 
 Result<int> run_annotate(const AnnotateOptions& options, const GlobalOptions& global) {
@@ -37,8 +32,7 @@ Result<int> run_annotate(const AnnotateOptions& options, const GlobalOptions& gl
   TimingsMs timings_ms;
   const Executor executor = global.executor();
   ProgressBar bar{global.quiet};
-  SACCADE_CHECK(check_out(options));
-  SACCADE_CHECK(check_json_output(global));
+  SACCADE_CHECK(check_outputs(options, global));
   bar.update("reading", 0, 0);
   SACCADE_TRY(const CloudFile cloud, read_cloud(options.cloud));
   timings_ms["read"] = clock.lap_ms();

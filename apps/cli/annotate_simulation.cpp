@@ -39,7 +39,8 @@ Error interrupted_error() { return Error{Errc::cancelled, "interrupted", {}}; }
 
 Status click(const AnnotateOptions& options, std::shared_ptr<const Neighbourhood> graph, const PointCloud& cloud,
              std::vector<std::uint32_t> truth, SimulatedAnnotation& annotation, ProgressBar& bar) {
-  SACCADE_TRY(SimulatedAnnotator annotator, SimulatedAnnotator::create(std::move(graph), cloud, std::move(truth)));
+  SACCADE_TRY(SimulatedAnnotator annotator,
+              in_file(SimulatedAnnotator::create(std::move(graph), cloud, std::move(truth)), options.truth));
   const std::size_t clicks = static_cast<std::size_t>(options.clicks) * annotation.objects;
   while (annotation.clicks.size() < clicks) {
     if (interrupted()) return interrupted_error();

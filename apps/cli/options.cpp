@@ -5,6 +5,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include "saccade/io/atomic_file.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -171,6 +172,21 @@ void add_camera_options(CLI::App& command, CameraOptions& options, bool with_ima
       ->type_name("METRES");
   command.add_option("--max-range", options.max_range_m, "farthest depth that is used, metres along the optical axis")
       ->type_name("METRES");
+}
+
+Status check_output(const std::filesystem::path& file, const char* option,
+                    const std::vector<std::filesystem::path>& others) {
+  if (file.empty()) return {};
+  std::error_code ignored;
+  for (const std::filesystem::path& other : others) {
+    if (other.empty() ||
+        std::filesystem::weakly_canonical(file, ignored) != std::filesystem::weakly_canonical(other, ignored))
+      continue;
+    return Error{Errc::invalid_argument, std::string{"would be replaced by "} + option + "; name another file there",
+                 file.string()};
+  }
+  SACCADE_TRY(const AtomicFile probe, AtomicFile::create(file));
+  return {};
 }
 
 }  // namespace saccade::cli

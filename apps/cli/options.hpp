@@ -37,6 +37,10 @@ void require_positive(double value, const std::string& option);
 /// "u,v;u,v;u,v…", pixels; nullopt for what does not look like one (a file name).
 [[nodiscard]] std::optional<PixelPolygon> parse_polygon(const std::string& option, const std::string& text);
 
+/// Fails early where a file cannot be written, or where it is one that is read or written besides. Nothing for no file.
+[[nodiscard]] Status check_output(const std::filesystem::path& file, const char* option,
+                                  const std::vector<std::filesystem::path>& others);
+
 /// What the camera options say; everything that they leave open is the caller's.
 struct CameraOptions {
   std::optional<PinholeCamera> preset;

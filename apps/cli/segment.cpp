@@ -8,9 +8,9 @@
 
 #include "exit_status.hpp"
 #include "interrupt.hpp"
+#include "options.hpp"
 #include "progress_bar.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/atomic_file.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
 
@@ -18,19 +18,6 @@ namespace saccade::cli {
 namespace {
 
 namespace fs = std::filesystem;
-
-/// Fails early where a file cannot be written, or where it is one that is read or written besides.
-Status check_output(const fs::path& file, const char* option, const std::vector<fs::path>& others) {
-  if (file.empty()) return {};
-  std::error_code ignored;
-  for (const fs::path& other : others) {
-    if (other.empty() || fs::weakly_canonical(file, ignored) != fs::weakly_canonical(other, ignored)) continue;
-    return Error{Errc::invalid_argument, std::string{"would be replaced by "} + option + "; name another file there",
-                 file.string()};
-  }
-  SACCADE_TRY(const AtomicFile probe, AtomicFile::create(file));
-  return {};
-}
 
 Status check_outputs(const SegmentOptions& options, const GlobalOptions& global) {
   SACCADE_CHECK(check_output(options.out, "--out", {options.input}));

@@ -98,6 +98,13 @@ TEST_F(Annotate, BadInputIsSaid) {
   EXPECT_NE(error_of({"annotate", path("cloud.csv")}, 2).find("--simulate"), std::string::npos);
   EXPECT_NE(error_of(simulate({"--color-weight", "-1"}), 2).find("not negative"), std::string::npos);
   EXPECT_NE(error_of(simulate({"--out", path("cloud.csv")}), 3).find("--out"), std::string::npos);
+  EXPECT_NE(error_of(simulate({"--out", path("labels.jpg")}), 3).find("labels are written as"), std::string::npos);
+  EXPECT_NE(error_of({"--json", path("truth.txt"), "annotate", path("cloud.csv"), "--simulate", path("truth.txt")}, 3)
+                .find("--json"),
+            std::string::npos);
+  std::ofstream{folder_ / "empty.csv"};
+  EXPECT_NE(error_of({"annotate", path("empty.csv"), "--simulate", path("truth.txt")}, 3).find("holds no points"),
+            std::string::npos);
   std::ofstream{folder_ / "truth.txt"} << "1\n2\n";
   EXPECT_NE(error_of(simulate(), 3).find("truth.txt"), std::string::npos);
   std::ofstream none{folder_ / "truth.txt"};

@@ -17,8 +17,7 @@ Result<SimulatedAnnotator> SimulatedAnnotator::create(std::shared_ptr<const Neig
     if (neighbourhood->edges(neighbourhood->node_of(point)).empty()) truth[point] = 0;  // as those that are not finite
   }
   if (std::all_of(truth.begin(), truth.end(), [](std::uint32_t label) { return label == 0; })) {
-    return Error{Errc::invalid_argument, "the truth has no label but 0 on points with neighbours",
-                 "simulated annotator"};
+    return Error{Errc::invalid_argument, "there is no label but 0 on points that have neighbours to spread to", {}};
   }
   std::vector<std::uint8_t> ends = cloud_ends(*neighbourhood, cloud.positions_m, cloud.normals);
   return SimulatedAnnotator{std::move(neighbourhood), std::move(truth), std::move(ends)};

@@ -95,7 +95,17 @@ std::string hex(const std::array<std::uint8_t, 3>& color) {
   return text.data();
 }
 
+bool is_text_suffix(std::string_view suffix) { return suffix == ".xyz" || suffix == ".txt" || suffix == ".csv"; }
+
 }  // namespace
+
+Status check_labels_path(const fs::path& path) {
+  const std::string suffix = path.extension().string();
+  if (is_text_suffix(suffix) || suffix == ".pcd" || suffix == ".ply" || suffix == ".npy" || suffix == ".label")
+    return {};
+  return Error{Errc::invalid_argument, "labels are written as .pcd, .ply, .xyz, .txt, .csv, .label or .npy",
+               path.string()};
+}
 
 Status write_labels(const fs::path& path, const CloudFile& cloud, std::span<const std::uint32_t> labels,
                     std::span<const NamedLabel> names) {
@@ -104,17 +114,14 @@ Status write_labels(const fs::path& path, const CloudFile& cloud, std::span<cons
                  std::to_string(labels.size()) + " labels for " + std::to_string(cloud.fields().rows) + " points",
                  path.string()};
   }
+  SACCADE_CHECK(check_labels_path(path));
   const std::string suffix = path.extension().string();
   if (suffix == ".npy") return write_npy(path, labels);
   if (suffix == ".label") {
     SACCADE_TRY(const std::vector<std::uint32_t> bits, in_file(kitti_labels(labels, names), path));
     return write_file_atomically(path, std::as_bytes(std::span{bits}));
   }
-  const bool is_text = suffix == ".xyz" || suffix == ".txt" || suffix == ".csv";
-  if (!is_text && suffix != ".pcd" && suffix != ".ply") {
-    return Error{Errc::invalid_argument, "labels are written as .pcd, .ply, .xyz, .txt, .csv, .label or .npy",
-                 path.string()};
-  }
+  const bool is_text = is_text_suffix(suffix);
   const auto* text = std::get_if<TextCloud>(&cloud.file);
   if (text != nullptr && is_text) return write_labelled_text(path, *text, labels);
   CloudFile labelled = cloud;

@@ -25,6 +25,8 @@ struct NamedLabel {
   std::size_t points{0};                ///< that have the label
 };
 
+/// invalid_argument for a suffix that write_labels does not know.
+[[nodiscard]] Status check_labels_path(const std::filesystem::path& path);
 /// Atomic. `labels`: the number of each point, 0 for none. What is written follows from the suffix:
 /// - .pcd, .ply: the cloud with every field, bit for bit, and the field label (u32) of these numbers; a field label of
 ///   the cloud is kept as label_input. A cloud that was read from the same format keeps its encoding, too, and with it

@@ -95,10 +95,7 @@ Result<std::vector<NumberedLabel>> parse_label_presets(std::string_view text) {
   } catch (const YamlProblem& problem) {
     return problem.error;
   } catch (const YAML::Exception& exception) {
-    const std::string where = exception.mark.is_null() ? ""
-                                                       : "line " + std::to_string(exception.mark.line + 1) +
-                                                             ", column " + std::to_string(exception.mark.column + 1);
-    return Error{Errc::corrupt_data, "no YAML: " + exception.msg, where};
+    return yaml_error(exception);
   }
 }
 

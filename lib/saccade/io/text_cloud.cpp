@@ -82,7 +82,7 @@ class TextCloudParser {
       }
       SACCADE_CHECK(columns_.empty() ? first_lines(*line) : row(*line));
     }
-    if (columns_.empty()) return fail("the file holds no points");
+    if (columns_.empty()) return Error{Errc::corrupt_data, "the file holds no points", {}};
     if (count_ && *count_ != rows_) {
       return fail("the file says that it holds " + std::to_string(*count_) + " points, but it holds " +
                   std::to_string(rows_));

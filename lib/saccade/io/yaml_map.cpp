@@ -4,12 +4,21 @@
 #include <cmath>
 
 namespace saccade {
+namespace {
+
+std::string place_of(const YAML::Mark& mark) {
+  if (mark.is_null()) return "";
+  return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1);
+}
+
+}  // namespace
+
+Error yaml_error(const YAML::Exception& exception) {
+  return Error{Errc::corrupt_data, "no YAML: " + exception.msg, place_of(exception.mark)};
+}
 
 void yaml_problem(const YAML::Node& node, const std::string& what) {
-  const YAML::Mark mark = node.Mark();
-  std::string where;
-  if (!mark.is_null()) where = "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1);
-  throw YamlProblem{Error{Errc::corrupt_data, what, where}};
+  throw YamlProblem{Error{Errc::corrupt_data, what, place_of(node.Mark())}};
 }
 
 double yaml_number(const YAML::Node& node) {

@@ -18,6 +18,9 @@ struct YamlProblem {
   Error error;
 };
 
+/// What yaml-cpp says of text that is no YAML, and where. corrupt_data.
+[[nodiscard]] Error yaml_error(const YAML::Exception& exception);
+
 /// Throws a YamlProblem at the node.
 [[noreturn]] void yaml_problem(const YAML::Node& node, const std::string& what);
 

@@ -94,7 +94,7 @@ TEST(TextCloud, HostileLinesAreErrorsThatSayWhere) {
   for (std::size_t i = 1; i < wide.size(); i += 2) wide[i] = ' ';
   const std::vector<std::pair<std::string, std::string>> cases{
       {"", "no points"},
-      {"\n# only a comment\n", "line 2"},
+      {"\n# only a comment\n", "holds no points"},
       {"5\n", "no points"},
       {"x y z\n", "no points"},
       {"1 2\n", "line 1"},
