@@ -2,6 +2,7 @@
 #include "saccade/annotate/annotation_error.hpp"
 
 #include <algorithm>
+#include <limits>
 #include <map>
 
 namespace saccade {
@@ -136,43 +137,51 @@ std::vector<std::uint8_t> cloud_ends(const Neighbourhood& neighbourhood, std::sp
   return ends;
 }
 
-std::uint32_t region_centre(const Neighbourhood& neighbourhood, std::span<const std::uint8_t> ends,
-                            const ErrorRegion& region) {
-  SACCADE_EXPECTS(!region.points.empty() && (ends.empty() || ends.size() == neighbourhood.size()));
-  constexpr char kOutside{0};
-  constexpr char kInside{1};
-  constexpr char kReached{2};
-  std::vector<char> state(neighbourhood.size(), kOutside);  // of nodes
-  for (const std::uint32_t point : region.points) state[neighbourhood.node_of(point)] = kInside;
-
+std::vector<std::uint32_t> region_centres(const Neighbourhood& neighbourhood, std::span<const std::uint8_t> ends,
+                                          std::span<const ErrorRegion> regions) {
+  SACCADE_EXPECTS(ends.empty() || ends.size() == neighbourhood.size());
+  constexpr std::uint32_t kReached{1U << 31U};
+  std::vector<std::uint32_t> region_of(neighbourhood.size(), 0);  // of nodes: one more than its index, 0 for none
+  std::size_t points{0};
+  for (std::uint32_t i = 0; i < regions.size(); ++i) {
+    SACCADE_EXPECTS(!regions[i].points.empty());
+    for (const std::uint32_t point : regions[i].points) region_of[neighbourhood.node_of(point)] = i + 1;
+    points += regions[i].points.size();
+  }
   const auto is_outermost = [&](std::uint32_t node) {
     const auto edges = neighbourhood.edges(node);
     return (!ends.empty() && ends[neighbourhood.point_of(node)] != 0) ||
-           std::any_of(edges.begin(), edges.end(), [&](const auto& edge) { return state[edge.node] == kOutside; });
+           std::any_of(edges.begin(), edges.end(),
+                       [&](const auto& edge) { return region_of[edge.node] != region_of[node]; });
   };
-  std::vector<std::uint32_t> reached(region.points.size() + 1);  // nodes, level by level; one more to write into
+  std::vector<std::uint32_t> reached(points + 1);  // nodes, level by level; one more to write into
   std::size_t end{0};
-  for (std::uint32_t node = 0; node < state.size(); ++node) {  // in the order in which edges lie in memory
-    if (state[node] == kInside && is_outermost(node)) reached[end++] = node;
+  for (std::uint32_t node = 0; node < region_of.size(); ++node) {  // in the order in which edges lie in memory
+    if (region_of[node] != 0 && is_outermost(node)) reached[end++] = node;
   }
-  if (end == 0) return region.points.front();
-  for (std::size_t i = 0; i < end; ++i) state[reached[i]] = kReached;
-  std::size_t level{0};  // where the last one begins
-  for (std::size_t level_end = end; true; level_end = end) {
+  std::vector<std::uint32_t> centres;
+  for (const ErrorRegion& region : regions) centres.push_back(region.points.front());
+  for (std::size_t i = 0; i < end; ++i) region_of[reached[i]] |= kReached;
+  for (std::size_t level = 0, level_end = end; level < level_end; level = level_end, level_end = end) {
+    constexpr std::uint32_t kNone{std::numeric_limits<std::uint32_t>::max()};
+    for (std::size_t i = level; i < level_end; ++i) centres[(region_of[reached[i]] & ~kReached) - 1] = kNone;
     for (std::size_t i = level; i < level_end; ++i) {
+      const std::uint32_t region = region_of[reached[i]] & ~kReached;
+      centres[region - 1] = std::min(centres[region - 1], neighbourhood.point_of(reached[i]));
       for (const Neighbourhood::Edge& edge : neighbourhood.edges(reached[i])) {  // without branches: few are new
-        const bool is_new = state[edge.node] == kInside;
+        const bool is_new = region_of[edge.node] == region;
         reached[end] = edge.node;
         end += is_new ? 1 : 0;
-        state[edge.node] = is_new ? kReached : state[edge.node];
+        region_of[edge.node] |= is_new ? kReached : 0;
       }
     }
-    if (end == level_end) break;
-    level = level_end;
   }
-  std::uint32_t first = neighbourhood.point_of(reached[level]);
-  for (std::size_t i = level; i < end; ++i) first = std::min(first, neighbourhood.point_of(reached[i]));
-  return first;
+  return centres;
+}
+
+std::uint32_t region_centre(const Neighbourhood& neighbourhood, std::span<const std::uint8_t> ends,
+                            const ErrorRegion& region) {
+  return region_centres(neighbourhood, ends, {&region, 1}).front();
 }
 
 }  // namespace saccade

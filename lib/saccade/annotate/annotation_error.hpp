@@ -70,4 +70,9 @@ struct ErrorRegion {
 [[nodiscard]] std::uint32_t region_centre(const Neighbourhood& neighbourhood, std::span<const std::uint8_t> ends,
                                           const ErrorRegion& region);
 
+/// The same of several regions that share no point, at the cost of their sum.
+[[nodiscard]] std::vector<std::uint32_t> region_centres(const Neighbourhood& neighbourhood,
+                                                        std::span<const std::uint8_t> ends,
+                                                        std::span<const ErrorRegion> regions);
+
 }  // namespace saccade
