@@ -2,7 +2,6 @@
 #include "saccade/annotate/shortest_path_forest.hpp"
 
 #include <algorithm>
-#include <bit>
 #include <cmath>
 #include <limits>
 
@@ -13,20 +12,11 @@ namespace {
 // lower root, and one path further along an edge is one addition: least states are all that Algorithm 8 looks for.
 constexpr std::uint64_t kNoPath{std::numeric_limits<std::uint64_t>::max()};
 constexpr std::uint64_t kTooFar{std::uint64_t{kPathUnits} << 32U};
-constexpr int kMostBucketsLog2{13};
-constexpr std::size_t kEdgesPerLine{8};  // of the cache
 
 std::uint32_t path_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 32U); }
 std::uint32_t root_of_state(std::uint64_t state) { return static_cast<std::uint32_t>(state); }
 std::uint64_t along(std::uint64_t state, const Neighbourhood::Edge& edge) {
   return state + (std::uint64_t{edge.cost} << 32U);
-}
-
-/// Of equal length, half of the edges are not shorter: few nodes are looked at twice.
-unsigned bucket_shift(const Neighbourhood& neighbourhood) {
-  const int length = std::bit_width(neighbourhood.median_cost()) - 1;
-  const int least = std::bit_width(kPathUnits) - 1 - kMostBucketsLog2;
-  return static_cast<unsigned>(std::max(length, least));
 }
 
 }  // namespace
@@ -35,31 +25,24 @@ ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neig
     : neighbourhood_{std::move(neighbourhood)},
       state_(neighbourhood_->size(), kNoPath),
       start_(neighbourhood_->size(), kNoPath),
-      shift_{bucket_shift(*neighbourhood_)},
-      buckets_((kPathUnits >> shift_) + 1) {}
+      queue_{*neighbourhood_} {}
 
-/// Algorithm 8. Paths of nearly equal length are in one bucket, in no order: a node that is found to be nearer after
-/// all is looked at again.
+/// Algorithm 8.
 template <class Visit>
 void ShortestPathForest::spread(const Visit& visit) {
-  for (std::size_t b = 0; b <= last_; ++b) {
-    std::vector<Reached>& bucket = buckets_[b];
-    for (std::size_t i = 0; i < bucket.size(); ++i) {
-      const Reached reached = bucket[i];
-      const std::uint64_t state = state_[reached.node];
-      if (path_of(state) != reached.path) continue;  // a shorter path came in between
-      visit(reached.node);
-      for (const Neighbourhood::Edge& edge : neighbourhood_->edges(reached.node)) {
-        const std::uint64_t further = along(state, edge);
-        if (further < state_[edge.node] && further < kTooFar) reach(edge.node, further);
-      }
+  queue_.drain([&](std::uint32_t path, std::uint32_t node) {
+    const std::uint64_t state = state_[node];
+    if (path_of(state) != path) return;  // a shorter path came in between
+    visit(node);
+    for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
+      const std::uint64_t further = along(state, edge);
+      if (further < state_[edge.node] && further < kTooFar) reach(edge.node, further);
     }
-    bucket.clear();
-  }
+  });
 }
 
 void ShortestPathForest::rebuild(std::span<const Root> roots) {
-  begin();
+  touched_.clear();
   std::fill(state_.begin(), state_.end(), kNoPath);
   std::fill(start_.begin(), start_.end(), kNoPath);
   root_points_.clear();
@@ -68,14 +51,14 @@ void ShortestPathForest::rebuild(std::span<const Root> roots) {
 }
 
 void ShortestPathForest::add(const Root& root) {
-  begin();
+  touched_.clear();
   start_at(root);
   spread([this](std::uint32_t node) { touched_.push_back(neighbourhood_->point_of(node)); });
 }
 
 void ShortestPathForest::remove(std::uint32_t point) {
   SACCADE_EXPECTS(is_root(point));
-  begin();
+  touched_.clear();
   const std::uint32_t first = neighbourhood_->node_of(point);
   start_[first] = kNoPath;
   root_points_.erase(std::lower_bound(root_points_.begin(), root_points_.end(), point));
@@ -95,7 +78,7 @@ void ShortestPathForest::remove(std::uint32_t point) {
       if (root_of_state(beyond) == point) {
         beyond = kNoPath;
         cleared_.push_back(edge.node);
-        fetch_soon(edge.node);
+        fetch_edges_soon(*neighbourhood_, edge.node);
       } else {
         best = std::min(best, along(beyond, edge));
       }
@@ -133,11 +116,6 @@ double ShortestPathForest::path_length(std::uint32_t point) const {
   return path_of(state) * (neighbourhood_->config().max_path / kPathUnits);
 }
 
-void ShortestPathForest::begin() {
-  touched_.clear();
-  last_ = 0;
-}
-
 void ShortestPathForest::start_at(const Root& root) {
   const double max_path = neighbourhood_->config().max_path;
   SACCADE_EXPECTS(root.point < state_.size() && !is_root(root.point));
@@ -151,17 +129,8 @@ void ShortestPathForest::start_at(const Root& root) {
 
 void ShortestPathForest::reach(std::uint32_t node, std::uint64_t state) {
   state_[node] = state;
-  const std::size_t bucket = path_of(state) >> shift_;
-  buckets_[bucket].push_back({path_of(state), node});
-  last_ = std::max(last_, bucket);
-  fetch_soon(node);
-}
-
-/// Half of the time went into waiting for edges.
-void ShortestPathForest::fetch_soon(std::uint32_t node) const {
-  const std::span<const Neighbourhood::Edge> edges = neighbourhood_->edges(node);
-  if (!edges.empty()) __builtin_prefetch(edges.data());
-  if (edges.size() > kEdgesPerLine) __builtin_prefetch(edges.data() + kEdgesPerLine);
+  queue_.push(path_of(state), node);
+  fetch_edges_soon(*neighbourhood_, node);
 }
 
 }  // namespace saccade

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "saccade/annotate/neighbourhood.hpp"
+#include "saccade/annotate/path_buckets.hpp"
 
 namespace saccade {
 
@@ -48,15 +48,8 @@ class ShortestPathForest {
   [[nodiscard]] std::span<const std::uint32_t> touched() const { return touched_; }
 
  private:
-  struct Reached {
-    std::uint32_t path;  ///< in path units
-    std::uint32_t node;
-  };
-
-  void begin();
   void start_at(const Root& root);
   void reach(std::uint32_t node, std::uint64_t state);
-  void fetch_soon(std::uint32_t node) const;
   template <class Visit>
   void spread(const Visit& visit);
 
@@ -65,9 +58,7 @@ class ShortestPathForest {
   std::vector<std::uint64_t> start_;        ///< per node: the same of a root that starts there
   std::vector<std::uint32_t> root_points_;  ///< ascending
   std::vector<std::uint32_t> touched_;
-  unsigned shift_;
-  std::vector<std::vector<Reached>> buckets_;  ///< by ω; empty between operations
-  std::size_t last_{0};                        ///< bucket
+  PathBuckets queue_;  ///< empty between operations
   std::vector<std::uint32_t> cleared_;
   std::vector<std::uint64_t> entered_;
 };
