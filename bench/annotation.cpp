@@ -5,6 +5,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <filesystem>
 #include <limits>
 #include <nanoflann.hpp>
 #include <queue>
@@ -12,18 +13,21 @@
 
 #include "saccade/annotate/shortest_path_forest.hpp"
 #include "saccade/core/clock.hpp"
-#include "support/labelled_clouds.hpp"
+#include "saccade/io/cloud_io.hpp"
 
 namespace {
 
 using namespace saccade;
+namespace fs = std::filesystem;
 
 constexpr std::size_t kControlPoints{90};
 
 PointCloud without_gaps(const PointCloud& cloud) {
   PointCloud points;
-  for (const Eigen::Vector3f& p : cloud.positions_m) {
-    if (p.allFinite()) points.positions_m.push_back(p);
+  for (std::size_t i = 0; i < cloud.positions_m.size(); ++i) {
+    if (!cloud.positions_m[i].allFinite()) continue;
+    points.positions_m.push_back(cloud.positions_m[i]);
+    if (!cloud.colors.empty()) points.colors.push_back(cloud.colors[i]);
   }
   return points;
 }
@@ -47,11 +51,14 @@ const PointCloud& cloud() {
     constexpr std::size_t kPoints{150868};
     PointCloud best;
     const auto off = [](const PointCloud& c) { return std::abs(static_cast<double>(c.positions_m.size()) - kPoints); };
-    for (const test::LabelledCloud& labelled : test::labelled_clouds(SACCADE_SHARED_DATA)) {
-      PointCloud points = without_gaps(labelled.cloud);
+    const fs::path folder = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
+    if (!fs::is_directory(folder)) return made_sheet(kPoints);
+    const std::vector<fs::path> paths = list_clouds(folder).value();
+    for (const fs::path& path : paths) {
+      PointCloud points = without_gaps(cloud_from_fields(read_cloud(path)->fields()).value());
       if (off(points) < off(best)) best = std::move(points);
     }
-    return best.positions_m.empty() ? made_sheet(kPoints) : best;
+    return best;
   }();
   return chosen;
 }

@@ -62,7 +62,7 @@ TEST_F(Annotate, AFewClicksLabelAScene) {
 
 TEST_F(Annotate, ShortPathsLeaveMuchWithoutALabel) {
   Arguments arguments = simulate();
-  arguments.back() = "0.05";
+  arguments.back() = "0.01";
   const Outcome outcome = run_program(arguments);
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = outcome.json()["result"];

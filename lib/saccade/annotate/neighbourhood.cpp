@@ -116,7 +116,7 @@ std::uint64_t one_sided(const NearestNeighbours& neighbours, std::uint32_t node)
 }
 
 struct Joined {
-  std::vector<std::uint64_t> starts;
+  std::vector<std::uint32_t> starts;
   std::vector<Neighbourhood::Edge> edges;
 };
 
@@ -137,7 +137,8 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
   });
   Joined joined;
   joined.starts.resize(nodes + 1);
-  for (std::size_t i = 0; i < size; ++i) joined.starts[i + 1] = joined.starts[i] + k + others[i];
+  for (std::size_t i = 0; i < size; ++i)
+    joined.starts[i + 1] = joined.starts[i] + static_cast<std::uint32_t>(k) + others[i];
   for (std::size_t i = size; i < nodes; ++i) joined.starts[i + 1] = joined.starts[i];
   joined.edges.resize(joined.starts.back());
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
@@ -195,6 +196,11 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
                                            const Executor& executor) {
   SACCADE_CHECK(config.validate());
   SACCADE_CHECK(cloud.validate());
+  if (2 * cloud.positions_m.size() * static_cast<std::size_t>(config.neighbours) >
+      std::numeric_limits<std::uint32_t>::max()) {
+    return Error{Errc::invalid_argument, "points times neighbours may be 2³¹ at most; thin the cloud out or split it",
+                 "neighbourhood"};
+  }
   const NearestNeighbours neighbours =
       nearest_neighbours(cloud.positions_m, static_cast<std::size_t>(config.neighbours), executor);
   const EdgeCost cost{cloud, neighbours, config, executor};

@@ -15,13 +15,13 @@ namespace saccade {
 /// Costs of paths are whole multiples of Ω_max / 2³⁰, so that sums are exact and do not depend on their order.
 inline constexpr std::uint32_t kPathUnits{1U << 30U};
 
-/// Table 4.4.
+/// Chosen on clouds of a depth camera (docs/decisions/0014-annotation-weights.md).
 struct NeighbourhoodConfig {
   int neighbours{10};                 ///< K_nn, 1 to 64; points that have one as a neighbour are its neighbours, too
-  double position_weight_per_m{1.0};  ///< α_p
-  double normal_weight{0.5};          ///< α_n
+  double position_weight_per_m{0.2};  ///< α_p
+  double normal_weight{6.0};          ///< α_n
   double color_weight{1.0};           ///< α_c; an edge of the colour cube is 1
-  double max_path{1.0};               ///< Ω_max: a path is shorter, in the unit of the costs
+  double max_path{100.0};             ///< Ω_max: a path is shorter, in the unit of the costs
   /// Distances are divided by the local spacing of the points (the farther K-th neighbour's distance of the two) and
   /// multiplied by its median: for clouds that thin out away from the sensor, as a LiDAR's do.
   bool adapt_to_density{false};
@@ -42,7 +42,8 @@ class Neighbourhood {
   };
 
   /// Which of several points at the K-th distance are neighbours is decided by the cloud alone.
-  /// @return invalid_argument for a bad configuration; errors of PointCloud::validate.
+  /// @return invalid_argument for a bad configuration and for more than 2³¹ points times neighbours; errors of
+  /// PointCloud::validate.
   /// The same for every thread count. O(n log n + n K); about 8 K + 60 bytes per point while it works, 10 K + 8 after.
   [[nodiscard]] static Result<Neighbourhood> build(const PointCloud& cloud, const NeighbourhoodConfig& config,
                                                    const Executor& executor);
@@ -54,7 +55,7 @@ class Neighbourhood {
   [[nodiscard]] std::uint32_t point_of(std::uint32_t node) const { return point_of_[node]; }
   /// Of a node: its own nearest first, then those that have it among theirs.
   [[nodiscard]] std::span<const Edge> edges(std::uint32_t node) const {
-    return {edges_.data() + starts_[node], static_cast<std::size_t>(starts_[node + 1] - starts_[node])};
+    return {edges_.data() + starts_[node], starts_[node + 1] - starts_[node]};
   }
   [[nodiscard]] std::size_t edge_count() const { return edges_.size() / 2; }
   /// A cost that half of the edges do not exceed, in path units.
@@ -64,7 +65,7 @@ class Neighbourhood {
   Neighbourhood() = default;
 
   NeighbourhoodConfig config_;
-  std::vector<std::uint64_t> starts_;
+  std::vector<std::uint32_t> starts_;
   std::vector<Edge> edges_;
   std::vector<std::uint32_t> node_of_;
   std::vector<std::uint32_t> point_of_;

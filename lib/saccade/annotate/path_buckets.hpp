@@ -5,24 +5,38 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <memory>
+#include <utility>
 #include <vector>
 
 #include "saccade/annotate/neighbourhood.hpp"
 
 namespace saccade {
 
+/// The edges of a node are needed soon: half of the time of a search goes into waiting for them. Inlined at once: g++
+/// takes calls of a function that does nothing but fetch for superfluous.
+[[gnu::always_inline]] inline void fetch_edges(const Neighbourhood& neighbourhood, std::uint32_t node) {
+  constexpr std::size_t kEdgesPerLine{8};  // of the cache
+  const Neighbourhood::Edge* edges = neighbourhood.edges(node).data();
+  __builtin_prefetch(edges);
+  __builtin_prefetch(edges + kEdgesPerLine);
+}
+
 /// A queue by path length. Paths of nearly equal length are in one bucket, in no order: a node that is found to be
 /// nearer after all is looked at again. Empty between searches; one per search at a time.
 class PathBuckets {
  public:
-  explicit PathBuckets(const Neighbourhood& neighbourhood)
-      : shift_{bucket_shift(neighbourhood)}, buckets_((kPathUnits >> shift_) + 1) {}
+  explicit PathBuckets(std::shared_ptr<const Neighbourhood> neighbourhood)
+      : neighbourhood_{std::move(neighbourhood)},
+        shift_{bucket_shift(*neighbourhood_)},
+        buckets_((kPathUnits >> shift_) + 1) {}
 
   /// Expects path < Ω_max, in path units.
   void push(std::uint32_t path, std::uint32_t node) {
     const std::size_t bucket = path >> shift_;
     buckets_[bucket].push_back({path, node});
     last_ = std::max(last_, bucket);
+    fetch_edges(*neighbourhood_, node);
   }
 
   /// Calls visit(path, node), the shorter paths first, until there is none; visit may push what is not shorter.
@@ -31,6 +45,7 @@ class PathBuckets {
     for (std::size_t b = 0; b <= last_; ++b) {
       std::vector<Reached>& bucket = buckets_[b];
       for (std::size_t i = 0; i < bucket.size(); ++i) {
+        if (i + kAhead < bucket.size()) fetch_edges(*neighbourhood_, bucket[i + kAhead].node);
         const Reached reached = bucket[i];
         visit(reached.path, reached.node);
       }
@@ -45,7 +60,8 @@ class PathBuckets {
     std::uint32_t node;
   };
 
-  static constexpr int kMostBucketsLog2{13};
+  static constexpr int kMostBucketsLog2{15};
+  static constexpr std::size_t kAhead{6};  ///< nodes of a bucket
 
   /// Of equal length, half of the edges are not shorter: few nodes are looked at twice.
   static unsigned bucket_shift(const Neighbourhood& neighbourhood) {
@@ -54,18 +70,10 @@ class PathBuckets {
     return static_cast<unsigned>(std::max(length, least));
   }
 
+  std::shared_ptr<const Neighbourhood> neighbourhood_;
   unsigned shift_;
   std::vector<std::vector<Reached>> buckets_;
   std::size_t last_{0};
 };
-
-/// Half of the time of a search goes into waiting for edges. Inlined at once: g++ takes calls of a function that does
-/// nothing but fetch for superfluous.
-[[gnu::always_inline]] inline void fetch_edges_soon(const Neighbourhood& neighbourhood, std::uint32_t node) {
-  constexpr std::size_t kEdgesPerLine{8};  // of the cache
-  const auto edges = neighbourhood.edges(node);
-  if (!edges.empty()) __builtin_prefetch(edges.data());
-  if (edges.size() > kEdgesPerLine) __builtin_prefetch(edges.data() + kEdgesPerLine);
-}
 
 }  // namespace saccade

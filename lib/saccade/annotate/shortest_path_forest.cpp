@@ -2,135 +2,162 @@
 #include "saccade/annotate/shortest_path_forest.hpp"
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <limits>
 
 namespace saccade {
 namespace {
 
-// A node's state is one number: ω above the root's point. That of a shorter path is less, at equal paths that of the
-// lower root, and one path further along an edge is one addition: least states are all that Algorithm 8 looks for.
-constexpr std::uint64_t kNoPath{std::numeric_limits<std::uint64_t>::max()};
-constexpr std::uint64_t kTooFar{std::uint64_t{kPathUnits} << 32U};
-
-std::uint32_t path_of(std::uint64_t state) { return static_cast<std::uint32_t>(state >> 32U); }
-std::uint32_t root_of_state(std::uint64_t state) { return static_cast<std::uint32_t>(state); }
-std::uint64_t along(std::uint64_t state, const Neighbourhood::Edge& edge) {
-  return state + (std::uint64_t{edge.cost} << 32U);
-}
+constexpr std::uint32_t kNoPath{std::numeric_limits<std::uint32_t>::max()};
+constexpr std::size_t kEdgesAtOnce{32};
 
 }  // namespace
 
 ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood)
     : neighbourhood_{std::move(neighbourhood)},
-      state_(neighbourhood_->size(), kNoPath),
-      start_(neighbourhood_->size(), kNoPath),
-      queue_{*neighbourhood_} {}
+      path_(neighbourhood_->size(), kNoPath),
+      root_(neighbourhood_->size(), 0),
+      is_start_(neighbourhood_->size(), false),
+      queue_{neighbourhood_} {}
 
 /// Algorithm 8.
-template <class Visit>
-void ShortestPathForest::spread(const Visit& visit) {
-  queue_.drain([&](std::uint32_t path, std::uint32_t node) {
-    const std::uint64_t state = state_[node];
-    if (path_of(state) != path) return;  // a shorter path came in between
-    visit(node);
-    for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
-      const std::uint64_t further = along(state, edge);
-      if (further < state_[edge.node] && further < kTooFar) reach(edge.node, further);
-    }
+void ShortestPathForest::spread() {
+  queue_.drain([this](std::uint32_t path, std::uint32_t node) {
+    if (path_[node] != path) return;  // a shorter path came in between
+    touched_.push_back(node);
+    spread_from(node);
   });
+}
+
+void ShortestPathForest::spread_from(std::uint32_t node) {
+  const std::uint32_t to_node = path_[node];
+  const std::uint32_t root = root_[node];
+  const std::span<const Neighbourhood::Edge> edges = neighbourhood_->edges(node);
+  for (std::size_t first = 0; first < edges.size(); first += kEdgesAtOnce) {
+    const std::size_t count = std::min(kEdgesAtOnce, edges.size() - first);
+    std::uint32_t nearer{0};  // found without branches, as few are
+    for (std::size_t e = 0; e < count; ++e) {
+      const Neighbourhood::Edge& edge = edges[first + e];
+      const bool is_nearer = to_node + edge.cost <= std::min(path_[edge.node], kPathUnits - 1);
+      nearer |= (is_nearer ? 1U : 0U) << e;
+    }
+    for (; nearer != 0; nearer &= nearer - 1) {
+      const Neighbourhood::Edge& edge = edges[first + static_cast<std::size_t>(std::countr_zero(nearer))];
+      const std::uint32_t path = to_node + edge.cost;
+      if (path < path_[edge.node] || root < root_[edge.node]) reach(edge.node, path, root);
+    }
+  }
 }
 
 void ShortestPathForest::rebuild(std::span<const Root> roots) {
   touched_.clear();
-  std::fill(state_.begin(), state_.end(), kNoPath);
-  std::fill(start_.begin(), start_.end(), kNoPath);
-  root_points_.clear();
+  std::fill(path_.begin(), path_.end(), kNoPath);
+  std::fill(is_start_.begin(), is_start_.end(), false);
+  starts_.clear();
   for (const Root& root : roots) start_at(root);
-  spread([this](std::uint32_t node) { touched_.push_back(neighbourhood_->point_of(node)); });
+  spread();
+  name_touched();
 }
 
 void ShortestPathForest::add(const Root& root) {
   touched_.clear();
   start_at(root);
-  spread([this](std::uint32_t node) { touched_.push_back(neighbourhood_->point_of(node)); });
+  spread();
+  name_touched();
 }
 
 void ShortestPathForest::remove(std::uint32_t point) {
   SACCADE_EXPECTS(is_root(point));
-  touched_.clear();
   const std::uint32_t first = neighbourhood_->node_of(point);
-  start_[first] = kNoPath;
-  root_points_.erase(std::lower_bound(root_points_.begin(), root_points_.end(), point));
-  if (root_of_state(state_[first]) != point || state_[first] == kNoPath) return;  // nothing was its own
+  is_start_[first] = false;
+  starts_.erase(start_of(point));
+  touched_.clear();
+  if (root_[first] != point || path_[first] == kNoPath) return;  // nothing was its own
   // Algorithm 9: the tree is cleared. It is connected: what belongs to a root is reached along what belongs to it.
   // Where other trees enter, or start in what this one had covered, Algorithm 8 goes on.
-  cleared_.assign(1, first);
+  touched_.assign(1, first);
   entered_.clear();
-  state_[first] = kNoPath;
-  for (std::size_t i = 0; i < cleared_.size(); ++i) {
-    const std::uint32_t node = cleared_[i];
-    touched_.push_back(neighbourhood_->point_of(node));
-    std::uint64_t best = start_[node];
+  path_[first] = kNoPath;
+  for (std::size_t i = 0; i < touched_.size(); ++i) {
+    const std::uint32_t node = touched_[i];
+    Entered best{kPathUnits, 0};
+    if (is_start_[node]) {
+      const Start& start = *start_of(neighbourhood_->point_of(node));
+      best = {start.path, start.point};
+    }
     for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
-      std::uint64_t& beyond = state_[edge.node];
+      std::uint32_t& beyond = path_[edge.node];
       if (beyond == kNoPath) continue;
-      if (root_of_state(beyond) == point) {
+      if (root_[edge.node] == point) {
         beyond = kNoPath;
-        cleared_.push_back(edge.node);
-        fetch_edges_soon(*neighbourhood_, edge.node);
+        touched_.push_back(edge.node);
+        fetch_edges(*neighbourhood_, edge.node);
       } else {
-        best = std::min(best, along(beyond, edge));
+        best = std::min(best, Entered{beyond + edge.cost, root_[edge.node]});
       }
     }
     entered_.push_back(best);
   }
-  for (std::size_t i = 0; i < cleared_.size(); ++i) {
-    if (entered_[i] < kTooFar) reach(cleared_[i], entered_[i]);
+  for (std::size_t i = 0; i < entered_.size(); ++i) {
+    if (entered_[i].path < kPathUnits) reach(touched_[i], entered_[i].path, entered_[i].root);
   }
-  spread([](std::uint32_t /*node*/) {});  // none but the cleared ones
+  const std::size_t cleared = touched_.size();
+  spread();
+  touched_.resize(cleared);  // none but the cleared ones
+  name_touched();
 }
 
 std::vector<Root> ShortestPathForest::roots() const {
   std::vector<Root> roots;
   const double unit = neighbourhood_->config().max_path / kPathUnits;
-  for (const std::uint32_t point : root_points_) {
-    roots.push_back({point, path_of(start_[neighbourhood_->node_of(point)]) * unit});
-  }
+  for (const Start& start : starts_) roots.push_back({start.point, start.path * unit});
   return roots;
 }
 
 bool ShortestPathForest::is_root(std::uint32_t point) const {
-  return point < state_.size() && start_[neighbourhood_->node_of(point)] != kNoPath;
+  return point < path_.size() && is_start_[neighbourhood_->node_of(point)];
 }
 
 std::optional<std::uint32_t> ShortestPathForest::root_of(std::uint32_t point) const {
-  const std::uint64_t state = state_[neighbourhood_->node_of(point)];
-  if (state == kNoPath) return std::nullopt;
-  return root_of_state(state);
+  const std::uint32_t node = neighbourhood_->node_of(point);
+  if (path_[node] == kNoPath) return std::nullopt;
+  return root_[node];
 }
 
 double ShortestPathForest::path_length(std::uint32_t point) const {
-  const std::uint64_t state = state_[neighbourhood_->node_of(point)];
-  if (state == kNoPath) return std::numeric_limits<double>::infinity();
-  return path_of(state) * (neighbourhood_->config().max_path / kPathUnits);
+  const std::uint32_t path = path_[neighbourhood_->node_of(point)];
+  if (path == kNoPath) return std::numeric_limits<double>::infinity();
+  return path * (neighbourhood_->config().max_path / kPathUnits);
+}
+
+/// Nodes become points.
+void ShortestPathForest::name_touched() {
+  for (std::uint32_t& touched : touched_) touched = neighbourhood_->point_of(touched);
+}
+
+std::vector<ShortestPathForest::Start>::const_iterator ShortestPathForest::start_of(std::uint32_t point) const {
+  return std::lower_bound(starts_.begin(), starts_.end(), point,
+                          [](const Start& start, std::uint32_t p) { return start.point < p; });
 }
 
 void ShortestPathForest::start_at(const Root& root) {
   const double max_path = neighbourhood_->config().max_path;
-  SACCADE_EXPECTS(root.point < state_.size() && !is_root(root.point));
+  SACCADE_EXPECTS(root.point < path_.size() && !is_root(root.point));
   SACCADE_EXPECTS(root.start_cost >= 0.0 && root.start_cost < max_path);
-  const auto units = static_cast<std::uint64_t>(root.start_cost / max_path * kPathUnits);
+  const auto units = static_cast<std::uint32_t>(root.start_cost / max_path * kPathUnits);
+  const Start start{root.point, std::min(units, kPathUnits - 1)};
   const std::uint32_t node = neighbourhood_->node_of(root.point);
-  start_[node] = std::min<std::uint64_t>(units, kPathUnits - 1) << 32U | root.point;
-  root_points_.insert(std::upper_bound(root_points_.begin(), root_points_.end(), root.point), root.point);
-  if (start_[node] < state_[node]) reach(node, start_[node]);
+  is_start_[node] = true;
+  starts_.insert(start_of(root.point), start);
+  const bool is_nearer = start.path < path_[node] || (start.path == path_[node] && root.point < root_[node]);
+  if (is_nearer) reach(node, start.path, root.point);
 }
 
-void ShortestPathForest::reach(std::uint32_t node, std::uint64_t state) {
-  state_[node] = state;
-  queue_.push(path_of(state), node);
-  fetch_edges_soon(*neighbourhood_, node);
+void ShortestPathForest::reach(std::uint32_t node, std::uint32_t path, std::uint32_t root) {
+  path_[node] = path;
+  root_[node] = root;
+  queue_.push(path, node);
 }
 
 }  // namespace saccade

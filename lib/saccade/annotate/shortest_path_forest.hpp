@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/annotate/neighbourhood.hpp"
 #include "saccade/annotate/path_buckets.hpp"
 
 namespace saccade {
@@ -48,19 +49,32 @@ class ShortestPathForest {
   [[nodiscard]] std::span<const std::uint32_t> touched() const { return touched_; }
 
  private:
+  struct Start {
+    std::uint32_t point;
+    std::uint32_t path;
+  };
+  /// From another tree.
+  struct Entered {
+    std::uint32_t path;
+    std::uint32_t root;
+    [[nodiscard]] auto operator<=>(const Entered&) const = default;
+  };
+
   void start_at(const Root& root);
-  void reach(std::uint32_t node, std::uint64_t state);
-  template <class Visit>
-  void spread(const Visit& visit);
+  void reach(std::uint32_t node, std::uint32_t path, std::uint32_t root);
+  void spread();
+  void spread_from(std::uint32_t node);
+  void name_touched();
+  [[nodiscard]] std::vector<Start>::const_iterator start_of(std::uint32_t point) const;
 
   std::shared_ptr<const Neighbourhood> neighbourhood_;
-  std::vector<std::uint64_t> state_;        ///< per node: ω in path units above the root's point
-  std::vector<std::uint64_t> start_;        ///< per node: the same of a root that starts there
-  std::vector<std::uint32_t> root_points_;  ///< ascending
+  std::vector<std::uint32_t> path_;  ///< per node: ω in path units
+  std::vector<std::uint32_t> root_;  ///< per node that has a path: the root's point
+  std::vector<bool> is_start_;       ///< per node
+  std::vector<Start> starts_;        ///< roots, by ascending point
   std::vector<std::uint32_t> touched_;
-  PathBuckets queue_;  ///< empty between operations
-  std::vector<std::uint32_t> cleared_;
-  std::vector<std::uint64_t> entered_;
+  PathBuckets queue_;
+  std::vector<Entered> entered_;
 };
 
 }  // namespace saccade

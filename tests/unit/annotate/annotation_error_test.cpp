@@ -30,6 +30,7 @@ std::uint32_t lattice_point(std::uint32_t x, std::uint32_t y) { return y * kEdge
 Neighbourhood eight_nearest(const PointCloud& cloud, double max_path = 1.0) {
   NeighbourhoodConfig config;
   config.neighbours = 8;
+  config.position_weight_per_m = 1.0;
   config.max_path = max_path;
   return Neighbourhood::build(cloud, config, Executor{}).value();
 }

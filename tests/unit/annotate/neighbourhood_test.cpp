@@ -102,12 +102,14 @@ TEST(Neighbourhood, WithoutNormalsAndColoursOnlyPlacesCount) {
   PointCloud cloud;
   cloud.positions_m = random_cloud(50).positions_m;
   NeighbourhoodConfig config;
+  config.position_weight_per_m = 0.5;
   config.normal_weight = 0.0;
+  config.max_path = 2.0;
   const Neighbourhood graph = built(cloud, config);
   const Neighbourhood::Edge& edge = graph.edges(0).front();
   const double distance_m =
       static_cast<double>((cloud.positions_m[graph.point_of(0)] - cloud.positions_m[graph.point_of(edge.node)]).norm());
-  EXPECT_NEAR(edge.cost / static_cast<double>(kPathUnits), distance_m, 1e-6);
+  EXPECT_NEAR(edge.cost / static_cast<double>(kPathUnits), distance_m / 4.0, 1e-6);
 }
 
 TEST(Neighbourhood, AdaptedToDensityAThinCloudCostsAsADenseOne) {
@@ -115,7 +117,9 @@ TEST(Neighbourhood, AdaptedToDensityAThinCloudCostsAsADenseOne) {
   for (int i = 0; i < 100; ++i) cloud.positions_m.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
   for (int i = 0; i < 100; ++i) cloud.positions_m.emplace_back(1.0F + 0.1F * static_cast<float>(i), 0.0F, 0.0F);
   NeighbourhoodConfig config = with_neighbours(2);
+  config.position_weight_per_m = 1.0;
   config.normal_weight = 0.0;
+  config.max_path = 1.0;
   EXPECT_NEAR(*cost_between(built(cloud, config), 150, 151) / static_cast<double>(kPathUnits), 0.1, 1e-5);
   config.adapt_to_density = true;
   const Neighbourhood adapted = built(cloud, config);

@@ -15,6 +15,7 @@ ShortestPathForest forest_on_a_line(int points, double max_path) {
   for (int i = 0; i < points; ++i) cloud.positions_m.emplace_back(0.125F * static_cast<float>(i), 0.0F, 0.0F);
   NeighbourhoodConfig config;
   config.neighbours = 2;
+  config.position_weight_per_m = 1.0;
   config.normal_weight = 0.0;
   config.max_path = max_path;
   return ShortestPathForest{

@@ -177,7 +177,7 @@ TEST(AnnotationJournalFormat, SoundRecordsOfWhatNoSessionWritesAreDamage) {
   Bytes unknown = payload({1, UndoAction{}});
   unknown.back() = std::byte{200};
   for (const Bytes& bad : {Bytes{}, unknown, payload({1, PaintPoints{{1000}, 1}}), payload({1, PaintPoints{{1, 1}, 1}}),
-                           payload({1, SetControlPoints{{1}, 0, 0.0}}), payload({1, SetControlPoints{{1}, 1, 1.0}}),
+                           payload({1, SetControlPoints{{1}, 0, 0.0}}), payload({1, SetControlPoints{{1}, 1, 100.0}}),
                            payload({1, DefineLabels{{{1, {"a\nb", {}, "", 0}}}}})}) {
     const auto saved = decode_journal(joined({header, record_of(bad)}));
     ASSERT_FALSE(saved);
