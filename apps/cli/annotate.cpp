@@ -1,9 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade annotate: labels of a cloud's points from a few control points, here placed by a simulated annotator.
+// saccade annotate: labels of a cloud's points from a few control points, placed by a script or a simulated annotator.
 #include "annotate.hpp"
 
 #include <CLI/CLI.hpp>
-#include <map>
 #include <memory>
 
 #include "exit_status.hpp"
@@ -11,64 +10,151 @@
 #include "json_output.hpp"
 #include "options.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/label_output.hpp"
+#include "saccade/io/label_presets.hpp"
 
 namespace saccade::cli {
 namespace {
 
 namespace fs = std::filesystem;
+using nlohmann::json;
 
-Status check_outputs(const AnnotateOptions& options, const GlobalOptions& global) {
-  if (!options.out.empty()) SACCADE_CHECK(check_labels_path(options.out));
-  SACCADE_CHECK(check_output(options.out, "--out", {options.cloud, options.truth}));
-  const fs::path json_file = global.json_to_stdout() ? "" : global.json;
-  SACCADE_CHECK(check_output(json_file, "--json", {options.cloud, options.truth, options.out}));
+/// No file that is written is one of those that are read, or another one that is written.
+Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs, const GlobalOptions& global) {
+  std::vector<fs::path> others{options.script, options.presets};
+  for (const CloudJob& job : jobs) others.insert(others.end(), {job.cloud, job.truth, job.session});
+  const auto check = [&](const fs::path& file, const char* option) -> Status {
+    SACCADE_CHECK(check_output(file, option, others));
+    others.push_back(file);
+    return {};
+  };
+  for (const CloudJob& job : jobs) {
+    if (!job.files.out.empty()) SACCADE_CHECK(check_labels_path(job.files.out));
+    SACCADE_CHECK(check(job.files.out, "--out"));
+    SACCADE_CHECK(check(job.files.names, "--names"));
+    SACCADE_CHECK(check(job.files.picture, "--picture"));
+  }
+  SACCADE_CHECK(check(global.json_to_stdout() ? "" : global.json, "--json"));
   return check_json_output(global);
 }
 
-Result<int> run_annotate(const AnnotateOptions& options, const GlobalOptions& global) {
-  Stopwatch clock;
-  const Stopwatch total;
-  TimingsMs timings_ms;
-  const Executor executor = global.executor();
-  ProgressBar bar{global.quiet};
-  SACCADE_CHECK(check_outputs(options, global));
-  bar.update("reading", 0, 0);
-  SACCADE_TRY(const CloudFile cloud, read_cloud(options.cloud));
-  timings_ms["read"] = clock.lap_ms();
-  SACCADE_TRY(const SimulatedAnnotation annotation, simulate_annotation(options, cloud, executor, bar));
-  timings_ms["simulate"] = clock.lap_ms();
-  if (!options.out.empty()) {
-    bar.update("writing", 0, 0);
-    SACCADE_CHECK(write_labels(options.out, cloud, annotation.labels));
-    timings_ms["write"] = clock.lap_ms();
+Result<PlannedActions> planned_actions(const AnnotateOptions& options) {
+  PlannedActions actions;
+  if (!options.script.empty()) {
+    SACCADE_TRY(actions.script, read_annotation_script(options.script));
   }
-  timings_ms["total"] = total.elapsed_ms();
-  bar.finish();
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("annotate", global, executor, timings_ms, annotation_json(options, annotation))));
-  if (!global.json_to_stdout()) print_annotation(options, annotation);
-  return static_cast<int>(ExitStatus::done);
+  if (!options.presets.empty()) {
+    SACCADE_TRY(actions.presets, read_label_presets(options.presets));
+  }
+  return actions;
 }
 
-void add_graph_options(CLI::App& command, NeighbourhoodConfig& graph) {
-  command.add_option("--neighbours", graph.neighbours, "nearest points that each point is joined to")
-      ->type_name("K")
-      ->capture_default_str();
-  command.add_option("--position-weight", graph.position_weight_per_m, "cost of a metre")
-      ->type_name("WEIGHT")
-      ->capture_default_str();
-  command.add_option("--normal-weight", graph.normal_weight, "cost of a difference of normals of 1 (a right angle)")
-      ->type_name("WEIGHT")
-      ->capture_default_str();
-  command.add_option("--color-weight", graph.color_weight, "cost of an edge of the colour cube")
-      ->type_name("WEIGHT")
-      ->capture_default_str();
-  command.add_option("--max-path", graph.max_path, "a control point reaches as far as paths cost less than this")
-      ->type_name("COST")
-      ->capture_default_str();
-  command.add_flag("--adapt-to-density", graph.adapt_to_density,
-                   "distances count by the local spacing of points, for clouds that thin out (LiDAR)");
+/// What became of one cloud after the other.
+template <class T>
+struct Run {
+  std::vector<OfCloud<T>> clouds;
+  bool interrupted{false};
+};
+
+/// Calls make(job, cloud) for each cloud and writes its files; what was made before an interruption stays.
+template <class T, class Make>
+Result<Run<T>> run_jobs(std::span<const CloudJob> jobs, AnnotateProgress& progress, const Make& make) {
+  Run<T> run;
+  for (const CloudJob& job : jobs) {
+    run.interrupted = run.interrupted || interrupted();
+    if (run.interrupted) break;
+    progress.clouds(run.clouds.size(), jobs.size());
+    progress.stage("reading");
+    SACCADE_TRY(const LoadedCloud cloud, load_cloud(job.cloud));
+    Result<T> made = make(job, cloud);
+    if (!made && made.error().code == Errc::cancelled && !run.clouds.empty()) {
+      run.interrupted = true;
+      break;
+    }
+    if (!made) return made.error();
+    run.clouds.push_back({job.cloud, std::move(*made)});
+  }
+  return run;
+}
+
+template <class T, class Json>
+json clouds_json(const Run<T>& run, const Json& to_json) {
+  json clouds = json::array();
+  for (const OfCloud<T>& cloud : run.clouds) {
+    clouds.push_back(to_json(cloud.made));
+    clouds.back()["file"] = cloud.file.string();
+  }
+  return clouds;
+}
+
+/// The end of a run: its result, and the exit status.
+Result<int> finish(const GlobalOptions& global, const Executor& executor, const Stopwatch& clock, json result,
+                   bool was_interrupted, const std::string& kept) {
+  result["interrupted"] = was_interrupted;
+  SACCADE_CHECK(write_json_output(
+      global, json_envelope("annotate", global, executor, {{"total", clock.elapsed_ms()}}, std::move(result))));
+  if (!was_interrupted) return static_cast<int>(ExitStatus::done);
+  print_error("annotate", "interrupted; " + kept);
+  return interrupt_status();
+}
+
+Result<int> run_simulations(const AnnotateOptions& options, std::span<const CloudJob> jobs,
+                            const GlobalOptions& global) {
+  const Stopwatch clock;
+  const Executor executor = global.executor();
+  AnnotateProgress progress{global.quiet, options.of_folder()};
+  const auto simulate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<SimulatedAnnotation> {
+    SACCADE_TRY(SimulatedAnnotation made, simulate_annotation(options, job, cloud, executor, progress));
+    SACCADE_CHECK(write_label_files(job.files, cloud, labelled_points(made.labels, made.control_points), executor));
+    return made;
+  };
+  SACCADE_TRY(const Run<SimulatedAnnotation> run, run_jobs<SimulatedAnnotation>(jobs, progress, simulate));
+  progress.finish();
+  const auto to_json = [&](const SimulatedAnnotation& made) { return simulation_json(options, made); };
+  json result = options.of_folder()
+                    ? json{{"clouds", clouds_json(run, to_json)}, {"mean", mean_json(options, run.clouds)}}
+                    : to_json(run.clouds.front().made);
+  if (!global.json_to_stdout() && options.of_folder()) print_simulations(options, run.clouds);
+  if (!global.json_to_stdout() && !options.of_folder()) print_simulation(options, run.clouds.front().made);
+  return finish(global, executor, clock, std::move(result), run.interrupted,
+                std::to_string(run.clouds.size()) + " of " + std::to_string(jobs.size()) + " clouds were done");
+}
+
+Result<int> run_annotations(const AnnotateOptions& options, std::span<const CloudJob> jobs,
+                            const GlobalOptions& global) {
+  const Stopwatch clock;
+  const Executor executor = global.executor();
+  AnnotateProgress progress{global.quiet, options.of_folder()};
+  SACCADE_TRY(const PlannedActions actions, planned_actions(options));
+  bool cut_short{false};
+  const auto annotate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<AnnotatedCloud> {
+    std::error_code ignored;
+    const bool begun = !actions.empty() || fs::exists(job.session, ignored);
+    if (options.of_folder() && !begun) return untouched(cloud);
+    SACCADE_TRY(AnnotatedCloud made, annotate_cloud(options, job, actions, cloud, executor, progress));
+    cut_short = cut_short || made.interrupted;
+    if (!made.interrupted) SACCADE_CHECK(write_label_files(job.files, cloud, made.labels, executor));
+    return made;
+  };
+  SACCADE_TRY(const Run<AnnotatedCloud> run, run_jobs<AnnotatedCloud>(jobs, progress, annotate));
+  progress.finish();
+  json result = options.of_folder()
+                    ? json{{"clouds", clouds_json(run, annotation_json)}, {"mean", mean_json(run.clouds)}}
+                    : annotation_json(run.clouds.front().made);
+  if (!global.json_to_stdout() && options.of_folder()) print_annotations(run.clouds);
+  if (!global.json_to_stdout() && !options.of_folder()) print_annotation(options, run.clouds.front().made);
+  const std::string kept =
+      options.of_folder()
+          ? std::to_string(run.clouds.size()) + " of " + std::to_string(jobs.size()) + " clouds were done"
+          : std::to_string(run.clouds.front().made.action_ms.size()) + " of " + std::to_string(actions.script.size()) +
+                " actions were done" + (options.session.empty() ? "" : " and are in the session") +
+                "; no other file was written";
+  return finish(global, executor, clock, std::move(result), run.interrupted || cut_short, kept);
+}
+
+Result<int> run_annotate(const AnnotateOptions& options, const GlobalOptions& global) {
+  SACCADE_TRY(const std::vector<CloudJob> jobs, plan_jobs(options));
+  SACCADE_CHECK(check_outputs(options, jobs, global));
+  return options.truth.empty() ? run_annotations(options, jobs, global) : run_simulations(options, jobs, global);
 }
 
 }  // namespace
@@ -76,43 +162,9 @@ void add_graph_options(CLI::App& command, NeighbourhoodConfig& graph) {
 void add_annotate(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("annotate", "labels of a point cloud from a few control points");
   auto options = std::make_shared<AnnotateOptions>();
-  command->add_option("cloud", options->cloud, "point cloud: PCD, PLY, text (XYZ, CSV) or KITTI .bin")
-      ->required()
-      ->check(CLI::ExistingFile)
-      ->type_name("CLOUD");
-  command
-      ->add_option("--simulate", options->truth,
-                   "true labels of its points (PCD, PLY, .label, .npy, text): a simulated annotator clicks at the "
-                   "centre of the largest error, again and again")
-      ->required()
-      ->check(CLI::ExistingFile)
-      ->type_name("TRUTH");
-  command->add_option("--clicks", options->clicks, "clicks per label")
-      ->check(CLI::Range(1, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  const std::map<std::string, AnnotationMethod> methods{{"control-points", AnnotationMethod::control_points},
-                                                        {"rectangle", AnnotationMethod::rectangle}};
-  command
-      ->add_option("--method", options->method,
-                   "control-points, or rectangle: the best rectangle of six views, action by action")
-      ->transform(CLI::CheckedTransformer(methods))
-      ->type_name("METHOD")
-      ->default_str("control-points");
-  const std::map<std::string, Tens> tens{{"detect", Tens::detect}, {"merge", Tens::merge}, {"keep", Tens::keep}};
-  command
-      ->add_option("--tens", options->tens,
-                   "true labels of one ten are parts of one object, as in mOSD (1 to 9: the table); merge, keep, or "
-                   "detect")
-      ->transform(CLI::CheckedTransformer(tens))
-      ->type_name("HOW")
-      ->default_str("detect");
-  command->add_option("--out", options->out, "labels: .pcd, .ply, .csv, .xyz, .txt, .label or .npy")->type_name("FILE");
-  add_graph_options(*command, options->graph);
+  add_annotate_options(*command, *options);
   command->callback([&global, &action, options] {
-    if (const Status valid = options->graph.validate(); !valid) {
-      throw CLI::ValidationError{"annotate", valid.error().message};
-    }
+    check_annotate_options(*options);
     action = [&global, options] { return run_annotate(*options, global); };
   });
 }

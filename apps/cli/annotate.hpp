@@ -4,16 +4,21 @@
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <set>
+#include <string>
+#include <string_view>
 #include <vector>
 
+#include "annotated_cloud.hpp"
 #include "command.hpp"
 #include "progress_bar.hpp"
 #include "saccade/annotate/neighbourhood.hpp"
 #include "saccade/annotate/rectangle_annotator.hpp"
 #include "saccade/annotate/simulated_annotator.hpp"
-#include "saccade/io/cloud_io.hpp"
+#include "saccade/io/annotation_script.hpp"
 
 namespace saccade::cli {
 
@@ -22,15 +27,64 @@ enum class AnnotationMethod { control_points, rectangle };
 /// Whether true labels of one ten are parts of one object.
 enum class Tens { detect, merge, keep };
 
+/// An option of the graph that was given: what is to be said where a session's graph has another value.
+using GivenGraphOption = std::function<std::optional<std::string>(const NeighbourhoodConfig& saved)>;
+
 struct AnnotateOptions {
-  std::filesystem::path cloud;
+  std::filesystem::path cloud;  ///< or a folder of clouds; the paths below are then folders, too, but for names
   std::filesystem::path truth;  ///< labels of the simulated annotator
   Tens tens{Tens::detect};
   int clicks{4};  ///< per label
   AnnotationMethod method{AnnotationMethod::control_points};
-  std::filesystem::path out;  ///< labels
+  std::filesystem::path script;
+  std::filesystem::path session;
+  std::filesystem::path presets;
+  std::uint64_t client{0};      ///< of actions in the script that name none
+  std::filesystem::path out;    ///< labels
+  std::filesystem::path names;  ///< of labels
+  std::filesystem::path picture;
   NeighbourhoodConfig graph;
+  std::vector<GivenGraphOption> given_graph;
+
+  [[nodiscard]] bool of_folder() const;
 };
+
+/// Of one cloud what is being done to it; of several how many are done. Every note once.
+class AnnotateProgress {
+ public:
+  AnnotateProgress(bool quiet, bool of_folder) : bar_{quiet}, of_folder_{of_folder} {}
+  void stage(std::string_view name, std::size_t done = 0, std::size_t total = 0) {
+    if (!of_folder_) bar_.update(name, done, total);
+  }
+  void clouds(std::size_t done, std::size_t total) {
+    if (of_folder_) bar_.update("clouds", done, total);
+  }
+  void note(const std::string& line) {
+    if (noted_.insert(line).second) bar_.note(line);
+  }
+  void finish() { bar_.finish(); }
+
+ private:
+  ProgressBar bar_;
+  bool of_folder_;
+  std::set<std::string> noted_;
+};
+
+/// Files about one cloud; empty: none.
+struct CloudJob {
+  std::filesystem::path cloud;
+  std::filesystem::path truth;
+  std::filesystem::path session;
+  LabelFiles files;
+};
+
+void add_annotate_options(CLI::App& command, AnnotateOptions& options);
+/// Throws what is wrong with the options together.
+void check_annotate_options(const AnnotateOptions& options);
+
+/// One cloud, or all of a folder in the order of their names. Errors of list_clouds; not_found for truth that is not
+/// there; invalid_argument where two clouds would share a file.
+[[nodiscard]] Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options);
 
 /// Where a simulated annotation is after one action.
 struct AnnotationStep {
@@ -43,7 +97,8 @@ struct SimulatedAnnotation {
   std::size_t points{0};   ///< that have a label in truth
   std::size_t objects{0};  ///< labels
   std::vector<AnnotationStep> clicks;
-  std::vector<std::uint32_t> labels;  ///< per point; 0: none
+  std::vector<std::uint32_t> labels;          ///< per point; 0: none
+  std::vector<std::uint32_t> control_points;  ///< points
   double graph_ms{0.0};
   double full_ms{0.0};
   std::vector<double> add_ms;
@@ -51,12 +106,56 @@ struct SimulatedAnnotation {
 
   /// Clicks until the mean IoU was at least this; none: never.
   [[nodiscard]] std::optional<std::size_t> clicks_to(double iou_mean) const;
+  /// After so many clicks per label, or the last one where nothing was wrong any more.
+  [[nodiscard]] AnnotationStep after(std::size_t clicks_per_label) const;
 };
 
-[[nodiscard]] Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudFile& file,
-                                                              const Executor& executor, ProgressBar& bar);
+[[nodiscard]] Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudJob& job,
+                                                              const LoadedCloud& cloud, const Executor& executor,
+                                                              AnnotateProgress& progress);
 
-[[nodiscard]] nlohmann::json annotation_json(const AnnotateOptions& options, const SimulatedAnnotation& annotation);
-void print_annotation(const AnnotateOptions& options, const SimulatedAnnotation& annotation);
+/// What a session, a script or both made of a cloud.
+struct AnnotatedCloud {
+  std::size_t points{0};  ///< that are finite
+  LabelledPoints labels;
+  std::uint64_t actions{0};  ///< since the annotation began
+  double graph_ms{0.0};
+  std::vector<double> action_ms;  ///< of this run
+  bool interrupted{false};
+
+  [[nodiscard]] double labelled_share() const;
+};
+
+/// What is to be done on a cloud.
+struct PlannedActions {
+  std::vector<NumberedLabel> presets;
+  std::vector<ScriptedAction> script;
+  [[nodiscard]] bool empty() const { return presets.empty() && script.empty(); }
+};
+
+/// The annotation so far, of the job's session, with the actions done on it. Where there are none, the session is read
+/// and not opened; not_found if it was never begun.
+[[nodiscard]] Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const CloudJob& job,
+                                                    const PlannedActions& actions, const LoadedCloud& cloud,
+                                                    const Executor& executor, AnnotateProgress& progress);
+/// Of a cloud on which nothing was done.
+[[nodiscard]] AnnotatedCloud untouched(const LoadedCloud& cloud);
+
+/// A cloud of a folder with what was made of it.
+template <class T>
+struct OfCloud {
+  std::filesystem::path file;
+  T made;
+};
+
+[[nodiscard]] nlohmann::json simulation_json(const AnnotateOptions& options, const SimulatedAnnotation& annotation);
+[[nodiscard]] nlohmann::json mean_json(const AnnotateOptions& options,
+                                       std::span<const OfCloud<SimulatedAnnotation>> clouds);
+[[nodiscard]] nlohmann::json annotation_json(const AnnotatedCloud& cloud);
+[[nodiscard]] nlohmann::json mean_json(std::span<const OfCloud<AnnotatedCloud>> clouds);
+void print_simulation(const AnnotateOptions& options, const SimulatedAnnotation& annotation);
+void print_simulations(const AnnotateOptions& options, std::span<const OfCloud<SimulatedAnnotation>> clouds);
+void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& cloud);
+void print_annotations(std::span<const OfCloud<AnnotatedCloud>> clouds);
 
 }  // namespace saccade::cli

@@ -25,11 +25,13 @@ bool are_parts_in_tens(const std::vector<std::uint32_t>& labels) {
   return table && objects;
 }
 
-Result<std::vector<std::uint32_t>> read_truth(const AnnotateOptions& options, std::size_t points, ProgressBar& bar) {
-  SACCADE_TRY(std::vector<std::uint32_t> truth, read_labels(options.truth, points));
+Result<std::vector<std::uint32_t>> read_truth(const AnnotateOptions& options, const CloudJob& job, std::size_t points,
+                                              AnnotateProgress& progress) {
+  SACCADE_TRY(std::vector<std::uint32_t> truth, read_labels(job.truth, points));
   if (options.tens == Tens::keep || (options.tens == Tens::detect && !are_parts_in_tens(truth))) return truth;
   if (options.tens == Tens::detect) {
-    bar.note("labels are 1 to 9 and from 20 on, as parts of objects in tens (mOSD): each ten is one; --tens keep: not");
+    progress.note(
+        "labels are 1 to 9 and from 20 on, as parts of objects in tens (mOSD): each ten is one; --tens keep: not");
   }
   for (std::uint32_t& label : truth) label = label == 0 ? 0 : std::max(1U, label / kLabelsPerObject);
   return truth;
@@ -37,14 +39,15 @@ Result<std::vector<std::uint32_t>> read_truth(const AnnotateOptions& options, st
 
 Error interrupted_error() { return Error{Errc::cancelled, "interrupted", {}}; }
 
-Status click(const AnnotateOptions& options, std::shared_ptr<const Neighbourhood> graph, const PointCloud& cloud,
-             std::vector<std::uint32_t> truth, SimulatedAnnotation& annotation, ProgressBar& bar) {
+Status click(const AnnotateOptions& options, const CloudJob& job, std::shared_ptr<const Neighbourhood> graph,
+             const PointCloud& cloud, std::vector<std::uint32_t> truth, SimulatedAnnotation& annotation,
+             AnnotateProgress& progress) {
   SACCADE_TRY(SimulatedAnnotator annotator,
-              in_file(SimulatedAnnotator::create(std::move(graph), cloud, std::move(truth)), options.truth));
+              in_file(SimulatedAnnotator::create(std::move(graph), cloud, std::move(truth)), job.truth));
   const std::size_t clicks = static_cast<std::size_t>(options.clicks) * annotation.objects;
   while (annotation.clicks.size() < clicks) {
     if (interrupted()) return interrupted_error();
-    bar.update("clicks", annotation.clicks.size(), clicks);
+    progress.stage("clicks", annotation.clicks.size(), clicks);
     const std::optional<SimulatedClick> next = annotator.next();
     if (!next) break;
     annotation.add_ms.push_back(next->add_ms);
@@ -54,6 +57,7 @@ Status click(const AnnotateOptions& options, std::shared_ptr<const Neighbourhood
   ShortestPathForest& forest = annotator.forest();
   const std::vector<Root> roots = forest.roots();
   for (const Root& root : roots) {
+    annotation.control_points.push_back(root.point);
     Stopwatch stopwatch;
     forest.remove(root.point);
     annotation.delete_ms.push_back(stopwatch.elapsed_ms());
@@ -66,12 +70,12 @@ Status click(const AnnotateOptions& options, std::shared_ptr<const Neighbourhood
 }
 
 Status drag_rectangles(const AnnotateOptions& options, const PointCloud& cloud, const std::vector<std::uint32_t>& truth,
-                       const Executor& executor, SimulatedAnnotation& annotation, ProgressBar& bar) {
+                       const Executor& executor, SimulatedAnnotation& annotation, AnnotateProgress& progress) {
   SACCADE_TRY(RectangleAnnotator annotator, RectangleAnnotator::create(cloud.positions_m, truth, {}, executor));
   const std::size_t actions = static_cast<std::size_t>(options.clicks) * annotation.objects;
   while (annotation.clicks.size() < actions) {
     if (interrupted()) return interrupted_error();
-    bar.update("rectangles", annotation.clicks.size(), actions);
+    progress.stage("rectangles", annotation.clicks.size(), actions);
     const std::optional<RectangleAction> next = annotator.next(executor);
     if (!next) break;
     SACCADE_TRY(const AnnotationScore score, score_annotation(annotator.labels(), truth));
@@ -90,31 +94,36 @@ std::optional<std::size_t> SimulatedAnnotation::clicks_to(double iou_mean) const
   return static_cast<std::size_t>(reached - clicks.begin()) + 1;
 }
 
-Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudFile& file,
-                                                const Executor& executor, ProgressBar& bar) {
-  auto cloud = cloud_from_fields(file.fields());
-  if (!cloud) return in_file(cloud.error(), options.cloud);
-  SACCADE_TRY(std::vector<std::uint32_t> truth, read_truth(options, cloud->positions_m.size(), bar));
+AnnotationStep SimulatedAnnotation::after(std::size_t clicks_per_label) const {
+  if (clicks.empty()) return {};
+  return clicks[std::min(clicks_per_label * objects, clicks.size()) - 1];
+}
+
+Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudJob& job,
+                                                const LoadedCloud& cloud, const Executor& executor,
+                                                AnnotateProgress& progress) {
+  const PointCloud& points = cloud.points;
+  SACCADE_TRY(std::vector<std::uint32_t> truth, read_truth(options, job, points.positions_m.size(), progress));
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (!cloud->positions_m[i].allFinite()) truth[i] = 0;
+    if (!points.positions_m[i].allFinite()) truth[i] = 0;
   }
   SACCADE_TRY(const AnnotationScore none, score_annotation(std::vector<std::uint32_t>(truth.size(), 0), truth));
   if (none.points == 0) {
-    return Error{Errc::invalid_argument, "no point of the cloud has a label but 0 in it", options.truth.string()};
+    return Error{Errc::invalid_argument, "no point of the cloud has a label but 0 in it", job.truth.string()};
   }
   SimulatedAnnotation annotation;
   annotation.points = none.points;
   annotation.objects = none.objects.size();
   if (options.method == AnnotationMethod::rectangle) {
-    SACCADE_CHECK(drag_rectangles(options, *cloud, truth, executor, annotation, bar));
+    SACCADE_CHECK(drag_rectangles(options, points, truth, executor, annotation, progress));
     return annotation;
   }
-  bar.update("graph", 0, 0);
+  progress.stage("graph");
   const Stopwatch stopwatch;
-  SACCADE_TRY(Neighbourhood built, Neighbourhood::build(*cloud, options.graph, executor));
+  SACCADE_TRY(Neighbourhood built, in_file(Neighbourhood::build(points, options.graph, executor), job.cloud));
   annotation.graph_ms = stopwatch.elapsed_ms();
   const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
-  SACCADE_CHECK(click(options, graph, *cloud, std::move(truth), annotation, bar));
+  SACCADE_CHECK(click(options, job, graph, points, std::move(truth), annotation, progress));
   return annotation;
 }
 

@@ -1,44 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade annotate as a user runs it: a simulated annotator on a made-up table with three boxes, and bad input.
-#include <gtest/gtest.h>
-
-#include <cmath>
-
-#include "cli/run_program.hpp"
-#include "saccade/io/label_input.hpp"
+#include "cli/annotated_boxes.hpp"
 
 namespace saccade::test {
 namespace {
 
-constexpr int kLabels{4};
-
-/// A frame of a camera that looks down on a table, 1 m away, with three boxes, each of one colour.
-class Annotate : public ::testing::Test {
+class Annotate : public AnnotatedBoxes {
  protected:
   void SetUp() override {
-    std::ofstream cloud{folder_ / "cloud.csv"};
-    std::ofstream truth{folder_ / "truth.txt"};
-    cloud << "x,y,z,r,g,b\n";
-    for (int row = 0; row < 100; ++row) {
-      for (int column = 0; column < 120; ++column) {
-        const int box = row >= 30 && row < 70 && column % 40 >= 10 && column % 40 < 30 ? 1 + column / 40 : 0;
-        cloud << 0.005 * (column - 60) << ',' << 0.005 * (row - 50) << ',' << (box > 0 ? 0.95 : 1.0) << ','
-              << (box == 0 ? 200 : 30) << ',' << 60 * box << ",90\n";
-        truth << box + 1 << '\n';
-        ++points_;
-      }
-    }
+    AnnotatedBoxes::SetUp();
+    fs::rename(path("cloud.txt"), path("truth.txt"));
   }
-
-  [[nodiscard]] std::string path(const std::string& name) const { return (folder_ / name).string(); }
-  [[nodiscard]] Arguments simulate(const Arguments& more = {}) const {
-    Arguments all{"--json", "-", "annotate", path("cloud.csv"), "--simulate", path("truth.txt"), "--max-path", "10"};
-    all.insert(all.end(), more.begin(), more.end());
-    return all;
-  }
-
-  TempFolder folder_;
-  std::size_t points_{0};
+  std::size_t points_{kPoints};
 };
 
 TEST_F(Annotate, AFewClicksLabelAScene) {
@@ -52,6 +25,8 @@ TEST_F(Annotate, AFewClicksLabelAScene) {
   EXPECT_EQ(result["clicks"].back()["iou_mean"], 1.0);
   EXPECT_EQ(result["clicks"][0]["label"], 1);
   EXPECT_EQ(result["noc"]["90"], kLabels);
+  ASSERT_EQ(result["per_label"].size(), 4U);
+  EXPECT_EQ(result["per_label"][3]["iou_mean"], 1.0);
   for (const char* key : {"graph", "full"}) EXPECT_GT(result["ms"][key], 0.0);
   for (const char* key : {"add", "delete"}) EXPECT_GT(result["ms"][key]["median"], 0.0);
   const auto written = read_labels(folder_ / "labels.npy", points_);
@@ -61,9 +36,8 @@ TEST_F(Annotate, AFewClicksLabelAScene) {
 }
 
 TEST_F(Annotate, ShortPathsLeaveMuchWithoutALabel) {
-  Arguments arguments = simulate();
-  arguments.back() = "0.01";
-  const Outcome outcome = run_program(arguments);
+  const Outcome outcome = run_program(
+      {"--json", "-", "annotate", path("cloud.csv"), "--simulate", path("truth.txt"), "--max-path", "0.01"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = outcome.json()["result"];
   ASSERT_EQ(result["clicks"].size(), std::size_t{4 * kLabels});
@@ -96,6 +70,10 @@ TEST_F(Annotate, BadInputIsSaid) {
     return outcome.err;
   };
   EXPECT_NE(error_of({"annotate", path("cloud.csv")}, 2).find("--simulate"), std::string::npos);
+  EXPECT_NE(
+      error_of({"annotate", path("cloud.csv"), "--script", path("cloud.csv"), "--clicks", "3"}, 2).find("--simulate"),
+      std::string::npos);
+  EXPECT_NE(error_of(simulate({"--session", path("a")}), 2).find("--session"), std::string::npos);
   EXPECT_NE(error_of(simulate({"--color-weight", "-1"}), 2).find("not negative"), std::string::npos);
   EXPECT_NE(error_of(simulate({"--out", path("cloud.csv")}), 3).find("--out"), std::string::npos);
   EXPECT_NE(error_of(simulate({"--out", path("labels.jpg")}), 3).find("labels are written as"), std::string::npos);
@@ -103,7 +81,7 @@ TEST_F(Annotate, BadInputIsSaid) {
                 .find("--json"),
             std::string::npos);
   std::ofstream{folder_ / "empty.csv"};
-  EXPECT_NE(error_of({"annotate", path("empty.csv"), "--simulate", path("truth.txt")}, 3).find("holds no points"),
+  EXPECT_NE(error_of({"annotate", path("empty.csv"), "--simulate", path("truth.txt")}, 3).find("no point"),
             std::string::npos);
   std::ofstream{folder_ / "truth.txt"} << "1\n2\n";
   EXPECT_NE(error_of(simulate(), 3).find("truth.txt"), std::string::npos);

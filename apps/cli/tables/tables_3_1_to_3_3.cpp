@@ -116,14 +116,14 @@ void add_exploration_notes(const ReproduceOptions& options, ReproducedTable& tab
 }
 
 /// A row of Table 3.1: seconds of five views, mean and standard deviation over the experiments.
-struct Phase {
+struct TimedPhase {
   const char* name;
   const char* thesis_attention;
   const char* thesis_standard;
   double (*seconds)(const ExploredView&);
 };
 
-constexpr std::array<Phase, 8> kPhases{
+constexpr std::array<TimedPhase, 8> kPhases{
     {{"segmentation + saliency", "46.1 ± 2.5", "-",
       [](const ExploredView& view) { return 1e-3 * (view.segmentation_ms + view.saliency_ms); }},
      {"views generation", "2.1 ± 0.1", "2.1 ± 0.1",
@@ -146,7 +146,7 @@ constexpr std::array<Phase, 8> kPhases{
                        view.evaluation_ms + view.planner_map_ms + view.planning_ms);
       }}}};
 
-MeanEstimate seconds_of(const std::vector<Experiment>& experiments, const Phase& phase) {
+MeanEstimate seconds_of(const std::vector<Experiment>& experiments, const TimedPhase& phase) {
   std::vector<double> sums;
   for (const Experiment& experiment : experiments) {
     double sum = 0.0;
@@ -237,7 +237,7 @@ Result<ReproducedTable> reproduce_table_3_1(const ReproduceOptions& options, con
   table.caption = "Table 3.1: seconds of each phase of five views, mean and standard deviation of four experiments";
   table.columns = {"phase", "proposed, thesis", "attention", "standard, thesis", "standard"};
   json rows = json::array();
-  for (const Phase& phase : kPhases) {
+  for (const TimedPhase& phase : kPhases) {
     const MeanEstimate attention = seconds_of(all.attention, phase);
     const MeanEstimate standard = seconds_of(all.standard, phase);
     table.rows.push_back(

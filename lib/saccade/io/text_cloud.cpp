@@ -224,13 +224,18 @@ bool has_text_cloud_suffix(const std::filesystem::path& path) {
 
 bool looks_like_text_cloud(std::string_view head) {
   LineScanner lines{without_byte_order_mark(head)};
+  bool counted{false};
   while (const auto line = lines.next()) {
     if (is_comment(*line)) continue;
+    if (!counted && point_count(*line)) {
+      counted = true;
+      continue;
+    }
     const char separator = separator_of(*line);
-    if (are_numbers(*line, separator)) return point_count(*line) || fields_of(*line, separator).size() >= 3;
+    if (are_numbers(*line, separator)) return fields_of(*line, separator).size() >= 3;
     return have_positions(column_names(*line));
   }
-  return false;
+  return counted;
 }
 
 Result<TextCloud> parse_text_cloud(std::vector<std::byte> file) {

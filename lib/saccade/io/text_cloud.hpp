@@ -24,8 +24,8 @@ struct TextCloud {
 
 /// .xyz, .txt, .csv or .pts, in letters of either case.
 [[nodiscard]] bool has_text_cloud_suffix(const std::filesystem::path& path);
-/// Whether the first line that is no comment is a row of at least three numbers, a number of points, or names columns
-/// x, y and z. `head`: the file or its beginning. O(head).
+/// Whether the first line that is no comment is a row of at least three numbers or names columns x, y and z; before it
+/// may stand a number of points. So labels, one per line, are none. `head`: the file or its beginning. O(head).
 [[nodiscard]] bool looks_like_text_cloud(std::string_view head);
 
 /// Columns are separated by commas, by semicolons, or by blanks and tabs. Lines that start with # or // are comments. A

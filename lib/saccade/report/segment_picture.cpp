@@ -211,6 +211,27 @@ Panel saliency_panel(const DrawnSegments& segments, std::span<const double> valu
   return {draw_segments(segments, view, colors, executor), std::move(title), bar, amount_colors(), {}};
 }
 
+Panel marked_panel(const DrawnSegments& segments, std::span<const Rgb8> colors, std::span<const std::uint32_t> marked,
+                   const Viewpoint& view, std::string title, const Executor& executor) {
+  constexpr double kRim_px{11.0};
+  constexpr double kHiddenOpacity{0.4};
+  constexpr double kNearer{0.002};  // each disc lies before the one around it
+  Canvas canvas = canvas_with(segments, view, colors, executor);
+  const Eigen::Vector3d p_eye = view.T_world_camera.translation();
+  for (const std::uint32_t point : marked) {
+    const Eigen::Vector3d p = segments.positions_m[point].cast<double>();
+    const double towards_eye = 3.0 * segments.spacing_m / std::max((p_eye - p).norm(), 3.0 * segments.spacing_m);
+    const auto disc = [&](double diameter_px, const Rgb8& color, double steps) {
+      const double share = std::min(0.5, towards_eye + steps * kNearer);
+      canvas.point(p + share * (p_eye - p), diameter_px, color, kHiddenOpacity);
+    };
+    disc(kRim_px, kNameColor, 0.0);
+    disc(0.75 * kRim_px, {255, 255, 255}, 1.0);
+    disc(0.5 * kRim_px, color_of(segments.labels[point], colors), 2.0);
+  }
+  return {canvas.finish(), std::move(title), {}, {}, {}};
+}
+
 Viewpoint camera_view_of(std::span<const Eigen::Vector3f> positions_m, int width, int height) {
   Viewpoint view;
   Eigen::Array2d low{Eigen::Array2d::Constant(1e9)};

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// draw_segments, segments_panel, saliency_panel: a cloud or a mesh coloured by its segments, or by their saliency.
+// draw_segments, segments_panel, saliency_panel, marked_panel: a cloud or a mesh coloured by its segments, by their
+// saliency, or by labels.
 
 #include <Eigen/Core>
 #include <array>
@@ -39,6 +40,12 @@ struct DrawnSegments {
 /// The segments, the more salient the brighter, with a scale from 0 to `most`; `values` has one saliency per segment.
 [[nodiscard]] Panel saliency_panel(const DrawnSegments& segments, std::span<const double> values, double most,
                                    const Viewpoint& view, std::string title, const Executor& executor);
+
+/// Each point in the colour of its segment, as given, and some points marked by a dot of that colour with a rim, which
+/// shows faintly through what hides it. Expects a colour per segment.
+[[nodiscard]] Panel marked_panel(const DrawnSegments& segments, std::span<const Rgb8> colors,
+                                 std::span<const std::uint32_t> marked, const Viewpoint& view, std::string title,
+                                 const Executor& executor);
 
 /// The view of a camera at the origin that looks along +z with y downwards, wide enough for all points.
 [[nodiscard]] Viewpoint camera_view_of(std::span<const Eigen::Vector3f> positions_m, int width, int height);

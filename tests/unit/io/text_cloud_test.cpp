@@ -123,10 +123,11 @@ TEST(TextCloud, HostileLinesAreErrorsThatSayWhere) {
 }
 
 TEST(TextCloud, LooksLikeOneOrNot) {
-  for (const char* text : {"1 2 3\n", "# a\n\n1,2,3,4\n", "12\n1 2 3\n", "X;Y;Z\n", "1 2 3\nbroken\n"}) {
+  for (const char* text :
+       {"1 2 3\n", "# a\n\n1,2,3,4\n", "12\n1 2 3\n", "0\n", "12\n# a\nx y z\n", "X;Y;Z\n", "1 2 3\nbroken\n"}) {
     EXPECT_TRUE(looks_like_text_cloud(text)) << text;
   }
-  for (const char* text : {"", "# x y z\n", "1 cup\n2 table\n", "Clouds of a table.\n", "0.5 0.25\n"}) {
+  for (const char* text : {"", "# x y z\n", "1 cup\n2 table\n", "Clouds of a table.\n", "0.5 0.25\n", "3\n3\n1\n"}) {
     EXPECT_FALSE(looks_like_text_cloud(text)) << text;
   }
 }

@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: Apache-2.0
+#include <CLI/CLI.hpp>
+#include <map>
+#include <sstream>
+
+#include "annotate.hpp"
+#include "options.hpp"
+
+namespace saccade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+template <class T>
+std::string text_of(const T& value) {
+  std::ostringstream text;
+  text << std::boolalpha << value;
+  return text.str();
+}
+
+template <class T>
+GivenGraphOption given(const std::string& name, T NeighbourhoodConfig::*value, const AnnotateOptions& options) {
+  return [name, value, &options](const NeighbourhoodConfig& saved) -> std::optional<std::string> {
+    if (options.graph.*value == saved.*value) return std::nullopt;
+    return name + " " + text_of(options.graph.*value) + " does not fit: this session was begun with " +
+           text_of(saved.*value) + "; leave the option out, or begin another session";
+  };
+}
+
+template <class T>
+void add_graph_option(CLI::App& command, AnnotateOptions& options, const std::string& name,
+                      T NeighbourhoodConfig::*value, const std::string& description, const std::string& type) {
+  CLI::Option* option = nullptr;
+  if constexpr (std::is_same_v<T, bool>) {
+    option = command.add_flag(name, options.graph.*value, description);
+  } else {
+    option = command.add_option(name, options.graph.*value, description)->type_name(type)->capture_default_str();
+  }
+  option->each(
+      [&options, name, value](const std::string&) { options.given_graph.push_back(given(name, value, options)); });
+}
+
+void add_graph_options(CLI::App& command, AnnotateOptions& options) {
+  add_graph_option(command, options, "--neighbours", &NeighbourhoodConfig::neighbours,
+                   "nearest points that each point is joined to", "K");
+  add_graph_option(command, options, "--position-weight", &NeighbourhoodConfig::position_weight_per_m,
+                   "cost of a metre", "WEIGHT");
+  add_graph_option(command, options, "--normal-weight", &NeighbourhoodConfig::normal_weight,
+                   "cost of a difference of normals of 1 (a right angle)", "WEIGHT");
+  add_graph_option(command, options, "--color-weight", &NeighbourhoodConfig::color_weight,
+                   "cost of an edge of the colour cube", "WEIGHT");
+  add_graph_option(command, options, "--max-path", &NeighbourhoodConfig::max_path,
+                   "a control point reaches as far as paths cost less than this", "COST");
+  add_graph_option(command, options, "--adapt-to-density", &NeighbourhoodConfig::adapt_to_density,
+                   "distances count by the local spacing of points, for clouds that thin out (LiDAR)", "");
+}
+
+void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option& simulate) {
+  CLI::Option* script =
+      command.add_option("--script", options.script, "actions to do, one JSON object per line (docs/annotation.md)")
+          ->check(CLI::ExistingFile)
+          ->type_name("FILE")
+          ->excludes(&simulate);
+  command
+      .add_option(
+          "--session", options.session,
+          "goes on with the annotation in this file, or begins it; every action is in it before it counts. Of a "
+          "folder: a folder of them (.sacann)")
+      ->type_name("FILE")
+      ->excludes(&simulate);
+  command.add_option("--presets", options.presets, "labels that are known: YAML or JSON (docs/formats.md)")
+      ->check(CLI::ExistingFile)
+      ->type_name("FILE")
+      ->excludes(&simulate);
+  command.add_option("--client", options.client, "who does the actions that name no client; undo is everyone's own")
+      ->check(check_whole_number)
+      ->needs(script)
+      ->type_name("N")
+      ->capture_default_str();
+}
+
+void add_simulation_options(CLI::App& command, AnnotateOptions& options, CLI::Option& simulate) {
+  command.add_option("--clicks", options.clicks, "clicks per label")
+      ->check(CLI::Range(1, 1000))
+      ->needs(&simulate)
+      ->type_name("N")
+      ->capture_default_str();
+  const std::map<std::string, AnnotationMethod> methods{{"control-points", AnnotationMethod::control_points},
+                                                        {"rectangle", AnnotationMethod::rectangle}};
+  command
+      .add_option("--method", options.method,
+                  "control-points, or rectangle: the best rectangle of six views, action by action")
+      ->transform(CLI::CheckedTransformer(methods))
+      ->needs(&simulate)
+      ->type_name("METHOD")
+      ->default_str("control-points");
+  const std::map<std::string, Tens> tens{{"detect", Tens::detect}, {"merge", Tens::merge}, {"keep", Tens::keep}};
+  command
+      .add_option("--tens", options.tens,
+                  "true labels of one ten are parts of one object, as in mOSD (1 to 9: the table); merge, keep, or "
+                  "detect")
+      ->transform(CLI::CheckedTransformer(tens))
+      ->needs(&simulate)
+      ->type_name("HOW")
+      ->default_str("detect");
+}
+
+void refuse(const fs::path& given, const std::string& option, const std::string& why) {
+  if (!given.empty()) usage_error(option, why);
+}
+
+}  // namespace
+
+bool AnnotateOptions::of_folder() const {
+  std::error_code ignored;
+  return fs::is_directory(cloud, ignored);
+}
+
+void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
+  command.add_option("cloud", options.cloud, "point cloud (PCD, PLY, text or KITTI .bin), or a folder of clouds")
+      ->required()
+      ->check(CLI::ExistingPath)
+      ->type_name("CLOUD");
+  CLI::Option* simulate =
+      command
+          .add_option("--simulate", options.truth,
+                      "true labels of its points (PCD, PLY, .label, .npy, text): a simulated annotator clicks at the "
+                      "centre of the largest error, again and again. Of a folder: a folder of them, by the same names")
+          ->check(CLI::ExistingPath)
+          ->type_name("TRUTH");
+  add_action_options(command, options, *simulate);
+  add_simulation_options(command, options, *simulate);
+  command
+      .add_option("--out", options.out, "labels: .pcd, .ply, .csv, .xyz, .txt, .label or .npy; of a folder: a folder")
+      ->type_name("FILE");
+  command.add_option("--names", options.names, "what the numbers of labels mean: .txt or .json")->type_name("FILE");
+  command
+      .add_option("--picture", options.picture,
+                  "the cloud in the colours of its labels, with control points: .png; of a folder: a folder")
+      ->type_name("FILE");
+  add_graph_options(command, options);
+}
+
+void check_annotate_options(const AnnotateOptions& options) {
+  if (const Status valid = options.graph.validate(); !valid) throw CLI::ValidationError{valid.error().message};
+  if (options.truth.empty() && options.script.empty() && options.session.empty()) {
+    throw CLI::ValidationError{
+        "say what to do: --script FILE does actions, --session FILE goes on with an annotation or begins one, "
+        "--simulate TRUTH lets a simulated annotator click"};
+  }
+  if (!options.names.empty() && options.names.extension() != ".txt" && options.names.extension() != ".json") {
+    usage_error("--names", "is a .txt or a .json");
+  }
+  if (!options.of_folder()) return;
+  refuse(options.script, "--script", "is for one cloud, not for a folder");
+  refuse(options.presets, "--presets", "is for one cloud, not for a folder");
+  refuse(options.names, "--names", "is for one cloud, not for a folder");
+}
+
+}  // namespace saccade::cli

@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: Apache-2.0
+// An annotation that goes on: a session's actions so far, then those of presets and of a script.
+#include <variant>
+
+#include "annotate.hpp"
+#include "interrupt.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/annotation_session.hpp"
+#include "saccade/io/file_io.hpp"
+#include "saccade/io/label_presets.hpp"
+
+namespace saccade::cli {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// The session as it is on the disk, if there is one. It must be of this cloud, and the options that were given must
+/// agree with its graph.
+Result<std::optional<SavedSession>> saved_session(const AnnotateOptions& options, const CloudJob& job,
+                                                  const LoadedCloud& cloud) {
+  std::error_code ignored;
+  if (job.session.empty() || !fs::exists(job.session, ignored)) return std::optional<SavedSession>{};
+  SACCADE_TRY(SavedSession saved, read_journal(job.session));
+  const NeighbourhoodConfig& graph = saved.subject.graph;
+  const SessionSubject wanted{cloud.path.filename().string(), cloud.points.positions_m.size(),
+                              hash_positions(cloud.points), graph};
+  if (const Status same = check_same_subject(saved.subject, wanted); !same) return in_file(same.error(), job.session);
+  for (const GivenGraphOption& given : options.given_graph) {
+    if (const auto differs = given(graph)) return Error{Errc::invalid_argument, *differs, job.session.string()};
+  }
+  return std::optional{std::move(saved)};
+}
+
+/// In memory, or with a journal.
+class OpenAnnotation {
+ public:
+  explicit OpenAnnotation(Annotation annotation) : state_{std::move(annotation)} {}
+  explicit OpenAnnotation(AnnotationSession session) : state_{std::move(session)} {}
+
+  [[nodiscard]] const Annotation& annotation() const {
+    return is_kept() ? std::get<AnnotationSession>(state_).annotation() : std::get<Annotation>(state_);
+  }
+  [[nodiscard]] bool is_kept() const { return std::holds_alternative<AnnotationSession>(state_); }
+  [[nodiscard]] Result<Applied> apply(AnnotationAction action) {
+    if (is_kept()) return std::get<AnnotationSession>(state_).apply(std::move(action));
+    auto& annotation = std::get<Annotation>(state_);
+    SACCADE_CHECK(annotation.validate(action));
+    return annotation.apply(std::move(action));
+  }
+
+ private:
+  std::variant<Annotation, AnnotationSession> state_;
+};
+
+/// For what is to be done: without actions as it was saved.
+Result<OpenAnnotation> open_annotation(const CloudJob& job, const PlannedActions& actions, const LoadedCloud& cloud,
+                                       const std::optional<SavedSession>& saved,
+                                       const std::shared_ptr<const Neighbourhood>& graph) {
+  if (job.session.empty() || actions.empty()) {
+    Annotation annotation{graph};
+    if (saved) annotation.restore(saved->actions);
+    return OpenAnnotation{std::move(annotation)};
+  }
+  SACCADE_TRY(AnnotationSession session, AnnotationSession::open_or_create(job.session, cloud.path.filename().string(),
+                                                                           hash_positions(cloud.points), graph));
+  if (session.read_only()) return *session.read_only();
+  return OpenAnnotation{std::move(session)};
+}
+
+/// Labels of which something else is known than in the presets, or nothing.
+Status define_presets(const std::vector<NumberedLabel>& presets, std::uint64_t client, OpenAnnotation& annotation) {
+  DefineLabels define;
+  const auto& defined = annotation.annotation().label_table().defined();
+  for (const NumberedLabel& label : presets) {
+    const auto known = defined.find(label.number);
+    if (known == defined.end() || !(known->second == label.info)) define.labels.push_back(label);
+  }
+  if (define.labels.empty()) return {};
+  const auto applied = annotation.apply({client, std::move(define)});
+  return applied ? Status{} : applied.error();
+}
+
+/// Those before the line stay done.
+Error failed_at(Error error, const ScriptedAction& scripted, const fs::path& script, std::size_t done, bool kept) {
+  const std::string line = "line " + std::to_string(scripted.line);
+  if (error.context.find(line) == std::string::npos) error.context = line;
+  if (kept && done > 0) {
+    error.message += "; the " + std::to_string(done) + (done == 1 ? " action" : " actions") +
+                     " before it are in the session, so take those lines out before you run the script again";
+  }
+  return in_file(std::move(error), script);
+}
+
+Status replay(const AnnotateOptions& options, std::span<const ScriptedAction> script, const LoadedCloud& cloud,
+              OpenAnnotation& annotation, AnnotatedCloud& made, const Executor& executor, AnnotateProgress& progress) {
+  for (const ScriptedAction& scripted : script) {
+    if (interrupted()) {
+      made.interrupted = true;
+      return {};
+    }
+    progress.stage("actions", made.action_ms.size(), script.size());
+    const Stopwatch stopwatch;
+    auto action = resolve_action(scripted, cloud.points.positions_m, annotation.annotation(), options.client, executor);
+    if (!action)
+      return failed_at(action.error(), scripted, options.script, made.action_ms.size(), annotation.is_kept());
+    const std::uint64_t client = action->client;
+    const auto applied = annotation.apply(std::move(*action));
+    if (!applied)
+      return failed_at(applied.error(), scripted, options.script, made.action_ms.size(), annotation.is_kept());
+    if (!applied->done) {
+      progress.note(options.script.string() + ", line " + std::to_string(scripted.line) + ": client " +
+                    std::to_string(client) + " has nothing to " +
+                    (std::holds_alternative<UndoAction>(scripted.change) ? "undo" : "redo"));
+    }
+    made.action_ms.push_back(stopwatch.elapsed_ms());
+  }
+  return {};
+}
+
+}  // namespace
+
+double AnnotatedCloud::labelled_share() const {
+  return points == 0 ? 0.0 : static_cast<double>(labels.labelled()) / static_cast<double>(points);
+}
+
+AnnotatedCloud untouched(const LoadedCloud& cloud) {
+  AnnotatedCloud made;
+  for (const Eigen::Vector3f& p : cloud.points.positions_m) made.points += p.allFinite() ? 1 : 0;
+  made.labels.labels.assign(cloud.points.positions_m.size(), kNoLabel);
+  return made;
+}
+
+Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const CloudJob& job,
+                                      const PlannedActions& actions, const LoadedCloud& cloud, const Executor& executor,
+                                      AnnotateProgress& progress) {
+  SACCADE_TRY(const std::optional<SavedSession> saved, saved_session(options, job, cloud));
+  if (!saved && actions.empty()) {
+    return Error{Errc::not_found, "there is no such session; --script or --presets begin one", job.session.string()};
+  }
+  if (saved && saved->torn_bytes > 0) {
+    progress.note(job.session.string() + ": the last action was never finished (" + std::to_string(saved->torn_bytes) +
+                  " bytes) and does not count");
+  }
+  const NeighbourhoodConfig& config = saved ? saved->subject.graph : options.graph;
+  const Status checked = check_script(actions.script, cloud.points.positions_m.size(), config.max_path);
+  if (!checked) return in_file(checked.error(), options.script);
+  progress.stage("graph");
+  const Stopwatch stopwatch;
+  SACCADE_TRY(Neighbourhood built, in_file(Neighbourhood::build(cloud.points, config, executor), job.cloud));
+  const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
+  AnnotatedCloud made = untouched(cloud);
+  made.graph_ms = stopwatch.elapsed_ms();
+  SACCADE_TRY(OpenAnnotation annotation, open_annotation(job, actions, cloud, saved, graph));
+  SACCADE_CHECK(define_presets(actions.presets, options.client, annotation));
+  SACCADE_CHECK(replay(options, actions.script, cloud, annotation, made, executor, progress));
+  made.labels = labelled_points(annotation.annotation());
+  made.actions = annotation.annotation().history().size();
+  return made;
+}
+
+}  // namespace saccade::cli
