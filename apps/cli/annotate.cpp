@@ -21,7 +21,7 @@ using nlohmann::json;
 /// No file that is written is one of those that are read, or another one that is written.
 Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs, const GlobalOptions& global) {
   std::vector<fs::path> others{options.script, options.presets};
-  for (const CloudJob& job : jobs) others.insert(others.end(), {job.cloud, job.truth, job.session});
+  for (const CloudJob& job : jobs) others.insert(others.end(), {job.cloud, job.truth, job.session, job.seeds});
   const auto check = [&](const fs::path& file, const char* option) -> Status {
     SACCADE_CHECK(check_output(file, option, others));
     others.push_back(file);
@@ -128,9 +128,11 @@ Result<int> run_annotations(const AnnotateOptions& options, std::span<const Clou
   bool cut_short{false};
   const auto annotate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<AnnotatedCloud> {
     std::error_code ignored;
-    const bool begun = !actions.empty() || fs::exists(job.session, ignored);
-    if (options.of_folder() && !begun) return untouched(cloud);
-    SACCADE_TRY(AnnotatedCloud made, annotate_cloud(options, job, actions, cloud, executor, progress));
+    const bool begun = !job.session.empty() && fs::exists(job.session, ignored);
+    if (options.of_folder() && !begun && job.seeds.empty()) return untouched(cloud);
+    CloudJob todo = job;
+    if (options.of_folder() && begun) todo.seeds.clear();  // a folder's seeds begin what is not begun
+    SACCADE_TRY(AnnotatedCloud made, annotate_cloud(options, todo, actions, cloud, executor, progress));
     cut_short = cut_short || made.interrupted;
     if (!made.interrupted) SACCADE_CHECK(write_label_files(job.files, cloud, made.labels, executor));
     return made;

@@ -40,6 +40,8 @@ struct AnnotateOptions {
   std::filesystem::path session;
   std::filesystem::path presets;
   std::uint64_t client{0};      ///< of actions in the script that name none
+  std::filesystem::path seeds;  ///< labels to begin with
+  double seed_share{0.99};      ///< of them that control points give back
   std::filesystem::path out;    ///< labels
   std::filesystem::path names;  ///< of labels
   std::filesystem::path picture;
@@ -75,6 +77,7 @@ struct CloudJob {
   std::filesystem::path cloud;
   std::filesystem::path truth;
   std::filesystem::path session;
+  std::filesystem::path seeds;
   LabelFiles files;
 };
 
@@ -114,11 +117,19 @@ struct SimulatedAnnotation {
                                                               const LoadedCloud& cloud, const Executor& executor,
                                                               AnnotateProgress& progress);
 
+/// What control points give back of labels.
+struct SeedOutcome {
+  std::size_t points{0};  ///< with a label
+  std::size_t reproduced{0};
+  std::size_t control_points{0};
+};
+
 /// What a session, a script or both made of a cloud.
 struct AnnotatedCloud {
   std::size_t points{0};  ///< that are finite
   LabelledPoints labels;
   std::uint64_t actions{0};  ///< since the annotation began
+  std::optional<SeedOutcome> seeds;
   double graph_ms{0.0};
   std::vector<double> action_ms;  ///< of this run
   bool interrupted{false};
@@ -133,8 +144,8 @@ struct PlannedActions {
   [[nodiscard]] bool empty() const { return presets.empty() && script.empty(); }
 };
 
-/// The annotation so far, of the job's session, with the actions done on it. Where there are none, the session is read
-/// and not opened; not_found if it was never begun.
+/// The annotation so far, of the job's session, with the actions done on it, after those of seeds. Where there are
+/// none, the session is read and not opened; not_found if it was never begun. invalid_argument for seeds where it was.
 [[nodiscard]] Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const CloudJob& job,
                                                     const PlannedActions& actions, const LoadedCloud& cloud,
                                                     const Executor& executor, AnnotateProgress& progress);

@@ -80,21 +80,24 @@ Status make_folder(const fs::path& folder) {
 Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options) {
   const LabelFiles files{options.out, options.names, options.picture};
   if (!options.of_folder()) {
-    CloudJob job{options.cloud, options.truth, options.session, files};
+    CloudJob job{options.cloud, options.truth, options.session, options.seeds, files};
     if (is_folder(options.session)) job.session = named_after(options.session, options.cloud, kSessionSuffix);
     return std::vector{std::move(job)};
   }
   SACCADE_TRY(const std::vector<fs::path> clouds, list_clouds(options.cloud));
   SACCADE_CHECK(check_stems(clouds));
-  for (const fs::path& folder : {options.truth, options.session}) {
+  for (const fs::path& folder : {options.truth, options.session, options.seeds}) {
     if (folder.empty() || is_folder(folder)) continue;
     return Error{Errc::not_found, "is no folder, as it must be for a folder of clouds", folder.string()};
   }
   std::vector<CloudJob> jobs;
   for (const fs::path& cloud : clouds) {
-    CloudJob job{cloud, {}, {}, {}};
+    CloudJob job{cloud, {}, {}, {}, {}};
     if (!options.truth.empty()) {
       SACCADE_TRY(job.truth, truth_of(options.truth, cloud));
+    }
+    if (!options.seeds.empty()) {
+      SACCADE_TRY(job.seeds, truth_of(options.seeds, cloud));
     }
     if (!options.session.empty()) job.session = named_after(options.session, cloud, kSessionSuffix);
     if (!files.out.empty()) job.files.out = labels_of(files.out, cloud);

@@ -72,6 +72,18 @@ void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option
       ->check(CLI::ExistingFile)
       ->type_name("FILE")
       ->excludes(&simulate);
+  CLI::Option* seeds =
+      command
+          .add_option("--seeds", options.seeds,
+                      "labels to begin with, as --simulate takes them: control points are placed that give them back")
+          ->check(CLI::ExistingPath)
+          ->type_name("LABELS")
+          ->excludes(&simulate);
+  command.add_option("--seed-share", options.seed_share, "how many of them, at least, unless that takes too many")
+      ->check(CLI::Range(0.5, 1.0))
+      ->needs(seeds)
+      ->type_name("SHARE")
+      ->capture_default_str();
   command.add_option("--client", options.client, "who does the actions that name no client; undo is everyone's own")
       ->check(check_whole_number)
       ->needs(script)
@@ -143,9 +155,10 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
 
 void check_annotate_options(const AnnotateOptions& options) {
   if (const Status valid = options.graph.validate(); !valid) throw CLI::ValidationError{valid.error().message};
-  if (options.truth.empty() && options.script.empty() && options.session.empty()) {
+  if (options.truth.empty() && options.script.empty() && options.session.empty() && options.seeds.empty()) {
     throw CLI::ValidationError{
         "say what to do: --script FILE does actions, --session FILE goes on with an annotation or begins one, "
+        "--seeds LABELS begins with labels, "
         "--simulate TRUTH lets a simulated annotator click"};
   }
   if (!options.names.empty() && options.names.extension() != ".txt" && options.names.extension() != ".json") {

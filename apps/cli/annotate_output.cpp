@@ -146,17 +146,23 @@ json annotation_json(const AnnotatedCloud& cloud) {
   json labels = json::array();
   for (const LabelRow& row : cloud.labels.rows) labels.push_back(label_json(row));
   const std::vector<double>& action_ms = cloud.action_ms;
-  return {{"points", cloud.points},
-          {"labelled", cloud.labels.labelled()},
-          {"control_points", cloud.labels.control_points.size()},
-          {"actions", cloud.actions},
-          {"labels", std::move(labels)},
-          {"ms",
-           {{"graph", cloud.graph_ms},
-            {"actions",
-             {{"count", action_ms.size()},
-              {"median", median_of(action_ms)},
-              {"max", action_ms.empty() ? 0.0 : *std::max_element(action_ms.begin(), action_ms.end())}}}}}};
+  json result{{"points", cloud.points},
+              {"labelled", cloud.labels.labelled()},
+              {"control_points", cloud.labels.control_points.size()},
+              {"actions", cloud.actions},
+              {"labels", std::move(labels)},
+              {"ms",
+               {{"graph", cloud.graph_ms},
+                {"actions",
+                 {{"count", action_ms.size()},
+                  {"median", median_of(action_ms)},
+                  {"max", action_ms.empty() ? 0.0 : *std::max_element(action_ms.begin(), action_ms.end())}}}}}};
+  if (cloud.seeds) {
+    result["seeds"] = {{"points", cloud.seeds->points},
+                       {"reproduced", cloud.seeds->reproduced},
+                       {"control_points", cloud.seeds->control_points}};
+  }
+  return result;
 }
 
 json mean_json(std::span<const OfCloud<AnnotatedCloud>> clouds) {
@@ -225,6 +231,11 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
   const std::size_t labelled = cloud.labels.labelled();
   summary.line("points", std::to_string(cloud.points));
   summary.line("labelled", std::to_string(labelled) + " (" + percent(cloud.labelled_share()) + ")");
+  if (cloud.seeds) {
+    const double share = static_cast<double>(cloud.seeds->reproduced) / static_cast<double>(cloud.seeds->points);
+    summary.line("seeds", std::to_string(cloud.seeds->control_points) + " control points, which give back " +
+                              percent(share) + " of " + std::to_string(cloud.seeds->points) + " labels");
+  }
   summary.line("actions",
                std::to_string(cloud.actions) +
                    (cloud.action_ms.empty() ? "" : ", " + std::to_string(cloud.action_ms.size()) + " of the script"));
@@ -244,7 +255,7 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
   std::cout << "\n     label    points  control points  name\n";
   for (const LabelRow& row : cloud.labels.rows) {
     std::cout << std::right << std::setw(10) << row.label.number << std::setw(10) << row.label.points << std::setw(16)
-              << row.control_points << "  " << row.label.name << '\n';
+              << row.control_points << (row.label.name.empty() ? "" : "  " + row.label.name) << '\n';
   }
   std::cout << std::setw(10) << "none" << std::setw(10) << cloud.points - std::min(labelled, cloud.points) << '\n';
 }

@@ -1,12 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // An annotation that goes on: a session's actions so far, then those of presets and of a script.
+#include <utility>
 #include <variant>
 
 #include "annotate.hpp"
 #include "interrupt.hpp"
+#include "saccade/annotate/label_seeds.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/annotation_session.hpp"
 #include "saccade/io/file_io.hpp"
+#include "saccade/io/label_input.hpp"
 #include "saccade/io/label_presets.hpp"
 
 namespace saccade::cli {
@@ -53,10 +56,10 @@ class OpenAnnotation {
 };
 
 /// For what is to be done: without actions as it was saved.
-Result<OpenAnnotation> open_annotation(const CloudJob& job, const PlannedActions& actions, const LoadedCloud& cloud,
+Result<OpenAnnotation> open_annotation(const CloudJob& job, bool changes, const LoadedCloud& cloud,
                                        const std::optional<SavedSession>& saved,
                                        const std::shared_ptr<const Neighbourhood>& graph) {
-  if (job.session.empty() || actions.empty()) {
+  if (job.session.empty() || !changes) {
     Annotation annotation{graph};
     if (saved) annotation.restore(saved->actions);
     return OpenAnnotation{std::move(annotation)};
@@ -78,6 +81,29 @@ Status define_presets(const std::vector<NumberedLabel>& presets, std::uint64_t c
   if (define.labels.empty()) return {};
   const auto applied = annotation.apply({client, std::move(define)});
   return applied ? Status{} : applied.error();
+}
+
+/// One action per label.
+Status plant_seeds(const LabelSeeds& seeds, std::uint64_t client, OpenAnnotation& annotation, AnnotatedCloud& made) {
+  made.seeds = SeedOutcome{seeds.points, seeds.reproduced, 0};
+  for (const SetControlPoints& set : seeds.actions) {
+    made.seeds->control_points += set.points.size();
+    const auto applied = annotation.apply({client, set});
+    if (!applied) return applied.error();
+  }
+  return {};
+}
+
+Result<std::optional<LabelSeeds>> seeds_of(const AnnotateOptions& options, const CloudJob& job,
+                                           const LoadedCloud& cloud, const std::shared_ptr<const Neighbourhood>& graph,
+                                           AnnotateProgress& progress) {
+  if (job.seeds.empty()) return std::optional<LabelSeeds>{};
+  progress.stage("seeds");
+  SACCADE_TRY(const std::vector<std::uint32_t> labels, read_labels(job.seeds, graph->size()));
+  SeedConfig config;
+  config.share = options.seed_share;
+  SACCADE_TRY(LabelSeeds seeds, in_file(label_seeds(graph, cloud.points, labels, config), job.seeds));
+  return std::optional{std::move(seeds)};
 }
 
 /// Those before the line stay done.
@@ -134,8 +160,16 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
                                       const PlannedActions& actions, const LoadedCloud& cloud, const Executor& executor,
                                       AnnotateProgress& progress) {
   SACCADE_TRY(const std::optional<SavedSession> saved, saved_session(options, job, cloud));
-  if (!saved && actions.empty()) {
-    return Error{Errc::not_found, "there is no such session; --script or --presets begin one", job.session.string()};
+  const bool changes = !actions.empty() || !job.seeds.empty();
+  if (!saved && !changes) {
+    return Error{Errc::not_found, "there is no such session; --script, --seeds or --presets begin one",
+                 job.session.string()};
+  }
+  if (saved && !saved->actions.empty() && !job.seeds.empty()) {
+    return Error{Errc::invalid_argument,
+                 "holds " + std::to_string(saved->actions.size()) +
+                     " actions already; seeds begin a session: leave --seeds out, or name another file",
+                 job.session.string()};
   }
   if (saved && saved->torn_bytes > 0) {
     progress.note(job.session.string() + ": the last action was never finished (" + std::to_string(saved->torn_bytes) +
@@ -150,7 +184,9 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
   const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
   AnnotatedCloud made = untouched(cloud);
   made.graph_ms = stopwatch.elapsed_ms();
-  SACCADE_TRY(OpenAnnotation annotation, open_annotation(job, actions, cloud, saved, graph));
+  SACCADE_TRY(const std::optional<LabelSeeds> seeds, seeds_of(options, job, cloud, graph, progress));
+  SACCADE_TRY(OpenAnnotation annotation, open_annotation(job, changes, cloud, saved, graph));
+  if (seeds) SACCADE_CHECK(plant_seeds(*seeds, options.client, annotation, made));
   SACCADE_CHECK(define_presets(actions.presets, options.client, annotation));
   SACCADE_CHECK(replay(options, actions.script, cloud, annotation, made, executor, progress));
   made.labels = labelled_points(annotation.annotation());

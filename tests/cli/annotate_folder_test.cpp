@@ -79,6 +79,21 @@ TEST_F(AnnotateFolder, SessionsAreListedAndExported) {
   EXPECT_NE(table.out.find("b.csv     12000   100.0 %"), std::string::npos) << table.out;
 }
 
+TEST_F(AnnotateFolder, SeedsBeginWhatIsNotBegun) {
+  fs::create_directory(path("sessions"));
+  const Arguments sessions{"--session", path("sessions")};
+  ASSERT_EQ(
+      result_of(sessions + Arguments{"--script", write("s.jsonl", "{\"do\": \"clear\"}")}, "clouds/b.csv")["actions"],
+      1);
+  for (int i = 0; i < 2; ++i) {
+    const nlohmann::json result = result_of(sessions + Arguments{"--seeds", path("clouds")});
+    EXPECT_EQ(result["clouds"][0]["actions"], kLabels);
+    EXPECT_EQ(result["clouds"][1]["actions"], 1);
+    EXPECT_EQ(result["clouds"][0].contains("seeds"), i == 0);
+    EXPECT_EQ(names_in(path("sessions")), (std::vector<std::string>{"a.sacann", "b.sacann", "c.sacann"}));
+  }
+}
+
 TEST_F(AnnotateFolder, WhatDoesNotFitIsSaidBeforeTheWork) {
   EXPECT_NE(error_of({"--simulate", path("none")}, 2).find("none"), std::string::npos);
   EXPECT_NE(error_of({"--simulate", path("clouds/a.txt")}).find("is no folder"), std::string::npos);

@@ -152,6 +152,27 @@ TEST_F(AnnotateSession, PresetsAreDefinedOnce) {
   EXPECT_EQ(text("names.txt"), "1 table\n8 mug\n");
 }
 
+TEST_F(AnnotateSession, LabelsAreSeeds) {
+  const Arguments seeds{"--session", path("s.sacann"), "--seeds", path("cloud.txt")};
+  const nlohmann::json result = result_of(seeds + Arguments{"--out", path("labels.npy")});
+  EXPECT_EQ(result["seeds"]["points"], kPoints);
+  EXPECT_GE(result["seeds"]["reproduced"], 0.99 * kPoints);
+  EXPECT_EQ(result["seeds"]["control_points"], result["control_points"]);
+  EXPECT_EQ(result["actions"], kLabels);  // one per label
+  const auto labels = read_labels(folder_ / "labels.npy", kPoints);
+  const std::vector<std::uint32_t> wanted = truth();
+  std::size_t same{0};
+  for (std::size_t i = 0; i < kPoints; ++i) same += (*labels)[i] == wanted[i] ? 1 : 0;
+  EXPECT_EQ(same, result["seeds"]["reproduced"]);
+  // They can be edited, and begin a session only once.
+  EXPECT_EQ(result_of({"--session", path("s.sacann"), "--script", write("u.jsonl", "{\"do\": \"undo\"}")})["actions"],
+            kLabels + 1);
+  EXPECT_NE(error_of(annotate(seeds)).find("holds 5 actions already"), std::string::npos);
+  EXPECT_NE(error_of(annotate({"--seeds", path("cloud.csv")})).find("label"), std::string::npos);
+  EXPECT_NE(error_of(annotate({"--seeds", path("cloud.txt"), "--seed-share", "2"}), 2).find("--seed-share"),
+            std::string::npos);
+}
+
 TEST_F(AnnotateSession, ScriptsThatFailSayWhere) {
   const auto run = [&](const std::string& script, const Arguments& more = {}) {
     return error_of(annotate(Arguments{"--script", write("a.jsonl", script)} + more));
