@@ -26,8 +26,9 @@ struct NearestNeighbours {
 };
 
 /// All eight points of a leaf look for theirs together, nearest boxes first. Of points at the K-th distance (squared,
-/// in single precision) any may be taken; which depends on the points alone. The same for every thread count. Expects 1
-/// ≤ k ≤ 64 and at most 2³² − 1 points. O(n (log n + k)), whatever the density; 4 k + 50 bytes per point.
+/// in single precision) any may be taken; which depends on the points alone. The same for every thread count and
+/// instruction set. Expects 1 ≤ k ≤ 64 and at most 2³² − 1 points. O(n (log n + k)), whatever the density; 4 k + 48
+/// bytes per point.
 [[nodiscard]] NearestNeighbours nearest_neighbours(std::span<const Eigen::Vector3f> positions_m, std::size_t k,
                                                    const Executor& executor);
 

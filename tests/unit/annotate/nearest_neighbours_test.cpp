@@ -4,9 +4,12 @@
 #include <gtest/gtest.h>
 
 #include <algorithm>
+#include <cmath>
 #include <limits>
 #include <random>
 #include <set>
+
+#include "saccade/core/simd.hpp"
 
 namespace saccade {
 namespace {
@@ -49,10 +52,15 @@ void expect_nearest(const std::vector<Eigen::Vector3f>& points, std::size_t k) {
     EXPECT_EQ(found.positions_m[node], points[point]);
     std::vector<float> distances;
     std::set<std::uint32_t> distinct;
+    std::uint32_t before{0};
     for (const std::uint32_t other : found.of(node)) {
+      const float distance = squared(points[found.order[other]], points[point]);
+      const bool is_as_near = !distances.empty() && distances.back() == distance;
+      EXPECT_TRUE(!is_as_near || before < other);
+      before = other;
       EXPECT_NE(other, node);
       distinct.insert(other);
-      distances.push_back(squared(points[found.order[other]], points[point]));
+      distances.push_back(distance);
     }
     EXPECT_EQ(distinct.size(), found.count);
     EXPECT_EQ(distances, nearest_by_all(points, point, k)) << "point " << point;
@@ -72,6 +80,27 @@ TEST(NearestNeighbours, OfPointsOnAGridAreAtTheRightDistances) {
   std::vector<Eigen::Vector3f> points;
   for (int i = 0; i < 900; ++i) points.emplace_back(static_cast<float>(i % 30), static_cast<float>(i / 30), 0.0F);
   expect_nearest(points, 10);
+}
+
+TEST(NearestNeighbours, OfOddCloudsAreThoseThatLookingAtAllPointsFinds) {
+  std::mt19937 random{17};
+  std::uniform_real_distribution<float> uniform{0.0F, 1.0F};
+  std::vector<Eigen::Vector3f> line;
+  std::vector<Eigen::Vector3f> few_places;     // each taken by many points
+  std::vector<Eigen::Vector3f> from_a_sensor;  // density falls by six orders of magnitude
+  for (int i = 0; i < 700; ++i) {
+    line.emplace_back(uniform(random), 0.0F, 0.0F);
+    few_places.emplace_back(static_cast<float>(random() % 5), static_cast<float>(random() % 3), -1.0F);
+    const float range_m = std::exp(10.0F * uniform(random));
+    const float angle = 6.28F * uniform(random);
+    from_a_sensor.emplace_back(range_m * std::cos(angle), range_m * std::sin(angle), -2.0F);
+  }
+  std::vector<Eigen::Vector3f> one_far_away = random_points(700, 2, 0.01F);
+  one_far_away[5] = {9e17F, -9e17F, 9e17F};
+  one_far_away[6] = -one_far_away[5];
+  for (const auto& points : {line, few_places, from_a_sensor, one_far_away}) {
+    for (const std::size_t k : {1, 10, 64}) expect_nearest(points, k);
+  }
 }
 
 TEST(NearestNeighbours, PointsThatAreNotFiniteAreNone) {
@@ -101,6 +130,21 @@ TEST(NearestNeighbours, AreTheSameForEveryThreadCount) {
   const NearestNeighbours three = nearest_neighbours(points, 10, Executor::with_threads(3));
   EXPECT_EQ(one.order, three.order);
   EXPECT_EQ(one.nodes, three.nodes);
+}
+
+TEST(NearestNeighbours, AreTheSameOnEveryInstructionSet) {
+  std::vector<Eigen::Vector3f> points = random_points(5'003, 9, 0.1F);
+  for (int i = 0; i < 900; ++i) points.emplace_back(static_cast<float>(i % 30), static_cast<float>(i / 30), 0.0F);
+  const NearestNeighbours widest = nearest_neighbours(points, 10, Executor{});
+  for (const std::string& target : simd_targets()) {
+    SCOPED_TRACE(target);
+    ASSERT_TRUE(use_simd_target(target).ok());
+    const NearestNeighbours found = nearest_neighbours(points, 10, Executor{});
+    EXPECT_EQ(found.order, widest.order);
+    EXPECT_EQ(found.nodes, widest.nodes);
+    expect_nearest(random_points(500, 4, 0.01F), 10);
+  }
+  ASSERT_TRUE(use_simd_target("").ok());
 }
 
 TEST(NearestNeighbours, OfNothingAreNone) {
