@@ -1,79 +1,64 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/annotate/estimated_normals.hpp"
 
-#include <Eigen/Geometry>
 #include <algorithm>
+#include <array>
+#include <span>
+
+#include "saccade/annotate/least_directions.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kNormalGrain{1024};
 
-/// Of points relative to one of them, so that single precision is enough: number, sum, and sum of products.
+/// Σ p pᵀ over points p = (x, y, z, 1) relative to one of them, so that single precision is enough. It is symmetric;
+/// row r is a vector. All nodes have as many points around them.
 struct Moments {
-  float count{0.0F};
-  Eigen::Vector3f sum{Eigen::Vector3f::Zero()};
-  Eigen::Matrix<float, 6, 1> products{Eigen::Matrix<float, 6, 1>::Zero()};  ///< xx, xy, xz, yy, yz, zz
-
-  /// Those of another point's surroundings, `offset` from here.
-  void add(const Moments& other, const Eigen::Vector3f& offset) {
-    const Eigen::Vector3f& s = other.sum;
-    const Eigen::Vector3f& o = offset;
-    count += other.count;
-    products[0] += other.products[0] + 2.0F * s.x() * o.x() + other.count * o.x() * o.x();
-    products[1] += other.products[1] + s.x() * o.y() + s.y() * o.x() + other.count * o.x() * o.y();
-    products[2] += other.products[2] + s.x() * o.z() + s.z() * o.x() + other.count * o.x() * o.z();
-    products[3] += other.products[3] + 2.0F * s.y() * o.y() + other.count * o.y() * o.y();
-    products[4] += other.products[4] + s.y() * o.z() + s.z() * o.y() + other.count * o.y() * o.z();
-    products[5] += other.products[5] + 2.0F * s.z() * o.z() + other.count * o.z() * o.z();
-    sum += s + other.count * o;
-  }
+  std::array<Eigen::Vector4f, 4> rows;
 };
 
-/// The least eigenvalue of a covariance of trace 1: the least root of its characteristic polynomial. Newton's method
-/// comes from 0 upwards to it and not beyond, as the polynomial rises and is concave there.
-double least_eigenvalue(const Eigen::Matrix3d& c) {
-  constexpr int kSteps{20};
-  constexpr double kClose{1e-12};
-  const double determinant = c.determinant();
-  const double minors = c(0, 0) * c(1, 1) - c(0, 1) * c(0, 1) + c(0, 0) * c(2, 2) - c(0, 2) * c(0, 2) +
-                        c(1, 1) * c(2, 2) - c(1, 2) * c(1, 2);
-  double root{0.0};
-  for (int i = 0; i < kSteps; ++i) {
-    const double slope = (3.0 * root - 2.0) * root + minors;
-    const double value = ((root - 1.0) * root + minors) * root - determinant;
-    if (!(slope > 0.0) || value > -kClose * slope) break;
-    root -= value / slope;
-  }
-  return root;
+/// A node by itself.
+Moments one_point() {
+  const Eigen::Vector4f zero = Eigen::Vector4f::Zero();
+  return {{zero, zero, zero, Eigen::Vector4f::UnitW()}};
 }
 
-/// What is perpendicular to the rows of a symmetric matrix of rank 2, or, of rank 1, to its largest.
-Eigen::Vector3d perpendicular_to_rows(const Eigen::Matrix3d& m) {
-  constexpr double kParallel{1e-10};
-  Eigen::Vector3d best = m.col(0).cross(m.col(1));
-  for (const Eigen::Vector3d& other :
-       {Eigen::Vector3d{m.col(1).cross(m.col(2))}, Eigen::Vector3d{m.col(2).cross(m.col(0))}}) {
-    if (other.squaredNorm() > best.squaredNorm()) best = other;
-  }
-  if (best.norm() > kParallel) return best.normalized();
-  Eigen::Index largest{0};
-  m.colwise().squaredNorm().maxCoeff(&largest);
-  if (m.col(largest).norm() < kParallel) return Eigen::Vector3d::Zero();  // the same in all directions
-  return m.col(largest).unitOrthogonal();
+/// Adds a point, `offset` = (x, y, z, 0) from here.
+void add_point(Moments& moments, const Eigen::Vector4f& offset) {
+  const Eigen::Vector4f p = offset + Eigen::Vector4f::UnitW();
+  for (std::size_t r = 0; r < 3; ++r) moments.rows[r] += p[static_cast<Eigen::Index>(r)] * p;
+  moments.rows[3] += p;
 }
 
-Eigen::Vector3f least_direction(const Moments& moments) {
-  const Eigen::Vector3f mean = moments.sum / moments.count;
-  const Eigen::Matrix<float, 6, 1>& p = moments.products;
-  Eigen::Matrix3f covariance;
-  covariance << p[0], p[1], p[2], p[1], p[3], p[4], p[2], p[4], p[5];
-  covariance = covariance / moments.count - mean * mean.transpose();
-  const float trace = covariance.diagonal().sum();
-  if (!(trace > 0.0F) || !covariance.allFinite()) return Eigen::Vector3f::Zero();
-  Eigen::Matrix3d scaled = (covariance / trace).cast<double>();
-  scaled.diagonal().array() -= least_eigenvalue(scaled);
-  return perpendicular_to_rows(scaled).cast<float>();
+/// Adds those around another node, `offset` from here: T M Tᵀ, where T moves by the offset.
+void add_moved(Moments& moments, const Moments& other, const Eigen::Vector4f& offset) {
+  for (std::size_t r = 0; r < 4; ++r) {
+    const Eigen::Vector4f row = other.rows[r] + offset[static_cast<Eigen::Index>(r)] * other.rows[3];
+    moments.rows[r] += row + row.w() * offset;
+  }
+}
+
+void set_covariance(const Moments& moments, Covariances& covariances, std::size_t lane) {
+  const Eigen::Vector4f mean = moments.rows[3] / moments.rows[3].w();
+  std::size_t entry{0};
+  for (std::size_t r = 0; r < 3; ++r) {
+    const auto row = static_cast<Eigen::Index>(r);
+    const Eigen::Vector4f covariance = moments.rows[r] / moments.rows[3].w() - mean[row] * mean;
+    for (Eigen::Index column = row; column < 3; ++column) covariances.entries[entry++][lane] = covariance[column];
+  }
+}
+
+constexpr std::size_t kBlock{Covariances::kCount};  // nodes
+using Block = std::array<Moments, kBlock>;
+
+void set_normals(const Block& block, std::span<Eigen::Vector3f> normals) {
+  Covariances covariances{};
+  for (std::size_t i = 0; i < normals.size(); ++i) set_covariance(block[i], covariances, i);
+  const Directions directions = least_directions(covariances);
+  for (std::size_t i = 0; i < normals.size(); ++i) {
+    normals[i] = {directions.xyz[0][i], directions.xyz[1][i], directions.xyz[2][i]};
+  }
 }
 
 }  // namespace
@@ -83,21 +68,29 @@ std::vector<Eigen::Vector3f> estimate_normals(const NearestNeighbours& neighbour
   const std::size_t size = neighbours.order.size();
   std::vector<Eigen::Vector3f> normals(size, Eigen::Vector3f::Zero());
   if (neighbours.count < 2) return normals;
-  std::vector<Moments> around(size);
-  for (Moments& moments : around) moments.count = 1.0F;
+  std::vector<Eigen::Vector4f> positions_m(size);
+  executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) positions_m[i] << neighbours.positions_m[i], 0.0F;
+  });
+  std::vector<Moments> around;
   for (int round = 0; round < rounds; ++round) {
-    std::vector<Moments> wider(round + 1 < rounds ? size : 0);
+    const bool is_last = round + 1 == rounds;
+    std::vector<Moments> wider(is_last ? 0 : size);
     executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = begin; i < end; ++i) {
-        Moments moments = around[i];
-        for (const std::uint32_t node : neighbours.of(i)) {
-          moments.add(around[node], neighbours.positions_m[node] - neighbours.positions_m[i]);
+      Block block;
+      for (std::size_t first = begin; first < end; first += kBlock) {
+        const std::size_t count = std::min(end - first, kBlock);
+        for (std::size_t i = 0; i < count; ++i) {
+          const Eigen::Vector4f& here_m = positions_m[first + i];
+          Moments moments = round == 0 ? one_point() : around[first + i];
+          for (const std::uint32_t node : neighbours.of(first + i)) {
+            const Eigen::Vector4f offset = positions_m[node] - here_m;
+            round == 0 ? add_point(moments, offset) : add_moved(moments, around[node], offset);
+          }
+          block[i] = moments;
         }
-        if (round + 1 < rounds) {
-          wider[i] = moments;
-        } else {
-          normals[i] = least_direction(moments);
-        }
+        if (is_last) set_normals(block, {normals.data() + first, count});
+        if (!is_last) std::copy_n(block.begin(), count, wider.begin() + static_cast<std::ptrdiff_t>(first));
       }
     });
     around = std::move(wider);
