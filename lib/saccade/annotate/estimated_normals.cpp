@@ -12,41 +12,49 @@ namespace {
 
 constexpr std::size_t kNormalGrain{1024};
 
-/// Σ p pᵀ over points p = (x, y, z, 1) relative to one of them, so that single precision is enough. It is symmetric;
-/// row r is a vector. All nodes have as many points around them.
+/// Σ p pᵀ over points p = (x, y, z, 1) relative to one of them, so that single precision is enough. By rows.
 struct Moments {
-  std::array<Eigen::Vector4f, 4> rows;
+  Eigen::Vector4f x, y, z, one;
 };
 
-/// A node by itself.
+/// Of a node by itself.
 Moments one_point() {
   const Eigen::Vector4f zero = Eigen::Vector4f::Zero();
-  return {{zero, zero, zero, Eigen::Vector4f::UnitW()}};
+  return {zero, zero, zero, Eigen::Vector4f::UnitW()};
 }
 
 /// Adds a point, `offset` = (x, y, z, 0) from here.
 void add_point(Moments& moments, const Eigen::Vector4f& offset) {
   const Eigen::Vector4f p = offset + Eigen::Vector4f::UnitW();
-  for (std::size_t r = 0; r < 3; ++r) moments.rows[r] += p[static_cast<Eigen::Index>(r)] * p;
-  moments.rows[3] += p;
+  moments.x += p.x() * p;
+  moments.y += p.y() * p;
+  moments.z += p.z() * p;
+  moments.one += p;
 }
 
 /// Adds those around another node, `offset` from here: T M Tᵀ, where T moves by the offset.
 void add_moved(Moments& moments, const Moments& other, const Eigen::Vector4f& offset) {
-  for (std::size_t r = 0; r < 4; ++r) {
-    const Eigen::Vector4f row = other.rows[r] + offset[static_cast<Eigen::Index>(r)] * other.rows[3];
-    moments.rows[r] += row + row.w() * offset;
-  }
+  const Eigen::Vector4f x = other.x + offset.x() * other.one;
+  const Eigen::Vector4f y = other.y + offset.y() * other.one;
+  const Eigen::Vector4f z = other.z + offset.z() * other.one;
+  moments.x += x + x.w() * offset;
+  moments.y += y + y.w() * offset;
+  moments.z += z + z.w() * offset;
+  moments.one += other.one + other.one.w() * offset;
 }
 
 void set_covariance(const Moments& moments, Covariances& covariances, std::size_t lane) {
-  const Eigen::Vector4f mean = moments.rows[3] / moments.rows[3].w();
-  std::size_t entry{0};
-  for (std::size_t r = 0; r < 3; ++r) {
-    const auto row = static_cast<Eigen::Index>(r);
-    const Eigen::Vector4f covariance = moments.rows[r] / moments.rows[3].w() - mean[row] * mean;
-    for (Eigen::Index column = row; column < 3; ++column) covariances.entries[entry++][lane] = covariance[column];
-  }
+  const float count = moments.one.w();
+  const Eigen::Vector4f mean = moments.one / count;
+  const Eigen::Vector4f x = moments.x / count - mean.x() * mean;
+  const Eigen::Vector4f y = moments.y / count - mean.y() * mean;
+  const Eigen::Vector4f z = moments.z / count - mean.z() * mean;
+  covariances.entries[0][lane] = x.x();
+  covariances.entries[1][lane] = x.y();
+  covariances.entries[2][lane] = x.z();
+  covariances.entries[3][lane] = y.y();
+  covariances.entries[4][lane] = y.z();
+  covariances.entries[5][lane] = z.z();
 }
 
 constexpr std::size_t kBlock{Covariances::kCount};  // nodes
@@ -66,16 +74,16 @@ void set_normals(const Block& block, std::span<Eigen::Vector3f> normals) {
 std::vector<Eigen::Vector3f> estimate_normals(const NearestNeighbours& neighbours, int rounds,
                                               const Executor& executor) {
   const std::size_t size = neighbours.order.size();
-  std::vector<Eigen::Vector3f> normals(size, Eigen::Vector3f::Zero());
-  if (neighbours.count < 2) return normals;
+  if (neighbours.count < 2) return {size, Eigen::Vector3f::Zero()};
+  std::vector<Eigen::Vector3f> normals(size);
   std::vector<Eigen::Vector4f> positions_m(size);
   executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) positions_m[i] << neighbours.positions_m[i], 0.0F;
   });
-  std::vector<Moments> around;
+  UnsetVector<Moments> around;
   for (int round = 0; round < rounds; ++round) {
     const bool is_last = round + 1 == rounds;
-    std::vector<Moments> wider(is_last ? 0 : size);
+    UnsetVector<Moments> wider(is_last ? 0 : size);
     executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
       Block block;
       for (std::size_t first = begin; first < end; first += kBlock) {

@@ -120,7 +120,7 @@ struct LeafTree::Range {
   [[nodiscard]] Range right() const { return {middle(), end}; }
 };
 
-LeafTree::LeafTree(std::vector<Site> sites, const Executor& executor)
+LeafTree::LeafTree(UnsetVector<Site> sites, const Executor& executor)
     : sites_{std::move(sites)}, leaves_(groups_of(sites_.size())) {
   std::vector<Range> open{{0, leaves_.size()}};
   while (!open.empty()) {  // widest ranges first, as many threads as there are ranges

@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/unset_vector.hpp"
 
 namespace saccade {
 
@@ -44,7 +45,7 @@ class LeafTree {
 
   /// Expects at least one point, and all nearer than 10¹⁸ m. The same for every thread count.
   /// O(n log n); 31 bytes per point.
-  LeafTree(std::vector<Site> sites, const Executor& executor);
+  LeafTree(UnsetVector<Site> sites, const Executor& executor);
 
   /// In the order of the leaves.
   [[nodiscard]] std::span<const Site> sites() const { return sites_; }
@@ -61,8 +62,8 @@ class LeafTree {
   void sort(const Range& range);
   void fill(std::size_t group);
 
-  std::vector<Site> sites_;
-  std::vector<Leaf> leaves_;
+  UnsetVector<Site> sites_;
+  UnsetVector<Leaf> leaves_;
   std::vector<std::vector<Boxes>> levels_;
 };
 

@@ -9,16 +9,17 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/unset_vector.hpp"
 
 namespace saccade {
 
 /// Points that are finite (and nearer than 10¹⁸ m), in the order of a k-d tree's leaves, so that near ones stand near
 /// each other: node n is point order[n], at positions_m[n].
 struct NearestNeighbours {
-  std::vector<std::uint32_t> order;
+  UnsetVector<std::uint32_t> order;
   std::vector<Eigen::Vector3f> positions_m;
   std::size_t count{0};              ///< K, or one fewer than there are nodes
-  std::vector<std::uint32_t> nodes;  ///< `count` per node, the nearest first, equally near ones in ascending order
+  UnsetVector<std::uint32_t> nodes;  ///< `count` per node, the nearest first, equally near ones in ascending order
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t node) const {
     return {nodes.data() + node * count, count};

@@ -26,44 +26,51 @@ class EdgeCost {
  public:
   EdgeCost(const PointCloud& cloud, const NearestNeighbours& neighbours, const NeighbourhoodConfig& config,
            const Executor& executor)
-      : config_{config}, neighbours_{neighbours} {
-    const std::size_t size = neighbours.order.size();
-    normals_are_oriented_ = !cloud.normals.empty();
-    if (config.normal_weight > 0.0) {
-      if (normals_are_oriented_) {
-        normals_.resize(size);
-      } else {
-        normals_ = estimate_normals(neighbours, kNormalRounds, executor);
-      }
+      : nodes_(neighbours.order.size()),
+        units_per_m_{config.position_weight_per_m / config.max_path * kPathUnits},
+        units_per_normal_{config.normal_weight / config.max_path * kPathUnits},
+        units_per_color_{config.color_weight / config.max_path * kPathUnits},
+        normals_are_oriented_{!cloud.normals.empty()} {
+    std::vector<Eigen::Vector3f> estimated;
+    if (config.normal_weight > 0.0 && !normals_are_oriented_) {
+      estimated = estimate_normals(neighbours, kNormalRounds, executor);
     }
-    if (config.color_weight > 0.0 && !cloud.colors.empty()) colors_.resize(size);
-    executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    if (config.color_weight > 0.0 && !cloud.colors.empty()) colors_.resize(nodes_.size());
+    executor.parallel_for(nodes_.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) {
         const std::uint32_t point = neighbours.order[i];
         if (!colors_.empty()) colors_[i] = cloud.colors[point];
-        if (!normals_.empty() && normals_are_oriented_) normals_[i] = unit_or_zero(cloud.normals[point]);
+        nodes_[i].p_m = neighbours.positions_m[i];
+        nodes_[i].normal = with_length(!estimated.empty()      ? estimated[i]
+                                       : normals_are_oriented_ ? cloud.normals[point]
+                                                               : Eigen::Vector3f::Zero());
       }
     });
-    if (config.adapt_to_density && neighbours.count > 0) measure_spacing();
+    if (config.adapt_to_density && neighbours.count > 0) measure_spacing(neighbours);
   }
 
   /// In path units, kPathUnits at most.
   [[nodiscard]] std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const {
-    const double cost = config_.position_weight_per_m * distance_m(a, b) +
-                        config_.normal_weight * normal_difference(a, b) + config_.color_weight * color_difference(a, b);
-    const double units = cost / config_.max_path * kPathUnits;
+    const double units = units_per_m_ * distance_m(a, b) + units_per_normal_ * normal_difference(a, b) +
+                         units_per_color_ * color_difference(a, b);
     return units < kPathUnits ? static_cast<std::uint32_t>(units + 0.5) : kPathUnits;
   }
 
  private:
-  static Eigen::Vector3f unit_or_zero(const Eigen::Vector3f& normal) {
+  struct alignas(32) Node {
+    Eigen::Vector3f p_m;
+    float unused;
+    Eigen::Vector4f normal;  ///< and its length: 1, or 0 where it is not known
+  };
+
+  static Eigen::Vector4f with_length(const Eigen::Vector3f& normal) {
     const float length = normal.norm();
-    if (!(length > 0.0F) || !std::isfinite(length)) return Eigen::Vector3f::Zero();
-    return normal / length;
+    if (!(length > 0.0F) || !std::isfinite(length)) return Eigen::Vector4f::Zero();
+    return {normal.x() / length, normal.y() / length, normal.z() / length, 1.0F};
   }
 
   [[nodiscard]] double distance_m(std::uint32_t a, std::uint32_t b) const {
-    const auto distance = static_cast<double>((neighbours_.positions_m[a] - neighbours_.positions_m[b]).norm());
+    const auto distance = static_cast<double>((nodes_[a].p_m - nodes_[b].p_m).norm());
     if (spacing_m_.empty()) return distance;
     const auto local = static_cast<double>(std::max(spacing_m_[a], spacing_m_[b]));
     return local > 0.0 ? distance / local * median_spacing_m_ : 0.0;
@@ -71,22 +78,21 @@ class EdgeCost {
 
   /// 1 − n_a · n_b. Estimated normals have no sides: the smaller of both ways to turn them.
   [[nodiscard]] double normal_difference(std::uint32_t a, std::uint32_t b) const {
-    if (normals_.empty()) return 0.0;
-    const Eigen::Vector3f& n = normals_[a];
-    const Eigen::Vector3f& m = normals_[b];
-    if (n.isZero(0.0F) || m.isZero(0.0F)) return 0.0;
-    const float dot = n.dot(m);
-    return std::max(0.0, 1.0 - static_cast<double>(normals_are_oriented_ ? dot : std::abs(dot)));
+    const Eigen::Vector4f& n = nodes_[a].normal;
+    const Eigen::Vector4f& m = nodes_[b].normal;
+    const float dot = n.head<3>().dot(m.head<3>());
+    return std::max(
+        0.0, static_cast<double>(n.w() * m.w()) - static_cast<double>(normals_are_oriented_ ? dot : std::abs(dot)));
   }
 
   [[nodiscard]] double color_difference(std::uint32_t a, std::uint32_t b) const {
     return colors_.empty() ? 0.0 : static_cast<double>((colors_[a] - colors_[b]).norm());
   }
 
-  void measure_spacing() {
-    spacing_m_.resize(neighbours_.order.size());
+  void measure_spacing(const NearestNeighbours& neighbours) {
+    spacing_m_.resize(nodes_.size());
     for (std::size_t i = 0; i < spacing_m_.size(); ++i) {
-      spacing_m_[i] = (neighbours_.positions_m[i] - neighbours_.positions_m[neighbours_.of(i).back()]).norm();
+      spacing_m_[i] = (nodes_[i].p_m - nodes_[neighbours.of(i).back()].p_m).norm();
     }
     std::vector<float> sorted = spacing_m_;
     const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
@@ -94,13 +100,14 @@ class EdgeCost {
     median_spacing_m_ = static_cast<double>(*middle);
   }
 
-  const NeighbourhoodConfig& config_;
-  const NearestNeighbours& neighbours_;
-  bool normals_are_oriented_{false};
-  std::vector<Eigen::Vector3f> normals_;
+  UnsetVector<Node> nodes_;
   std::vector<Eigen::Vector3f> colors_;
   std::vector<float> spacing_m_;
   double median_spacing_m_{0.0};
+  double units_per_m_;
+  double units_per_normal_;
+  double units_per_color_;
+  bool normals_are_oriented_;
 };
 
 /// Bit n: the node's neighbour n does not have it among its own.
@@ -117,7 +124,7 @@ std::uint64_t one_sided(const NearestNeighbours& neighbours, std::uint32_t node)
 
 struct Joined {
   std::vector<std::uint32_t> starts;
-  std::vector<Neighbourhood::Edge> edges;
+  UnsetVector<Neighbourhood::Edge> edges;
 };
 
 /// Both ways: a node's own nearest, then, in ascending order, the others that have it among theirs.
@@ -125,7 +132,7 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
   const std::size_t size = neighbours.order.size();
   const std::size_t k = neighbours.count;
   std::vector<std::uint32_t> others(size, 0);
-  std::vector<std::uint64_t> one_sided_of(size);
+  UnsetVector<std::uint64_t> one_sided_of(size);
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
       one_sided_of[node] = one_sided(neighbours, node);
@@ -143,28 +150,26 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
   joined.edges.resize(joined.starts.back());
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
+      Neighbourhood::Edge* edges = joined.edges.data() + joined.starts[node];
+      const std::span<const std::uint32_t> nearest = neighbours.of(node);
+      for (std::size_t n = 0; n < k; ++n) edges[n] = {nearest[n], cost(node, nearest[n])};
       for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
-        const std::uint32_t other = neighbours.of(node)[static_cast<std::size_t>(std::countr_zero(bits))];
-        const std::uint32_t left = std::atomic_ref{others[other]}.fetch_sub(1, std::memory_order_relaxed);
-        joined.edges[joined.starts[other] + k + left - 1].node = node;
+        const Neighbourhood::Edge& edge = edges[std::countr_zero(bits)];
+        const std::uint32_t left = std::atomic_ref{others[edge.node]}.fetch_sub(1, std::memory_order_relaxed);
+        joined.edges[joined.starts[edge.node] + k + left - 1] = {node, edge.cost};
       }
     }
   });
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
-    for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
-      const auto first = joined.edges.begin() + static_cast<std::ptrdiff_t>(joined.starts[node]);
-      const auto last = joined.edges.begin() + static_cast<std::ptrdiff_t>(joined.starts[node + 1]);
-      const std::span<const std::uint32_t> nearest = neighbours.of(node);
-      for (std::size_t i = 0; i < k; ++i) first[static_cast<std::ptrdiff_t>(i)].node = nearest[i];
-      std::sort(first + static_cast<std::ptrdiff_t>(k), last,
+    for (std::size_t node = begin; node < end; ++node) {
+      std::sort(joined.edges.data() + joined.starts[node] + k, joined.edges.data() + joined.starts[node + 1],
                 [](const Neighbourhood::Edge& a, const Neighbourhood::Edge& b) { return a.node < b.node; });
-      for (auto edge = first; edge != last; ++edge) edge->cost = cost(node, edge->node);
     }
   });
   return joined;
 }
 
-std::uint32_t median_of_sample(const std::vector<Neighbourhood::Edge>& edges) {
+std::uint32_t median_of_sample(std::span<const Neighbourhood::Edge> edges) {
   constexpr std::size_t kSamples{10007};
   std::vector<std::uint32_t> costs;
   for (std::size_t i = 0; i < edges.size(); i += 1 + edges.size() / kSamples) costs.push_back(edges[i].cost);
@@ -208,12 +213,19 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
   graph.config_ = config;
   const std::size_t size = cloud.positions_m.size();
   graph.point_of_ = neighbours.order;
-  graph.node_of_.resize(size, kNoNode);
-  for (std::uint32_t node = 0; node < neighbours.order.size(); ++node) graph.node_of_[neighbours.order[node]] = node;
-  for (std::uint32_t point = 0; point < size; ++point) {  // those that have no neighbours come last
-    if (graph.node_of_[point] != kNoNode) continue;
-    graph.node_of_[point] = static_cast<std::uint32_t>(graph.point_of_.size());
-    graph.point_of_.push_back(point);
+  graph.node_of_.resize(size);
+  if (graph.point_of_.size() < size) std::fill(graph.node_of_.begin(), graph.node_of_.end(), kNoNode);
+  executor.parallel_for(neighbours.order.size(), kNodeGrain, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t node = begin; node < end; ++node) {
+      graph.node_of_[neighbours.order[node]] = static_cast<std::uint32_t>(node);
+    }
+  });
+  if (graph.point_of_.size() < size) {
+    for (std::uint32_t point = 0; point < size; ++point) {  // those that have no neighbours come last
+      if (graph.node_of_[point] != kNoNode) continue;
+      graph.node_of_[point] = static_cast<std::uint32_t>(graph.point_of_.size());
+      graph.point_of_.push_back(point);
+    }
   }
   Joined joined = join(neighbours, size, cost, executor);
   graph.starts_ = std::move(joined.starts);

@@ -8,6 +8,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/core/unset_vector.hpp"
 #include "saccade/segment/point_cloud.hpp"
 
 namespace saccade {
@@ -66,9 +67,9 @@ class Neighbourhood {
 
   NeighbourhoodConfig config_;
   std::vector<std::uint32_t> starts_;
-  std::vector<Edge> edges_;
-  std::vector<std::uint32_t> node_of_;
-  std::vector<std::uint32_t> point_of_;
+  UnsetVector<Edge> edges_;
+  UnsetVector<std::uint32_t> node_of_;
+  UnsetVector<std::uint32_t> point_of_;
   std::uint32_t median_cost_{1};
 };
 

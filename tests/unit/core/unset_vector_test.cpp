@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/core/unset_vector.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstdint>
+#include <numeric>
+
+namespace saccade {
+namespace {
+
+TEST(UnsetVector, LeavesElementsAsTheMemoryWas) {
+  UnsetVector<std::uint32_t> numbers(1000);
+  std::iota(numbers.begin(), numbers.end(), 7U);
+  numbers.resize(10);
+  numbers.resize(1000);  // in place: what was there is there
+  EXPECT_EQ(numbers[999], 1006U);
+}
+
+TEST(UnsetVector, IsAVectorOtherwise) {
+  UnsetVector<std::uint32_t> numbers;
+  numbers.push_back(3);
+  numbers.emplace_back(4U);
+  numbers.resize(3, 5);
+  EXPECT_EQ(numbers, (UnsetVector<std::uint32_t>{3, 4, 5}));
+}
+
+}  // namespace
+}  // namespace saccade
