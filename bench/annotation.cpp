@@ -6,10 +6,12 @@
 #include <algorithm>
 #include <cmath>
 #include <filesystem>
+#include <fstream>
 #include <limits>
 #include <nanoflann.hpp>
 #include <queue>
 #include <random>
+#include <string>
 
 #include "saccade/annotate/shortest_path_forest.hpp"
 #include "saccade/core/clock.hpp"
@@ -21,13 +23,14 @@ using namespace saccade;
 namespace fs = std::filesystem;
 
 constexpr std::size_t kControlPoints{90};
+constexpr std::size_t kThesisPoints{150'868};
 
 PointCloud without_gaps(const PointCloud& cloud) {
   PointCloud points;
   for (std::size_t i = 0; i < cloud.positions_m.size(); ++i) {
     if (!cloud.positions_m[i].allFinite()) continue;
     points.positions_m.push_back(cloud.positions_m[i]);
-    if (!cloud.colors.empty()) points.colors.push_back(cloud.colors[i]);
+    points.colors.push_back(cloud.colors[i]);
   }
   return points;
 }
@@ -41,26 +44,68 @@ PointCloud made_sheet(std::size_t points) {
     const float x = side(random);
     const float y = side(random);
     sheet.positions_m.emplace_back(x, y, 0.05F * std::sin(20.0F * x) * std::sin(20.0F * y));
+    sheet.colors.emplace_back(x, y, 0.5F);
   }
   return sheet;
 }
 
-/// Of about as many points as the 150,868 of thesis §4.2.3.
+std::vector<PointCloud> recorded_clouds() {
+  const fs::path folder = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
+  if (!fs::is_directory(folder)) return {made_sheet(kThesisPoints)};
+  std::vector<PointCloud> clouds;
+  const std::vector<fs::path> paths = list_clouds(folder).value();
+  for (const fs::path& path : paths) {
+    clouds.push_back(without_gaps(cloud_from_fields(read_cloud(path)->fields()).value()));
+  }
+  return clouds;
+}
+
+/// Of about as many points as that of thesis §4.2.3.
 const PointCloud& cloud() {
   static const PointCloud chosen = [] {
-    constexpr std::size_t kPoints{150868};
-    PointCloud best;
-    const auto off = [](const PointCloud& c) { return std::abs(static_cast<double>(c.positions_m.size()) - kPoints); };
-    const fs::path folder = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
-    if (!fs::is_directory(folder)) return made_sheet(kPoints);
-    const std::vector<fs::path> paths = list_clouds(folder).value();
-    for (const fs::path& path : paths) {
-      PointCloud points = without_gaps(cloud_from_fields(read_cloud(path)->fields()).value());
-      if (off(points) < off(best)) best = std::move(points);
-    }
-    return best;
+    std::vector<PointCloud> clouds = recorded_clouds();
+    const auto off = [](const PointCloud& c) {
+      return std::abs(static_cast<double>(c.positions_m.size()) - static_cast<double>(kThesisPoints));
+    };
+    return *std::min_element(clouds.begin(), clouds.end(),
+                             [&](const PointCloud& a, const PointCloud& b) { return off(a) < off(b); });
   }();
   return chosen;
+}
+
+/// Recorded clouds beside each other, again and again.
+const PointCloud& ten_million_points() {
+  static const PointCloud tiled = [] {
+    constexpr std::size_t kPoints{10'000'000};
+    constexpr std::size_t kTilesPerRow{8};
+    constexpr float kTile_m{3.0F};
+    const std::vector<PointCloud> clouds = recorded_clouds();
+    PointCloud points;
+    points.positions_m.reserve(kPoints);
+    points.colors.reserve(kPoints);
+    for (std::size_t tile = 0; points.positions_m.size() < kPoints; ++tile) {
+      const Eigen::Vector3f at{kTile_m * static_cast<float>(tile % kTilesPerRow),
+                               kTile_m * static_cast<float>(tile / kTilesPerRow), 0.0F};
+      const PointCloud& cloud = clouds[tile % clouds.size()];
+      const std::size_t count = std::min(cloud.positions_m.size(), kPoints - points.positions_m.size());
+      for (std::size_t i = 0; i < count; ++i) {
+        points.positions_m.emplace_back(cloud.positions_m[i] + at);
+        points.colors.push_back(cloud.colors[i]);
+      }
+    }
+    return points;
+  }();
+  return tiled;
+}
+
+/// Of this process, in MiB: a line of /proc/self/status; 0 where there is none.
+double memory_mib(const std::string& line) {
+  std::ifstream status{"/proc/self/status"};
+  for (std::string word; status >> word;) {
+    double kib{0.0};
+    if (word == line && status >> kib) return kib / 1024.0;
+  }
+  return 0.0;
 }
 
 std::shared_ptr<const Neighbourhood> graph_of(const PointCloud& points) {
@@ -69,6 +114,11 @@ std::shared_ptr<const Neighbourhood> graph_of(const PointCloud& points) {
 
 const std::shared_ptr<const Neighbourhood>& graph() {
   static const std::shared_ptr<const Neighbourhood> built = graph_of(cloud());
+  return built;
+}
+
+std::shared_ptr<const Neighbourhood>& graph_of_ten_million() {
+  static std::shared_ptr<const Neighbourhood> built;
   return built;
 }
 
@@ -201,16 +251,17 @@ void control_points_90_by_dijkstra(benchmark::State& state) {
   state.counters["reached"] = static_cast<double>(reached);
 }
 
-/// One of many other points becomes a control point beside the 90, and is none again.
-void change_one(benchmark::State& state, bool adding) {
+/// One of many other points becomes a control point beside those that there are, and is none again.
+void change_one(benchmark::State& state, const std::shared_ptr<const Neighbourhood>& of, std::size_t there,
+                bool adding) {
   constexpr std::size_t kOthers{997};
-  ShortestPathForest forest{graph()};
-  const std::vector<Root> roots = random_roots(kControlPoints + kOthers, cloud().positions_m.size());
-  forest.rebuild({roots.data(), kControlPoints});
+  ShortestPathForest forest{of};
+  const std::vector<Root> roots = random_roots(there + kOthers, of->size());
+  forest.rebuild({roots.data(), there});
   std::size_t next{0};
   std::vector<double> all_ms;
   for (auto _ : state) {
-    const Root& root = roots[kControlPoints + next++ % kOthers];
+    const Root& root = roots[there + next++ % kOthers];
     Stopwatch stopwatch;
     forest.add(root);
     const double add_ms = stopwatch.elapsed_ms();
@@ -224,8 +275,43 @@ void change_one(benchmark::State& state, bool adding) {
   state.counters["median_us"] = 1e3 * *middle;
 }
 
-void add_control_point(benchmark::State& state) { change_one(state, true); }
-void remove_control_point(benchmark::State& state) { change_one(state, false); }
+void add_control_point(benchmark::State& state) { change_one(state, graph(), kControlPoints, true); }
+void remove_control_point(benchmark::State& state) { change_one(state, graph(), kControlPoints, false); }
+
+/// With the forest's state. What the cloud takes is not counted.
+void graph_ten_million(benchmark::State& state) {
+  const PointCloud& points = ten_million_points();
+  graph_of_ten_million().reset();
+  const double before_mib = memory_mib("VmRSS:");
+  for (auto _ : state) graph_of_ten_million() = graph_of(points);
+  const ShortestPathForest forest{graph_of_ten_million()};
+  state.counters["points"] = static_cast<double>(points.positions_m.size());
+  state.counters["edges"] = static_cast<double>(graph_of_ten_million()->edge_count());
+  state.counters["peak_mib"] = memory_mib("VmHWM:") - before_mib;
+  state.counters["kept_mib"] = memory_mib("VmRSS:") - before_mib;
+}
+
+const std::shared_ptr<const Neighbourhood>& built_graph_of_ten_million() {
+  if (!graph_of_ten_million()) graph_of_ten_million() = graph_of(ten_million_points());
+  return graph_of_ten_million();
+}
+
+/// From a graph to the first labels.
+void first_control_point_ten_million(benchmark::State& state) {
+  const std::shared_ptr<const Neighbourhood>& of = built_graph_of_ten_million();
+  const std::vector<Root> roots = random_roots(100, of->size());
+  std::size_t next{0};
+  double reached{0.0};
+  for (auto _ : state) {
+    ShortestPathForest forest{of};
+    forest.add(roots[next++ % roots.size()]);
+    reached += static_cast<double>(forest.touched().size());
+  }
+  state.counters["reached"] = benchmark::Counter(reached, benchmark::Counter::kAvgIterations);
+}
+
+/// Beside 100 per million points.
+void add_ten_million(benchmark::State& state) { change_one(state, built_graph_of_ten_million(), 1000, true); }
 
 BENCHMARK(neighbourhood)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
 BENCHMARK(neighbourhood_without_normals)->Arg(1)->Arg(2)->UseRealTime()->Unit(benchmark::kMillisecond);
@@ -234,6 +320,10 @@ BENCHMARK(control_points_90)->Unit(benchmark::kMillisecond);
 BENCHMARK(control_points_90_by_dijkstra)->Unit(benchmark::kMillisecond);
 BENCHMARK(add_control_point)->UseManualTime()->Iterations(997)->Unit(benchmark::kMicrosecond);
 BENCHMARK(remove_control_point)->UseManualTime()->Iterations(997)->Unit(benchmark::kMicrosecond);
+
+BENCHMARK(graph_ten_million)->UseRealTime()->Iterations(1)->Repetitions(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(first_control_point_ten_million)->Iterations(5)->Repetitions(1)->Unit(benchmark::kMillisecond);
+BENCHMARK(add_ten_million)->UseManualTime()->Iterations(499)->Repetitions(1)->Unit(benchmark::kMicrosecond);
 
 }  // namespace
 
