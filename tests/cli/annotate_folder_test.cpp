@@ -48,7 +48,7 @@ TEST_F(AnnotateFolder, AllAreSimulated) {
   EXPECT_EQ(one["clicks"], result["clouds"][1]["clicks"]);
   const nlohmann::json again = result_of({"--simulate", path("labels"), "--clicks", "2"});
   EXPECT_EQ(again["mean"]["per_label"], result["mean"]["per_label"]);
-  const Outcome table = run_program({"annotate", path("clouds"), "--simulate", path("labels"), "--max-path", "0.05"});
+  const Outcome table = run_program({"annotate", path("clouds"), "--simulate", path("labels"), "--max-path", "0.01"});
   EXPECT_NE(table.out.find("never in 3 clouds"), std::string::npos) << table.out;
 }
 
