@@ -16,7 +16,7 @@ namespace {
 /// A round goes down to regions of this share of its largest: what is smaller may well be right after it.
 constexpr std::size_t kRoundRange{4};
 
-Error refused(std::string why) { return {Errc::invalid_argument, std::move(why), "seeds from labels"}; }
+Error no_seeds(std::string why) { return {Errc::invalid_argument, std::move(why), "seeds from labels"}; }
 
 class Seeding {
  public:
@@ -121,8 +121,8 @@ class Seeding {
 }  // namespace
 
 Status SeedConfig::validate() const {
-  if (!(share > 0.0 && share <= 1.0)) return refused("the share to reproduce is above 0 and at most 1");
-  if (most_per_label < 1) return refused("a label needs at least one control point");
+  if (!(share > 0.0 && share <= 1.0)) return no_seeds("the share to reproduce is above 0 and at most 1");
+  if (most_per_label < 1) return no_seeds("a label needs at least one control point");
   return {};
 }
 
@@ -135,11 +135,11 @@ Result<LabelSeeds> label_seeds(std::shared_ptr<const Neighbourhood> neighbourhoo
   std::vector<std::uint32_t> truth{labels.begin(), labels.end()};
   bool any{false};
   for (std::uint32_t point = 0; point < truth.size(); ++point) {
-    if (truth[point] > kMaxLabel) return refused("point " + std::to_string(point) + " has a label that is too large");
+    if (truth[point] > kMaxLabel) return no_seeds("point " + std::to_string(point) + " has a label that is too large");
     if (neighbourhood->edges(neighbourhood->node_of(point)).empty()) truth[point] = kNoLabel;
     any = any || truth[point] != kNoLabel;
   }
-  if (!any) return refused("no point that has neighbours has a label");
+  if (!any) return no_seeds("no point that has neighbours has a label");
   return Seeding{std::move(neighbourhood), cloud, std::move(truth), config}.run();
 }
 

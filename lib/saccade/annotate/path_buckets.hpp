@@ -65,8 +65,8 @@ class PathBuckets {
 
   /// Of equal length, half of the edges are not shorter: few nodes are looked at twice.
   static unsigned bucket_shift(const Neighbourhood& neighbourhood) {
-    const int length = std::bit_width(neighbourhood.median_cost()) - 1;
-    const int least = std::bit_width(kPathUnits) - 1 - kMostBucketsLog2;
+    const int length = static_cast<int>(std::bit_width(neighbourhood.median_cost())) - 1;
+    const int least = static_cast<int>(std::bit_width(kPathUnits)) - 1 - kMostBucketsLog2;
     return static_cast<unsigned>(std::max(length, least));
   }
 
