@@ -11,6 +11,7 @@ namespace {
 constexpr std::size_t kSplitAlone{1024};  // leaves of a range that one thread splits to its end
 constexpr std::size_t kGroupGrain{16};
 constexpr std::size_t kFew{32};  // sites
+constexpr std::size_t kSample{16};
 constexpr float kFar{std::numeric_limits<float>::infinity()};
 constexpr float kNoPoint_m{8e18F};  // its squared distance to a point is finite, and greater than that of any two
 
@@ -28,15 +29,14 @@ Site* partition(Site* begin, Site* end, Eigen::Index axis, const IsLeft& is_left
   return next;
 }
 
-using Few = std::array<float, kFew>;
-
 struct Ranked {
   float value;
   int less;  ///< as many are less
 };
 
 /// Of the values that fewer than `rank` ones are less than, the greatest. Expects rank ≥ 1.
-Ranked ranked(const Few& values, int rank) {
+template <std::size_t kCount>
+Ranked ranked(const std::array<float, kCount>& values, int rank) {
   Ranked found{-kFar, 0};
   for (const float value : values) {
     int less{0};
@@ -47,12 +47,13 @@ Ranked ranked(const Few& values, int rank) {
   return found;
 }
 
-/// Of a few sites, `left` least ones come first.
+/// Of as many sites at most, `left` least ones come first.
+template <std::size_t kMost>
 void select_of_few(Site* begin, Site* end, int left, Eigen::Index axis) {
-  std::array<Site, kFew> sites;
+  std::array<Site, kMost> sites;
   const auto size = static_cast<std::size_t>(end - begin);
   std::copy(begin, end, sites.begin());
-  Few x;
+  std::array<float, kMost> x;
   x.fill(kFar);
   for (std::size_t i = 0; i < size; ++i) x[i] = sites[i].lanes[axis];
   const Ranked last = ranked(x, left);
@@ -70,13 +71,13 @@ void select_of_few(Site* begin, Site* end, int left, Eigen::Index axis) {
 void select(Site* begin, Site* middle, Site* end, Eigen::Index axis) {
   while (begin < middle && end - begin > std::ptrdiff_t{kFew}) {
     // Of a sample, one a bit beyond where the middle is expected, on the side where more are.
-    constexpr int kMiddle{kFew / 2};
-    constexpr int kBeyond{2};
+    constexpr int kMiddle{kSample / 2};
+    constexpr int kBeyond{1};
     constexpr std::uint32_t kGoldenRatio{0x9E3779B9U};  // of 2³²: its multiples spread evenly, and in no order
     const auto size = static_cast<std::uint64_t>(end - begin);
-    Few sample;
-    for (std::uint32_t i = 0; i < kFew; ++i) sample[i] = begin[(i * kGoldenRatio * size) >> 32U].lanes[axis];
-    const auto rank = static_cast<int>(static_cast<std::uint64_t>(middle - begin) * kFew / size);
+    std::array<float, kSample> sample;
+    for (std::uint32_t i = 0; i < kSample; ++i) sample[i] = begin[(i * kGoldenRatio * size) >> 32U].lanes[axis];
+    const auto rank = static_cast<int>(static_cast<std::uint64_t>(middle - begin) * kSample / size);
     const float pivot = ranked(sample, 1 + rank + (rank < kMiddle ? kBeyond : rank > kMiddle ? -kBeyond : 0)).value;
     Site* cut = partition(begin, end, axis, [pivot](float x) { return x < pivot; });
     if (cut == begin) {  // there is none less
@@ -85,7 +86,10 @@ void select(Site* begin, Site* middle, Site* end, Eigen::Index axis) {
     }
     (cut <= middle ? begin : end) = cut;
   }
-  if (begin < middle) select_of_few(begin, end, static_cast<int>(middle - begin), axis);
+  if (begin == middle) return;
+  const auto left = static_cast<int>(middle - begin);
+  end - begin <= std::ptrdiff_t{kFew / 2} ? select_of_few<kFew / 2>(begin, end, left, axis)
+                                          : select_of_few<kFew>(begin, end, left, axis);
 }
 
 void join_child(LeafTree::Boxes& boxes, std::size_t child, std::size_t axis, float low, float high) {

@@ -21,15 +21,23 @@ constexpr std::uint32_t kNoNode{std::numeric_limits<std::uint32_t>::max()};
 
 bool is_weight(double value) { return std::isfinite(value) && value >= 0.0; }
 
-/// Eq. 4.17 between nodes.
-class EdgeCost {
+/// The same both ways, and as nearest_neighbours has it, to the bit.
+float squared_distance_m2(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
+  const Eigen::Vector3f d = a - b;
+  return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
+}
+
+/// What edges follow from.
+class Nodes {
  public:
-  EdgeCost(const PointCloud& cloud, const NearestNeighbours& neighbours, const NeighbourhoodConfig& config,
-           const Executor& executor)
-      : nodes_(neighbours.order.size()),
+  Nodes(const PointCloud& cloud, const NearestNeighbours& neighbours, const NeighbourhoodConfig& config,
+        const Executor& executor)
+      : neighbours_{neighbours},
+        nodes_(neighbours.order.size()),
         units_per_m_{config.position_weight_per_m / config.max_path * kPathUnits},
         units_per_normal_{config.normal_weight / config.max_path * kPathUnits},
         units_per_color_{config.color_weight / config.max_path * kPathUnits},
+        adapt_to_density_{config.adapt_to_density},
         normals_are_oriented_{!cloud.normals.empty()} {
     std::vector<Eigen::Vector3f> estimated;
     if (config.normal_weight > 0.0 && !normals_are_oriented_) {
@@ -41,16 +49,37 @@ class EdgeCost {
         const std::uint32_t point = neighbours.order[i];
         if (!colors_.empty()) colors_[i] = cloud.colors[point];
         nodes_[i].p_m = neighbours.positions_m[i];
+        nodes_[i].reach_m2 =
+            neighbours.count == 0
+                ? 0.0F
+                : squared_distance_m2(neighbours.positions_m[i], neighbours.positions_m[neighbours.of(i).back()]);
         nodes_[i].normal = with_length(!estimated.empty()      ? estimated[i]
                                        : normals_are_oriented_ ? cloud.normals[point]
                                                                : Eigen::Vector3f::Zero());
       }
     });
-    if (config.adapt_to_density && neighbours.count > 0) measure_spacing(neighbours);
+    if (adapt_to_density_ && !nodes_.empty()) median_spacing_m_ = median_spacing_m();
   }
 
-  /// In path units, kPathUnits at most.
-  [[nodiscard]] std::uint32_t operator()(std::uint32_t a, std::uint32_t b) const {
+  /// Bit n: the node's neighbour n does not have it among its own.
+  [[nodiscard]] std::uint64_t one_sided(std::uint32_t node) const {
+    std::uint64_t bits{0};
+    const std::span<const std::uint32_t> row = neighbours_.of(node);
+    for (std::size_t n = 0; n < row.size(); ++n) {
+      const Node& other = nodes_[row[n]];
+      const float distance_m2 = squared_distance_m2(nodes_[node].p_m, other.p_m);
+      bool is_one_sided = distance_m2 > other.reach_m2;
+      if (distance_m2 == other.reach_m2) {  // one of several that are as near
+        const std::span<const std::uint32_t> theirs = neighbours_.of(row[n]);
+        is_one_sided = std::find(theirs.begin(), theirs.end(), node) == theirs.end();
+      }
+      bits |= std::uint64_t{is_one_sided ? 1U : 0U} << n;
+    }
+    return bits;
+  }
+
+  /// Eq. 4.17, in path units, kPathUnits at most.
+  [[nodiscard]] std::uint32_t cost(std::uint32_t a, std::uint32_t b) const {
     const double units = units_per_m_ * distance_m(a, b) + units_per_normal_ * normal_difference(a, b) +
                          units_per_color_ * color_difference(a, b);
     return units < kPathUnits ? static_cast<std::uint32_t>(units + 0.5) : kPathUnits;
@@ -59,7 +88,7 @@ class EdgeCost {
  private:
   struct alignas(32) Node {
     Eigen::Vector3f p_m;
-    float unused;
+    float reach_m2;          ///< squared distance of the farthest of its nearest ones
     Eigen::Vector4f normal;  ///< and its length: 1, or 0 where it is not known
   };
 
@@ -70,9 +99,9 @@ class EdgeCost {
   }
 
   [[nodiscard]] double distance_m(std::uint32_t a, std::uint32_t b) const {
-    const auto distance = static_cast<double>((nodes_[a].p_m - nodes_[b].p_m).norm());
-    if (spacing_m_.empty()) return distance;
-    const auto local = static_cast<double>(std::max(spacing_m_[a], spacing_m_[b]));
+    const auto distance = static_cast<double>(std::sqrt(squared_distance_m2(nodes_[a].p_m, nodes_[b].p_m)));
+    if (!adapt_to_density_) return distance;
+    const auto local = static_cast<double>(std::sqrt(std::max(nodes_[a].reach_m2, nodes_[b].reach_m2)));
     return local > 0.0 ? distance / local * median_spacing_m_ : 0.0;
   }
 
@@ -80,47 +109,32 @@ class EdgeCost {
   [[nodiscard]] double normal_difference(std::uint32_t a, std::uint32_t b) const {
     const Eigen::Vector4f& n = nodes_[a].normal;
     const Eigen::Vector4f& m = nodes_[b].normal;
-    const float dot = n.head<3>().dot(m.head<3>());
-    return std::max(
-        0.0, static_cast<double>(n.w() * m.w()) - static_cast<double>(normals_are_oriented_ ? dot : std::abs(dot)));
+    const float dot = n.x() * m.x() + n.y() * m.y() + n.z() * m.z();
+    return static_cast<double>(std::max(0.0F, n.w() * m.w() - (normals_are_oriented_ ? dot : std::abs(dot))));
   }
 
   [[nodiscard]] double color_difference(std::uint32_t a, std::uint32_t b) const {
     return colors_.empty() ? 0.0 : static_cast<double>((colors_[a] - colors_[b]).norm());
   }
 
-  void measure_spacing(const NearestNeighbours& neighbours) {
-    spacing_m_.resize(nodes_.size());
-    for (std::size_t i = 0; i < spacing_m_.size(); ++i) {
-      spacing_m_[i] = (nodes_[i].p_m - nodes_[neighbours.of(i).back()].p_m).norm();
-    }
-    std::vector<float> sorted = spacing_m_;
-    const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-    std::nth_element(sorted.begin(), middle, sorted.end());
-    median_spacing_m_ = static_cast<double>(*middle);
+  [[nodiscard]] double median_spacing_m() const {
+    std::vector<float> reach_m2;
+    for (const Node& node : nodes_) reach_m2.push_back(node.reach_m2);
+    const auto middle = reach_m2.begin() + static_cast<std::ptrdiff_t>(reach_m2.size() / 2);
+    std::nth_element(reach_m2.begin(), middle, reach_m2.end());
+    return static_cast<double>(std::sqrt(*middle));
   }
 
+  const NearestNeighbours& neighbours_;
   UnsetVector<Node> nodes_;
   std::vector<Eigen::Vector3f> colors_;
-  std::vector<float> spacing_m_;
   double median_spacing_m_{0.0};
   double units_per_m_;
   double units_per_normal_;
   double units_per_color_;
+  bool adapt_to_density_;
   bool normals_are_oriented_;
 };
-
-/// Bit n: the node's neighbour n does not have it among its own.
-std::uint64_t one_sided(const NearestNeighbours& neighbours, std::uint32_t node) {
-  std::uint64_t bits{0};
-  const std::span<const std::uint32_t> row = neighbours.of(node);
-  for (std::size_t n = 0; n < row.size(); ++n) {
-    bool mutual{false};
-    for (const std::uint32_t theirs : neighbours.of(row[n])) mutual |= theirs == node;
-    bits |= std::uint64_t{mutual ? 0U : 1U} << n;
-  }
-  return bits;
-}
 
 struct Joined {
   std::vector<std::uint32_t> starts;
@@ -128,14 +142,14 @@ struct Joined {
 };
 
 /// Both ways: a node's own nearest, then, in ascending order, the others that have it among theirs.
-Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCost& cost, const Executor& executor) {
+Joined join(const NearestNeighbours& neighbours, std::size_t points, const Nodes& nodes, const Executor& executor) {
   const std::size_t size = neighbours.order.size();
   const std::size_t k = neighbours.count;
   std::vector<std::uint32_t> others(size, 0);
   UnsetVector<std::uint64_t> one_sided_of(size);
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
-      one_sided_of[node] = one_sided(neighbours, node);
+      one_sided_of[node] = nodes.one_sided(node);
       for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
         const std::uint32_t other = neighbours.of(node)[static_cast<std::size_t>(std::countr_zero(bits))];
         std::atomic_ref{others[other]}.fetch_add(1, std::memory_order_relaxed);
@@ -143,16 +157,17 @@ Joined join(const NearestNeighbours& neighbours, std::size_t nodes, const EdgeCo
     }
   });
   Joined joined;
-  joined.starts.resize(nodes + 1);
-  for (std::size_t i = 0; i < size; ++i)
+  joined.starts.resize(points + 1);
+  for (std::size_t i = 0; i < size; ++i) {
     joined.starts[i + 1] = joined.starts[i] + static_cast<std::uint32_t>(k) + others[i];
-  for (std::size_t i = size; i < nodes; ++i) joined.starts[i + 1] = joined.starts[i];
+  }
+  for (std::size_t i = size; i < points; ++i) joined.starts[i + 1] = joined.starts[i];
   joined.edges.resize(joined.starts.back());
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
       Neighbourhood::Edge* edges = joined.edges.data() + joined.starts[node];
       const std::span<const std::uint32_t> nearest = neighbours.of(node);
-      for (std::size_t n = 0; n < k; ++n) edges[n] = {nearest[n], cost(node, nearest[n])};
+      for (std::size_t n = 0; n < k; ++n) edges[n] = {nearest[n], nodes.cost(node, nearest[n])};
       for (std::uint64_t bits = one_sided_of[node]; bits != 0; bits &= bits - 1) {
         const Neighbourhood::Edge& edge = edges[std::countr_zero(bits)];
         const std::uint32_t left = std::atomic_ref{others[edge.node]}.fetch_sub(1, std::memory_order_relaxed);
@@ -208,7 +223,7 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
   }
   const NearestNeighbours neighbours =
       nearest_neighbours(cloud.positions_m, static_cast<std::size_t>(config.neighbours), executor);
-  const EdgeCost cost{cloud, neighbours, config, executor};
+  const Nodes nodes{cloud, neighbours, config, executor};
   Neighbourhood graph;
   graph.config_ = config;
   const std::size_t size = cloud.positions_m.size();
@@ -227,7 +242,7 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
       graph.point_of_.push_back(point);
     }
   }
-  Joined joined = join(neighbours, size, cost, executor);
+  Joined joined = join(neighbours, size, nodes, executor);
   graph.starts_ = std::move(joined.starts);
   graph.edges_ = std::move(joined.edges);
   graph.median_cost_ = median_of_sample(graph.edges_);

@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 #include <random>
+#include <set>
 
 namespace saccade {
 namespace {
@@ -73,6 +74,25 @@ TEST(Neighbourhood, JoinsThoseOfWhichOneIsANearestOfTheOther) {
   EXPECT_EQ(graph.edge_count(), 3U);
   for (const auto& [a, b] : {std::pair{0U, 1U}, {1U, 2U}, {2U, 3U}}) EXPECT_TRUE(cost_between(graph, a, b));
   EXPECT_FALSE(cost_between(graph, 0, 2));
+}
+
+TEST(Neighbourhood, EdgesAreThereOnceBothWaysWhereManyPointsAreAsNear) {
+  PointCloud cloud;  // a grid, some of whose points are there several times
+  for (int i = 0; i < 900; ++i) {
+    const Eigen::Vector3f p{static_cast<float>(i % 30), static_cast<float>(i / 30), 0.0F};
+    for (int copy = 0; copy < (i % 7 == 0 ? 3 : 1); ++copy) cloud.positions_m.push_back(p);
+  }
+  NeighbourhoodConfig config;
+  config.max_path = 100.0;
+  const Neighbourhood graph = built(cloud, config);
+  for (std::uint32_t a = 0; a < graph.size(); ++a) {
+    std::set<std::uint32_t> others;
+    for (const Neighbourhood::Edge& edge : graph.edges(graph.node_of(a))) {
+      EXPECT_TRUE(others.insert(edge.node).second);
+      EXPECT_EQ(cost_between(graph, graph.point_of(edge.node), a), edge.cost);
+    }
+    EXPECT_GE(others.size(), 10U);
+  }
 }
 
 TEST(Neighbourhood, EstimatedNormalsHaveNoSides) {
