@@ -17,6 +17,7 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kWidth{LeafTree::kWidth};
+constexpr std::size_t kBatch{4};  // neighbours that are offered at once
 
 // A neighbour is one number: its squared distance (the bits of a float, which sort as its value does) above its site.
 // As a double it sorts in the same way, so a new one takes its place by least and greatest. One lane is one point.
@@ -34,7 +35,8 @@ struct Search {
   std::size_t k;
   std::size_t leaf{0};
   std::uint32_t farthest{0};  ///< of the neighbours that the leaf's points have so far: bits of its squared distance
-  alignas(64) std::array<std::array<double, kWidth>, kMostNeighbours> found;  ///< per neighbour eight points
+  /// Per neighbour eight points; before them as many as are offered at once, nearer than any.
+  alignas(64) std::array<std::array<double, kWidth>, kBatch + kMostNeighbours> found{};
 };
 
 double key_of(float squared_m2, std::uint32_t site) {
@@ -57,16 +59,38 @@ HWY_INLINE T gap(D d, T low, T high, T other_low, T other_high) {
   return hn::Max(hn::Max(hn::Sub(low, other_high), hn::Sub(other_low, high)), hn::Zero(d));
 }
 
-/// Offers a key to each of a block of points.
-HWY_INLINE void insert(double* found, std::size_t k, Key key) {
+HWY_INLINE void sort_two(Key& a, Key& b) {
+  const Key less = hn::Min(a, b);
+  b = hn::Max(a, b);
+  a = less;
+}
+
+HWY_INLINE void sort_batch(std::array<Key, kBatch>& keys) {
+  sort_two(keys[0], keys[1]);
+  sort_two(keys[2], keys[3]);
+  sort_two(keys[0], keys[2]);
+  sort_two(keys[1], keys[3]);
+  sort_two(keys[1], keys[2]);
+}
+
+/// Offers keys in ascending order to each of a block of points. Of two sorted lists together, element i is the least of
+/// the i-th of one, and of the greater ones of element i − j of the one and element j of the other.
+HWY_INLINE void merge(double* found, std::size_t k, const std::array<Key, kBatch>& keys) {
   const KeyTag d;
-  Key before = hn::Load(d, found + (k - 1) * kWidth);
-  for (std::size_t i = k - 1; i > 0; --i) {
-    const Key here = before;
-    before = hn::Load(d, found + (i - 1) * kWidth);
-    hn::Store(hn::Max(before, hn::Min(here, key)), d, found + i * kWidth);
+  double* at = found + (k - 1) * kWidth;
+  Key here = hn::Load(d, at);
+  Key before = hn::Load(d, at - kWidth);
+  Key before2 = hn::Load(d, at - 2 * kWidth);
+  Key before3 = hn::Load(d, at - 3 * kWidth);
+  for (; at >= found; at -= kWidth) {
+    const Key before4 = hn::Load(d, at - 4 * kWidth);
+    const Key least = hn::Min(hn::Min(here, hn::Max(before, keys[0])), hn::Max(before2, keys[1]));
+    hn::Store(hn::Min(least, hn::Min(hn::Max(before3, keys[2]), hn::Max(before4, keys[3]))), d, at);
+    here = before;
+    before = before2;
+    before2 = before3;
+    before3 = before4;
   }
-  hn::Store(hn::Min(before, key), d, found);
 }
 
 template <bool kOwn>
@@ -78,7 +102,7 @@ HWY_INLINE void look_at(Search& search, std::size_t leaf) {
   const LeafTree::Boxes& boxes = search.tree.levels()[0][leaf / kWidth];
   const std::size_t child = leaf % kWidth;
   const auto first = static_cast<std::uint32_t>(search.tree.first_of(leaf));
-  double* last = search.found[search.k - 1].data();
+  double* last = search.found[kBatch + search.k - 1].data();
   Key farthest = hn::Zero(d);
   for (std::size_t block = 0; block < kWidth; block += hn::Lanes(d)) {
     const V x = hn::Load(df, own[0].data() + block);
@@ -89,17 +113,21 @@ HWY_INLINE void look_at(Search& search, std::size_t leaf) {
     };
     Key kth = hn::Load(d, last + block);
     if (kOwn || !hn::AllFalse(d, hn::Lt(keys_of(squared_length(side(0, x), side(1, y), side(2, z)), 0), kth))) {
-      for (std::uint32_t i = 0; i < kWidth; ++i) {
-        const V squared = squared_length(hn::Sub(hn::Set(df, theirs[0][i]), x), hn::Sub(hn::Set(df, theirs[1][i]), y),
-                                         hn::Sub(hn::Set(df, theirs[2][i]), z));
-        Key key = keys_of(squared, first + i);
-        if (kOwn) {
-          const auto lane = hn::Iota(d, static_cast<double>(block));
-          key = hn::IfThenElse(hn::Eq(lane, hn::Set(d, static_cast<double>(i))),
-                               hn::Set(d, key_of(std::numeric_limits<float>::infinity(), 0)), key);
+      for (std::uint32_t batch = 0; batch < kWidth; batch += kBatch) {
+        std::array<Key, kBatch> keys;
+        for (std::uint32_t i = 0; i < kBatch; ++i) {
+          const std::uint32_t n = batch + i;
+          const V squared = squared_length(hn::Sub(hn::Set(df, theirs[0][n]), x), hn::Sub(hn::Set(df, theirs[1][n]), y),
+                                           hn::Sub(hn::Set(df, theirs[2][n]), z));
+          keys[i] = keys_of(squared, first + n);
+          if (kOwn) {
+            const auto itself = hn::Eq(hn::Iota(d, static_cast<double>(block)), hn::Set(d, static_cast<double>(n)));
+            keys[i] = hn::IfThenElse(itself, hn::Set(d, key_of(std::numeric_limits<float>::infinity(), 0)), keys[i]);
+          }
         }
-        if (hn::AllFalse(d, hn::Lt(key, kth))) continue;
-        insert(search.found[0].data() + block, search.k, key);
+        sort_batch(keys);
+        if (hn::AllFalse(d, hn::Lt(keys[0], kth))) continue;
+        merge(search.found[kBatch].data() + block, search.k, keys);
         kth = hn::Load(d, last + block);
       }
     }
@@ -147,14 +175,14 @@ void descend(Search& search, std::size_t level, std::size_t group, std::size_t e
 }
 
 void search_kernel(const LeafTree& tree, std::size_t k, std::size_t begin, std::size_t end, std::uint32_t* rows) {
-  Search search{tree, k, 0, 0, {}};
+  Search search{tree, k};
   for (std::size_t leaf = begin; leaf < end; ++leaf) {
     const std::size_t first = tree.first_of(leaf);
     const std::size_t size = tree.end_of(leaf) - first;
     search.leaf = leaf;
     for (std::size_t n = 0; n < k; ++n) {  // what is no point looks for nothing
-      search.found[n].fill(0.0);
-      std::fill_n(search.found[n].begin(), size, key_of(std::numeric_limits<float>::infinity(), 0));
+      search.found[kBatch + n].fill(0.0);
+      std::fill_n(search.found[kBatch + n].begin(), size, key_of(std::numeric_limits<float>::infinity(), 0));
     }
     look_at<true>(search, leaf);
     std::size_t from{leaf};
@@ -163,7 +191,8 @@ void search_kernel(const LeafTree& tree, std::size_t k, std::size_t begin, std::
     }
     for (std::size_t i = 0; i < size; ++i) {
       for (std::size_t n = 0; n < k; ++n) {
-        rows[(first + i) * k + n] = static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(search.found[n][i]));
+        rows[(first + i) * k + n] =
+            static_cast<std::uint32_t>(std::bit_cast<std::uint64_t>(search.found[kBatch + n][i]));
       }
     }
   }
