@@ -4,6 +4,7 @@
 
 #include <CLI/CLI.hpp>
 #include <memory>
+#include <set>
 
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -20,12 +21,17 @@ using nlohmann::json;
 
 /// No file that is written is one of those that are read, or another one that is written.
 Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs, const GlobalOptions& global) {
-  std::vector<fs::path> others{options.script, options.presets};
-  for (const CloudJob& job : jobs) others.insert(others.end(), {job.cloud, job.truth, job.session, job.seeds});
-  const auto check = [&](const fs::path& file, const char* option) -> Status {
-    SACCADE_CHECK(check_output(file, option, others));
-    others.push_back(file);
-    return {};
+  std::set<fs::path> taken;
+  const auto take = [&taken](const fs::path& file) {
+    std::error_code ignored;
+    return file.empty() || taken.insert(fs::weakly_canonical(file, ignored)).second;
+  };
+  for (const fs::path& file : {options.script, options.presets}) take(file);
+  for (const CloudJob& job : jobs) {
+    for (const fs::path& file : {job.cloud, job.truth, job.session, job.seeds}) take(file);
+  }
+  const auto check = [&](const fs::path& file, const char* option) {
+    return check_output(file, option, take(file) ? std::vector<fs::path>{} : std::vector{file});
   };
   for (const CloudJob& job : jobs) {
     if (!job.files.out.empty()) SACCADE_CHECK(check_labels_path(job.files.out));

@@ -250,7 +250,8 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
                                                                                    {"names", &options.names},
                                                                                    {"picture", &options.picture}}};
   for (const auto& [name, file] : files) {
-    if (!file->empty()) summary.line(name, file->string());
+    const bool written = !cloud.interrupted || file == &options.session;
+    if (!file->empty() && written) summary.line(name, file->string());
   }
   std::cout << "\n     label    points  control points  name\n";
   for (const LabelRow& row : cloud.labels.rows) {

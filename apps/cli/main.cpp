@@ -81,10 +81,10 @@ int run(int argc, char** argv, CLI::App& program) {
     program.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
     if (!program.get_subcommands().empty()) return usage(program, error.what());
-    return usage(
-        program,
-        "name what to do: attend, compare, explore, filter, fuse, nbv, reproduce, robot, scene, score, segment, "
-        "info, sample or update");
+    return usage(program,
+                 "name what to do: annotate, attend, compare, explore, filter, fuse, nbv, reproduce, robot, scene, "
+                 "score, segment, "
+                 "info, sample or update");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
     return usage(program, error.what());

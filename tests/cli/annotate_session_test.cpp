@@ -197,6 +197,23 @@ TEST_F(AnnotateSession, ScriptsThatFailSayWhere) {
   EXPECT_EQ(read_journal(path("s.sacann"))->actions.size(), 4U);
 }
 
+TEST_F(AnnotateSession, AnInterruptedScriptGoesOnInItsSession) {
+  std::string script;
+  for (int i = 0; i < 50'000; ++i) script += "{\"do\": \"set\", \"label\": 1, \"points\": [17]}\n";
+  RunningProgram program{{"--json", path("result.json"), "annotate", path("cloud.csv"), "--session", path("s.sacann"),
+                          "--script", write("a.jsonl", script), "--out", path("labels.npy")}};
+  ASSERT_TRUE(program.wait_for("actions"));
+  program.send(SIGTERM);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 143) << outcome.err;
+  EXPECT_NE(outcome.err.find("of 50000 actions were done and are in the session"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(fs::exists(path("labels.npy")));
+  const nlohmann::json result = nlohmann::json::parse(text("result.json"))["result"];
+  EXPECT_EQ(result["interrupted"], true);
+  EXPECT_EQ(result["actions"], read_journal(path("s.sacann"))->actions.size());
+  EXPECT_LT(result["actions"], 50'000);
+}
+
 TEST_F(AnnotateSession, WhatIsNoSessionOfThisCloudStaysAsItIs) {
   const Arguments on{"--session", path("s.sacann")};
   EXPECT_NE(error_of(annotate(on)).find("there is no such session"), std::string::npos);

@@ -24,10 +24,15 @@ bool takes_points(const AnnotationChange& change) {
 }
 
 void give_points(AnnotationChange& change, Indices points) {
-  if (auto* set = std::get_if<SetControlPoints>(&change)) set->points = std::move(points);
-  if (auto* remove = std::get_if<RemoveControlPoints>(&change)) remove->points = std::move(points);
-  if (auto* move = std::get_if<MoveControlPoint>(&change)) *move = {points.at(0), points.at(1)};
-  if (auto* paint = std::get_if<PaintPoints>(&change)) paint->points = std::move(points);
+  if (auto* set = std::get_if<SetControlPoints>(&change)) {
+    set->points = std::move(points);
+  } else if (auto* remove = std::get_if<RemoveControlPoints>(&change)) {
+    remove->points = std::move(points);
+  } else if (auto* move = std::get_if<MoveControlPoint>(&change)) {
+    *move = {points.at(0), points.at(1)};
+  } else if (auto* paint = std::get_if<PaintPoints>(&change)) {
+    paint->points = std::move(points);
+  }
 }
 
 struct NearPoint {
