@@ -258,7 +258,8 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
     std::cout << std::right << std::setw(10) << row.label.number << std::setw(10) << row.label.points << std::setw(16)
               << row.control_points << (row.label.name.empty() ? "" : "  " + row.label.name) << '\n';
   }
-  std::cout << std::setw(10) << "none" << std::setw(10) << cloud.points - std::min(labelled, cloud.points) << '\n';
+  std::cout << std::right << std::setw(10) << "none" << std::setw(10) << cloud.points - std::min(labelled, cloud.points)
+            << '\n';
 }
 
 void print_annotations(std::span<const OfCloud<AnnotatedCloud>> clouds) {

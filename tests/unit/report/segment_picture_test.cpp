@@ -59,6 +59,25 @@ TEST(SegmentPicture, PanelsNameSegmentsAndBrightenSalientOnes) {
   EXPECT_GE(salient.bar->high, 0.4);
 }
 
+TEST(SegmentPicture, MarkedPointsHaveARim) {
+  const TwoSquares squares;
+  const std::vector<Rgb8> colors{{255, 0, 0}, {0, 0, 255}};
+  const std::vector<std::uint32_t> marked{30 * 61 + 30};
+  const Viewpoint view = squares.view();
+  const Panel panel = marked_panel(squares.drawn(), colors, marked, view, "points", test::kSequential);
+  EXPECT_EQ(panel.title, "points");
+  const Eigen::Vector2d at = view.camera.project(squares.positions_m[marked[0]].cast<double>());
+  const auto u = static_cast<int>(std::lround(at.x()));
+  const auto v = static_cast<int>(std::lround(at.y()));
+  EXPECT_EQ(panel.image(u, v), colors[0]);
+  EXPECT_GT(test::count(panel.image, test::is_dark), 10U);
+  EXPECT_EQ(panel.image(u + 9, v), colors[0]);
+  const Rgb8 white{255, 255, 255};
+  EXPECT_GT(test::count(panel.image, white), 4U);
+  const ColorImage plain = draw_segments(squares.drawn(), view, colors, test::kSequential);
+  EXPECT_EQ(test::count(plain, white) + test::count(plain, test::is_dark), 0U);
+}
+
 TEST(SegmentPicture, DrawsMeshesToo) {
   const std::vector<Eigen::Vector3f> corners{{-0.5F, -0.5F, 1.0F}, {0.5F, -0.5F, 1.0F}, {0.0F, 0.5F, 1.0F}};
   const std::vector<std::uint32_t> labels(3, 0);
