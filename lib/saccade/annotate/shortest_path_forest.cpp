@@ -21,6 +21,14 @@ ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neig
       is_start_(neighbourhood_->size(), false),
       queue_{neighbourhood_} {}
 
+/// Not inline, it took a tenth of the time.
+[[gnu::always_inline]] inline void ShortestPathForest::reach(std::uint32_t node, std::uint32_t path,
+                                                             std::uint32_t root) {
+  path_[node] = path;
+  root_[node] = root;
+  queue_.push(path, node);
+}
+
 /// Algorithm 8.
 void ShortestPathForest::spread() {
   queue_.drain([this](std::uint32_t path, std::uint32_t node) {
@@ -152,12 +160,6 @@ void ShortestPathForest::start_at(const Root& root) {
   starts_.insert(start_of(root.point), start);
   const bool is_nearer = start.path < path_[node] || (start.path == path_[node] && root.point < root_[node]);
   if (is_nearer) reach(node, start.path, root.point);
-}
-
-void ShortestPathForest::reach(std::uint32_t node, std::uint32_t path, std::uint32_t root) {
-  path_[node] = path;
-  root_[node] = root;
-  queue_.push(path, node);
 }
 
 }  // namespace saccade
