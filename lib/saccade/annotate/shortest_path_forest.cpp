@@ -149,6 +149,16 @@ std::vector<ShortestPathForest::Start>::const_iterator ShortestPathForest::start
                           [](const Start& start, std::uint32_t p) { return start.point < p; });
 }
 
+std::uint32_t ShortestPathForest::path_units(std::uint32_t point) const {
+  const std::uint64_t state = state_[neighbourhood_->node_of(point)];
+  return state == kNoPath ? kPathUnits : path_of(state);
+}
+
+std::uint32_t ShortestPathForest::start_units(std::uint32_t point) const {
+  SACCADE_EXPECTS(is_root(point));
+  return path_of(start_[neighbourhood_->node_of(point)]);
+}
+
 void ShortestPathForest::start_at(const Root& root) {
   const double max_path = neighbourhood_->config().max_path;
   SACCADE_EXPECTS(root.point < path_.size() && !is_root(root.point));

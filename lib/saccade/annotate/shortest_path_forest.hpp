@@ -44,6 +44,10 @@ class ShortestPathForest {
   [[nodiscard]] std::optional<std::uint32_t> root_of(std::uint32_t point) const;
   /// ω_i in the unit of the costs; infinite where there is no root.
   [[nodiscard]] double path_length(std::uint32_t point) const;
+  /// ω_i in path units; kPathUnits where there is no root.
+  [[nodiscard]] std::uint32_t path_units(std::uint32_t point) const;
+  /// The start cost of a root in path units. Expects that the point is one.
+  [[nodiscard]] std::uint32_t start_units(std::uint32_t point) const;
   /// Points whose root the last add or remove may have changed, some of them twice, or that the last rebuild reached;
   /// in no particular order.
   [[nodiscard]] std::span<const std::uint32_t> touched() const { return touched_; }
