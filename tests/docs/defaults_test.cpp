@@ -9,6 +9,7 @@
 #include <string>
 #include <vector>
 
+#include "saccade/annotate/label_seeds.hpp"
 #include "saccade/annotate/neighbourhood.hpp"
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/attention/dip_detector.hpp"
@@ -250,6 +251,9 @@ TEST(Defaults, OfAnnotationAreDocumented) {
   expect_documented("NeighbourhoodConfig::normal_weight", {graph.normal_weight});
   expect_documented("NeighbourhoodConfig::color_weight", {graph.color_weight});
   expect_documented("NeighbourhoodConfig::max_path", {graph.max_path});
+  const SeedConfig seeds;
+  expect_documented("SeedConfig::share", {seeds.share});
+  expect_documented("SeedConfig::most_per_label", {static_cast<double>(seeds.most_per_label)});
 }
 
 TEST(Defaults, ARowThatIsNotThereFails) { EXPECT_TRUE(documented("TsdfConfig::nothing").empty()); }

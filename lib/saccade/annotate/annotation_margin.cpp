@@ -62,7 +62,6 @@ LabelPaths label_paths(const ShortestPathForest& forest, std::span<const std::ui
       if (further >= other[edge.node] || owned[edge.node].label != owned[node].label) continue;
       other[edge.node] = further;
       queue.push(further, edge.node);
-      fetch_edges_soon(graph, edge.node);
     }
   });
   paths.other.resize(graph.size());

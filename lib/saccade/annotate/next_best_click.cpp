@@ -109,7 +109,6 @@ class Trials {
     if (reached.path == reached.own) taken_.push_back(node);
     reached.path = path;
     queue_.push(path, node);
-    fetch_edges_soon(graph_, node);
   }
 
   const Neighbourhood& graph_;

@@ -5,8 +5,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
-#include <memory>
-#include <utility>
 #include <vector>
 
 #include "saccade/annotate/neighbourhood.hpp"
@@ -26,10 +24,9 @@ namespace saccade {
 /// nearer after all is looked at again. Empty between searches; one per search at a time.
 class PathBuckets {
  public:
-  explicit PathBuckets(std::shared_ptr<const Neighbourhood> neighbourhood)
-      : neighbourhood_{std::move(neighbourhood)},
-        shift_{bucket_shift(*neighbourhood_)},
-        buckets_((kPathUnits >> shift_) + 1) {}
+  /// The neighbourhood stays where it is.
+  explicit PathBuckets(const Neighbourhood& neighbourhood)
+      : neighbourhood_{&neighbourhood}, shift_{bucket_shift(neighbourhood)}, buckets_((kPathUnits >> shift_) + 1) {}
 
   /// Expects path < Ω_max, in path units.
   void push(std::uint32_t path, std::uint32_t node) {
@@ -70,7 +67,7 @@ class PathBuckets {
     return static_cast<unsigned>(std::max(length, least));
   }
 
-  std::shared_ptr<const Neighbourhood> neighbourhood_;
+  const Neighbourhood* neighbourhood_;
   unsigned shift_;
   std::vector<std::vector<Reached>> buckets_;
   std::size_t last_{0};

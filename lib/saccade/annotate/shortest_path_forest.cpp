@@ -19,7 +19,7 @@ ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neig
       path_(neighbourhood_->size(), kNoPath),
       root_(neighbourhood_->size(), 0),
       is_start_(neighbourhood_->size(), false),
-      queue_{neighbourhood_} {}
+      queue_{*neighbourhood_} {}
 
 /// Not inline, it took a tenth of the time.
 [[gnu::always_inline]] inline void ShortestPathForest::reach(std::uint32_t node, std::uint32_t path,
