@@ -38,6 +38,7 @@ Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> j
     SACCADE_CHECK(check(job.files.out, "--out"));
     SACCADE_CHECK(check(job.files.names, "--names"));
     SACCADE_CHECK(check(job.files.picture, "--picture"));
+    SACCADE_CHECK(check(job.files.margins, "--margins"));
   }
   SACCADE_CHECK(check(global.json_to_stdout() ? "" : global.json, "--json"));
   return check_json_output(global);

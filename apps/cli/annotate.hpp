@@ -16,6 +16,7 @@
 #include "command.hpp"
 #include "progress_bar.hpp"
 #include "saccade/annotate/neighbourhood.hpp"
+#include "saccade/annotate/next_best_click.hpp"
 #include "saccade/annotate/rectangle_annotator.hpp"
 #include "saccade/annotate/simulated_annotator.hpp"
 #include "saccade/io/annotation_script.hpp"
@@ -45,6 +46,7 @@ struct AnnotateOptions {
   std::filesystem::path out;    ///< labels
   std::filesystem::path names;  ///< of labels
   std::filesystem::path picture;
+  std::filesystem::path margins;  ///< the cloud with how sure the label of each point is
   NeighbourhoodConfig graph;
   std::vector<GivenGraphOption> given_graph;
 
@@ -130,6 +132,8 @@ struct AnnotatedCloud {
   LabelledPoints labels;
   std::uint64_t actions{0};  ///< since the annotation began
   std::optional<SeedOutcome> seeds;
+  std::optional<BestClick> next;    ///< where margins are asked for
+  Eigen::Vector3f next_m{0, 0, 0};  ///< its place
   double graph_ms{0.0};
   std::vector<double> action_ms;  ///< of this run
   bool interrupted{false};

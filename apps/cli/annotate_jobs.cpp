@@ -78,7 +78,7 @@ Status make_folder(const fs::path& folder) {
 }  // namespace
 
 Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options) {
-  const LabelFiles files{options.out, options.names, options.picture};
+  const LabelFiles files{options.out, options.names, options.picture, options.margins};
   if (!options.of_folder()) {
     CloudJob job{options.cloud, options.truth, options.session, options.seeds, files};
     if (is_folder(options.session)) job.session = named_after(options.session, options.cloud, kSessionSuffix);

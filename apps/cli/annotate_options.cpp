@@ -72,6 +72,12 @@ void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option
       ->check(CLI::ExistingFile)
       ->type_name("FILE")
       ->excludes(&simulate);
+  command
+      .add_option("--margins", options.margins,
+                  "the cloud with a field margin, 0 (as near to another label) to 1 (sure), .pcd or .ply; the result "
+                  "says where another control point helps most")
+      ->type_name("FILE")
+      ->excludes(&simulate);
   CLI::Option* seeds =
       command
           .add_option("--seeds", options.seeds,
@@ -164,9 +170,13 @@ void check_annotate_options(const AnnotateOptions& options) {
   if (!options.names.empty() && options.names.extension() != ".txt" && options.names.extension() != ".json") {
     usage_error("--names", "is a .txt or a .json");
   }
+  if (!options.margins.empty() && options.margins.extension() != ".pcd" && options.margins.extension() != ".ply") {
+    usage_error("--margins", "is a .pcd or a .ply");
+  }
   if (!options.of_folder()) return;
   refuse(options.script, "--script", "is for one cloud, not for a folder");
   refuse(options.presets, "--presets", "is for one cloud, not for a folder");
+  refuse(options.margins, "--margins", "is for one cloud, not for a folder");
   refuse(options.names, "--names", "is for one cloud, not for a folder");
 }
 

@@ -157,6 +157,13 @@ json annotation_json(const AnnotatedCloud& cloud) {
                  {{"count", action_ms.size()},
                   {"median", median_of(action_ms)},
                   {"max", action_ms.empty() ? 0.0 : *std::max_element(action_ms.begin(), action_ms.end())}}}}}};
+  if (cloud.next) {
+    json& next = result["next_best_click"];
+    next = {{"point", cloud.next->point},
+            {"position_m", point_json(cloud.next_m.cast<double>())},
+            {"settles", cloud.next->gain}};
+    if (cloud.next->label != kNoLabel) next["label"] = cloud.next->label;
+  }
   if (cloud.seeds) {
     result["seeds"] = {{"points", cloud.seeds->points},
                        {"reproduced", cloud.seeds->reproduced},
@@ -231,6 +238,13 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
   const std::size_t labelled = cloud.labels.labelled();
   summary.line("points", std::to_string(cloud.points));
   summary.line("labelled", std::to_string(labelled) + " (" + percent(cloud.labelled_share()) + ")");
+  if (cloud.next) {
+    const Eigen::Vector3f& p = cloud.next_m;
+    summary.line("next click", "point " + std::to_string(cloud.next->point) + " at " +
+                                   fixed(static_cast<double>(p.x()), 3) + ", " + fixed(static_cast<double>(p.y()), 3) +
+                                   ", " + fixed(static_cast<double>(p.z()), 3) + " m settles about " +
+                                   fixed(cloud.next->gain, 0) + " points");
+  }
   if (cloud.seeds) {
     const double share = static_cast<double>(cloud.seeds->reproduced) / static_cast<double>(cloud.seeds->points);
     summary.line("seeds", std::to_string(cloud.seeds->control_points) + " control points, which give back " +
@@ -245,10 +259,11 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
                                 : ", actions " + fixed(median_of(cloud.action_ms), 2) + " ms (median), " +
                                       fixed(*std::max_element(cloud.action_ms.begin(), cloud.action_ms.end()), 2) +
                                       " ms at most"));
-  const std::array<std::pair<const char*, const std::filesystem::path*>, 4> files{{{"session", &options.session},
+  const std::array<std::pair<const char*, const std::filesystem::path*>, 5> files{{{"session", &options.session},
                                                                                    {"labels", &options.out},
                                                                                    {"names", &options.names},
-                                                                                   {"picture", &options.picture}}};
+                                                                                   {"picture", &options.picture},
+                                                                                   {"margins", &options.margins}}};
   for (const auto& [name, file] : files) {
     const bool written = !cloud.interrupted || file == &options.session;
     if (!file->empty() && written) summary.line(name, file->string());

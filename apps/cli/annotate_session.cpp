@@ -5,6 +5,8 @@
 
 #include "annotate.hpp"
 #include "interrupt.hpp"
+#include "saccade/annotate/annotation_error.hpp"
+#include "saccade/annotate/annotation_margin.hpp"
 #include "saccade/annotate/label_seeds.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/annotation_session.hpp"
@@ -143,6 +145,16 @@ Status replay(const AnnotateOptions& options, std::span<const ScriptedAction> sc
   return {};
 }
 
+void find_margins(const Annotation& annotation, const LoadedCloud& cloud, AnnotatedCloud& made,
+                  AnnotateProgress& progress) {
+  progress.stage("margins");
+  made.labels.margins = label_margins(annotation);
+  const std::vector<std::uint8_t> ends =
+      cloud_ends(annotation.forest().neighbourhood(), cloud.points.positions_m, cloud.points.normals);
+  made.next = next_best_click(annotation, made.labels.margins, ends);
+  if (made.next) made.next_m = cloud.points.positions_m[made.next->point];
+}
+
 }  // namespace
 
 double AnnotatedCloud::labelled_share() const {
@@ -191,6 +203,7 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
   SACCADE_CHECK(replay(options, actions.script, cloud, annotation, made, executor, progress));
   made.labels = labelled_points(annotation.annotation());
   made.actions = annotation.annotation().history().size();
+  if (!options.margins.empty()) find_margins(annotation.annotation(), cloud, made, progress);
   return made;
 }
 

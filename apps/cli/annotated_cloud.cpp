@@ -114,7 +114,7 @@ std::size_t LabelledPoints::labelled() const {
 }
 
 LabelledPoints labelled_points(const Annotation& annotation) {
-  LabelledPoints points{{annotation.labels().begin(), annotation.labels().end()}, {}, {}};
+  LabelledPoints points{{annotation.labels().begin(), annotation.labels().end()}, {}, {}, {}};
   std::map<std::uint32_t, LabelRow> rows;
   for (const auto& [number, info] : annotation.label_table().defined()) rows[number];
   for (const auto& [number, count] : annotation.counts()) rows[number].label.points = count;
@@ -137,7 +137,7 @@ LabelledPoints labelled_points(std::vector<std::uint32_t> labels, std::vector<st
     if (label != kNoLabel) ++rows[label].label.points;
   }
   for (const std::uint32_t point : control_points) ++rows[labels[point]].control_points;
-  LabelledPoints points{std::move(labels), std::move(control_points), {}};
+  LabelledPoints points{std::move(labels), std::move(control_points), {}, {}};
   for (auto& [number, row] : rows) {
     row.label.number = number;
     row.label.color = colors(number);
@@ -152,6 +152,11 @@ Status write_label_files(const LabelFiles& files, const LoadedCloud& cloud, cons
   for (const LabelRow& row : labels.rows) names.push_back(row.label);
   if (!files.out.empty()) SACCADE_CHECK(write_labels(files.out, cloud.file, labels.labels, names));
   if (!files.names.empty()) SACCADE_CHECK(write_names(files.names, names));
+  if (!files.margins.empty()) {
+    CloudFile with_margins = cloud.file;
+    add_number_field(with_margins, "margin", labels.margins);
+    SACCADE_CHECK(write_cloud(files.margins, with_margins));
+  }
   if (files.picture.empty()) return {};
   return write_png(files.picture, picture_of(cloud, labels, executor));
 }

@@ -32,6 +32,7 @@ struct LabelledPoints {
   std::vector<std::uint32_t> labels;          ///< per point; 0: none
   std::vector<std::uint32_t> control_points;  ///< points
   std::vector<LabelRow> rows;                 ///< labels that are defined, or that points have, in ascending order
+  std::vector<float> margins;                 ///< per point (label_margins); none: not asked for
 
   [[nodiscard]] std::size_t labelled() const;
 };
@@ -46,6 +47,7 @@ struct LabelFiles {
   std::filesystem::path out;
   std::filesystem::path names;    ///< .txt or .json
   std::filesystem::path picture;  ///< .png
+  std::filesystem::path margins;  ///< .pcd or .ply
 };
 
 [[nodiscard]] Status write_label_files(const LabelFiles& files, const LoadedCloud& cloud, const LabelledPoints& labels,

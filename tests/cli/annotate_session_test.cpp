@@ -173,6 +173,25 @@ TEST_F(AnnotateSession, LabelsAreSeeds) {
             std::string::npos);
 }
 
+TEST_F(AnnotateSession, MarginsSayWhereLabelsAreInDoubt) {
+  write("a.jsonl", four_clicks());
+  const nlohmann::json result = result_of({"--script", path("a.jsonl"), "--margins", path("margins.ply")});
+  const auto file = read_cloud(folder_ / "margins.ply");
+  ASSERT_TRUE(file) << file.error().to_string();
+  ASSERT_NE(file->fields().find("r"), nullptr);
+  const Column* margin = file->fields().find("margin");
+  ASSERT_NE(margin, nullptr);
+  EXPECT_EQ(file->fields().rows, kPoints);
+  const nlohmann::json next = result["next_best_click"];
+  EXPECT_LT(next["point"], kPoints);
+  EXPECT_EQ(next["position_m"].size(), 3U);
+  EXPECT_GT(next["settles"], 0.0);
+  EXPECT_EQ(next["label"], truth()[next["point"].get<std::size_t>()]);
+  EXPECT_FALSE(result_of({"--script", path("a.jsonl")}).contains("next_best_click"));
+  EXPECT_NE(error_of(annotate({"--script", path("a.jsonl"), "--margins", path("a.csv")}), 2).find(".ply"),
+            std::string::npos);
+}
+
 TEST_F(AnnotateSession, ScriptsThatFailSayWhere) {
   const auto run = [&](const std::string& script, const Arguments& more = {}) {
     return error_of(annotate(Arguments{"--script", write("a.jsonl", script)} + more));

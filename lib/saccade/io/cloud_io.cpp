@@ -121,6 +121,25 @@ std::vector<Eigen::Vector3f> point_colors(const ColumnTable& fields) {
   return colors;
 }
 
+/// @return what a field of that name is called now; empty if there was none.
+template <class T>
+std::string add_field(CloudFile& cloud, std::string_view name, std::string_view earlier, std::span<const T> values) {
+  ColumnTable& fields = cloud.fields();
+  SACCADE_EXPECTS(values.size() == fields.rows);
+  std::string kept_as;
+  for (Column& column : fields.columns) {
+    if (column.name != name) continue;
+    kept_as = fields.unused_name(earlier);
+    column.name = kept_as;
+  }
+  fields.add<T>(std::string{name}, values);
+  if (auto* ply = std::get_if<PlyFile>(&cloud.file)) {
+    std::vector<int>& order = vertices_of(*ply)->order;
+    if (!order.empty()) order.push_back(static_cast<int>(fields.columns.size()) - 1);
+  }
+  return kept_as;
+}
+
 }  // namespace
 
 const ColumnTable& CloudFile::fields() const {
@@ -237,20 +256,11 @@ std::string add_labels(CloudFile& cloud, std::span<const std::uint32_t> labels) 
 }
 
 std::string add_label_field(CloudFile& cloud, std::span<const std::uint32_t> numbers) {
-  ColumnTable& fields = cloud.fields();
-  SACCADE_EXPECTS(numbers.size() == fields.rows);
-  std::string kept_as;
-  for (Column& column : fields.columns) {
-    if (column.name != kLabelField) continue;
-    kept_as = fields.unused_name(kEarlierLabelField);
-    column.name = kept_as;
-  }
-  fields.add<std::uint32_t>(std::string{kLabelField}, numbers);
-  if (auto* ply = std::get_if<PlyFile>(&cloud.file)) {
-    std::vector<int>& order = vertices_of(*ply)->order;
-    if (!order.empty()) order.push_back(static_cast<int>(fields.columns.size()) - 1);
-  }
-  return kept_as;
+  return add_field(cloud, kLabelField, kEarlierLabelField, numbers);
+}
+
+std::string add_number_field(CloudFile& cloud, std::string_view name, std::span<const float> numbers) {
+  return add_field(cloud, name, std::string{name} + "_input", numbers);
 }
 
 }  // namespace saccade

@@ -58,5 +58,7 @@ struct CloudFile {
 std::string add_labels(CloudFile& cloud, std::span<const std::uint32_t> labels);
 /// The same with the numbers as they are.
 std::string add_label_field(CloudFile& cloud, std::span<const std::uint32_t> numbers);
+/// Adds a field of f32. A field of that name is kept as NAME_input, or NAME_input2 and so on; the rest as add_labels.
+std::string add_number_field(CloudFile& cloud, std::string_view name, std::span<const float> numbers);
 
 }  // namespace saccade
