@@ -139,6 +139,15 @@ double ShortestPathForest::path_length(std::uint32_t point) const {
   return path * (neighbourhood_->config().max_path / kPathUnits);
 }
 
+std::uint32_t ShortestPathForest::path_units(std::uint32_t point) const {
+  return std::min(path_[neighbourhood_->node_of(point)], kPathUnits);
+}
+
+std::uint32_t ShortestPathForest::start_units(std::uint32_t point) const {
+  SACCADE_EXPECTS(is_root(point));
+  return start_of(point)->path;
+}
+
 /// Nodes become points.
 void ShortestPathForest::name_touched() {
   for (std::uint32_t& touched : touched_) touched = neighbourhood_->point_of(touched);
@@ -147,16 +156,6 @@ void ShortestPathForest::name_touched() {
 std::vector<ShortestPathForest::Start>::const_iterator ShortestPathForest::start_of(std::uint32_t point) const {
   return std::lower_bound(starts_.begin(), starts_.end(), point,
                           [](const Start& start, std::uint32_t p) { return start.point < p; });
-}
-
-std::uint32_t ShortestPathForest::path_units(std::uint32_t point) const {
-  const std::uint64_t state = state_[neighbourhood_->node_of(point)];
-  return state == kNoPath ? kPathUnits : path_of(state);
-}
-
-std::uint32_t ShortestPathForest::start_units(std::uint32_t point) const {
-  SACCADE_EXPECTS(is_root(point));
-  return path_of(start_[neighbourhood_->node_of(point)]);
 }
 
 void ShortestPathForest::start_at(const Root& root) {

@@ -14,6 +14,7 @@ std::shared_ptr<const Neighbourhood> row_of_points(double max_path) {
   for (int i = 0; i < 21; ++i) cloud.positions_m.emplace_back(0.01F * static_cast<float>(i), 0.0F, 0.0F);
   NeighbourhoodConfig config;
   config.neighbours = 2;
+  config.position_weight_per_m = 1.0;
   config.normal_weight = 0.0;
   config.max_path = max_path;
   return std::make_shared<const Neighbourhood>(Neighbourhood::build(cloud, config, Executor{}).value());
