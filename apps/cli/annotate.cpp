@@ -110,7 +110,8 @@ Result<int> run_simulations(const AnnotateOptions& options, std::span<const Clou
   const Executor executor = global.executor();
   AnnotateProgress progress{global.quiet, options.of_folder()};
   const auto simulate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<SimulatedAnnotation> {
-    SACCADE_TRY(SimulatedAnnotation made, simulate_annotation(options, job, cloud, executor, progress));
+    SACCADE_TRY(const std::vector<std::uint32_t> truth, read_truth(options, job, cloud.points, progress));
+    SACCADE_TRY(SimulatedAnnotation made, simulate_annotation(options, job, cloud.points, truth, executor, progress));
     SACCADE_CHECK(write_label_files(job.files, cloud, labelled_points(made.labels, made.control_points), executor));
     return made;
   };

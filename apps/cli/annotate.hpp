@@ -35,7 +35,9 @@ struct AnnotateOptions {
   std::filesystem::path cloud;  ///< or a folder of clouds; the paths below are then folders, too, but for names
   std::filesystem::path truth;  ///< labels of the simulated annotator
   Tens tens{Tens::detect};
-  int clicks{4};  ///< per label
+  int clicks{4};                       ///< per label
+  std::optional<std::size_t> actions;  ///< in all, in place of these
+  bool background_is_none{false};      ///< the label that most points have counts as none, as in the thesis' score
   AnnotationMethod method{AnnotationMethod::control_points};
   std::filesystem::path script;
   std::filesystem::path session;
@@ -115,9 +117,14 @@ struct SimulatedAnnotation {
   [[nodiscard]] AnnotationStep after(std::size_t clicks_per_label) const;
 };
 
+/// A label per point, 0 for those that are not finite. Errors of read_labels.
+[[nodiscard]] Result<std::vector<std::uint32_t>> read_truth(const AnnotateOptions& options, const CloudJob& job,
+                                                            const PointCloud& cloud, AnnotateProgress& progress);
+/// Errors name the job's files.
 [[nodiscard]] Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudJob& job,
-                                                              const LoadedCloud& cloud, const Executor& executor,
-                                                              AnnotateProgress& progress);
+                                                              const PointCloud& cloud,
+                                                              const std::vector<std::uint32_t>& truth,
+                                                              const Executor& executor, AnnotateProgress& progress);
 
 /// What control points give back of labels.
 struct SeedOutcome {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
+#include <map>
 
 #include "annotate.hpp"
 #include "interrupt.hpp"
@@ -25,33 +26,37 @@ bool are_parts_in_tens(const std::vector<std::uint32_t>& labels) {
   return table && objects;
 }
 
-Result<std::vector<std::uint32_t>> read_truth(const AnnotateOptions& options, const CloudJob& job, std::size_t points,
-                                              AnnotateProgress& progress) {
-  SACCADE_TRY(std::vector<std::uint32_t> truth, read_labels(job.truth, points));
-  if (options.tens == Tens::keep || (options.tens == Tens::detect && !are_parts_in_tens(truth))) return truth;
-  if (options.tens == Tens::detect) {
-    progress.note(
-        "labels are 1 to 9 and from 20 on, as parts of objects in tens (mOSD): each ten is one; --tens keep: not");
-  }
-  for (std::uint32_t& label : truth) label = label == 0 ? 0 : std::max(1U, label / kLabelsPerObject);
-  return truth;
+std::size_t most_actions(const AnnotateOptions& options, const SimulatedAnnotation& annotation) {
+  return options.actions.value_or(static_cast<std::size_t>(options.clicks) * annotation.objects);
+}
+
+/// What the score takes for no label.
+std::optional<std::uint32_t> background_of(const AnnotateOptions& options, const std::vector<std::uint32_t>& truth) {
+  if (!options.background_is_none) return std::nullopt;
+  std::map<std::uint32_t, std::size_t> counts;
+  for (const std::uint32_t label : truth) counts[label] += label == 0 ? 0 : 1;
+  return std::max_element(counts.begin(), counts.end(),
+                          [](const auto& a, const auto& b) { return a.second < b.second; })
+      ->first;
 }
 
 Error interrupted_error() { return Error{Errc::cancelled, "interrupted", {}}; }
 
 Status click(const AnnotateOptions& options, const CloudJob& job, std::shared_ptr<const Neighbourhood> graph,
-             const PointCloud& cloud, std::vector<std::uint32_t> truth, SimulatedAnnotation& annotation,
+             const PointCloud& cloud, const std::vector<std::uint32_t>& truth, SimulatedAnnotation& annotation,
              AnnotateProgress& progress) {
   SACCADE_TRY(SimulatedAnnotator annotator,
-              in_file(SimulatedAnnotator::create(std::move(graph), cloud, std::move(truth)), job.truth));
-  const std::size_t clicks = static_cast<std::size_t>(options.clicks) * annotation.objects;
+              in_file(SimulatedAnnotator::create(std::move(graph), cloud, truth), job.truth));
+  const std::size_t clicks = most_actions(options, annotation);
+  const std::optional<std::uint32_t> background = background_of(options, truth);
   while (annotation.clicks.size() < clicks) {
     if (interrupted()) return interrupted_error();
     progress.stage("clicks", annotation.clicks.size(), clicks);
     const std::optional<SimulatedClick> next = annotator.next();
     if (!next) break;
     annotation.add_ms.push_back(next->add_ms);
-    annotation.clicks.push_back({next->label, next->score.mean_iou, next->score.wrong});
+    SACCADE_TRY(const AnnotationScore score, score_annotation(annotator.labels(), truth, background));
+    annotation.clicks.push_back({next->label, score.mean_iou, score.wrong});
   }
   annotation.labels = annotator.labels();
   ShortestPathForest& forest = annotator.forest();
@@ -72,13 +77,14 @@ Status click(const AnnotateOptions& options, const CloudJob& job, std::shared_pt
 Status drag_rectangles(const AnnotateOptions& options, const PointCloud& cloud, const std::vector<std::uint32_t>& truth,
                        const Executor& executor, SimulatedAnnotation& annotation, AnnotateProgress& progress) {
   SACCADE_TRY(RectangleAnnotator annotator, RectangleAnnotator::create(cloud.positions_m, truth, {}, executor));
-  const std::size_t actions = static_cast<std::size_t>(options.clicks) * annotation.objects;
+  const std::size_t actions = most_actions(options, annotation);
+  const std::optional<std::uint32_t> background = background_of(options, truth);
   while (annotation.clicks.size() < actions) {
     if (interrupted()) return interrupted_error();
     progress.stage("rectangles", annotation.clicks.size(), actions);
     const std::optional<RectangleAction> next = annotator.next(executor);
     if (!next) break;
-    SACCADE_TRY(const AnnotationScore score, score_annotation(annotator.labels(), truth));
+    SACCADE_TRY(const AnnotationScore score, score_annotation(annotator.labels(), truth, background));
     annotation.clicks.push_back({next->label, score.mean_iou, score.wrong});
   }
   annotation.labels = annotator.labels();
@@ -99,14 +105,24 @@ AnnotationStep SimulatedAnnotation::after(std::size_t clicks_per_label) const {
   return clicks[std::min(clicks_per_label * objects, clicks.size()) - 1];
 }
 
-Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudJob& job,
-                                                const LoadedCloud& cloud, const Executor& executor,
-                                                AnnotateProgress& progress) {
-  const PointCloud& points = cloud.points;
-  SACCADE_TRY(std::vector<std::uint32_t> truth, read_truth(options, job, points.positions_m.size(), progress));
+Result<std::vector<std::uint32_t>> read_truth(const AnnotateOptions& options, const CloudJob& job,
+                                              const PointCloud& cloud, AnnotateProgress& progress) {
+  SACCADE_TRY(std::vector<std::uint32_t> truth, read_labels(job.truth, cloud.positions_m.size()));
   for (std::size_t i = 0; i < truth.size(); ++i) {
-    if (!points.positions_m[i].allFinite()) truth[i] = 0;
+    if (!cloud.positions_m[i].allFinite()) truth[i] = 0;
   }
+  if (options.tens == Tens::keep || (options.tens == Tens::detect && !are_parts_in_tens(truth))) return truth;
+  if (options.tens == Tens::detect) {
+    progress.note(
+        "labels are 1 to 9 and from 20 on, as parts of objects in tens (mOSD): each ten is one; --tens keep: not");
+  }
+  for (std::uint32_t& label : truth) label = label == 0 ? 0 : std::max(1U, label / kLabelsPerObject);
+  return truth;
+}
+
+Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, const CloudJob& job,
+                                                const PointCloud& cloud, const std::vector<std::uint32_t>& truth,
+                                                const Executor& executor, AnnotateProgress& progress) {
   SACCADE_TRY(const AnnotationScore none, score_annotation(std::vector<std::uint32_t>(truth.size(), 0), truth));
   if (none.points == 0) {
     return Error{Errc::invalid_argument, "no point of the cloud has a label but 0 in it", job.truth.string()};
@@ -115,15 +131,15 @@ Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, 
   annotation.points = none.points;
   annotation.objects = none.objects.size();
   if (options.method == AnnotationMethod::rectangle) {
-    SACCADE_CHECK(drag_rectangles(options, points, truth, executor, annotation, progress));
+    SACCADE_CHECK(drag_rectangles(options, cloud, truth, executor, annotation, progress));
     return annotation;
   }
   progress.stage("graph");
   const Stopwatch stopwatch;
-  SACCADE_TRY(Neighbourhood built, in_file(Neighbourhood::build(points, options.graph, executor), job.cloud));
+  SACCADE_TRY(Neighbourhood built, in_file(Neighbourhood::build(cloud, options.graph, executor), job.cloud));
   annotation.graph_ms = stopwatch.elapsed_ms();
   const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
-  SACCADE_CHECK(click(options, job, graph, points, std::move(truth), annotation, progress));
+  SACCADE_CHECK(click(options, job, graph, cloud, truth, annotation, progress));
   return annotation;
 }
 

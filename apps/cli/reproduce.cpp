@@ -209,13 +209,20 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
   command
       ->add_option(
           "--image-width", options->image_width_px,
-          "images of Tables 2.7, 2.8, 3.1 to 3.3 and Fig. 3.17 so many pixels wide: quicker, but no longer what the "
-          "thesis did (default: 640, and 512 in chapter 3)")
+          "images of Tables 2.7, 2.8, 3.1 to 3.3, Fig. 3.17 and of made clouds so many pixels wide: quicker, but no "
+          "longer what the thesis did (default: 640, and 512 in chapter 3)")
       ->check(CLI::Range(16, 640))
       ->type_name("PIXELS");
   command
       ->add_option("--hands", options->hands,
                    std::string{"Tables 2.2 to 2.6: folder of the thesis' recorded hands, from "} + kHandDataAddress)
+      ->type_name("DIR");
+  command
+      ->add_option(
+          "--clouds", options->clouds,
+          "Tables 4.5, 4.6 and 4.8: folder of clouds that hold labels or have files of labels beside them, such "
+          "as mOSD (default: made ones)")
+      ->check(CLI::ExistingDirectory)
       ->type_name("DIR");
   command
       ->add_option("--noise-seeds", options->noise_seeds,

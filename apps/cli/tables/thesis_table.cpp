@@ -33,6 +33,12 @@ constexpr std::array kTables{
     ThesisTable{"3.9", "figure: saliency for five distances of isolation", reproduce_figure_3_9, false, true},
     ThesisTable{"3.17", "figure: unknown voxels near the objects over five views (takes minutes)",
                 reproduce_figure_3_17, false, true},
+    ThesisTable{"4.4", "parameters of annotation", reproduce_table_4_4},
+    ThesisTable{"4.5", "errors of annotation by control points and by rectangles, simulated (also with --clouds)",
+                reproduce_table_4_5},
+    ThesisTable{"4.6", "the same of the second scenario", reproduce_table_4_6},
+    ThesisTable{"4.7", "what users thought of annotation (quoted)", reproduce_table_4_7},
+    ThesisTable{"4.8", "milliseconds of the steps of annotation (also with --clouds)", reproduce_table_4_8},
 };
 
 /// Characters, not bytes, of UTF-8.

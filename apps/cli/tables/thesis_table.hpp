@@ -20,17 +20,20 @@
 
 namespace saccade::cli {
 
+struct AnnotationExperiments;
 struct ExplorationExperiments;
 
 struct ReproduceOptions {
   std::size_t poses{0};  ///< view poses that are evaluated, evenly spread; 0: all that the thesis has
   std::uint64_t seed{1};
-  std::filesystem::path hands;  ///< folder of the thesis' recorded hands; see hand_data.hpp
-  std::size_t noise_seeds{20};  ///< that noise on them is averaged over
-  int image_width_px{0};        ///< of the simulated camera of Tables 2.7, 2.8 and 3.1 to 3.3; 0: as the thesis' has
-  std::size_t frames{0};        ///< of the beginning of the scan of Table 2.1; 0: all
+  std::filesystem::path hands;   ///< folder of the thesis' recorded hands; see hand_data.hpp
+  std::size_t noise_seeds{20};   ///< that noise on them is averaged over
+  std::filesystem::path clouds;  ///< folder of labelled clouds for Tables 4.5, 4.6 and 4.8; empty: made ones
+  int image_width_px{0};  ///< of the simulated camera of Tables 2.7, 2.8, 3.1 to 3.3 and of made clouds; 0: as it has
+  std::size_t frames{0};  ///< of the beginning of the scan of Table 2.1; 0: all
   /// Those of Tables 3.1 and 3.3 and Fig. 3.17, carried out by the first of them.
   mutable std::shared_ptr<const ExplorationExperiments> experiments{};
+  mutable std::shared_ptr<const AnnotationExperiments> annotations{};  ///< the same of Tables 4.5 and 4.6
 };
 
 /// Files that tables' plots go to, all there are.
@@ -114,5 +117,15 @@ void print(std::ostream& out, const ReproducedTable& table);
                                                            const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_figure_3_9(const ReproduceOptions& options, const Executor& executor,
                                                            const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_4(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_5(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_6(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_7(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_8(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
 
 }  // namespace saccade::cli
