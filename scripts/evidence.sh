@@ -100,6 +100,17 @@ step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity
 echo "Motions of the arm beside FCL: ten seeds, all built-in scenes"
 step motion_planning env SACCADE_PLANNING_SEEDS=10 build/release/tests/parity '--gtest_filter=MotionPlanning*'
 
+echo "Annotation: simulated annotators on labelled clouds"
+clouds="$data/mosd_labelled/learn"
+if [[ -d $clouds ]]; then
+  step annotation_control_points build/release/saccade --quiet annotate "$clouds" --simulate "$clouds" --clicks 6 \
+    --json "$out/annotation_control_points.json"
+  step annotation_rectangles build/release/saccade --quiet annotate "$clouds" --simulate "$clouds" --clicks 6 --method rectangle \
+    --json "$out/annotation_rectangles.json"
+else
+  echo "  skipped, $clouds is not there"
+fi
+
 echo "Annotation sessions: a thousand processes killed while they annotate"
 step annotation_kills env SACCADE_KILL_CASES=1000 build/release/tests/unit_io '--gtest_filter=AnnotationSessionKilled*'
 

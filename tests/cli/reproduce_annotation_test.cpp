@@ -2,9 +2,11 @@
 // saccade reproduce 4.4 to 4.8 as a user runs them: on made clouds, on a folder of labelled ones, and on bad input.
 #include <algorithm>
 #include <array>
+#include <iostream>
 #include <map>
 
 #include "cli/annotated_boxes.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -144,6 +146,34 @@ TEST_F(ReproduceAnnotation, BadInputIsOneLine) {
   expect_failure(run_program({"reproduce", "4.8", "--quiet", "--clouds", path("clouds")}), 3, "reproduce", {"b.csv"});
   std::ofstream{folder_ / "clouds" / "b.txt"} << "1\n2\n";
   expect_failure(run_program({"reproduce", "4.6", "--quiet", "--clouds", path("clouds")}), 3, "reproduce", {"b.txt"});
+}
+
+/// Some of mOSD's clouds, by links.
+TEST(AnnotateRecordedClouds, ThreeClicksPerLabelAreAlmostEnough) {
+  const fs::path recorded = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
+  if (!fs::exists(recorded)) GTEST_SKIP() << "no " << recorded;
+  const TempFolder folder;
+  Arguments names{"learn0.pcd", "learn33.pcd", "learn38.pcd"};
+  if (kSanitized) names.resize(1);
+  for (const std::string& name : names) fs::create_symlink(fs::absolute(recorded / name), folder / name);
+  const std::string clouds = (folder / ".").string();
+  const Outcome outcome =
+      run_program({"--json", "-", "--quiet", "annotate", clouds, "--simulate", clouds, "--clicks", "3"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json mean = outcome.json().at("result").at("mean");
+  EXPECT_EQ(mean.at("clouds"), names.size());
+  const nlohmann::json& three = mean.at("per_label").at(2);
+  std::cout << names.size() << " clouds, three clicks per label: " << three << "\n";
+  EXPECT_GE(three.at("iou_mean"), 0.97);
+  EXPECT_LE(three.at("errors_per_100k"), 500.0);
+
+  const Outcome beside = run_program({"--json", "-", "--quiet", "reproduce", "4.5", "--clouds", clouds});
+  ASSERT_EQ(beside.status, 0) << beside.err;
+  const nlohmann::json table = beside.json().at("result").at("tables").at(0);
+  const double people = row_of(table, "people", "control points").at("errors_per_100k").get<double>();
+  const nlohmann::json clicks =
+      row_of(table, "simulated", "control points", {{"weights", "ours"}, {"budget", "per_label"}});
+  EXPECT_LT(clicks.at("errors_per_100k").at("mean").get<double>(), people);
 }
 
 }  // namespace
