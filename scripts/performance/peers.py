@@ -2,7 +2,7 @@
 """The table of ours beside the peers, and the list of everything measured."""
 import statistics
 
-from performance.results import spread
+from performance.results import figure, spread
 
 # (row, what it does, peer, least ratio, most ms).
 ROWS = [
@@ -46,7 +46,24 @@ ROWS = [
     ("standard_views:best_of_all/views:0/threads:2",
      "the best of 95,728 views of all contours of a table, 512×424 rays, the whole workspace, after the scan", None, None, 10000.0),
     ("standard_views:best_of_all/views:2/threads:2", "of 125,096 after two views more", None, None, 10000.0),
+    ("annotation:neighbourhood_without_normals/2",
+     "neighbourhood graph of a labelled cloud (mOSD, 169,969 points), distances alone, two threads",
+     "annotation:neighbourhood_by_nanoflann", 2.0, None),
+    ("annotation:neighbourhood/2", "the same with normals estimated, as it usually is", "annotation:neighbourhood_by_nanoflann",
+     None, 60.0),
+    ("annotation:control_points_90", "its labels from 90 control points, one thread", "annotation:control_points_90_by_dijkstra",
+     2.0, 13.0),
+    ("annotation:add_control_point", "one control point more, mean", None, None, None),
+    ("annotation:remove_control_point", "one fewer, mean", None, None, None),
+    ("annotation:graph_ten_million", "graph of ten million points, tiled from labelled clouds", None, None, 20000.0),
+    ("annotation:first_control_point_ten_million", "the first control point in it", None, None, 300.0),
+    ("annotation:add_ten_million", "one more beside a thousand, mean", None, None, None),
 ]
+# (row, median over what it did in one repetition, most ms).
+MEDIANS = [("annotation:add_control_point", "one control point more", 0.1),
+           ("annotation:remove_control_point", "one fewer", 0.15),
+           ("annotation:add_ten_million", "one more among ten million points", 20.0)]
+MOST_MIB = 3072
 PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only",
          "mapping:open3d_raycast": "Open3D VoxelBlockGrid",
          "mapping:opencv_icp": "OpenCV FastICPOdometry",
@@ -58,7 +75,9 @@ PEERS = {"mapping:open3d_integrate": "Open3D VoxelBlockGrid, surface blocks only
          "regions:all_poses/again:0/threads:2": "all poses",
          "regions:best_pose/again:0/threads:2": "the first time",
          "segments:pcl_clouds": "PCL",
-         "contours:voxel_by_voxel": "voxel by voxel"}
+         "contours:voxel_by_voxel": "voxel by voxel",
+         "annotation:neighbourhood_by_nanoflann": "nanoflann, distances alone, one thread",
+         "annotation:control_points_90_by_dijkstra": "Dijkstra's algorithm as in a book"}
 
 
 def target_row(results, row):
@@ -91,6 +110,23 @@ def differing(results):
             "most; 1000 would fail the benchmark.", ""]
 
 
+def annotation(results):
+    """Medians and memory in a sentence, and whether they are held."""
+    parts = []
+    held = True
+    for row, what, most_ms in MEDIANS:
+        microseconds = results.counter(row, "median_us")
+        if microseconds is None:
+            return [], False
+        good = 1e-3 * microseconds <= most_ms
+        held = held and good
+        parts.append(f"{what} {figure(1e-3 * microseconds)} ms (≤ {most_ms:g}: {'yes' if good else 'no'})")
+    peak, kept = (results.counter("annotation:graph_ten_million", name) for name in ("peak_mib", "kept_mib"))
+    good = peak <= MOST_MIB
+    return [f"Annotation, medians of single control points: {', '.join(parts)}. Graph and forest of ten million points take "
+            f"{peak:,.0f} MiB at the most (≤ {MOST_MIB:,}: {'yes' if good else 'no'}) and keep {kept:,.0f} MiB.", ""], held and good
+
+
 def section(results):
     """Lines, and whether all targets are held."""
     lines = ["## Beside the peers", "", "| work | ours, ms | peer | peer, ms | ratio | held |", "|---|---|---|---|---|---|"]
@@ -99,7 +135,8 @@ def section(results):
         line, held = target_row(results, row)
         lines.append(line)
         held_all = held_all and held
-    return lines + [""] + differing(results), held_all
+    told, held = annotation(results)
+    return lines + [""] + differing(results) + told, held_all and held
 
 
 def everything(results):
