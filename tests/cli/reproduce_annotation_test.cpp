@@ -26,8 +26,8 @@ class ReproduceAnnotation : public AnnotatedBoxes {
 };
 
 /// The first row by that annotator and method whose other keys have these values.
-nlohmann::json row_of(const nlohmann::json& table, const std::string& annotator, const std::string& method,
-                      const std::map<std::string, std::string>& others = {}) {
+nlohmann::json study_row(const nlohmann::json& table, const std::string& annotator, const std::string& method,
+                         const std::map<std::string, std::string>& others = {}) {
   for (const nlohmann::json& row : table.at("rows")) {
     const bool fits = row.at("annotator") == annotator && row.at("method") == method;
     if (fits && std::all_of(others.begin(), others.end(), [&](const auto& o) { return row.at(o.first) == o.second; })) {
@@ -41,10 +41,10 @@ nlohmann::json row_of(const nlohmann::json& table, const std::string& annotator,
 TEST_F(ReproduceAnnotation, StandsBesideTheUserStudy) {
   const nlohmann::json tables = tables_of({"4.5", "4.6"}, on_boxes());
   ASSERT_EQ(tables.size(), 2U);
-  EXPECT_NEAR(row_of(tables.at(0), "people", "control points").at("errors_per_100k").get<double>(), 797.4, 0.1);
-  EXPECT_EQ(row_of(tables.at(0), "people", "rectangles").at("errors").at("mean"), 3551);
-  EXPECT_EQ(row_of(tables.at(1), "people", "control points").at("errors").at("mean"), 926);
-  EXPECT_NEAR(row_of(tables.at(1), "people", "rectangles").at("errors_per_100k").get<double>(), 3480.1, 0.1);
+  EXPECT_NEAR(study_row(tables.at(0), "people", "control points").at("errors_per_100k").get<double>(), 797.4, 0.1);
+  EXPECT_EQ(study_row(tables.at(0), "people", "rectangles").at("errors").at("mean"), 3551);
+  EXPECT_EQ(study_row(tables.at(1), "people", "control points").at("errors").at("mean"), 926);
+  EXPECT_NEAR(study_row(tables.at(1), "people", "rectangles").at("errors_per_100k").get<double>(), 3480.1, 0.1);
   for (const nlohmann::json& table : tables) {
     EXPECT_EQ(table.at("clouds"), 2);
     EXPECT_EQ(table.at("rows").size(), 2U + 2U * 3U);
@@ -64,7 +64,7 @@ TEST_F(ReproduceAnnotation, StandsBesideTheUserStudy) {
     }
     // Boxes of one colour on a table of another: a click on each, and nothing is wrong any more.
     const nlohmann::json clicks =
-        row_of(table, "simulated", "control points", {{"weights", "ours"}, {"budget", "total"}});
+        study_row(table, "simulated", "control points", {{"weights", "ours"}, {"budget", "total"}});
     EXPECT_EQ(clicks.at("errors").at("mean"), 0.0);
     EXPECT_EQ(clicks.at("actions").at("mean"), kLabels);
     EXPECT_EQ(clicks.at("iou_mean").at("mean"), 1.0);
@@ -82,7 +82,7 @@ TEST_F(ReproduceAnnotation, NoLabelCountsAsTheBackground) {
   cloud.close();
   truth.close();
   const nlohmann::json row =
-      row_of(tables_of({"4.5"}, on_boxes()).at(0), "simulated", "control points", {{"weights", "ours"}});
+      study_row(tables_of({"4.5"}, on_boxes()).at(0), "simulated", "control points", {{"weights", "ours"}});
   const nlohmann::json& spread = row.at("clouds").at(0);
   EXPECT_EQ(spread.at("points"), kPoints + 12 * kGroups);
   EXPECT_EQ(spread.at("actions"), 26);
@@ -93,7 +93,7 @@ TEST_F(ReproduceAnnotation, MadeCloudsAreLabelledByTheirScenes) {
   const Arguments small{"--image-width", "160", "--seed", "3"};
   const nlohmann::json tables = tables_of({"4.6", "4.8"}, small + Arguments{"--threads", "1"});
   const nlohmann::json clicks =
-      row_of(tables.at(0), "simulated", "control points", {{"weights", "ours"}, {"budget", "per_label"}});
+      study_row(tables.at(0), "simulated", "control points", {{"weights", "ours"}, {"budget", "per_label"}});
   ASSERT_EQ(clicks.at("clouds").size(), 4U);
   EXPECT_EQ(clicks.at("clouds").at(0).at("labels"), 7);  // six objects and the table
   for (const nlohmann::json& cloud : clicks.at("clouds")) {
@@ -170,9 +170,9 @@ TEST(AnnotateRecordedClouds, ThreeClicksPerLabelAreAlmostEnough) {
   const Outcome beside = run_program({"--json", "-", "--quiet", "reproduce", "4.5", "--clouds", clouds});
   ASSERT_EQ(beside.status, 0) << beside.err;
   const nlohmann::json table = beside.json().at("result").at("tables").at(0);
-  const double people = row_of(table, "people", "control points").at("errors_per_100k").get<double>();
+  const double people = study_row(table, "people", "control points").at("errors_per_100k").get<double>();
   const nlohmann::json clicks =
-      row_of(table, "simulated", "control points", {{"weights", "ours"}, {"budget", "per_label"}});
+      study_row(table, "simulated", "control points", {{"weights", "ours"}, {"budget", "per_label"}});
   EXPECT_LT(clicks.at("errors_per_100k").at("mean").get<double>(), people);
 }
 
