@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Tables 4.5 and 4.6: errors of annotation by control points and by rectangles, with simulated annotators in the place
 // of people (thesis §4.2.3).
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <numeric>
