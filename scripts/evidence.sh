@@ -107,6 +107,8 @@ if [[ -d $clouds ]]; then
     --json "$out/annotation_control_points.json"
   step annotation_rectangles build/release/saccade --quiet annotate "$clouds" --simulate "$clouds" --clicks 6 --method rectangle \
     --json "$out/annotation_rectangles.json"
+  step annotation_best_rectangles build/release/saccade --quiet annotate "$clouds" --simulate "$clouds" --clicks 6 \
+    --method best-rectangle --json "$out/annotation_best_rectangles.json"
 else
   echo "  skipped, $clouds is not there"
 fi

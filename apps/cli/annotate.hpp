@@ -23,7 +23,7 @@
 
 namespace saccade::cli {
 
-enum class AnnotationMethod { control_points, rectangle };
+enum class AnnotationMethod { control_points, rectangle, best_rectangle };
 
 /// Whether true labels of one ten are parts of one object.
 enum class Tens { detect, merge, keep };

@@ -104,10 +104,12 @@ void add_simulation_options(CLI::App& command, AnnotateOptions& options, CLI::Op
       ->type_name("N")
       ->capture_default_str();
   const std::map<std::string, AnnotationMethod> methods{{"control-points", AnnotationMethod::control_points},
-                                                        {"rectangle", AnnotationMethod::rectangle}};
+                                                        {"rectangle", AnnotationMethod::rectangle},
+                                                        {"best-rectangle", AnnotationMethod::best_rectangle}};
   command
       .add_option("--method", options.method,
-                  "control-points, or rectangle: the best rectangle of six views, action by action")
+                  "control-points; rectangle: around the largest error, in the best of six views; best-rectangle: "
+                  "of all rectangles the one that corrects most")
       ->transform(CLI::CheckedTransformer(methods))
       ->needs(&simulate)
       ->type_name("METHOD")

@@ -17,11 +17,12 @@ constexpr std::array<int, 3> kGoals_percent{80, 85, 90};
 constexpr double kPer{100'000.0};
 
 std::string_view name_of(AnnotationMethod method) {
-  return method == AnnotationMethod::rectangle ? "rectangle" : "control-points";
+  if (method == AnnotationMethod::control_points) return "control-points";
+  return method == AnnotationMethod::rectangle ? "rectangle" : "best-rectangle";
 }
 
 std::string action_of(const AnnotateOptions& options) {
-  return options.method == AnnotationMethod::rectangle ? "rectangles" : "clicks";
+  return options.method == AnnotationMethod::control_points ? "clicks" : "rectangles";
 }
 
 std::string text_of(const AnnotationStep& step, std::size_t points) {
@@ -195,7 +196,7 @@ void print_simulation(const AnnotateOptions& options, const SimulatedAnnotation&
     summary.line(std::to_string(annotation.clicks.size()) + " " + action,
                  text_of(annotation.clicks.back(), annotation.points));
   }
-  if (options.method == AnnotationMethod::rectangle) return;
+  if (options.method != AnnotationMethod::control_points) return;
   summary.line("graph", fixed(annotation.graph_ms, 1) + " ms");
   summary.line("add, delete", fixed(median_of(annotation.add_ms), 2) + " ms, " +
                                   fixed(median_of(annotation.delete_ms), 2) + " ms (median)");

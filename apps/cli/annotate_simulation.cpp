@@ -74,15 +74,21 @@ Status click(const AnnotateOptions& options, const CloudJob& job, std::shared_pt
   return {};
 }
 
-Status drag_rectangles(const AnnotateOptions& options, const PointCloud& cloud, const std::vector<std::uint32_t>& truth,
-                       const Executor& executor, SimulatedAnnotation& annotation, AnnotateProgress& progress) {
+Status drag_rectangles(const AnnotateOptions& options, const Neighbourhood& graph, const PointCloud& cloud,
+                       const std::vector<std::uint32_t>& truth, const Executor& executor,
+                       SimulatedAnnotation& annotation, AnnotateProgress& progress) {
   SACCADE_TRY(RectangleAnnotator annotator, RectangleAnnotator::create(cloud.positions_m, truth, {}, executor));
+  const auto drag = [&]() -> std::optional<RectangleAction> {
+    if (options.method == AnnotationMethod::best_rectangle) return annotator.next(executor);
+    const std::vector<ErrorRegion> wrong = error_regions(graph, annotator.labels(), truth).value();
+    return wrong.empty() ? std::nullopt : annotator.next_around(wrong.front(), executor);
+  };
   const std::size_t actions = most_actions(options, annotation);
   const std::optional<std::uint32_t> background = background_of(options, truth);
   while (annotation.clicks.size() < actions) {
     if (interrupted()) return interrupted_error();
     progress.stage("rectangles", annotation.clicks.size(), actions);
-    const std::optional<RectangleAction> next = annotator.next(executor);
+    const std::optional<RectangleAction> next = drag();
     if (!next) break;
     SACCADE_TRY(const AnnotationScore score, score_annotation(annotator.labels(), truth, background));
     annotation.clicks.push_back({next->label, score.mean_iou, score.wrong});
@@ -130,16 +136,16 @@ Result<SimulatedAnnotation> simulate_annotation(const AnnotateOptions& options, 
   SimulatedAnnotation annotation;
   annotation.points = none.points;
   annotation.objects = none.objects.size();
-  if (options.method == AnnotationMethod::rectangle) {
-    SACCADE_CHECK(drag_rectangles(options, cloud, truth, executor, annotation, progress));
-    return annotation;
-  }
   progress.stage("graph");
   const Stopwatch stopwatch;
   SACCADE_TRY(Neighbourhood built, in_file(Neighbourhood::build(cloud, options.graph, executor), job.cloud));
   annotation.graph_ms = stopwatch.elapsed_ms();
   const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
-  SACCADE_CHECK(click(options, job, graph, cloud, truth, annotation, progress));
+  if (options.method == AnnotationMethod::control_points) {
+    SACCADE_CHECK(click(options, job, graph, cloud, truth, annotation, progress));
+  } else {
+    SACCADE_CHECK(drag_rectangles(options, *graph, cloud, truth, executor, annotation, progress));
+  }
   return annotation;
 }
 

@@ -26,10 +26,11 @@ struct Annotator {
   NeighbourhoodConfig graph;
 };
 
-const std::array<Annotator, 3> kAnnotators{
+const std::array<Annotator, 4> kAnnotators{
     {{"control points", "ours", AnnotationMethod::control_points, {}},
      {"control points", "Table 4.4", AnnotationMethod::control_points, thesis::kTable4_4},
-     {"rectangles", "–", AnnotationMethod::rectangle, {}}}};
+     {"rectangles", "–", AnnotationMethod::rectangle, {}},
+     {"best rectangles", "–", AnnotationMethod::best_rectangle, {}}}};
 
 }  // namespace
 
@@ -194,9 +195,10 @@ std::vector<std::string> notes_of(const Scenario& scenario, const AnnotationExpe
   const std::array<Budget, 2> budgets = budgets_of(scenario);
   return {
       "Nobody annotates here: simulated annotators who know the truth stand for the thesis' ten people. With control "
-      "points they click at the centre of the largest region that is wrong; with rectangles they find, in one of six "
-      "views, the one that corrects most. People do neither, so both are better than people, and rectangles much more "
-      "so. Time and undos are people's.",
+      "points they click at the centre of the largest region that is wrong; rectangles they draw around it, in the "
+      "best "
+      "of six views, on the surface or through it. The best rectangles, of all that there are, nobody finds: they show "
+      "what rectangles could do. Time and undos are people's.",
       experiments.about,
       "Actions: as many as people placed control points (" + budgets[0].text() + "), and as many per label (" +
           std::to_string(thesis::kStudiedLabels) + " in the thesis: four objects and the background; " +

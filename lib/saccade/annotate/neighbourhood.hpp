@@ -20,7 +20,7 @@ inline constexpr std::uint32_t kPathUnits{1U << 30U};
 struct NeighbourhoodConfig {
   int neighbours{10};                 ///< K_nn, 1 to 64; points that have one as a neighbour are its neighbours, too
   double position_weight_per_m{0.2};  ///< α_p
-  double normal_weight{6.0};          ///< α_n
+  double normal_weight{8.0};          ///< α_n
   double color_weight{1.0};           ///< α_c; an edge of the colour cube is 1
   double max_path{100.0};             ///< Ω_max: a path is shorter, in the unit of the costs
   /// Distances are divided by the local spacing of the points (the farther K-th neighbour's distance of the two) and

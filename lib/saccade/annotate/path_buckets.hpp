@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <span>
 #include <vector>
 
 #include "saccade/annotate/neighbourhood.hpp"
@@ -15,9 +16,9 @@ namespace saccade {
 /// takes calls of a function that does nothing but fetch for superfluous.
 [[gnu::always_inline]] inline void fetch_edges(const Neighbourhood& neighbourhood, std::uint32_t node) {
   constexpr std::size_t kEdgesPerLine{8};  // of the cache
-  const Neighbourhood::Edge* edges = neighbourhood.edges(node).data();
-  __builtin_prefetch(edges);
-  __builtin_prefetch(edges + kEdgesPerLine);
+  const std::span<const Neighbourhood::Edge> edges = neighbourhood.edges(node);
+  __builtin_prefetch(edges.data());
+  if (edges.size() > kEdgesPerLine) __builtin_prefetch(edges.data() + kEdgesPerLine);
 }
 
 /// A queue by path length. Paths of nearly equal length are in one bucket, in no order: a node that is found to be

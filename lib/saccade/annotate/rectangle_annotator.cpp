@@ -223,14 +223,55 @@ std::optional<RectangleAction> RectangleAnnotator::next(const Executor& executor
   return best;
 }
 
-void RectangleAnnotator::carry_out(RectangleAction& action) {
-  const Picture& picture = pictures_[action.view];
-  const PixelWindow rectangle{action.left, action.top, action.right, action.bottom};
-  action.corrected = 0;
+/// With what it corrects and breaks.
+RectangleAction RectangleAnnotator::around(const ErrorRegion& region, std::size_t view, bool surface) const {
+  const Picture& picture = pictures_[view];
+  RectangleAction action{view, surface, region.truth, config_.columns, config_.rows, 0, 0};
+  for (const std::uint32_t point : region.points) {
+    if (picture.cells[point] == kNowhere || (surface && picture.seen[point] == 0)) continue;
+    const int column = static_cast<int>(picture.cells[point]) % config_.columns;
+    const int row = static_cast<int>(picture.cells[point]) / config_.columns;
+    action.left = std::min(action.left, column);
+    action.top = std::min(action.top, row);
+    action.right = std::max(action.right, column + 1);
+    action.bottom = std::max(action.bottom, row + 1);
+  }
   for (std::size_t i = 0; i < labels_.size(); ++i) {
-    if (picture.cells[i] == kNowhere || (action.surface && picture.seen[i] == 0)) continue;
-    const int cell = static_cast<int>(picture.cells[i]);
-    if (!rectangle.contains(cell % config_.columns, cell / config_.columns)) continue;
+    if (truth_[i] == 0 || !is_selected(i, action)) continue;
+    const bool gets_right = names_[truth_[i]] == action.label;
+    action.corrected += !is_right(i) && gets_right ? 1 : 0;
+    action.broken += is_right(i) && !gets_right ? 1 : 0;
+  }
+  return action;
+}
+
+std::optional<RectangleAction> RectangleAnnotator::next_around(const ErrorRegion& region, const Executor& executor) {
+  const auto gain = [](const RectangleAction& action) {
+    return static_cast<std::int64_t>(action.corrected) - static_cast<std::int64_t>(action.broken);
+  };
+  std::vector<RectangleAction> actions(2 * pictures_.size());
+  executor.parallel_for(actions.size(), 1,
+                        [&](std::size_t i, std::size_t) { actions[i] = around(region, i / 2, i % 2 == 0); });
+  RectangleAction best = *std::max_element(actions.begin(), actions.end(),
+                                           [&](const auto& a, const auto& b) { return gain(a) < gain(b); });
+  if (gain(best) <= 0) return next(executor);
+  carry_out(best);
+  return best;
+}
+
+bool RectangleAnnotator::is_selected(std::size_t point, const RectangleAction& action) const {
+  const Picture& picture = pictures_[action.view];
+  if (picture.cells[point] == kNowhere || (action.surface && picture.seen[point] == 0)) return false;
+  const int cell = static_cast<int>(picture.cells[point]);
+  return PixelWindow{action.left, action.top, action.right, action.bottom}.contains(cell % config_.columns,
+                                                                                    cell / config_.columns);
+}
+
+void RectangleAnnotator::carry_out(RectangleAction& action) {
+  action.corrected = 0;
+  action.broken = 0;
+  for (std::size_t i = 0; i < labels_.size(); ++i) {
+    if (!is_selected(i, action)) continue;
     const bool was_right = is_right(i);
     labels_[i] = action.label;
     if (truth_[i] == 0) continue;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RectangleAnnotator: rectangular selection as well as it can be done, to compare with. Thesis §4.2.2, §4.2.3.
+// RectangleAnnotator: rectangular selection by one who knows the truth, to compare with. Thesis §4.2.2, §4.2.3.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/annotate/annotation_error.hpp"
 #include "saccade/annotate/selection_view.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
@@ -36,11 +37,11 @@ struct RectangleAction {
 };
 
 /// A user of the thesis' rectangular selection who knows the truth: paints one label into one rectangle per action, in
-/// one of six views, as Surface rect or Deep rect, and always takes that by which the number of points with a wrong
-/// label falls most. Users do not find these, so that the baseline is better than it is in use, on purpose. The views:
-/// the sensor's own (from the origin along +z, y down, at most 120° wide), and from as far from the centroid, or
-/// farther where the cloud is too large, turned around it by ±1 and ±2 orbits about y, and by one upwards. What most of
-/// the scene is has a label like others.
+/// one of six views, as Surface rect or Deep rect. `next_around` draws it around the largest region that is wrong, as
+/// SimulatedAnnotator clicks into its centre. `next` always takes the one by which the number of points with a wrong
+/// label falls most, of all that there are; users do not find these. The views: the sensor's own (from the origin along
+/// +z, y down, at most 120° wide), and from as far from the centroid, or farther where the cloud is too large, turned
+/// around it by ±1 and ±2 orbits about y, and by one upwards. What most of the scene is has a label like others.
 class RectangleAnnotator {
  public:
   /// @param positions_m  in the frame of the sensor; those that are not finite have no truth.
@@ -61,6 +62,11 @@ class RectangleAnnotator {
   /// counts, and of labels those that may be the best. The thread count never changes the result.
   std::optional<RectangleAction> next(const Executor& executor);
 
+  /// The rectangle around all that is seen of a region, in the view and by the tool by which the number of points with
+  /// a wrong label falls most; of equals the first view, surface before deep. Where it never falls, what `next` does.
+  /// @param region  the first of error_regions of labels(). O(views · points) unless `next` is needed.
+  std::optional<RectangleAction> next_around(const ErrorRegion& region, const Executor& executor);
+
  private:
   static constexpr std::uint32_t kNowhere{0xffffffff};
   struct Picture {
@@ -71,7 +77,9 @@ class RectangleAnnotator {
 
   RectangleAnnotator() = default;
   [[nodiscard]] bool is_right(std::size_t point) const { return labels_[point] == names_[truth_[point]]; }
+  [[nodiscard]] bool is_selected(std::size_t point, const RectangleAction& action) const;
   [[nodiscard]] RectangleAction best_in(std::size_t view, bool surface) const;
+  [[nodiscard]] RectangleAction around(const ErrorRegion& region, std::size_t view, bool surface) const;
   void carry_out(RectangleAction& action);
 
   RectangleAnnotatorConfig config_;

@@ -109,6 +109,42 @@ TEST(RectangleAnnotator, EveryActionMakesItBetterUntilNoneDoesOnAnyNumberOfThrea
   EXPECT_EQ(ends[0], ends[1]);
 }
 
+TEST(RectangleAnnotator, GoesAroundARegionWhereThatHelpsAndOtherwiseTakesTheBest) {
+  const Scene scene = made_scene(20'000, 5);
+  const auto create = [&] {
+    return RectangleAnnotator::create(scene.positions_m, scene.truth, coarse(40, 30), Executor{}).value();
+  };
+  const auto region_of = [&](std::uint32_t label) {
+    ErrorRegion region{label, {}};
+    for (std::uint32_t i = 0; i < scene.truth.size(); ++i) {
+      if (scene.truth[i] == label && scene.positions_m[i].allFinite()) region.points.push_back(i);
+    }
+    return region;
+  };
+  RectangleAnnotator annotator = create();
+  const RectangleAction wall = annotator.next_around(region_of(7), Executor{}).value();
+  EXPECT_EQ(wall.label, 7U);
+  EXPECT_EQ(wall.corrected, region_of(7).points.size());
+  EXPECT_EQ(annotator.wrong(), wrong_points(annotator.labels(), scene));
+  const std::size_t before = annotator.wrong();
+  const RectangleAction disc = annotator.next_around(region_of(3), Executor{}).value();
+  EXPECT_EQ(disc.label, 3U);
+  EXPECT_EQ(annotator.wrong() + disc.corrected, before + disc.broken);
+  EXPECT_LT(annotator.wrong(), before);
+  const SelectionView& view = annotator.view(disc.view);
+  const ScreenProjection project{view};
+  for (const std::uint32_t point : region_of(3).points) {  // all of it that the tool selects has its label
+    const bool is_selected = !disc.surface && project(scene.positions_m[point]).in_view();
+    EXPECT_TRUE(!is_selected || annotator.labels()[point] == 3U);
+  }
+  // Nothing is left to win around what is right already: the best rectangle of all, as `next` takes it.
+  RectangleAnnotator one = annotator;
+  const RectangleAction fallback = one.next_around(region_of(3), Executor{}).value();
+  const RectangleAction best = annotator.next(Executor{}).value();
+  EXPECT_EQ(one.labels(), annotator.labels());
+  EXPECT_EQ(fallback.label, best.label);
+}
+
 TEST(RectangleAnnotator, ShowsTheWholeCloudInEveryView) {
   const Scene scene = made_scene(2000, 3);
   const RectangleAnnotator annotator =
