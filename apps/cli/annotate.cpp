@@ -138,9 +138,7 @@ Result<int> run_annotations(const AnnotateOptions& options, std::span<const Clou
     std::error_code ignored;
     const bool begun = !job.session.empty() && fs::exists(job.session, ignored);
     if (options.of_folder() && !begun && job.seeds.empty()) return untouched(cloud);
-    CloudJob todo = job;
-    if (options.of_folder() && begun) todo.seeds.clear();  // a folder's seeds begin what is not begun
-    SACCADE_TRY(AnnotatedCloud made, annotate_cloud(options, todo, actions, cloud, executor, progress));
+    SACCADE_TRY(AnnotatedCloud made, annotate_cloud(options, job, actions, cloud, executor, progress));
     cut_short = cut_short || made.interrupted;
     if (!made.interrupted) SACCADE_CHECK(write_label_files(job.files, cloud, made.labels, executor));
     return made;

@@ -85,12 +85,24 @@ Status define_presets(const std::vector<NumberedLabel>& presets, std::uint64_t c
   return applied ? Status{} : applied.error();
 }
 
-/// One action per label.
-Status plant_seeds(const LabelSeeds& seeds, std::uint64_t client, OpenAnnotation& annotation, AnnotatedCloud& made) {
+/// How many of the seeds a session holds whose planting was cut short; none: it holds something else, or all of them.
+std::optional<std::size_t> planted_before(const LabelSeeds& seeds, std::uint64_t client,
+                                          std::span<const AnnotationAction> actions) {
+  if (actions.size() >= seeds.actions.size()) return std::nullopt;
+  for (std::size_t i = 0; i < actions.size(); ++i) {
+    if (!(actions[i] == AnnotationAction{client, seeds.actions[i]})) return std::nullopt;
+  }
+  return actions.size();
+}
+
+/// One action per label; those before are planted.
+Status plant_seeds(const LabelSeeds& seeds, std::size_t before, std::uint64_t client, OpenAnnotation& annotation,
+                   AnnotatedCloud& made) {
   made.seeds = SeedOutcome{seeds.points, seeds.reproduced, 0};
-  for (const SetControlPoints& set : seeds.actions) {
-    made.seeds->control_points += set.points.size();
-    const auto applied = annotation.apply({client, set});
+  for (std::size_t i = 0; i < seeds.actions.size(); ++i) {
+    made.seeds->control_points += seeds.actions[i].points.size();
+    if (i < before) continue;
+    const auto applied = annotation.apply({client, seeds.actions[i]});
     if (!applied) return applied.error();
   }
   return {};
@@ -172,15 +184,8 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
                                       const PlannedActions& actions, const LoadedCloud& cloud, const Executor& executor,
                                       AnnotateProgress& progress) {
   SACCADE_TRY(const std::optional<SavedSession> saved, saved_session(options, job, cloud));
-  const bool changes = !actions.empty() || !job.seeds.empty();
-  if (!saved && !changes) {
+  if (!saved && actions.empty() && job.seeds.empty()) {
     return Error{Errc::not_found, "there is no such session; --script, --seeds or --presets begin one",
-                 job.session.string()};
-  }
-  if (saved && !saved->actions.empty() && !job.seeds.empty()) {
-    return Error{Errc::invalid_argument,
-                 "holds " + std::to_string(saved->actions.size()) +
-                     " actions already; seeds begin a session: leave --seeds out, or name another file",
                  job.session.string()};
   }
   if (saved && saved->torn_bytes > 0) {
@@ -196,9 +201,19 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
   const auto graph = std::make_shared<const Neighbourhood>(std::move(built));
   AnnotatedCloud made = untouched(cloud);
   made.graph_ms = stopwatch.elapsed_ms();
-  SACCADE_TRY(const std::optional<LabelSeeds> seeds, seeds_of(options, job, cloud, graph, progress));
+  SACCADE_TRY(std::optional<LabelSeeds> seeds, seeds_of(options, job, cloud, graph, progress));
+  std::optional<std::size_t> before{0};
+  if (seeds && saved) before = planted_before(*seeds, options.client, saved->actions);
+  if (!before && !options.of_folder()) {
+    return Error{Errc::invalid_argument,
+                 "holds " + std::to_string(saved->actions.size()) +
+                     " actions already; seeds begin a session: leave --seeds out, or name another file",
+                 job.session.string()};
+  }
+  if (!before) seeds.reset();  // a folder's seeds begin what is not begun
+  const bool changes = !actions.empty() || seeds;
   SACCADE_TRY(OpenAnnotation annotation, open_annotation(job, changes, cloud, saved, graph));
-  if (seeds) SACCADE_CHECK(plant_seeds(*seeds, options.client, annotation, made));
+  if (seeds) SACCADE_CHECK(plant_seeds(*seeds, *before, options.client, annotation, made));
   SACCADE_CHECK(define_presets(actions.presets, options.client, annotation));
   SACCADE_CHECK(replay(options, actions.script, cloud, annotation, made, executor, progress));
   made.labels = labelled_points(annotation.annotation());

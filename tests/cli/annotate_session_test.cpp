@@ -173,6 +173,23 @@ TEST_F(AnnotateSession, LabelsAreSeeds) {
             std::string::npos);
 }
 
+TEST_F(AnnotateSession, SeedsThatWereCutShortGoOn) {
+  const Arguments seeds{"--session", path("s.sacann"), "--seeds", path("cloud.txt")};
+  const nlohmann::json whole = result_of(seeds);
+  const SavedSession saved = read_journal(path("s.sacann")).value();
+  ASSERT_GE(saved.actions.size(), 3U);
+  const std::size_t two_actions = encode_journal_header(saved.subject).size() +
+                                  encode_journal_record(saved.actions[0]).size() +
+                                  encode_journal_record(saved.actions[1]).size();
+  constexpr std::size_t kTorn{5};  // bytes of the third
+  fs::resize_file(path("s.sacann"), two_actions + kTorn);
+  const nlohmann::json again = result_of(seeds);
+  EXPECT_EQ(again["seeds"], whole["seeds"]);
+  EXPECT_EQ(again["labels"], whole["labels"]);
+  EXPECT_EQ(read_journal(path("s.sacann"))->actions, saved.actions);
+  EXPECT_NE(error_of(annotate(seeds)).find("actions already"), std::string::npos);
+}
+
 TEST_F(AnnotateSession, MarginsSayWhereLabelsAreInDoubt) {
   write("a.jsonl", four_clicks());
   const nlohmann::json result = result_of({"--script", path("a.jsonl"), "--margins", path("margins.ply")});
