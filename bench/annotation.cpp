@@ -84,8 +84,9 @@ const PointCloud& ten_million_points() {
     points.positions_m.reserve(kPoints);
     points.colors.reserve(kPoints);
     for (std::size_t tile = 0; points.positions_m.size() < kPoints; ++tile) {
-      const Eigen::Vector3f at{kTile_m * static_cast<float>(tile % kTilesPerRow),
-                               kTile_m * static_cast<float>(tile / kTilesPerRow), 0.0F};
+      const std::size_t row = tile / kTilesPerRow;
+      const std::size_t column = tile % kTilesPerRow;
+      const Eigen::Vector3f at{kTile_m * static_cast<float>(column), kTile_m * static_cast<float>(row), 0.0F};
       const PointCloud& cloud = clouds[tile % clouds.size()];
       const std::size_t count = std::min(cloud.positions_m.size(), kPoints - points.positions_m.size());
       for (std::size_t i = 0; i < count; ++i) {
