@@ -153,7 +153,7 @@ TEST(AnnotateRecordedClouds, ThreeClicksPerLabelAreAlmostEnough) {
   const fs::path recorded = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
   if (!fs::exists(recorded)) GTEST_SKIP() << "no " << recorded;
   const TempFolder folder;
-  Arguments names{"learn0.pcd", "learn33.pcd", "learn38.pcd"};
+  Arguments names{"learn38.pcd", "learn33.pcd", "learn0.pcd"};
   if (kSanitized) names.resize(1);
   for (const std::string& name : names) fs::create_symlink(fs::absolute(recorded / name), folder / name);
   const std::string clouds = (folder / ".").string();
