@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the 3-D view offers to the annotation tool and to the viewer. createViewer() in viewer.ts makes one.
+
+/** Column-major 4×4, as WebGL has it. */
+export type Mat4 = Float64Array | number[];
+export type Rgb = readonly [number, number, number]; // 0 to 255
+
+/** A piece of the cloud as `points` answers it. Arrays are kept, not copied. */
+export interface PointChunk {
+  positions: Float32Array; // x, y, z
+  points: Uint32Array; // indices in the cloud's file
+  colors: Uint8Array; // r, g, b, 255
+  labels: Uint32Array;
+}
+
+export interface CloudInfo {
+  points: number; // in the file: the length of a map from them to vertices
+  shown: number; // vertices there will be
+  bounds: readonly number[]; // x0, y0, z0, x1, y1, z1
+  up: readonly number[];
+  spacing_m: number;
+}
+
+/** What is under the cursor: a point of the cloud, or the control point whose sphere is there. */
+export interface Pick {
+  point: number;
+  control: boolean;
+  position: readonly [number, number, number];
+}
+
+/** The picture as the program's selection takes it (docs/protocol.md: "view" of an action). */
+export interface SelectionPicture {
+  size: [number, number];
+  clip_world: number[]; // 16, row by row
+  point_size_px: number;
+}
+
+export interface CloudLayer {
+  begin(cloud: CloudInfo): void;
+  append(chunk: PointChunk): void;
+  /** The labels of these points are now this one. */
+  setLabel(label: number, points: Uint32Array): void;
+  setLabelColor(label: number, color: Rgb): void;
+  /** Hidden: its points are not drawn, picked or selected. Label 0 is the points without one. */
+  setLabelVisible(label: number, visible: boolean): void;
+  labelOf(point: number): number;
+  positionOf(point: number): readonly [number, number, number] | undefined;
+  /** start_cost is not drawn. `undefined`: it is none any more. */
+  setControlPoint(point: number, label: number | undefined): void;
+  clearControlPoints(): void;
+  /** Of the shown points in the order of their chunks: 0 in doubt … 255 sure; null takes the heat map away. */
+  setMargins(margins: Uint8Array | null): void;
+  /** Points that stand out (a tree about to be removed); empty: none. */
+  highlight(points: Uint32Array): void;
+  /** One point that stands out with a ring (the next best click, a control point jumped to). */
+  mark(point: number | null): void;
+  /** Thesis §4.2.2: with `cloud` off a point is its label's colour, black without one; with `labels` off its own. */
+  show(what: { cloud: boolean; labels: boolean; controls: boolean }): void;
+  pointSize: number; // px, edge of the square, 1 to 16
+}
+
+export type Navigation = "orbit" | "fly";
+
+export interface Camera {
+  navigation: Navigation;
+  /** Whole scene in view; `from` is a direction towards the viewer. */
+  fit(from?: readonly [number, number, number]): void;
+  /** Moves, quickly, until this place is in the middle and near. */
+  goTo(place: readonly [number, number, number]): void;
+  /** World from camera, x right, y down, z forward (the protocol's frame), row-major rows. */
+  poseRows(): number[][];
+  setPoseRows(rows: readonly (readonly number[])[], fovVertical_rad?: number): void;
+}
+
+export interface Viewer {
+  readonly element: HTMLElement;
+  readonly camera: Camera;
+  readonly cloud: CloudLayer;
+  /** Draws soon, once, however often it is asked. Everything above asks by itself. */
+  redraw(): void;
+  /** Exact, by id buffer; css pixels from the upper left corner of `element`. */
+  pick(x: number, y: number): Pick | null;
+  /** Quick, by a bounding volume hierarchy that is built in a worker; null while there is none. */
+  hover(x: number, y: number): Pick | null;
+  picture(): SelectionPicture;
+  /** css pixels to pixels of picture(). */
+  toPicture(x: number, y: number): [number, number];
+  /** Mouse: the tool has the left button unless it returns false or there is none; the camera has the others. */
+  setPointerTool(tool: PointerTool | null): void;
+  setTheme(dark: boolean): void;
+  /** For tests and for the frame time in the corner. */
+  readonly stats: { frames: number; lastFrame_ms: number; vertices: number };
+  dispose(): void;
+}
+
+export interface PointerTool {
+  cursor: string;
+  down(x: number, y: number, event: PointerEvent): boolean;
+  move(x: number, y: number, event: PointerEvent): void;
+  up(x: number, y: number, event: PointerEvent): void;
+  cancel(): void;
+}
