@@ -2,7 +2,7 @@
 # Front door: make demo, make test. What is built where is CMake's business (CMakePresets.json).
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build demo test bench evidence format tidy clean
+.PHONY: help build demo test bench evidence format tidy web clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' Makefile
@@ -27,6 +27,9 @@ format:  ## lays out the code with clang-format
 
 tidy:  ## runs clang-tidy over the library and the apps
 	@scripts/tidy.sh
+
+web:  ## makes web/dist, the page that the program shows, from web/src (needs npm)
+	@scripts/web.sh build
 
 clean:  ## removes build/ and out/
 	rm -rf build out

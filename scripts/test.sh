@@ -9,7 +9,7 @@ results=out/test
 rm -rf "$results"
 mkdir -p "$results"
 
-phases="${SACCADE_TEST_PHASES:-format release asan tsan fuzz tidy}"
+phases="${SACCADE_TEST_PHASES:-format release web asan tsan fuzz tidy}"
 failed_phases=()
 
 # ctest results end up in out/test/NAME.xml; parallel tests share the cores two by two.
@@ -30,6 +30,9 @@ phase_format() { scripts/format.sh; }
 phase_release() {
   configure release -DSACCADE_BUILD_TESTS=ON -DSACCADE_BUILD_BENCH=ON -DSACCADE_WARNINGS_AS_ERRORS=ON && compile release && run_ctest release
 }
+
+# The page: its bundle, then a browser that uses it.
+phase_web() { scripts/web.sh check && scripts/web.sh test; }
 
 phase_asan() {
   configure asan-ubsan && compile asan-ubsan || return 1

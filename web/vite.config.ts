@@ -1,9 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // The bundle in dist/ is part of the repository: the same source gives the same bytes (docs/decisions/0015-web-bundle.md).
-import { defineConfig } from "vite";
+import { readFileSync } from "node:fs";
+import { defineConfig, type Plugin } from "vite";
+
+/** The licences of what the bundle contains go with it. */
+function licenses(packages: string[]): Plugin {
+  return {
+    name: "licenses",
+    generateBundle() {
+      const texts = packages.map((name) => `${name}\n\n${readFileSync(`node_modules/${name}/LICENSE`, "utf8").trim()}\n`);
+      this.emitFile({ type: "asset", fileName: "assets/licenses.txt", source: texts.join("\n\n") });
+    },
+  };
+}
 
 export default defineConfig({
   base: "./",
+  plugins: [licenses(["three", "three-mesh-bvh"])],
   build: {
     target: "es2022",
     outDir: "dist",
