@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// What `annotate` and `show` share: where the page is to be had, saying so, and waiting for Ctrl-C.
+
+#include <cstdint>
+#include <filesystem>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "command.hpp"
+#include "server/http_server.hpp"
+
+namespace saccade::cli {
+
+struct ServeOptions {
+  std::string address{"127.0.0.1"};
+  std::uint16_t port{0};             ///< 0: any that is free
+  std::filesystem::path token_file;  ///< empty: a new token
+  std::vector<std::string> host_names;
+  bool no_browser{false};
+  std::string given;  ///< one of these options that was given, for those who do not serve; empty: none
+};
+
+/// --listen, --port, --token-file, --host and --no-browser.
+void add_serve_options(CLI::App& command, ServeOptions& options);
+
+/// Listens: from here on the page is there, and waits for its socket until HttpServer::serve. Reads the token file, or
+/// makes it (mode 0600). Errors name the option's value.
+[[nodiscard]] Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options);
+
+/// Says the URL (on standard output; on standard error with --json -), how to reach it from elsewhere where there is no
+/// display or over SSH, and opens the browser where there is a display.
+void announce(const ServeOptions& options, const GlobalOptions& global, const server::HttpServer& server);
+
+/// HttpServer::serve, announce, then waits for Ctrl-C or SIGTERM.
+/// @return the exit status: done, as what interrupts serving interrupts no work. The caller ends the server before the
+/// service.
+[[nodiscard]] int serve(const ServeOptions& options, const GlobalOptions& global, server::HttpServer& server,
+                        server::Service& service);
+
+}  // namespace saccade::cli
