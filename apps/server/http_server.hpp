@@ -23,7 +23,9 @@ struct ServerConfig {
   std::size_t max_connections{64};      ///< WebSockets; further ones are answered by 503
   std::size_t max_message_bytes{1U << 20U};
   std::size_t max_waiting_messages{32};  ///< of one connection, that the service has not seen; then it is not read from
-  std::size_t max_waiting_bytes{64U << 20U};  ///< that a connection has not read; then it is ended
+  std::size_t max_waiting_bytes{64U << 20U};          ///< that a connection has not read; then it is ended
+  std::chrono::milliseconds request_timeout{10'000};  ///< for a request's headers, and for each part of its answer
+  std::chrono::milliseconds idle_timeout{60'000};     ///< of a WebSocket that does not answer pings, either
 
   [[nodiscard]] Status validate() const;
 };
@@ -31,17 +33,18 @@ struct ServerConfig {
 /// A token of 128 random bits.
 [[nodiscard]] std::string make_token();
 
-/// Listens from its creation to its end. One thread for the network, one for the service.
+/// Listens from its creation to its end. One thread for the network, one for the service. Before serve() it gives out
+/// the page; to what needs the service it answers 503, and the page asks again.
 class HttpServer : public Clients {
  public:
   /// @return unavailable where the port is taken or the address is not this machine's; invalid_argument.
   [[nodiscard]] static Result<std::unique_ptr<HttpServer>> listen(const ServerConfig& config);
-  /// Ends every connection (1001) and joins its threads.
+  /// Ends every connection (1001), tells the service so, does what was posted, and joins its threads.
   ~HttpServer() override;
 
   /// From here on requests are answered. `service` outlives the server. Called once.
   virtual void serve(Service& service) = 0;
-  /// Runs on the service's thread, after what waits there.
+  /// Runs on the service's thread, after what waits there. `work` does not throw.
   virtual void post(std::function<void()> work) = 0;
 
   [[nodiscard]] virtual std::uint16_t port() const = 0;

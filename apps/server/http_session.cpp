@@ -1,0 +1,262 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/http_session.hpp"
+
+#include <array>
+#include <boost/asio/post.hpp>
+#include <boost/beast/http/read.hpp>
+#include <boost/beast/http/write.hpp>
+#include <boost/beast/websocket/rfc6455.hpp>
+#include <exception>
+
+#include "server/socket_session.hpp"
+
+namespace saccade::server {
+namespace {
+
+namespace beast = boost::beast;
+namespace http = boost::beast::http;
+using http::field;
+using http::status;
+
+constexpr std::uint32_t kMostHeaderBytes{16U << 10U};
+constexpr std::size_t kMostDataRequests{16};
+constexpr std::size_t kMostDiscardedBytes{256U << 10U};
+constexpr std::string_view kDataPrefix{"/data/"};
+
+std::string_view text_of(boost::string_view text) { return {text.data(), text.size()}; }
+boost::string_view boost_view(std::string_view text) { return {text.data(), text.size()}; }
+
+std::string address_text(const boost::asio::ip::address& address) {
+  namespace ip = boost::asio::ip;
+  const bool is_mapped = address.is_v6() && address.to_v6().is_v4_mapped();
+  return is_mapped ? ip::make_address_v4(ip::v4_mapped, address.to_v6()).to_string() : address.to_string();
+}
+
+/// The page runs nothing but its own files, shows nothing of others, and nobody shows it. Browsers do not agree on
+/// whether 'self' is the WebSocket, too.
+std::string content_policy(std::string_view host) {
+  std::string policy{
+      "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; form-action 'none'; "
+      "frame-ancestors 'none'; connect-src 'self'"};
+  for (const std::string_view scheme : {" ws://", " wss://"}) policy.append(scheme).append(host);
+  return policy;
+}
+
+}  // namespace
+
+HttpSession::HttpSession(ServerState& state, boost::asio::ip::tcp::socket socket)
+    : state_{state}, stream_{std::move(socket)}, buffer_{2 * kMostHeaderBytes} {
+  ErrorCode ignored;
+  stream_.socket().set_option(boost::asio::ip::tcp::no_delay{true}, ignored);
+  local_address_ = address_text(stream_.socket().local_endpoint(ignored).address());
+}
+
+void HttpSession::run() {
+  state_.sessions.emplace(this, shared_from_this());
+  read();
+}
+
+void HttpSession::stop() { finish(); }
+
+void HttpSession::finish() {
+  if (std::exchange(finished_, true)) return;
+  stream_.close();
+  state_.sessions.erase(this);
+}
+
+void HttpSession::read() {
+  parser_.emplace();
+  parser_->header_limit(kMostHeaderBytes);
+  stream_.expires_after(state_.config.request_timeout);
+  http::async_read_header(stream_, buffer_, *parser_,
+                          [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
+}
+
+void HttpSession::on_read(ErrorCode error) {
+  if (finished_) return;
+  stream_.expires_never();
+  request_ = {};
+  if (error == http::error::header_limit || error == http::error::buffer_overflow) {
+    return refuse(status::request_header_fields_too_large, "The headers are too long.");
+  }
+  if (error && error.category() == http::make_error_code(http::error::bad_version).category() &&
+      error != http::error::end_of_stream && error != http::error::partial_message) {
+    return refuse(status::bad_request, "This is no request.");
+  }
+  if (error) return finish();
+  const bool has_body = !parser_->is_done();
+  request_ = parser_->release();
+  if (request_.method() != http::verb::get && request_.method() != http::verb::head) {
+    return refuse(status::method_not_allowed, "There is only GET and HEAD here.");
+  }
+  if (has_body) return refuse(status::payload_too_large, "A question in HTTP has no body here.");
+  answer_request();
+}
+
+bool HttpSession::is_foreign() const {
+  const auto site = text_of(request_["Sec-Fetch-Site"]);
+  return !site.empty() && site != "same-origin" && site != "none";
+}
+
+bool HttpSession::has_token(const Target& target) const {
+  const auto given = target.query.find("token");
+  if (given != target.query.end() && is_same_token(given->second, state_.config.token)) return true;
+  return is_same_token(cookie_value(text_of(request_[field::cookie]), state_.cookie), state_.config.token);
+}
+
+void HttpSession::answer_request() {
+  const auto hosts = request_.equal_range(field::host);
+  const bool one_host = hosts.first != hosts.second && std::next(hosts.first) == hosts.second;
+  const std::string_view host = text_of(request_[field::host]);
+  if (!one_host || !state_.is_host(host, local_address_)) {
+    return refuse(status::forbidden, "This name is not known here: start the program with --host NAME.");
+  }
+  for (auto [origin, end] = request_.equal_range(field::origin); origin != end; ++origin) {
+    if (!is_origin_of(text_of(origin->value()), host)) {
+      return refuse(status::forbidden, "Pages of another origin get nothing here.");
+    }
+  }
+  const auto target = parse_target(text_of(request_.target()));
+  if (!target) return refuse(status::bad_request, "This is no path.");
+  const std::string path = target->path == "/" ? "index.html" : target->path.substr(1);
+  if (path.starts_with("assets/")) return answer_page(*target, path);
+  if (!has_token(*target)) {
+    return refuse(status::forbidden, "Open the address that the program printed: it ends with its token.");
+  }
+  const bool to_socket = target->path == "/socket";
+  if (!to_socket && !target->path.starts_with(kDataPrefix)) return answer_page(*target, path);
+  if (is_foreign()) return refuse(status::forbidden, "Pages of another site get nothing here.");
+  if (state_.service == nullptr) return refuse(status::service_unavailable, "The program is not ready yet.");
+  if (to_socket) return open_socket();
+  answer_data(*target);
+}
+
+void HttpSession::answer_page(const Target& target, const std::string& path) {
+  const auto found = state_.files.find(path);
+  if (found == state_.files.end()) return refuse(status::not_found, "There is no such file.");
+  const CachedFile& cached = found->second;
+  const bool unchanged = text_of(request_[field::if_none_match]) == cached.etag;
+  http::response<Body> answer = begin_answer(unchanged ? status::not_modified : status::ok);
+  answer.set(field::content_type, boost_view(cached.file.content_type));
+  answer.set(field::cache_control, "no-cache");
+  answer.set(field::etag, cached.etag);
+  if (target.query.contains("token") && has_token(target)) {
+    answer.set(field::set_cookie, state_.cookie + "=" + state_.config.token + "; Path=/; HttpOnly; SameSite=Strict");
+  }
+  const auto content = cached.file.content;
+  if (!unchanged) answer.body() = {reinterpret_cast<const char*>(content.data()), content.size()};
+  write(std::move(answer));
+}
+
+void HttpSession::open_socket() {
+  if (!beast::websocket::is_upgrade(request_) || request_.method() != http::verb::get) {
+    return refuse(status::upgrade_required, "This is the WebSocket's place.");
+  }
+  if (state_.web_sockets >= state_.config.max_connections) {
+    return refuse(status::service_unavailable, "Too many pages are open.");
+  }
+  const auto socket = std::make_shared<SocketSession>(state_, std::move(stream_));
+  finished_ = true;  // the socket is another's now
+  state_.sessions.erase(this);
+  socket->run(std::move(request_));
+}
+
+void HttpSession::answer_data(const Target& target) {
+  if (state_.data_requests >= kMostDataRequests) {
+    return refuse(status::service_unavailable, "Too many files are asked for at once.");
+  }
+  ++state_.data_requests;
+  HttpRequest request{target.path.substr(kDataPrefix.size()), target.query};
+  request.query.erase("token");
+  state_.service_thread.post([self = shared_from_this(), request = std::move(request)]() mutable {
+    HttpAnswer answer;
+    try {
+      answer = self->state_.service.load()->get(request);
+    } catch (const std::exception&) {
+      const std::string_view text{"A bug in the program."};
+      answer = {500, "text/plain; charset=utf-8", "", {text.begin(), text.end()}};
+    }
+    auto executor = self->stream_.get_executor();
+    boost::asio::post(executor, [self = std::move(self), answer = std::move(answer)]() mutable {
+      --self->state_.data_requests;
+      if (!self->finished_) self->on_data(std::move(answer));
+    });
+  });
+}
+
+void HttpSession::on_data(HttpAnswer data) {
+  data_ = std::move(data);
+  http::response<Body> answer = begin_answer(http::int_to_status(static_cast<unsigned>(data_.status)));
+  answer.set(field::content_type, data_.content_type);
+  answer.set(field::cache_control, "no-store");
+  if (!data_.file_name.empty()) answer.set(field::content_disposition, attachment(data_.file_name));
+  answer.body() = {reinterpret_cast<const char*>(data_.body.data()), data_.body.size()};
+  write(std::move(answer));
+}
+
+http::response<HttpSession::Body> HttpSession::begin_answer(http::status code) const {
+  const bool is_request = request_.version() != 0 && request_.method() != http::verb::unknown;
+  http::response<Body> answer{code, request_.version() == 10 ? 10U : 11U};
+  answer.set("X-Content-Type-Options", "nosniff");
+  answer.set("Referrer-Policy", "no-referrer");
+  answer.set("Cross-Origin-Resource-Policy", "same-origin");
+  answer.set("Cross-Origin-Opener-Policy", "same-origin");
+  answer.keep_alive(is_request && request_.keep_alive());
+  return answer;
+}
+
+void HttpSession::refuse(http::status code, std::string_view why) {
+  text_ = std::string{why} + "\n";
+  http::response<Body> answer = begin_answer(code);
+  answer.set(field::content_type, "text/plain; charset=utf-8");
+  answer.set(field::cache_control, "no-store");
+  if (code == status::method_not_allowed) answer.set(field::allow, "GET, HEAD");
+  if (code == status::service_unavailable) answer.set(field::retry_after, "1");
+  answer.keep_alive(false);
+  answer.body() = {text_.data(), text_.size()};
+  write(std::move(answer));
+}
+
+void HttpSession::write(http::response<Body> answer) {
+  answer_ = std::move(answer);
+  const std::string_view host = text_of(request_[field::host]);
+  answer_.set("Content-Security-Policy",
+              content_policy(state_.is_host(host, local_address_) ? host : std::string_view{"localhost"}));
+  if (answer_.result() != status::not_modified) answer_.content_length(answer_.body().size());
+  serializer_.emplace(answer_);
+  serializer_->split(true);
+  write_some();
+}
+
+void HttpSession::write_some() {
+  const bool head_only = request_.method() == http::verb::head || answer_.result() == status::not_modified;
+  if (serializer_->is_done() || (head_only && serializer_->is_header_done())) {
+    data_ = {};
+    return answer_.keep_alive() ? read() : linger();
+  }
+  stream_.expires_after(state_.config.request_timeout);  // for this part
+  http::async_write_some(stream_, *serializer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
+    if (self->finished_) return;
+    if (error) return self->finish();
+    self->write_some();
+  });
+}
+
+void HttpSession::linger() {
+  ErrorCode ignored;
+  stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
+  stream_.expires_after(state_.config.request_timeout);
+  discard();
+}
+
+void HttpSession::discard() {
+  buffer_.clear();
+  stream_.async_read_some(buffer_.prepare(kMostHeaderBytes),
+                          [self = shared_from_this()](ErrorCode error, std::size_t bytes) {
+                            self->discarded_ += bytes;
+                            if (error || self->discarded_ > kMostDiscardedBytes) return self->finish();
+                            self->discard();
+                          });
+}
+
+}  // namespace saccade::server

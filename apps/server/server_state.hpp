@@ -1,0 +1,68 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ServerState: what the sessions of a server share. Session: one socket, plain or grown to a WebSocket.
+
+#include <atomic>
+#include <map>
+#include <memory>
+#include <mutex>
+#include <set>
+#include <string>
+#include <string_view>
+#include <unordered_map>
+
+#include "server/connection.hpp"
+#include "server/http_server.hpp"
+#include "server/service_thread.hpp"
+#include "server/web_page.hpp"
+
+namespace saccade::server {
+
+/// Of the network's thread. It lives until it takes itself off the state's list.
+class Session {
+ public:
+  virtual ~Session() = default;
+  /// The server ends.
+  virtual void stop() = 0;
+};
+
+struct CachedFile {
+  PageFile file;
+  std::string etag;
+};
+
+/// The WebSockets that are open. Any thread may call.
+class OpenConnections {
+ public:
+  [[nodiscard]] std::shared_ptr<Connection> find(ConnectionId id);
+  void add(const std::shared_ptr<Connection>& connection);
+  void remove(ConnectionId id);
+
+ private:
+  std::mutex mutex_;
+  std::unordered_map<ConnectionId, std::shared_ptr<Connection>> connections_;
+};
+
+struct ServerState {
+  explicit ServerState(ServerConfig server_config);
+
+  /// Whether a Host header means this server, at this address of this machine.
+  [[nodiscard]] bool is_host(std::string_view header, const std::string& local_address) const;
+
+  const ServerConfig config;
+  std::set<std::string> host_names;
+  std::string cookie;                            ///< its name
+  std::map<std::string_view, CachedFile> files;  ///< by path
+  std::atomic<Service*> service{nullptr};        ///< null until it serves
+  OpenConnections connections;
+  ServiceThread service_thread;
+
+  // Of the network's thread.
+  std::unordered_map<const Session*, std::shared_ptr<Session>> sessions;
+  std::size_t web_sockets{0};
+  std::size_t data_requests{0};  ///< under way
+  ConnectionId last_id{0};
+  bool stopping{false};
+};
+
+}  // namespace saccade::server

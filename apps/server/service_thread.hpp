@@ -1,0 +1,36 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ServiceThread: does one thing after the other.
+
+#include <condition_variable>
+#include <deque>
+#include <functional>
+#include <mutex>
+#include <thread>
+
+namespace saccade::server {
+
+class ServiceThread {
+ public:
+  ServiceThread() : thread_{[this] { run(); }} {}
+  ServiceThread(const ServiceThread&) = delete;
+  ServiceThread& operator=(const ServiceThread&) = delete;
+  ~ServiceThread() { finish(); }
+
+  /// Any thread may call. `work` does not throw. After finish() it is not done.
+  void post(std::function<void()> work);
+  /// Does what waits, and what that posts, then ends.
+  void finish();
+
+ private:
+  void run();
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<std::function<void()>> waiting_;
+  bool finishing_{false};
+  bool finished_{false};
+  std::thread thread_;
+};
+
+}  // namespace saccade::server

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/socket_session.hpp"
+
+#include <boost/asio/post.hpp>
+
+namespace saccade::server {
+namespace {
+
+namespace websocket = boost::beast::websocket;
+
+constexpr std::uint16_t kGoingAway{1001};
+constexpr std::uint16_t kUnknownData{1003};
+constexpr std::size_t kFragmentBytes{64U << 10U};  // between two of a long message, pings find their way
+constexpr std::chrono::seconds kGrace{2};          // for an urgent end's last words
+
+}  // namespace
+
+SocketSession::SocketSession(ServerState& state, boost::beast::tcp_stream stream)
+    : state_{state},
+      stream_{std::move(stream)},
+      grace_{stream_.get_executor()},
+      buffer_{state.config.max_message_bytes} {
+  ++state_.web_sockets;
+}
+
+SocketSession::~SocketSession() { --state_.web_sockets; }
+
+void SocketSession::run(boost::beast::http::request<boost::beast::http::empty_body> request) {
+  state_.sessions.emplace(this, shared_from_this());
+  boost::beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own
+  stream_.set_option(
+      websocket::stream_base::timeout{state_.config.request_timeout, state_.config.idle_timeout, /*pings=*/true});
+  stream_.read_message_max(state_.config.max_message_bytes);
+  stream_.write_buffer_bytes(kFragmentBytes);
+  stream_.auto_fragment(true);
+  stream_.binary(true);
+  const auto kept = std::make_shared<decltype(request)>(std::move(request));
+  stream_.async_accept(*kept, [self = shared_from_this(), kept](ErrorCode error) { self->on_accept(error); });
+}
+
+void SocketSession::on_accept(ErrorCode error) {
+  if (error || finished_ || state_.stopping) return finish();
+  auto wake = [executor = stream_.get_executor(), weak = weak_from_this()] {
+    boost::asio::post(executor, [weak] {
+      if (const auto self = weak.lock()) self->on_woken();
+    });
+  };
+  connection_ = std::make_shared<Connection>(++state_.last_id, state_.config, state_.service_thread,
+                                             *state_.service.load(), std::move(wake));
+  state_.connections.add(connection_);
+  connection_->open();
+  read();
+}
+
+void SocketSession::on_woken() {
+  if (finished_) return;
+  if (connection_->woken() && !std::exchange(in_grace_, true)) {
+    grace_.expires_after(kGrace);
+    grace_.async_wait([self = shared_from_this()](ErrorCode) { self->finish(); });
+  }
+  write();
+  if (!reading_ && connection_->may_read()) read();
+}
+
+void SocketSession::read() {
+  reading_ = true;
+  stream_.async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
+}
+
+void SocketSession::on_read(ErrorCode error) {
+  reading_ = false;
+  if (error || finished_) return finish();
+  if (!stream_.got_binary()) {
+    connection_->close({kUnknownData, "messages are binary", false});
+  } else {
+    const auto* first = static_cast<const std::uint8_t*>(buffer_.cdata().data());
+    connection_->ask(Message{first, first + buffer_.size()});
+  }
+  buffer_.consume(buffer_.size());
+  if (connection_->may_read()) read();
+}
+
+void SocketSession::write() {
+  if (writing_) return;
+  Connection::Next next = connection_->next();
+  if (next.closing) return close(*next.closing);
+  if (!next.message) return;
+  writing_ = std::move(next.message);
+  stream_.async_write(boost::asio::buffer(*writing_), [self = shared_from_this()](ErrorCode error, std::size_t) {
+    self->writing_.reset();
+    if (error || self->finished_) return self->finish();
+    self->connection_->written();
+    self->write();
+  });
+}
+
+void SocketSession::close(const Connection::Closing& closing) {
+  const websocket::close_reason reason{static_cast<websocket::close_code>(closing.code), closing.reason};
+  stream_.async_close(reason, [self = shared_from_this()](ErrorCode) { self->finish(); });
+}
+
+void SocketSession::stop() {
+  if (!connection_) return finish();
+  connection_->close({kGoingAway, "the program ends", true});
+}
+
+void SocketSession::finish() {
+  if (std::exchange(finished_, true)) return;
+  grace_.cancel();
+  boost::beast::get_lowest_layer(stream_).close();
+  if (connection_) {
+    state_.connections.remove(connection_->id());
+    connection_->end();
+  }
+  state_.sessions.erase(this);
+}
+
+}  // namespace saccade::server

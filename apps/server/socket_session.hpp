@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SocketSession: one WebSocket of the network's thread. What it may do its Connection says.
+
+#include <utility>  // Boost.Asio 1.74 lacks it
+
+#include <boost/asio/steady_timer.hpp>
+#include <boost/beast/core/flat_buffer.hpp>
+#include <boost/beast/core/tcp_stream.hpp>
+#include <boost/beast/http/empty_body.hpp>
+#include <boost/beast/http/message.hpp>
+#include <boost/beast/websocket/stream.hpp>
+#include <memory>
+
+#include "server/server_state.hpp"
+
+namespace saccade::server {
+
+class SocketSession : public Session, public std::enable_shared_from_this<SocketSession> {
+ public:
+  SocketSession(ServerState& state, boost::beast::tcp_stream stream);
+  ~SocketSession() override;
+  void run(boost::beast::http::request<boost::beast::http::empty_body> request);
+  void stop() override;
+
+ private:
+  using ErrorCode = boost::beast::error_code;
+
+  void on_accept(ErrorCode error);
+  void on_woken();
+  void read();
+  void on_read(ErrorCode error);
+  void write();
+  void close(const Connection::Closing& closing);
+  void finish();
+
+  ServerState& state_;
+  boost::beast::websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> stream_;
+  boost::asio::steady_timer grace_;
+  boost::beast::flat_buffer buffer_;
+  std::shared_ptr<Connection> connection_;
+  SharedMessage writing_;
+  bool reading_{false};
+  bool in_grace_{false};
+  bool finished_{false};
+};
+
+}  // namespace saccade::server
