@@ -30,7 +30,7 @@ void add_serve_options(CLI::App& command, ServeOptions& options);
 [[nodiscard]] Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options);
 
 /// Says the URL (on standard output; on standard error with --json -), how to reach it from elsewhere where there is no
-/// display or over SSH, and opens the browser where there is a display.
+/// display or it is that of SSH, and opens the browser elsewhere.
 void announce(const ServeOptions& options, const GlobalOptions& global, const server::HttpServer& server);
 
 /// HttpServer::serve, announce, then waits for Ctrl-C or SIGTERM.

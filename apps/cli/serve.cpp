@@ -1,0 +1,200 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "serve.hpp"
+
+#include <fcntl.h>
+#include <pwd.h>
+#include <spawn.h>
+#include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
+
+#include <CLI/CLI.hpp>
+#include <array>
+#include <cerrno>
+#include <chrono>
+#include <cstdlib>
+#include <cstring>
+#include <iostream>
+#include <optional>
+#include <string_view>
+#include <thread>
+
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+#include "options.hpp"
+
+namespace saccade::cli {
+namespace {
+
+constexpr std::chrono::milliseconds kLookEvery{50};
+constexpr std::size_t kLongestToken{256};
+
+bool is_set(const char* variable) {
+  const char* const value = std::getenv(variable);
+  return value != nullptr && *value != '\0';
+}
+
+/// Not that of an SSH connection: a browser over there is no use here.
+bool has_display() { return (is_set("DISPLAY") || is_set("WAYLAND_DISPLAY")) && !is_set("SSH_CONNECTION"); }
+
+/// "user@machine"
+std::string login() {
+  std::array<char, 256> machine{};
+  const bool has_name = ::gethostname(machine.data(), machine.size() - 1) == 0 && machine[0] != '\0';
+  const passwd* const user = ::getpwuid(::getuid());
+  return std::string{user != nullptr ? user->pw_name : "USER"} + "@" + (has_name ? machine.data() : "HOST");
+}
+
+Error token_file_error(const std::filesystem::path& file, int error) {
+  return {error == ENOENT ? Errc::not_found : Errc::io_failure, std::strerror(error), file.string()};
+}
+
+/// Closes itself.
+struct Descriptor {
+  int number{-1};
+  explicit Descriptor(int opened) : number{opened} {}
+  Descriptor(const Descriptor&) = delete;
+  Descriptor& operator=(const Descriptor&) = delete;
+  ~Descriptor() {
+    if (number >= 0) ::close(number);
+  }
+};
+
+/// Nothing where the file is there already.
+Result<std::optional<std::string>> made_token(const std::filesystem::path& file) {
+  const Descriptor made{::open(file.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0600)};
+  if (made.number < 0) {
+    if (errno == EEXIST) return std::optional<std::string>{};
+    return token_file_error(file, errno);
+  }
+  std::string token = server::make_token();
+  const std::string line = token + "\n";
+  const ssize_t written = ::write(made.number, line.data(), line.size());
+  if (written != static_cast<ssize_t>(line.size())) {
+    const int error = written < 0 ? errno : ENOSPC;
+    ::unlink(file.c_str());
+    return token_file_error(file, error);
+  }
+  return std::optional{std::move(token)};
+}
+
+Result<std::string> read_token(const std::filesystem::path& file) {
+  const Descriptor opened{::open(file.c_str(), O_RDONLY | O_CLOEXEC | O_NONBLOCK)};
+  if (opened.number < 0) return token_file_error(file, errno);
+  struct stat about {};
+  if (::fstat(opened.number, &about) != 0) return token_file_error(file, errno);
+  if ((about.st_mode & S_IFMT) != S_IFREG) return Error{Errc::invalid_argument, "is no file", file.string()};
+  if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
+    return Error{Errc::invalid_argument, "others may read this token: chmod 600, or name another file", file.string()};
+  }
+  std::array<char, kLongestToken + 1> bytes{};
+  const ssize_t count = ::read(opened.number, bytes.data(), bytes.size());
+  if (count < 0) return token_file_error(file, errno);
+  std::string_view text{bytes.data(), static_cast<std::size_t>(count)};
+  if (text.size() > kLongestToken) return Error{Errc::corrupt_data, "is too long for a token", file.string()};
+  while (text.ends_with('\n') || text.ends_with('\r') || text.ends_with(' ')) text.remove_suffix(1);
+  server::ServerConfig config;
+  config.token = text;
+  if (const Status valid = config.validate(); !valid) {
+    return Error{Errc::corrupt_data, valid.error().message, file.string()};
+  }
+  return std::string{text};
+}
+
+Result<std::string> token_of(const std::filesystem::path& file) {
+  if (file.empty()) return server::make_token();
+  SACCADE_TRY(std::optional<std::string> made, made_token(file));
+  if (made) return std::move(*made);
+  return read_token(file);
+}
+
+/// Its own words go nowhere; whether it could is the user's to see.
+void open_browser(const std::string& url) {
+  posix_spawn_file_actions_t actions;
+  if (::posix_spawn_file_actions_init(&actions) != 0) return;
+  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
+    ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
+  }
+  std::string program{"xdg-open"};
+  std::string address = url;
+  const std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
+  pid_t child{0};
+  const bool begun = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ) == 0;
+  ::posix_spawn_file_actions_destroy(&actions);
+  if (begun) std::thread{[child] { ::waitpid(child, nullptr, 0); }}.detach();
+}
+
+}  // namespace
+
+void add_serve_options(CLI::App& command, ServeOptions& options) {
+  const auto given = [&options](const char* name) {
+    return [&options, name](const std::string&) {
+      if (options.given.empty()) options.given = name;
+    };
+  };
+  command
+      .add_option("--listen", options.address,
+                  "address that the page is served on; 0.0.0.0: all of this machine's. The token is always needed, and "
+                  "travels unencrypted: beyond this machine, prefer ssh -L")
+      ->each(given("--listen"))
+      ->type_name("ADDRESS")
+      ->capture_default_str();
+  command.add_option("--port", options.port, "port of the page; 0: any that is free")
+      ->check(CLI::Range(0, 65535))
+      ->each(given("--port"))
+      ->type_name("N")
+      ->capture_default_str();
+  command
+      .add_option("--token-file", options.token_file,
+                  "the page's token; made (for you alone to read) where it is not there. With --port, the page keeps "
+                  "its address")
+      ->each(given("--token-file"))
+      ->type_name("FILE");
+  command
+      .add_option("--host", options.host_names,
+                  "name by which browsers may reach the page, besides localhost and the address; may be given again")
+      ->check([](const std::string& name) {
+        server::ServerConfig config;
+        config.token = "0123456789abcdef";
+        config.host_names = {name};
+        return std::string{config.validate() ? "" : "is no name of a machine"};
+      })
+      ->each(given("--host"))
+      ->allow_extra_args(false)
+      ->type_name("NAME");
+  command.add_flag("--no-browser", options.no_browser, "only say where the page is")->each(given("--no-browser"));
+}
+
+Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options) {
+  server::ServerConfig config;
+  config.address = options.address;
+  config.port = options.port;
+  config.host_names = options.host_names;
+  SACCADE_TRY(config.token, token_of(options.token_file));
+  return server::HttpServer::listen(config);
+}
+
+void announce(const ServeOptions& options, const GlobalOptions& global, const server::HttpServer& server) {
+  std::ostream& out = global.json_to_stdout() ? std::cerr : std::cout;
+  const std::string port = std::to_string(server.port());
+  const std::string url = server.url();
+  const bool is_local = url.starts_with("http://localhost:");
+  out << "The page is at " << url << '\n';
+  if (is_local && !has_display()) {
+    out << "To open it on another machine, run there: ssh -N -L " << port << ":localhost:" << port << ' ' << login()
+        << '\n';
+  }
+  if (!is_local) out << "Whoever reaches this address and knows the token may use it; nothing is encrypted.\n";
+  out << "Ctrl-C ends it." << std::endl;
+  if (!options.no_browser && has_display()) open_browser(url);
+}
+
+int serve(const ServeOptions& options, const GlobalOptions& global, server::HttpServer& server,
+          server::Service& service) {
+  server.serve(service);
+  announce(options, global, server);
+  while (!interrupted()) std::this_thread::sleep_for(kLookEvery);
+  return static_cast<int>(ExitStatus::done);
+}
+
+}  // namespace saccade::cli
