@@ -79,6 +79,7 @@ void HttpSession::on_read(ErrorCode error) {
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     return refuse(status::request_header_fields_too_large, "The headers are too long.");
   }
+  if (error == http::error::body_limit) return refuse(status::payload_too_large, "Requests have no body here.");
   if (error && error.category() == http::make_error_code(http::error::bad_version).category() &&
       error != http::error::end_of_stream && error != http::error::partial_message) {
     return refuse(status::bad_request, "This is no request.");
@@ -89,7 +90,7 @@ void HttpSession::on_read(ErrorCode error) {
   if (request_.method() != http::verb::get && request_.method() != http::verb::head) {
     return refuse(status::method_not_allowed, "There is only GET and HEAD here.");
   }
-  if (has_body) return refuse(status::payload_too_large, "A question in HTTP has no body here.");
+  if (has_body) return refuse(status::payload_too_large, "Requests have no body here.");
   answer_request();
 }
 
