@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/message.hpp"
 
+#include <algorithm>
 #include <bit>
 #include <cstring>
 #include <string_view>
@@ -25,15 +26,22 @@ Result<ParsedMessage> parse_message(std::span<const std::uint8_t> message) {
   std::memcpy(&length, message.data(), kLengthBytes);
   const std::span<const std::uint8_t> rest = message.subspan(kLengthBytes);
   if (length > rest.size()) return Error{Errc::corrupt_data, "the message ends within its head", ""};
-  const char* const text = reinterpret_cast<const char*>(rest.data());
+  const std::string_view text{reinterpret_cast<const char*>(rest.data()), length};
+  if (text.find('\0') != std::string_view::npos) {  // the parser takes it for the end
+    return Error{Errc::corrupt_data, "the head is no JSON object", ""};
+  }
   bool too_deep{false};
-  const auto watch_depth = [&too_deep](int depth, json::parse_event_t /*event*/, json& /*parsed*/) {
-    too_deep = too_deep || depth > kDeepest;
+  const auto watch_depth = [&too_deep](int depth, json::parse_event_t event, json& /*parsed*/) {
+    const bool goes_down = event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
+    too_deep = too_deep || (goes_down && depth >= kDeepest);
     return !too_deep;
   };
-  json head = json::parse(text, text + length, watch_depth, /*allow_exceptions=*/false);
+  json head = json::parse(text.begin(), text.end(), watch_depth, /*allow_exceptions=*/false);
   if (too_deep || !head.is_object()) return Error{Errc::corrupt_data, "the head is no JSON object", ""};
   const std::size_t body = std::min(padded(length), rest.size());
+  for (const std::uint8_t zero : rest.subspan(length, body - length)) {
+    if (zero != 0) return Error{Errc::corrupt_data, "between head and body there are only zeros", ""};
+  }
   return ParsedMessage{std::move(head), rest.subspan(body)};
 }
 

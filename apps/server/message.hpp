@@ -18,7 +18,8 @@ struct ParsedMessage {
   std::span<const std::uint8_t> body;
 };
 
-/// corrupt_data for what is no message: cut short, no JSON object, not UTF-8, nested deeper than 32.
+/// corrupt_data for what is no message: cut short, no JSON object, not UTF-8, nested deeper than 32. Never throws;
+/// takes time and memory in proportion to the message. Padding that nothing follows may be left out.
 [[nodiscard]] Result<ParsedMessage> parse_message(std::span<const std::uint8_t> message);
 
 /// Builds a message: a head, then arrays one after the other.
