@@ -21,7 +21,6 @@
 
 #include "exit_status.hpp"
 #include "interrupt.hpp"
-#include "options.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -190,13 +190,14 @@ class RawClient {
     read_.erase(0, head + length);
     return read;
   }
-  /// The next message, its fragments joined; the payload of what closes with its code in front. Pings are passed over.
+  /// The next message, its fragments joined; the payload of what closes with its code in front. Pings are answered.
   std::optional<Frame> read_message() {
     Frame whole;
     bool begun{false};
     for (;;) {
       auto next = read_frame();
       if (!next || next->opcode == Opcode::close) return next;
+      if (next->opcode == Opcode::ping) send(frame(Opcode::pong, next->payload));
       if (next->opcode == Opcode::ping || next->opcode == Opcode::pong) continue;
       if (!std::exchange(begun, true)) whole.opcode = next->opcode;
       whole.payload += next->payload;

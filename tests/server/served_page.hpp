@@ -15,6 +15,7 @@
 
 #include "server/http_server.hpp"
 #include "server/raw_client.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 
@@ -73,8 +74,9 @@ class EchoService : public server::Service {
   std::atomic<int> calls_{0};
 };
 
-/// Of this process, MiB.
+/// Of this process, MiB; 0 under sanitizers, which take memory of their own.
 inline double resident_mib() {
+  if (kSanitized) return 0.0;
   std::ifstream pages{"/proc/self/statm"};
   double all{0};
   double resident{0};
