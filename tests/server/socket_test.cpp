@@ -186,7 +186,9 @@ TEST_F(Socket, WhoAsksTooMuchIsNotReadFrom) {
 
 TEST_F(Socket, WhoAsksMoreThanItReadsIsSlowedDownAndNotEnded) {
   service_->on_message = [this](ConnectionId from, const std::string& text) {
-    server_->send(from, message_of(text + std::string(10 * kMiB, 'a')));
+    server::Message answer(10 * kMiB + 2, std::uint8_t{'a'});
+    std::copy(text.begin(), text.end(), answer.begin());
+    server_->send(from, std::make_shared<const server::Message>(std::move(answer)));
   };
   RawClient asks = socket();
   const double before = resident_mib();
