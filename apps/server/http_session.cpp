@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http_session.hpp"
 
-#include <array>
 #include <boost/asio/post.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
@@ -53,7 +52,7 @@ HttpSession::HttpSession(ServerState& state, boost::asio::ip::tcp::socket socket
 
 void HttpSession::run() {
   state_.sessions.emplace(this, shared_from_this());
-  read();
+  guard([this] { read(); });
 }
 
 void HttpSession::stop() { finish(); }
@@ -68,8 +67,9 @@ void HttpSession::read() {
   parser_.emplace();
   parser_->header_limit(kMostHeaderBytes);
   stream_.expires_after(state_.config.request_timeout);
-  http::async_read_header(stream_, buffer_, *parser_,
-                          [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
+  http::async_read_header(stream_, buffer_, *parser_, [self = shared_from_this()](ErrorCode error, std::size_t) {
+    self->guard([&] { self->on_read(error); });
+  });
 }
 
 void HttpSession::on_read(ErrorCode error) {
@@ -180,7 +180,7 @@ void HttpSession::answer_data(const Target& target) {
     auto executor = self->stream_.get_executor();
     boost::asio::post(executor, [self = std::move(self), answer = std::move(answer)]() mutable {
       --self->state_.data_requests;
-      if (!self->finished_) self->on_data(std::move(answer));
+      if (!self->finished_) self->guard([&] { self->on_data(std::move(answer)); });
     });
   });
 }
@@ -239,7 +239,7 @@ void HttpSession::write_some() {
   http::async_write_some(stream_, *serializer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
     if (self->finished_) return;
     if (error) return self->finish();
-    self->write_some();
+    self->guard([&] { self->write_some(); });
   });
 }
 
@@ -256,7 +256,7 @@ void HttpSession::discard() {
                           [self = shared_from_this()](ErrorCode error, std::size_t bytes) {
                             self->discarded_ += bytes;
                             if (error || self->discarded_ > kMostDiscardedBytes) return self->finish();
-                            self->discard();
+                            self->guard([&] { self->discard(); });
                           });
 }
 

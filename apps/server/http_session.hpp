@@ -51,7 +51,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   /// Lets the client read what it was told before the socket is closed.
   void linger();
   void discard();
-  void finish();
+  void finish() override;
 
   ServerState& state_;
   boost::beast::tcp_stream stream_;

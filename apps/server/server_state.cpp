@@ -1,9 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/server_state.hpp"
 
-#include <unistd.h>
-
-#include <array>
 #include <utility>
 
 #include "saccade/core/fnv1a.hpp"

@@ -3,6 +3,7 @@
 // ServerState: what the sessions of a server share. Session: one socket, plain or grown to a WebSocket.
 
 #include <atomic>
+#include <exception>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -24,6 +25,19 @@ class Session {
   virtual ~Session() = default;
   /// The server ends.
   virtual void stop() = 0;
+
+ protected:
+  /// Closes the socket and takes itself off the list.
+  virtual void finish() = 0;
+  /// What goes wrong in one session, as for lack of memory, ends that one.
+  template <class Work>
+  void guard(Work&& work) {
+    try {
+      work();
+    } catch (const std::exception&) {
+      finish();
+    }
+  }
 };
 
 struct CachedFile {

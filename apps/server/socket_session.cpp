@@ -27,6 +27,10 @@ SocketSession::~SocketSession() { --state_.web_sockets; }
 
 void SocketSession::run(boost::beast::http::request<boost::beast::http::empty_body> request) {
   state_.sessions.emplace(this, shared_from_this());
+  guard([&] { begin(std::move(request)); });
+}
+
+void SocketSession::begin(boost::beast::http::request<boost::beast::http::empty_body> request) {
   boost::beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own
   stream_.set_option(
       websocket::stream_base::timeout{state_.config.request_timeout, state_.config.idle_timeout, /*pings=*/true});
@@ -35,14 +39,15 @@ void SocketSession::run(boost::beast::http::request<boost::beast::http::empty_bo
   stream_.auto_fragment(true);
   stream_.binary(true);
   const auto kept = std::make_shared<decltype(request)>(std::move(request));
-  stream_.async_accept(*kept, [self = shared_from_this(), kept](ErrorCode error) { self->on_accept(error); });
+  stream_.async_accept(
+      *kept, [self = shared_from_this(), kept](ErrorCode error) { self->guard([&] { self->on_accept(error); }); });
 }
 
 void SocketSession::on_accept(ErrorCode error) {
   if (error || finished_ || state_.stopping) return finish();
   auto wake = [executor = stream_.get_executor(), weak = weak_from_this()] {
     boost::asio::post(executor, [weak] {
-      if (const auto self = weak.lock()) self->on_woken();
+      if (const auto self = weak.lock()) self->guard([&] { self->on_woken(); });
     });
   };
   connection_ = std::make_shared<Connection>(++state_.last_id, state_.config, state_.service_thread,
@@ -64,7 +69,9 @@ void SocketSession::on_woken() {
 
 void SocketSession::read() {
   reading_ = true;
-  stream_.async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) { self->on_read(error); });
+  stream_.async_read(buffer_, [self = shared_from_this()](ErrorCode error, std::size_t) {
+    self->guard([&] { self->on_read(error); });
+  });
 }
 
 void SocketSession::on_read(ErrorCode error) {
@@ -89,8 +96,10 @@ void SocketSession::write() {
   stream_.async_write(boost::asio::buffer(*writing_), [self = shared_from_this()](ErrorCode error, std::size_t) {
     self->writing_.reset();
     if (error || self->finished_) return self->finish();
-    self->connection_->written();
-    self->write();
+    self->guard([&] {
+      self->connection_->written();
+      self->write();
+    });
   });
 }
 

@@ -32,7 +32,8 @@ class SocketSession : public Session, public std::enable_shared_from_this<Socket
   void on_read(ErrorCode error);
   void write();
   void close(const Connection::Closing& closing);
-  void finish();
+  void finish() override;
+  void begin(boost::beast::http::request<boost::beast::http::empty_body> request);
 
   ServerState& state_;
   boost::beast::websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> stream_;

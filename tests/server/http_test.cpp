@@ -110,6 +110,20 @@ TEST_F(Http, ServiceThatThrowsIsAnError) {
   expect_that_a_good_client_is_answered();
 }
 
+TEST_F(Http, AnEndWaitsForTheServiceAndNotForTheAnswer) {
+  std::atomic<bool> begun{false};
+  service_->on_get = [&begun](const server::HttpRequest&) {
+    begun = true;
+    std::this_thread::sleep_for(std::chrono::milliseconds{100});
+    return server::HttpAnswer{200, "text/plain", "", std::vector<std::uint8_t>(kMiB, 7)};
+  };
+  RawClient asks = client();
+  asks.send(request(asks, "GET /data/a", RawClient::cookie_of(server_->port())));
+  ASSERT_TRUE(eventually([&begun] { return begun.load(); }));
+  server_.reset();
+  EXPECT_EQ(asks.read_answer().status, 0);
+}
+
 TEST_F(Http, OtherMethodsAndPathsAreRefused) {
   for (const std::string method : {"POST", "PUT", "DELETE", "OPTIONS", "TRACE", "CONNECT", "PATCH", "BREW"}) {
     RawClient asks = client();
