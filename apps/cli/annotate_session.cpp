@@ -13,6 +13,7 @@
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/label_input.hpp"
 #include "saccade/io/label_presets.hpp"
+#include "server/annotate/session_start.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -74,25 +75,10 @@ Result<OpenAnnotation> open_annotation(const CloudJob& job, bool changes, const 
 
 /// Labels of which something else is known than in the presets, or nothing.
 Status define_presets(const std::vector<NumberedLabel>& presets, std::uint64_t client, OpenAnnotation& annotation) {
-  DefineLabels define;
-  const auto& defined = annotation.annotation().label_table().defined();
-  for (const NumberedLabel& label : presets) {
-    const auto known = defined.find(label.number);
-    if (known == defined.end() || !(known->second == label.info)) define.labels.push_back(label);
-  }
+  DefineLabels define{server::missing_presets(presets, annotation.annotation())};
   if (define.labels.empty()) return {};
   const auto applied = annotation.apply({client, std::move(define)});
   return applied ? Status{} : applied.error();
-}
-
-/// How many of the seeds a session holds whose planting was cut short; none: it holds something else, or all of them.
-std::optional<std::size_t> planted_before(const LabelSeeds& seeds, std::uint64_t client,
-                                          std::span<const AnnotationAction> actions) {
-  if (actions.size() >= seeds.actions.size()) return std::nullopt;
-  for (std::size_t i = 0; i < actions.size(); ++i) {
-    if (!(actions[i] == AnnotationAction{client, seeds.actions[i]})) return std::nullopt;
-  }
-  return actions.size();
 }
 
 /// One action per label; those before are planted.
@@ -203,7 +189,7 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
   made.graph_ms = stopwatch.elapsed_ms();
   SACCADE_TRY(std::optional<LabelSeeds> seeds, seeds_of(options, job, cloud, graph, progress));
   std::optional<std::size_t> before{0};
-  if (seeds && saved) before = planted_before(*seeds, options.client, saved->actions);
+  if (seeds && saved) before = server::planted_before(*seeds, options.client, saved->actions);
   if (!before && !options.of_folder()) {
     return Error{Errc::invalid_argument,
                  "holds " + std::to_string(saved->actions.size()) +

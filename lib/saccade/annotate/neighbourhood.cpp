@@ -184,6 +184,8 @@ Joined join(const NearestNeighbours& neighbours, std::size_t points, const Nodes
   return joined;
 }
 
+Error cancelled_build() { return {Errc::cancelled, "the neighbourhood graph was not finished", "neighbourhood"}; }
+
 std::uint32_t median_of_sample(std::span<const Neighbourhood::Edge> edges) {
   constexpr std::size_t kSamples{10007};
   std::vector<std::uint32_t> costs;
@@ -213,7 +215,8 @@ Status NeighbourhoodConfig::validate() const {
 }
 
 Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const NeighbourhoodConfig& config,
-                                           const Executor& executor) {
+                                           const Executor& executor, const Progress& progress) {
+  constexpr std::size_t kStages{3};
   SACCADE_CHECK(config.validate());
   SACCADE_CHECK(cloud.validate());
   if (2 * cloud.positions_m.size() * static_cast<std::size_t>(config.neighbours) >
@@ -221,9 +224,14 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
     return Error{Errc::invalid_argument, "points times neighbours may be 2³¹ at most; thin the cloud out or split it",
                  "neighbourhood"};
   }
+  progress.report("graph", 0, kStages);
   const NearestNeighbours neighbours =
       nearest_neighbours(cloud.positions_m, static_cast<std::size_t>(config.neighbours), executor);
+  if (progress.cancelled()) return cancelled_build();
+  progress.report("graph", 1, kStages);
   const Nodes nodes{cloud, neighbours, config, executor};
+  if (progress.cancelled()) return cancelled_build();
+  progress.report("graph", 2, kStages);
   Neighbourhood graph;
   graph.config_ = config;
   const std::size_t size = cloud.positions_m.size();
@@ -246,6 +254,7 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
   graph.starts_ = std::move(joined.starts);
   graph.edges_ = std::move(joined.edges);
   graph.median_cost_ = median_of_sample(graph.edges_);
+  progress.report("graph", kStages, kStages);
   return graph;
 }
 

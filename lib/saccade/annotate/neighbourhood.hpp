@@ -7,6 +7,7 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/progress.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/core/unset_vector.hpp"
 #include "saccade/segment/point_cloud.hpp"
@@ -44,11 +45,11 @@ class Neighbourhood {
 
   /// Which of several points at the K-th distance are neighbours is decided by the cloud alone.
   /// @return invalid_argument for a bad configuration and for more than 2³¹ points times neighbours; errors of
-  /// PointCloud::validate.
+  /// PointCloud::validate; cancelled, which is looked at between its three stages.
   /// The same for every thread count and instruction set. O(n log n + n K); about 13 K + 76 bytes per point while it
   /// works (1.9 GiB for ten million points), 9 K + 12 after.
   [[nodiscard]] static Result<Neighbourhood> build(const PointCloud& cloud, const NeighbourhoodConfig& config,
-                                                   const Executor& executor);
+                                                   const Executor& executor, const Progress& progress = {});
 
   [[nodiscard]] const NeighbourhoodConfig& config() const { return config_; }
   /// Points of the cloud, those that are not finite included; as many as nodes.

@@ -10,6 +10,12 @@ Result<AnnotationSession> AnnotationSession::open_or_create(const std::filesyste
                                                             const std::shared_ptr<const Neighbourhood>& neighbourhood) {
   const SessionSubject subject{std::move(cloud_name), neighbourhood->size(), positions_hash, neighbourhood->config()};
   SACCADE_TRY(AnnotationJournal::Opened opened, AnnotationJournal::open_or_create(path, subject));
+  return restore(std::move(opened), neighbourhood);
+}
+
+AnnotationSession AnnotationSession::restore(AnnotationJournal::Opened opened,
+                                             const std::shared_ptr<const Neighbourhood>& neighbourhood) {
+  SACCADE_EXPECTS(opened.saved.subject.points == neighbourhood->size());
   Annotation annotation{neighbourhood};
   annotation.restore(opened.saved.actions);
   const SessionOpening opening{opened.created, annotation.history().size(), opened.saved.torn_bytes};

@@ -33,6 +33,11 @@ class AnnotationSession {
       const std::filesystem::path& path, std::string cloud_name, std::uint64_t positions_hash,
       const std::shared_ptr<const Neighbourhood>& neighbourhood);
 
+  /// The same in two steps: the journal is locked and read before there is a graph. Expects one that fits the subject
+  /// with which the journal was opened.
+  [[nodiscard]] static AnnotationSession restore(AnnotationJournal::Opened opened,
+                                                 const std::shared_ptr<const Neighbourhood>& neighbourhood);
+
   /// Errors of Annotation::validate; io_failure when the action could not be written: it was not done, and the session
   /// is read-only from then on. Undo and redo with nothing to do are no errors (Applied::done) and are not written.
   [[nodiscard]] Result<Applied> apply(AnnotationAction action);

@@ -1,0 +1,112 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/annotate/action_question.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <string>
+
+#include "saccade/io/annotation_script.hpp"
+
+namespace saccade::server {
+namespace {
+
+constexpr std::ptrdiff_t kMostPlaces{64};       // each is looked for among all points
+constexpr double kMostPixels{7680.0 * 4320.0};  // of a view
+constexpr double kMostBrushed_px{4e9};          // of all parts of a brush together
+constexpr double kMostBallLine_px{20'000.0};    // of a brush whose radius is in metres
+
+Error too_much(std::string what) { return {Errc::invalid_argument, std::move(what), "action"}; }
+
+/// What one message may ask for is little; what it would take to do it should be, too.
+Status check_brush(const ScreenStroke& stroke, const ScriptedSelection& selection) {
+  double length_px{0.0};
+  double brushed_px{0.0};
+  for (std::size_t i = 0; i < stroke.line.size(); ++i) {
+    const ScreenPoint way_px = i == 0 ? ScreenPoint{0.0, 0.0} : ScreenPoint{stroke.line[i] - stroke.line[i - 1]};
+    const ScreenPoint size_px = way_px.cwiseAbs().array() + 2.0 * stroke.radius_px + 1.0;
+    length_px += way_px.norm();
+    brushed_px +=
+        std::min<double>(size_px.x(), selection.view.width) * std::min<double>(size_px.y(), selection.view.height);
+  }
+  if (selection.radius_m && length_px > kMostBallLine_px) {
+    return too_much("a brush with radius_m may be 20000 px long; draw it in several parts");
+  }
+  if (!selection.radius_m && brushed_px > kMostBrushed_px) {
+    return too_much("the brush is too large for so long a line; draw it in several parts");
+  }
+  return {};
+}
+
+Status check_work(const ScriptedAction& scripted) {
+  const auto places = std::count_if(scripted.points.begin(), scripted.points.end(), [](const ScriptedPoint& point) {
+    return std::holds_alternative<Eigen::Vector3d>(point);
+  });
+  if (places > kMostPlaces) return too_much("an action may name 64 places; name points by their index");
+  if (!scripted.selection) return {};
+  const SelectionView& view = scripted.selection->view;
+  if (static_cast<double>(view.width) * view.height > kMostPixels) {
+    return too_much("a view may have 7680 × 4320 pixels");
+  }
+  const auto* stroke = std::get_if<ScreenStroke>(&scripted.selection->shape);
+  return stroke == nullptr ? Status{} : check_brush(*stroke, *scripted.selection);
+}
+
+/// The control points whose trees points are in.
+Result<AnnotationAction> roots_of(const std::vector<std::uint32_t>& points, const Annotation& annotation,
+                                  std::uint64_t client) {
+  std::vector<std::uint32_t> roots;
+  for (const std::uint32_t point : points) {
+    if (point >= annotation.labels().size()) {
+      return Error{Errc::invalid_argument, "there is no point " + std::to_string(point), "action"};
+    }
+    if (const auto root = annotation.forest().root_of(point)) roots.push_back(*root);
+  }
+  std::sort(roots.begin(), roots.end());
+  roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
+  if (roots.empty()) return Error{Errc::invalid_argument, "no control point reaches so far", "action"};
+  return AnnotationAction{client, RemoveControlPoints{std::move(roots)}};
+}
+
+Result<ScriptedAction> parsed_action(const nlohmann::json& head) {
+  const auto action = head.find("action");
+  if (action == head.end() || !action->is_object()) return too_much("action is an object: {\"do\": ...}");
+  if (action->contains("client")) return too_much("the client of an action is that of hello");
+  const auto text = action->dump(-1, ' ', false, nlohmann::json::error_handler_t::replace);
+  auto script = parse_annotation_script(text);
+  if (!script) return Error{Errc::invalid_argument, script.error().message, "action"};
+  if (script->size() != 1) return too_much("action is one action");
+  return std::move(script->front());
+}
+
+Result<bool> asks_for_trees(const nlohmann::json& head) {
+  const auto trees = head.find("trees");
+  if (trees == head.end()) return false;
+  if (!trees->is_boolean()) return too_much("trees is true or false");
+  return trees->get<bool>();
+}
+
+}  // namespace
+
+Result<AnnotationAction> asked_action(const nlohmann::json& head, std::span<const Eigen::Vector3f> positions_m,
+                                      const Annotation& annotation, std::uint64_t client, const Executor& executor) {
+  SACCADE_TRY(ScriptedAction scripted, parsed_action(head));
+  SACCADE_TRY(const bool trees, asks_for_trees(head));
+  SACCADE_CHECK(check_work(scripted));
+  const auto in_action = [](Error error) {
+    error.context = "action";  // there are no lines
+    return error;
+  };
+  const bool removes = std::holds_alternative<RemoveControlPoints>(scripted.change);
+  if (trees && !removes) return too_much("trees goes with remove");
+  if (trees) scripted.change = PaintPoints{};  // of which all points count, not control points alone
+  const double max_path = annotation.forest().neighbourhood().config().max_path;
+  if (const Status fits = check_script({&scripted, 1}, positions_m.size(), max_path); !fits) {
+    return in_action(fits.error());
+  }
+  auto action = resolve_action(scripted, positions_m, annotation, client, executor);
+  if (!action) return in_action(action.error());
+  if (trees) return roots_of(std::get<PaintPoints>(action->change).points, annotation, client);
+  return action;
+}
+
+}  // namespace saccade::server

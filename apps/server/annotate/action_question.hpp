@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// asked_action: the action that a page asks for, on the cloud that it has open.
+
+#include <nlohmann/json.hpp>
+#include <span>
+
+#include "saccade/annotate/annotation.hpp"
+#include "saccade/core/executor.hpp"
+
+namespace saccade::server {
+
+/// @param head  of the question: `action`, as in a line of an annotation script without `client`, and `trees`.
+/// @return invalid_argument for what is no such action, what takes too much work (docs/protocol.md), and as
+/// resolve_action. It may still not fit the annotation (Annotation::validate).
+[[nodiscard]] Result<AnnotationAction> asked_action(const nlohmann::json& head,
+                                                    std::span<const Eigen::Vector3f> positions_m,
+                                                    const Annotation& annotation, std::uint64_t client,
+                                                    const Executor& executor);
+
+}  // namespace saccade::server

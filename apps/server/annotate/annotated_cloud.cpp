@@ -1,0 +1,83 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/annotate/annotated_cloud.hpp"
+
+#include <algorithm>
+#include <map>
+
+#include "saccade/io/file_io.hpp"
+
+namespace saccade::server {
+
+Result<LoadedCloud> load_cloud(const std::filesystem::path& path) {
+  LoadedCloud cloud{path, {}, {}};
+  SACCADE_TRY(cloud.file, read_cloud(path));
+  SACCADE_TRY(cloud.points, in_file(cloud_from_fields(cloud.file.fields()), path));
+  const bool any = std::any_of(cloud.points.positions_m.begin(), cloud.points.positions_m.end(),
+                               [](const Eigen::Vector3f& p) { return p.allFinite(); });
+  if (!any) return Error{Errc::corrupt_data, "has no point with a finite place; there is nothing to label", path};
+  return cloud;
+}
+
+bool is_in_camera_frame(std::span<const Eigen::Vector3f> positions_m) {
+  constexpr float kLeastCosine{0.5F};
+  constexpr double kMost{0.99};
+  std::size_t finite{0};
+  std::size_t ahead{0};
+  for (const Eigen::Vector3f& p : positions_m) {
+    if (!p.allFinite()) continue;
+    ++finite;
+    ahead += p.z() > kLeastCosine * p.norm() ? 1 : 0;
+  }
+  return static_cast<double>(ahead) >= kMost * static_cast<double>(finite);
+}
+
+std::size_t LabelledPoints::labelled() const {
+  std::size_t count{0};
+  for (const LabelRow& row : rows) count += row.label.points;
+  return count;
+}
+
+std::vector<NamedLabel> LabelledPoints::names() const {
+  std::vector<NamedLabel> names;
+  for (const LabelRow& row : rows) names.push_back(row.label);
+  return names;
+}
+
+LabelledPoints labelled_points(const Annotation& annotation) {
+  LabelledPoints points{{annotation.labels().begin(), annotation.labels().end()}, {}, {}, {}};
+  std::map<std::uint32_t, LabelRow> rows;
+  for (const auto& [number, info] : annotation.label_table().defined()) rows[number];
+  for (const auto& [number, count] : annotation.counts()) rows[number].label.points = count;
+  for (const ControlPoint& control : annotation.control_points()) {
+    points.control_points.push_back(control.point);
+    ++rows[control.label].control_points;
+  }
+  for (auto& [number, row] : rows) {
+    const LabelInfo info = annotation.label_table().info(number);
+    row.label = {number, info.name, info.class_name, info.instance, info.color, row.label.points};
+    points.rows.push_back(row);
+  }
+  return points;
+}
+
+LabelledPoints labelled_points(std::vector<std::uint32_t> labels, std::vector<std::uint32_t> control_points) {
+  const DistinctColors colors;
+  std::map<std::uint32_t, LabelRow> rows;
+  for (const std::uint32_t label : labels) {
+    if (label != kNoLabel) ++rows[label].label.points;
+  }
+  for (const std::uint32_t point : control_points) ++rows[labels[point]].control_points;
+  LabelledPoints points{std::move(labels), std::move(control_points), {}, {}};
+  for (auto& [number, row] : rows) {
+    row.label.number = number;
+    row.label.color = colors(number);
+    points.rows.push_back(row);
+  }
+  return points;
+}
+
+Status write_names(const std::filesystem::path& path, std::span<const NamedLabel> names) {
+  return path.extension() == ".json" ? write_label_names_json(path, names) : write_label_names_text(path, names);
+}
+
+}  // namespace saccade::server

@@ -1,0 +1,193 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/annotate/annotation_answers.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <string>
+#include <unordered_map>
+
+namespace saccade::server {
+namespace {
+
+using nlohmann::json;
+
+using Rgba = std::array<std::uint8_t, 4>;
+constexpr Rgba kNoColor{200, 200, 200, 255};
+
+Rgba rgba_of(const Eigen::Vector3f& color) {
+  const auto byte = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(std::clamp(value, 0.0F, 1.0F) * 255.0F));
+  };
+  return {byte(color.x()), byte(color.y()), byte(color.z()), 255};
+}
+
+/// Gathers points by their label.
+class Grouping {
+ public:
+  void add(std::uint32_t point, std::uint32_t label) {
+    if (groups_.empty() || label != last_label_) {
+      last_label_ = label;
+      const auto [found, is_new] = place_of_.emplace(label, groups_.size());
+      if (is_new) groups_.push_back({label, {}});
+      last_ = found->second;
+    }
+    groups_[last_].points.push_back(point);
+  }
+  [[nodiscard]] LabelGroups finish() const {
+    LabelGroups made;
+    for (const Group& group : groups_) {
+      made.list.push_back({group.label, group.points.size()});
+      made.points.insert(made.points.end(), group.points.begin(), group.points.end());
+    }
+    return made;
+  }
+
+ private:
+  struct Group {
+    std::uint32_t label;
+    std::vector<std::uint32_t> points;
+  };
+  std::vector<Group> groups_;
+  std::unordered_map<std::uint32_t, std::size_t> place_of_;
+  std::uint32_t last_label_{0};
+  std::size_t last_{0};
+};
+
+json graph_json(const NeighbourhoodConfig& graph) {
+  return {{"neighbours", graph.neighbours},       {"position_weight_per_m", graph.position_weight_per_m},
+          {"normal_weight", graph.normal_weight}, {"color_weight", graph.color_weight},
+          {"max_path", graph.max_path},           {"adapt_to_density", graph.adapt_to_density}};
+}
+
+json cloud_json(const OpenCloud& cloud, std::size_t index, std::size_t shown) {
+  const CloudFacts& facts = cloud.facts();
+  const Eigen::Vector3f& a = facts.least_m;
+  const Eigen::Vector3f& b = facts.greatest_m;
+  // Before a camera down is +y.
+  const json up = facts.camera_frame ? json{0.0, -1.0, 0.0} : json{0.0, 0.0, 1.0};
+  return {{"index", index},
+          {"name", cloud.cloud().path.filename().string()},
+          {"points", cloud.cloud().points.positions_m.size()},
+          {"finite", facts.finite},
+          {"shown", shown},
+          {"bounds", {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}},
+          {"spacing_m", facts.spacing_m},
+          {"has_colors", !cloud.cloud().points.colors.empty()},
+          {"up", up},
+          {"graph", graph_json(cloud.graph_config())}};
+}
+
+ControlPointRow row_of(const ControlPoint& control) {
+  return {control.point, control.label, static_cast<float>(control.start_cost)};
+}
+
+}  // namespace
+
+Result<std::uint64_t> whole_number(const json& head, const char* key, std::uint64_t least, std::uint64_t most) {
+  const auto found = head.find(key);
+  if (found != head.end() && found->is_number_unsigned()) {
+    const auto value = found->get<std::uint64_t>();
+    if (value >= least && value <= most) return value;
+  }
+  return Error{Errc::invalid_argument,
+               std::string{key} + " is a whole number from " + std::to_string(least) + " to " + std::to_string(most),
+               key};
+}
+
+std::vector<ControlPointRow> all_control_points(const Annotation& annotation) {
+  std::vector<ControlPointRow> rows;
+  for (const ControlPoint& control : annotation.control_points()) rows.push_back(row_of(control));
+  return rows;
+}
+
+std::vector<ControlPointRow> control_points_now(std::span<const std::uint32_t> points, const Annotation& annotation) {
+  std::vector<ControlPointRow> rows;
+  for (const std::uint32_t point : points) {
+    const auto control = annotation.control_point(point);
+    rows.push_back(control ? row_of(*control) : ControlPointRow{point, kNoLabel, 0.0F});
+  }
+  return rows;
+}
+
+LabelGroups groups_of(std::span<const std::uint32_t> points, const OpenCloud& cloud, std::size_t shown) {
+  const std::span<const std::uint32_t> labels = cloud.annotation().labels();
+  Grouping grouping;
+  for (const std::uint32_t point : points) {
+    if (cloud.order().is_among(point, shown)) grouping.add(point, labels[point]);
+  }
+  return grouping.finish();
+}
+
+LabelGroups labelled_groups(const OpenCloud& cloud, std::size_t shown) {
+  const std::span<const std::uint32_t> labels = cloud.annotation().labels();
+  Grouping grouping;
+  for (const std::uint32_t point : cloud.order().points(0, shown)) {
+    if (labels[point] != kNoLabel) grouping.add(point, labels[point]);
+  }
+  return grouping.finish();
+}
+
+void add_state(json& head, const OpenCloud& cloud, std::uint64_t client) {
+  head["sequence"] = cloud.sequence();
+  head["client_actions"] = cloud.actions_of(client);
+  head["can_undo"] = cloud.can_undo(client);
+  head["can_redo"] = cloud.can_redo(client);
+}
+
+void add_annotation(json& head, const OpenCloud& cloud) {
+  const auto why = cloud.read_only();
+  head["read_only"] = why ? json(why->to_string()) : json(nullptr);
+  head["labels"] = json::array();
+  head["control_points"] = 0;
+  if (!cloud.ready()) return;
+  const Annotation& annotation = cloud.annotation();
+  head["labels"] = label_rows(cloud.census().known(annotation), annotation, cloud.census());
+  head["control_points"] = cloud.census().control_points();
+}
+
+SharedMessage opened_message(json head, const OpenCloud& cloud, std::size_t index, std::size_t shown,
+                             std::uint64_t client) {
+  head["cloud"] = cloud_json(cloud, index, shown);
+  head["ready"] = cloud.ready();
+  add_state(head, cloud, client);
+  add_annotation(head, cloud);
+  MessageWriter message{head};
+  if (cloud.ready()) message.append(std::span<const ControlPointRow>{all_control_points(cloud.annotation())});
+  return std::move(message).finish();
+}
+
+SharedMessage points_message(json head, const OpenCloud& cloud, std::size_t from, std::size_t count) {
+  const PointCloud& points = cloud.cloud().points;
+  const std::span<const std::uint32_t> chosen = cloud.order().points(from, count);
+  std::vector<Eigen::Vector3f> positions_m;
+  std::vector<Rgba> colors;
+  std::vector<std::uint32_t> labels;
+  positions_m.reserve(count);
+  colors.reserve(count);
+  labels.reserve(count);
+  for (const std::uint32_t point : chosen) {
+    positions_m.push_back(points.positions_m[point]);
+    colors.push_back(points.colors.empty() ? kNoColor : rgba_of(points.colors[point]));
+    labels.push_back(cloud.ready() ? cloud.annotation().label_of(point) : kNoLabel);
+  }
+  head["from"] = from;
+  head["count"] = count;
+  MessageWriter message{head};
+  message.append(std::span<const Eigen::Vector3f>{positions_m});
+  message.append(chosen);
+  message.append(std::span<const Rgba>{colors});
+  message.append(std::span<const std::uint32_t>{labels});
+  return std::move(message).finish();
+}
+
+SharedMessage changes_message(json head, std::span<const ControlPointRow> control_points, const LabelGroups& groups) {
+  head["control_points"] = control_points.size();
+  head["groups"] = groups.list;
+  MessageWriter message{head};
+  message.append(control_points);
+  message.append(std::span<const std::uint32_t>{groups.points});
+  return std::move(message).finish();
+}
+
+}  // namespace saccade::server

@@ -1,0 +1,53 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/annotate/display_order.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <random>
+
+namespace saccade::server {
+
+DisplayOrder::DisplayOrder(std::span<const Eigen::Vector3f> positions_m)
+    : rank_(positions_m.size(), std::numeric_limits<std::uint32_t>::max()) {
+  order_.reserve(positions_m.size());
+  for (std::uint32_t point = 0; point < positions_m.size(); ++point) {
+    if (positions_m[point].allFinite()) order_.push_back(point);
+  }
+  constexpr std::uint32_t kSeed{1};
+  std::mt19937 random{kSeed};  // its numbers are the same everywhere, those of std::shuffle are not
+  for (std::size_t end = order_.size(); end > 1; --end) {
+    const std::uint64_t chosen = random() * static_cast<std::uint64_t>(end) >> 32U;
+    std::swap(order_[end - 1], order_[chosen]);
+  }
+  for (std::size_t rank = 0; rank < order_.size(); ++rank) rank_[order_[rank]] = static_cast<std::uint32_t>(rank);
+}
+
+double typical_spacing_m(std::span<const Eigen::Vector3f> positions_m, const DisplayOrder& order,
+                         const Executor& executor) {
+  constexpr std::size_t kSamples{48};
+  constexpr std::size_t kNearest{5};  // the point itself, and four others
+  if (order.size() < kNearest) return 0.0;
+  std::vector<float> distances_m2(std::min(kSamples, order.size()));
+  executor.parallel_for(distances_m2.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t sample = begin; sample < end; ++sample) {
+      const Eigen::Vector3f here_m = positions_m[order.points(sample, 1).front()];
+      std::array<float, kNearest> nearest;
+      nearest.fill(std::numeric_limits<float>::infinity());
+      for (const Eigen::Vector3f& p : positions_m) {
+        const float distance_m2 = (p - here_m).squaredNorm();
+        if (!(distance_m2 < nearest.back())) continue;
+        nearest.back() = distance_m2;
+        for (std::size_t i = kNearest - 1; i > 0 && nearest[i] < nearest[i - 1]; --i) {
+          std::swap(nearest[i], nearest[i - 1]);
+        }
+      }
+      distances_m2[sample] = nearest.back();
+    }
+  });
+  const auto middle = distances_m2.begin() + static_cast<std::ptrdiff_t>(distances_m2.size() / 2);
+  std::nth_element(distances_m2.begin(), middle, distances_m2.end());
+  return std::isfinite(*middle) ? std::sqrt(static_cast<double>(*middle)) : 0.0;
+}
+
+}  // namespace saccade::server

@@ -1,0 +1,136 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// OpenCloud: a cloud that pages have open, with its annotation once the graph is there.
+
+#include <cstdint>
+#include <functional>
+#include <map>
+#include <memory>
+#include <optional>
+#include <set>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "saccade/core/progress.hpp"
+#include "server/annotate/annotated_cloud.hpp"
+#include "server/annotate/display_order.hpp"
+#include "server/annotate/label_census.hpp"
+#include "server/annotate/session_start.hpp"
+
+namespace saccade::server {
+
+/// A cloud that is served, and its files.
+struct ServedCloud {
+  std::filesystem::path cloud;
+  std::filesystem::path session;
+  std::filesystem::path seeds;  ///< labels that a session begins with; empty: none
+  std::filesystem::path out;    ///< where `save` puts the labels
+  std::filesystem::path names;  ///< and what their numbers mean; empty: nowhere
+};
+
+/// How sessions begin.
+struct SessionStart {
+  NeighbourhoodConfig graph;
+  std::vector<GraphCheck> checks;  ///< of sessions that are there
+  std::vector<NumberedLabel> presets;
+  double seed_share{0.99};
+};
+
+/// What is known of a cloud besides its points.
+struct CloudFacts {
+  std::size_t finite{0};
+  Eigen::Vector3f least_m{0, 0, 0};
+  Eigen::Vector3f greatest_m{0, 0, 0};
+  double spacing_m{0.0};
+  bool camera_frame{false};
+};
+
+/// Who does what the program does by itself: presets and seeds. No page can undo it.
+inline constexpr std::uint64_t kProgramClient{0};
+
+class OpenCloud {
+ public:
+  /// What takes long, and needs the cloud alone.
+  struct Built {
+    std::shared_ptr<const Neighbourhood> graph;
+    std::optional<LabelSeeds> seeds;
+  };
+  /// Labels of which another row is to be shown, and what else an action did.
+  struct Change {
+    Applied applied;
+    std::set<std::uint32_t> labels;
+  };
+
+  /// Reads the cloud and locks its session, which it begins if there is none. Errors of load_cloud and open_journal.
+  [[nodiscard]] static Result<std::unique_ptr<OpenCloud>> open(const ServedCloud& served, const SessionStart& start,
+                                                               const Executor& executor, const Progress& progress);
+  OpenCloud(const OpenCloud&) = delete;
+  OpenCloud& operator=(const OpenCloud&) = delete;
+  /// Ends what is built meanwhile.
+  ~OpenCloud();
+
+  /// The graph, here and now, or in a thread of its own, which calls `finished` at its end.
+  [[nodiscard]] Result<Built> build(const Executor& executor, const Progress& progress) const;
+  void build_apart(const Executor& executor, Progress::Callback report,
+                   std::function<void(std::shared_ptr<Result<Built>>)> finished);
+  /// With what was built, the annotation is ready. Where seeds or presets cannot be kept, it is read-only.
+  void begin(const Built& built);
+  /// Keeps the session under another name, which it returns, and begins an empty one. Expects that it is ready.
+  /// io_failure: then everything is as before.
+  [[nodiscard]] Result<std::filesystem::path> begin_anew();
+
+  [[nodiscard]] const LoadedCloud& cloud() const { return cloud_; }
+  [[nodiscard]] const DisplayOrder& order() const { return order_; }
+  [[nodiscard]] const CloudFacts& facts() const { return facts_; }
+  [[nodiscard]] const NeighbourhoodConfig& graph_config() const { return subject_.graph; }
+
+  [[nodiscard]] bool ready() const { return census_.has_value(); }
+  /// Why it cannot be annotated now: unavailable while the graph is built, or why it was not.
+  [[nodiscard]] Error not_ready() const;
+  void fail(Error error) { failure_ = std::move(error); }
+  /// Why nothing can be changed; none: it can, or will be.
+  [[nodiscard]] std::optional<Error> read_only() const;
+
+  // Expect that it is ready.
+  [[nodiscard]] const Annotation& annotation() const { return session_->annotation(); }
+  [[nodiscard]] const LabelCensus& census() const { return *census_; }
+  /// As AnnotationSession::apply.
+  [[nodiscard]] Result<Change> apply(AnnotationAction action);
+  /// label_margins, kept until the next action.
+  [[nodiscard]] std::span<const float> margins();
+  /// cloud_ends.
+  [[nodiscard]] std::span<const std::uint8_t> ends();
+
+  /// Actions in the session, undo and redo among them: in all, and of one client.
+  [[nodiscard]] std::uint64_t sequence() const { return sequence_; }
+  [[nodiscard]] std::uint64_t actions_of(std::uint64_t client) const;
+  [[nodiscard]] bool can_undo(std::uint64_t client) const;
+  [[nodiscard]] bool can_redo(std::uint64_t client) const;
+
+ private:
+  OpenCloud(LoadedCloud cloud, const Executor& executor);
+  [[nodiscard]] Status begin_with(const std::optional<LabelSeeds>& seeds, std::span<const AnnotationAction> before);
+  void begin_as_far_as_can_be(const std::optional<LabelSeeds>& seeds, std::span<const AnnotationAction> before);
+  void count(std::span<const AnnotationAction> actions);
+
+  ServedCloud served_;
+  SessionStart start_;
+  LoadedCloud cloud_;
+  DisplayOrder order_;
+  CloudFacts facts_;
+  SessionSubject subject_;
+  std::optional<AnnotationJournal::Opened> opened_;  ///< until it is ready
+  std::shared_ptr<const Neighbourhood> graph_;
+  std::optional<AnnotationSession> session_;
+  std::optional<LabelCensus> census_;
+  std::optional<Error> failure_;
+  std::uint64_t sequence_{0};
+  std::map<std::uint64_t, std::uint64_t> actions_by_client_;
+  std::vector<float> margins_;  ///< empty: not known
+  std::vector<std::uint8_t> ends_;
+  std::shared_ptr<Progress> building_;
+  std::thread builder_;
+};
+
+}  // namespace saccade::server
