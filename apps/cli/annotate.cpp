@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade annotate: labels of a cloud's points from a few control points, placed by a script or a simulated annotator.
+// saccade annotate: labels of a cloud's points from a few control points, placed by a person in the browser, a script
+// or a simulated annotator.
 #include "annotate.hpp"
 
 #include <CLI/CLI.hpp>
@@ -18,31 +19,6 @@ namespace {
 
 namespace fs = std::filesystem;
 using nlohmann::json;
-
-/// No file that is written is one of those that are read, or another one that is written.
-Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs, const GlobalOptions& global) {
-  std::set<fs::path> taken;
-  const auto take = [&taken](const fs::path& file) {
-    std::error_code ignored;
-    return file.empty() || taken.insert(fs::weakly_canonical(file, ignored)).second;
-  };
-  for (const fs::path& file : {options.script, options.presets}) take(file);
-  for (const CloudJob& job : jobs) {
-    for (const fs::path& file : {job.cloud, job.truth, job.session, job.seeds}) take(file);
-  }
-  const auto check = [&](const fs::path& file, const char* option) {
-    return check_output(file, option, take(file) ? std::vector<fs::path>{} : std::vector{file});
-  };
-  for (const CloudJob& job : jobs) {
-    if (!job.files.out.empty()) SACCADE_CHECK(check_labels_path(job.files.out));
-    SACCADE_CHECK(check(job.files.out, "--out"));
-    SACCADE_CHECK(check(job.files.names, "--names"));
-    SACCADE_CHECK(check(job.files.picture, "--picture"));
-    SACCADE_CHECK(check(job.files.margins, "--margins"));
-  }
-  SACCADE_CHECK(check(global.json_to_stdout() ? "" : global.json, "--json"));
-  return check_json_output(global);
-}
 
 Result<PlannedActions> planned_actions(const AnnotateOptions& options) {
   PlannedActions actions;
@@ -160,12 +136,37 @@ Result<int> run_annotations(const AnnotateOptions& options, std::span<const Clou
 }
 
 Result<int> run_annotate(const AnnotateOptions& options, const GlobalOptions& global) {
+  if (options.opens_page()) return serve_annotation(options, global);
   SACCADE_TRY(const std::vector<CloudJob> jobs, plan_jobs(options));
   SACCADE_CHECK(check_outputs(options, jobs, global));
   return options.truth.empty() ? run_annotations(options, jobs, global) : run_simulations(options, jobs, global);
 }
 
 }  // namespace
+
+Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs, const GlobalOptions& global) {
+  std::set<fs::path> taken;
+  const auto take = [&taken](const fs::path& file) {
+    std::error_code ignored;
+    return file.empty() || taken.insert(fs::weakly_canonical(file, ignored)).second;
+  };
+  for (const fs::path& file : {options.script, options.presets}) take(file);
+  for (const CloudJob& job : jobs) {
+    for (const fs::path& file : {job.cloud, job.truth, job.session, job.seeds}) take(file);
+  }
+  const auto check = [&](const fs::path& file, const char* option) {
+    return check_output(file, option, take(file) ? std::vector<fs::path>{} : std::vector{file});
+  };
+  for (const CloudJob& job : jobs) {
+    if (!job.files.out.empty()) SACCADE_CHECK(check_labels_path(job.files.out));
+    SACCADE_CHECK(check(job.files.out, "--out"));
+    SACCADE_CHECK(check(job.files.names, "--names"));
+    SACCADE_CHECK(check(job.files.picture, "--picture"));
+    SACCADE_CHECK(check(job.files.margins, "--margins"));
+  }
+  SACCADE_CHECK(check(global.json_to_stdout() ? "" : global.json, "--json"));
+  return check_json_output(global);
+}
 
 void add_annotate(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("annotate", "labels of a point cloud from a few control points");

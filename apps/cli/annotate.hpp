@@ -20,6 +20,7 @@
 #include "saccade/annotate/rectangle_annotator.hpp"
 #include "saccade/annotate/simulated_annotator.hpp"
 #include "saccade/io/annotation_script.hpp"
+#include "serve.hpp"
 
 namespace saccade::cli {
 
@@ -51,8 +52,12 @@ struct AnnotateOptions {
   std::filesystem::path margins;  ///< the cloud with how sure the label of each point is
   NeighbourhoodConfig graph;
   std::vector<GivenGraphOption> given_graph;
+  bool page{false};  ///< opened also where there is something else to do
+  ServeOptions serve;
 
   [[nodiscard]] bool of_folder() const;
+  /// A person annotates; else it is done without one.
+  [[nodiscard]] bool opens_page() const;
 };
 
 /// Of one cloud what is being done to it; of several how many are done. Every note once.
@@ -89,9 +94,20 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options);
 /// Throws what is wrong with the options together.
 void check_annotate_options(const AnnotateOptions& options);
 
+/// The file of labels in a folder that belongs to a cloud: in its own format, where that is one for labels.
+[[nodiscard]] std::filesystem::path labels_beside(const std::filesystem::path& folder,
+                                                  const std::filesystem::path& cloud);
+
 /// One cloud, or all of a folder in the order of their names. Errors of list_clouds; not_found for truth that is not
 /// there; invalid_argument where two clouds would share a file.
 [[nodiscard]] Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options);
+
+/// No file that is written is one of those that are read, or another one that is written.
+[[nodiscard]] Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs,
+                                   const GlobalOptions& global);
+
+/// Serves the page until Ctrl-C.
+[[nodiscard]] Result<int> serve_annotation(const AnnotateOptions& options, const GlobalOptions& global);
 
 /// Where a simulated annotation is after one action.
 struct AnnotationStep {

@@ -26,15 +26,6 @@ fs::path named_after(const fs::path& folder, const fs::path& cloud, const std::s
   return folder / (cloud.stem().string() + suffix);
 }
 
-/// Labels of a cloud are written in its own format, where that is one for labels.
-fs::path labels_of(const fs::path& folder, const fs::path& cloud) {
-  std::string suffix = cloud.extension().string();
-  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
-                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
-  if (suffix == ".bin") return named_after(folder, cloud, ".label");
-  return named_after(folder, cloud, suffix == ".pts" ? ".txt" : suffix);
-}
-
 /// The file of labels in a folder that has a cloud's name; the cloud itself where it lies there and has none beside it.
 Result<fs::path> truth_of(const fs::path& folder, const fs::path& cloud) {
   std::vector<fs::path> found;
@@ -77,6 +68,14 @@ Status make_folder(const fs::path& folder) {
 
 }  // namespace
 
+std::filesystem::path labels_beside(const fs::path& folder, const fs::path& cloud) {
+  std::string suffix = cloud.extension().string();
+  std::transform(suffix.begin(), suffix.end(), suffix.begin(),
+                 [](unsigned char c) { return static_cast<char>(std::tolower(c)); });
+  if (suffix == ".bin") return named_after(folder, cloud, ".label");
+  return named_after(folder, cloud, suffix == ".pts" ? ".txt" : suffix);
+}
+
 Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options) {
   const LabelFiles files{options.out, options.names, options.picture, options.margins};
   if (!options.of_folder()) {
@@ -100,7 +99,7 @@ Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options) {
       SACCADE_TRY(job.seeds, truth_of(options.seeds, cloud));
     }
     if (!options.session.empty()) job.session = named_after(options.session, cloud, kSessionSuffix);
-    if (!files.out.empty()) job.files.out = labels_of(files.out, cloud);
+    if (!files.out.empty()) job.files.out = labels_beside(files.out, cloud);
     if (!files.picture.empty()) job.files.picture = named_after(files.picture, cloud, ".png");
     jobs.push_back(std::move(job));
   }

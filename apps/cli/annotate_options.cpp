@@ -65,7 +65,7 @@ void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option
       .add_option(
           "--session", options.session,
           "goes on with the annotation in this file, or begins it; every action is in it before it counts. Of a "
-          "folder: a folder of them (.sacann)")
+          "folder: a folder of them (.sacann). The page's is beside the cloud, unless it is named here")
       ->type_name("FILE")
       ->excludes(&simulate);
   command.add_option("--presets", options.presets, "labels that are known: YAML or JSON (docs/formats.md)")
@@ -151,7 +151,9 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
   add_action_options(command, options, *simulate);
   add_simulation_options(command, options, *simulate);
   command
-      .add_option("--out", options.out, "labels: .pcd, .ply, .csv, .xyz, .txt, .label or .npy; of a folder: a folder")
+      .add_option("--out", options.out,
+                  "labels: .pcd, .ply, .csv, .xyz, .txt, .label or .npy; of a folder: a folder. Of the page, where its "
+                  "Save puts them: without it NAME_labels beside the cloud, or the folder labels in a folder")
       ->type_name("FILE");
   command.add_option("--names", options.names, "what the numbers of labels mean: .txt or .json")->type_name("FILE");
   command
@@ -159,15 +161,20 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
                   "the cloud in the colours of its labels, with control points: .png; of a folder: a folder")
       ->type_name("FILE");
   add_graph_options(command, options);
+  command.add_flag("--page", options.page,
+                   "opens the page, as it opens where none of --script, --session, --seeds and --simulate is given: "
+                   "with --session or --seeds, to go on with these there");
+  add_serve_options(command, options.serve);
 }
 
 void check_annotate_options(const AnnotateOptions& options) {
   if (const Status valid = options.graph.validate(); !valid) throw CLI::ValidationError{valid.error().message};
-  if (options.truth.empty() && options.script.empty() && options.session.empty() && options.seeds.empty()) {
-    throw CLI::ValidationError{
-        "say what to do: --script FILE does actions, --session FILE goes on with an annotation or begins one, "
-        "--seeds LABELS begins with labels, "
-        "--simulate TRUTH lets a simulated annotator click"};
+  if (options.opens_page()) {
+    constexpr const char* kNoPage{"is done without the page; leave the page's options (--page, --port, ...) out"};
+    refuse(options.truth, "--simulate", kNoPage);
+    refuse(options.script, "--script", kNoPage);
+    refuse(options.picture, "--picture", "goes with --script, --session, --seeds or --simulate, without the page");
+    refuse(options.margins, "--margins", "goes with --script, --session or --seeds, without the page");
   }
   if (!options.names.empty() && options.names.extension() != ".txt" && options.names.extension() != ".json") {
     usage_error("--names", "is a .txt or a .json");
@@ -177,7 +184,7 @@ void check_annotate_options(const AnnotateOptions& options) {
   }
   if (!options.of_folder()) return;
   refuse(options.script, "--script", "is for one cloud, not for a folder");
-  refuse(options.presets, "--presets", "is for one cloud, not for a folder");
+  if (!options.opens_page()) refuse(options.presets, "--presets", "is for one cloud, not for a folder");
   refuse(options.margins, "--margins", "is for one cloud, not for a folder");
   refuse(options.names, "--names", "is for one cloud, not for a folder");
 }

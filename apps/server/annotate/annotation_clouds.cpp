@@ -9,11 +9,21 @@ namespace saccade::server {
 
 using nlohmann::json;
 
-Result<OpenCloud*> AnnotationService::opened_cloud(std::size_t index, Page& page) {
+Status AnnotationService::prepare(std::size_t index) try {
+  SACCADE_EXPECTS(index < config_.clouds.size());
+  if (const auto opened = opened_cloud(index, nullptr); !opened) return opened.error();
+  last_used_ = index;
+  return {};
+} catch (const std::exception& problem) {
+  return Error{Errc::unavailable, problem.what(), config_.clouds[index].cloud.string()};
+}
+
+Result<OpenCloud*> AnnotationService::opened_cloud(std::size_t index, Page* page) {
   if (const auto there = clouds_.find(index); there != clouds_.end()) return there->second.get();
   const Progress progress{[&](std::string_view stage, std::size_t done, std::size_t total) {
+    if (page == nullptr) return;
     clients_.send(
-        page.id,
+        page->id,
         MessageWriter{json{{"type", "progress"}, {"stage", stage}, {"done", done}, {"total", total}}}.finish());
   }};
   SACCADE_TRY(std::unique_ptr<OpenCloud> opened,
@@ -39,13 +49,13 @@ std::size_t AnnotationService::drop_unused() {
 }
 
 /// First the last one used gives way, then the one that the page leaves.
-Status AnnotationService::make_room(std::size_t index, const OpenCloud& cloud, Page& page) {
+Status AnnotationService::make_room(std::size_t index, const OpenCloud& cloud, Page* page) {
   const std::size_t wanted = cloud.cloud().points.positions_m.size();
   const auto fits = [&] { return drop_unused() + wanted <= config_.most_open_points || clouds_.empty(); };
   if (fits()) return {};
   last_used_.reset();
   if (fits()) return {};
-  leave(page);
+  if (page != nullptr) leave(*page);
   last_used_.reset();
   if (fits()) return {};
   return Error{Errc::unavailable, "too many large clouds are open in other pages",

@@ -132,7 +132,7 @@ Status AnnotationService::hello(Page& page, const Question& question) {
 Status AnnotationService::open(Page& page, const Question& question) {
   SACCADE_TRY(const std::uint64_t index, whole_number(question.head, "cloud", 0, config_.clouds.size() - 1));
   SACCADE_TRY(page.budget, whole_number(question.head, "budget", 1, kMost32));
-  SACCADE_TRY(OpenCloud* const cloud, opened_cloud(index, page));
+  SACCADE_TRY(OpenCloud* const cloud, opened_cloud(index, &page));
   const bool is_new = page.cloud != index;
   if (is_new) leave(page);
   page.cloud = index;

@@ -39,6 +39,9 @@ class AnnotationService final : public Service {
 
   AnnotationService(AnnotationServiceConfig config, Clients& clients, Post post);
 
+  /// Opens a cloud before a page does. On the thread of the service. Errors as where a page opens it.
+  [[nodiscard]] Status prepare(std::size_t index);
+
   void opened(ConnectionId connection) override;
   void received(ConnectionId connection, std::span<const std::uint8_t> message) override;
   void closed(ConnectionId connection) override;
@@ -72,11 +75,11 @@ class AnnotationService final : public Service {
   void abandon(Page& page);
 
   // Clouds.
-  [[nodiscard]] Result<OpenCloud*> opened_cloud(std::size_t index, Page& page);
+  [[nodiscard]] Result<OpenCloud*> opened_cloud(std::size_t index, Page* page);
   [[nodiscard]] Result<OpenCloud*> cloud_of(const Page& page);
   [[nodiscard]] Result<OpenCloud*> ready_cloud_of(const Page& page);
   [[nodiscard]] Result<std::uint32_t> point_of(const OpenCloud& cloud, const Question& question) const;
-  Status make_room(std::size_t index, const OpenCloud& cloud, Page& page);
+  Status make_room(std::size_t index, const OpenCloud& cloud, Page* page);
   std::size_t drop_unused();
   void build(std::size_t index, OpenCloud& cloud);
   void built(std::size_t index, const OpenCloud* cloud, const Result<OpenCloud::Built>& built);
