@@ -71,6 +71,7 @@ class RunningProgram {
     }
   }
 
+  [[nodiscard]] std::string out() const { return text_of(folder_ / "out"); }
   [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
   void send(int signal) const { ::kill(pid_, signal); }
   /// Whether the text shows up on standard error within 120 s.
@@ -85,7 +86,7 @@ class RunningProgram {
     int status{0};
     ::waitpid(pid_, &status, 0);
     pid_ = -1;
-    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, text_of(folder_ / "out"), err()};
+    return {WIFEXITED(status) ? WEXITSTATUS(status) : -1, out(), err()};
   }
 
  private:

@@ -56,7 +56,7 @@ std::vector<json> bad_actions() {
   }
   for (const json& label : std::vector<json>{0, -1, 1.5, "1", nullptr, 4'294'967'295U, 1e30, json::array()}) {
     bad.push_back(action({{"do", "set"}, {"label", label}, {"points", {1}}}));
-    bad.push_back(action({{"do", "labels"}, {"labels", {{{"number", label}}}}}));
+    if (!label.is_string()) bad.push_back(action({{"do", "labels"}, {"labels", {{{"number", label}}}}}));
   }
   for (const json& cost : std::vector<json>{-1.0, 10.0, 1e300, "1", nullptr}) {
     bad.push_back(action({{"do", "set"}, {"label", 1}, {"points", {1}}, {"start_cost", cost}}));
@@ -200,7 +200,7 @@ TEST_F(AnnotationHostileTest, WhatCannotBeReadEndsTheConnection) {
 }
 
 TEST_F(AnnotationHostileTest, ManyActionsAreKeptOneByOne) {
-  constexpr int kActions{3000};
+  constexpr int kActions{1000};
   Page page = this->page(1);
   for (int i = 0; i < kActions; ++i) {
     ASSERT_TRUE(page.act(i % 3 == 2 ? json{{"do", "undo"}} : set(1 + i % 7, (i * 37) % kNan)).ok());

@@ -1,0 +1,180 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade annotate with its page: the program is started, spoken to over its socket, killed and started again.
+#include <cstring>
+#include <optional>
+
+#include "cli/annotated_boxes.hpp"
+#include "server/raw_client.hpp"
+
+namespace saccade {
+namespace {
+
+using nlohmann::json;
+using test::Arguments;
+using test::Opcode;
+using test::RawClient;
+
+/// A started program, and a page in it.
+class ServedAnnotation {
+ public:
+  explicit ServedAnnotation(const Arguments& arguments) : program_{arguments} {
+    for (int i = 0; i < 24000 && program_.out().find("Ctrl-C ends it.") == std::string::npos; ++i) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{5});
+    }
+    const std::string url = program_.out();
+    const std::size_t port_at = url.find("http://localhost:");
+    const std::size_t token_at = url.find("/?token=");
+    if (port_at == std::string::npos || token_at == std::string::npos) return;
+    port_ = static_cast<std::uint16_t>(std::stoi(url.substr(port_at + 17)));
+    token_ = url.substr(token_at + 8, url.find('\n', token_at) - token_at - 8);
+  }
+  [[nodiscard]] bool is_served() const { return port_ != 0; }
+  [[nodiscard]] test::RunningProgram& program() { return program_; }
+
+  /// Over a new socket.
+  void connect() {
+    client_.emplace(port_);
+    const auto answer = client_->ask(
+        client_->upgrade_request("Host: " + client_->host() + "\r\n" + RawClient::cookie_of(port_, token_)));
+    ASSERT_EQ(answer.status, 101);
+    EXPECT_TRUE(ask({{"type", "hello"}, {"protocol", 1}, {"client", 77}}).at("ok"));
+  }
+  json ask(json question) {
+    question["request"] = ++request_;
+    client_->send_message(framed(question.dump()));
+    while (const auto message = client_->read_message()) {
+      if (message->opcode != Opcode::binary || message->payload.size() < 4) break;
+      std::uint32_t length{0};
+      std::memcpy(&length, message->payload.data(), 4);
+      json head = json::parse(message->payload.substr(4, length), nullptr, false);
+      if (head.value("request", 0) == request_) return head;
+    }
+    ADD_FAILURE() << "no answer to " << question.dump();
+    return {};
+  }
+  json open(int cloud = 0) { return ask({{"type", "open"}, {"cloud", cloud}, {"budget", 100'000}}); }
+  json act(json action) { return ask({{"type", "action"}, {"action", std::move(action)}}); }
+  test::Answer get(const std::string& target) {
+    RawClient client{port_};
+    return client.ask("GET " + target + " HTTP/1.1\r\nHost: " + client.host() + "\r\n" +
+                      RawClient::cookie_of(port_, token_) + "\r\n");
+  }
+
+ private:
+  static std::string framed(const std::string& head) {
+    const auto length = static_cast<std::uint32_t>(head.size());
+    std::string bytes(4, '\0');
+    std::memcpy(bytes.data(), &length, 4);
+    bytes += head;
+    bytes.resize((bytes.size() + 3) / 4 * 4);
+    return bytes;
+  }
+
+  test::RunningProgram program_;
+  std::uint16_t port_{0};
+  std::string token_;
+  std::optional<RawClient> client_;
+  int request_{0};
+};
+
+class AnnotatePageTest : public test::AnnotatedBoxes {
+ protected:
+  [[nodiscard]] Arguments serve(const Arguments& more = {}, const std::string& cloud = "cloud.csv") const {
+    return Arguments{"annotate", path(cloud), "--max-path", "10", "--no-browser"} + more;
+  }
+  static void four_clicks_on(ServedAnnotation& served) {
+    int label{0};
+    for (const int point : std::vector<int>{kOnTable, 50 * 120 + 20, kOnBox2, kOnBox3}) {
+      EXPECT_TRUE(served.act({{"do", "set"}, {"label", ++label}, {"points", {point}}}).at("ok"));
+    }
+  }
+};
+
+TEST_F(AnnotatePageTest, WholeAnnotationWithAKillBetween) {
+  {
+    ServedAnnotation served{serve()};
+    ASSERT_TRUE(served.is_served()) << served.program().err();
+    served.connect();
+    EXPECT_EQ(served.open().at("cloud").at("points"), kPoints);
+    four_clicks_on(served);
+    EXPECT_TRUE(served.act({{"do", "undo"}}).at("done"));
+    served.program().send(SIGKILL);
+  }
+  ServedAnnotation served{serve()};
+  ASSERT_TRUE(served.is_served()) << served.program().err();
+  served.connect();
+  const json opened = served.open();
+  EXPECT_EQ(opened.at("client_actions"), 5);
+  EXPECT_TRUE(served.act({{"do", "redo"}}).at("done"));
+  EXPECT_TRUE(served.ask({{"type", "save"}}).at("ok"));
+  EXPECT_EQ(*read_labels(folder_ / "cloud_labels.csv", kPoints), truth());
+  EXPECT_TRUE(fs::exists(folder_ / "cloud_labels.names.json"));
+  const test::Answer file = served.get("/data/labels?cloud=0&format=txt");
+  EXPECT_EQ(file.status, 200);
+  EXPECT_NE(file.head.find("cloud_labels.txt"), std::string::npos);
+  served.program().send(SIGTERM);
+  EXPECT_EQ(served.program().finish().status, 0);
+  // The labels are the program's own, so it begins again without a word about them.
+  EXPECT_TRUE(ServedAnnotation{serve()}.is_served());
+}
+
+TEST_F(AnnotatePageTest, AFolderHasItsSessionsAndLabelsInIt) {
+  write_boxes("a", 30, "clouds");
+  write_boxes("b", 40, "clouds");
+  fs::remove(folder_ / "clouds/a.txt");
+  fs::remove(folder_ / "clouds/b.txt");
+  ServedAnnotation served{serve({}, "clouds")};
+  ASSERT_TRUE(served.is_served()) << served.program().err();
+  served.connect();
+  EXPECT_EQ(served.open(1).at("cloud").at("name"), "b.csv");
+  four_clicks_on(served);
+  EXPECT_TRUE(served.ask({{"type", "save"}}).at("ok"));
+  EXPECT_TRUE(fs::exists(folder_ / "clouds/b.sacann"));
+  EXPECT_FALSE(fs::exists(folder_ / "clouds/a.sacann"));
+  EXPECT_TRUE(fs::exists(folder_ / "clouds/labels/b.csv"));
+  served.program().send(SIGINT);
+  EXPECT_EQ(served.program().finish().status, 0);
+}
+
+TEST_F(AnnotatePageTest, SaysWhatIsWrongBeforeThereIsAPage) {
+  const auto expect_refused = [&](const Arguments& arguments, const std::string& why, int status) {
+    const test::Outcome outcome = test::run_program(arguments);
+    EXPECT_EQ(outcome.status, status) << outcome.err;
+    EXPECT_NE(outcome.err.find(why), std::string::npos) << outcome.err;
+    EXPECT_EQ(outcome.out.find("http"), std::string::npos);
+  };
+  ServedAnnotation served{serve()};
+  ASSERT_TRUE(served.is_served());
+  expect_refused(serve(), "another program has this session open", 4);
+  served.program().send(SIGTERM);
+  EXPECT_EQ(served.program().finish().status, 0);
+
+  expect_refused({"annotate", path("cloud.csv"), "--max-path", "20"}, "this session was begun with 10", 3);
+  const std::string script = write("script.jsonl", four_clicks());
+  expect_refused(serve({"--script", script}), "--script", 2);
+  expect_refused({"annotate", path("cloud.csv"), "--page", "--simulate", path("cloud.txt")}, "--simulate", 2);
+  expect_refused({"annotate", path("cloud.csv"), "--picture", path("x.png")}, "--picture", 2);
+  write("cloud_labels.csv", "somebody else's");
+  expect_refused(serve(), "name another place: --out", 3);
+  EXPECT_EQ(text("cloud_labels.csv"), "somebody else's");
+  EXPECT_TRUE(ServedAnnotation{serve({"--out", path("mine.npy")})}.is_served());
+  write("bad.pcd", "no cloud");
+  expect_refused({"annotate", path("bad.pcd")}, "bad.pcd", 3);
+}
+
+TEST_F(AnnotatePageTest, GoesOnWithASessionOfAScript) {
+  const std::string script = write("script.jsonl", four_clicks());
+  EXPECT_EQ(test::run_program(annotate({"--script", script, "--session", path("s.sacann")})).status, 0);
+  ServedAnnotation served{serve({"--page", "--session", path("s.sacann"), "--out", path("out.label")})};
+  ASSERT_TRUE(served.is_served()) << served.program().err();
+  served.connect();
+  const json opened = served.open();
+  EXPECT_EQ(opened.at("sequence"), 4);
+  EXPECT_EQ(opened.at("client_actions"), 0);
+  EXPECT_EQ(opened.at("labels").size(), 4U);
+  EXPECT_TRUE(served.ask({{"type", "save"}}).at("ok"));
+  EXPECT_EQ(*read_labels(folder_ / "out.label", kPoints), truth());
+}
+
+}  // namespace
+}  // namespace saccade
