@@ -169,7 +169,10 @@ Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> j
 }
 
 void add_annotate(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("annotate", "labels of a point cloud from a few control points");
+  CLI::App* command = program.add_subcommand("annotate",
+                                             "labels of a point cloud from a few control points: opens a page in the "
+                                             "browser to place them; or a script, labels "
+                                             "or a simulated annotator do");
   auto options = std::make_shared<AnnotateOptions>();
   add_annotate_options(*command, *options);
   command->callback([&global, &action, options] {

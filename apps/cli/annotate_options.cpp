@@ -55,11 +55,15 @@ void add_graph_options(CLI::App& command, AnnotateOptions& options) {
                    "distances count by the local spacing of points, for clouds that thin out (LiDAR)", "");
 }
 
+constexpr const char* kWithoutPage{"Without the page"};
+constexpr const char* kGraph{"The graph (of a session that is begun)"};
+
 void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option& simulate) {
   CLI::Option* script =
       command.add_option("--script", options.script, "actions to do, one JSON object per line (docs/annotation.md)")
           ->check(CLI::ExistingFile)
           ->type_name("FILE")
+          ->group(kWithoutPage)
           ->excludes(&simulate);
   command
       .add_option(
@@ -77,6 +81,7 @@ void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option
                   "the cloud with a field margin, 0 (as near to another label) to 1 (sure), .pcd or .ply; the result "
                   "says where another control point helps most")
       ->type_name("FILE")
+      ->group(kWithoutPage)
       ->excludes(&simulate);
   CLI::Option* seeds =
       command
@@ -94,6 +99,7 @@ void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option
       ->check(check_whole_number)
       ->needs(script)
       ->type_name("N")
+      ->group(kWithoutPage)
       ->capture_default_str();
 }
 
@@ -101,6 +107,7 @@ void add_simulation_options(CLI::App& command, AnnotateOptions& options, CLI::Op
   command.add_option("--clicks", options.clicks, "clicks per label")
       ->check(CLI::Range(1, 1000))
       ->needs(&simulate)
+      ->group(kWithoutPage)
       ->type_name("N")
       ->capture_default_str();
   const std::map<std::string, AnnotationMethod> methods{{"control-points", AnnotationMethod::control_points},
@@ -112,6 +119,7 @@ void add_simulation_options(CLI::App& command, AnnotateOptions& options, CLI::Op
                   "of all rectangles the one that corrects most")
       ->transform(CLI::CheckedTransformer(methods))
       ->needs(&simulate)
+      ->group(kWithoutPage)
       ->type_name("METHOD")
       ->default_str("control-points");
   const std::map<std::string, Tens> tens{{"detect", Tens::detect}, {"merge", Tens::merge}, {"keep", Tens::keep}};
@@ -121,6 +129,7 @@ void add_simulation_options(CLI::App& command, AnnotateOptions& options, CLI::Op
                   "detect")
       ->transform(CLI::CheckedTransformer(tens))
       ->needs(&simulate)
+      ->group(kWithoutPage)
       ->type_name("HOW")
       ->default_str("detect");
 }
@@ -147,7 +156,8 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
                       "true labels of its points (PCD, PLY, .label, .npy, text): a simulated annotator clicks at the "
                       "centre of the largest error, again and again. Of a folder: a folder of them, by the same names")
           ->check(CLI::ExistingPath)
-          ->type_name("TRUTH");
+          ->type_name("TRUTH")
+          ->group(kWithoutPage);
   add_action_options(command, options, *simulate);
   add_simulation_options(command, options, *simulate);
   command
@@ -159,8 +169,11 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
   command
       .add_option("--picture", options.picture,
                   "the cloud in the colours of its labels, with control points: .png; of a folder: a folder")
-      ->type_name("FILE");
+      ->type_name("FILE")
+      ->group(kWithoutPage);
+  command.option_defaults()->group(kGraph);
   add_graph_options(command, options);
+  command.option_defaults()->group("The page");
   command.add_flag("--page", options.page,
                    "opens the page, as it opens where none of --script, --session, --seeds and --simulate is given: "
                    "with --session or --seeds, to go on with these there");

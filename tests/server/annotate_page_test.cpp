@@ -9,9 +9,11 @@
 namespace saccade {
 namespace {
 
+namespace fs = std::filesystem;
 using nlohmann::json;
 using test::Arguments;
 using test::Opcode;
+using test::operator+;
 using test::RawClient;
 
 /// A started program, and a page in it.

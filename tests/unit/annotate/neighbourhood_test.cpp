@@ -178,6 +178,26 @@ TEST(Neighbourhood, IsTheSameForEveryThreadCount) {
   }
 }
 
+TEST(Neighbourhood, CanBeCancelledBetweenItsStages) {
+  const PointCloud cloud = random_cloud(400);
+  std::vector<std::size_t> seen;
+  Progress* stop{nullptr};
+  Progress progress{[&](std::string_view stage, std::size_t done, std::size_t total) {
+    EXPECT_EQ(stage, "graph");
+    EXPECT_EQ(total, 3U);
+    seen.push_back(done);
+    if (stop != nullptr && done == 1) stop->request_cancel();
+  }};
+  EXPECT_TRUE(Neighbourhood::build(cloud, {}, Executor{}, progress));
+  EXPECT_EQ(seen, (std::vector<std::size_t>{0, 1, 2, 3}));
+  seen.clear();
+  stop = &progress;
+  const auto cancelled = Neighbourhood::build(cloud, {}, Executor{}, progress);
+  ASSERT_FALSE(cancelled);
+  EXPECT_EQ(cancelled.error().code, Errc::cancelled);
+  EXPECT_EQ(seen, (std::vector<std::size_t>{0, 1}));
+}
+
 TEST(Neighbourhood, ABadConfigurationIsAnError) {
   const auto fails = [](const auto& change) {
     NeighbourhoodConfig config;
