@@ -3,8 +3,8 @@
 #include <limits>
 #include <utility>
 
+#include "annotation_server/annotation_desk.hpp"
 #include "saccade/core/clock.hpp"
-#include "server/annotation_desk.hpp"
 
 namespace saccade {
 namespace {

@@ -7,8 +7,8 @@
 #include <iostream>
 #include <random>
 
+#include "annotation_server/annotation_desk.hpp"
 #include "saccade/core/clock.hpp"
-#include "server/annotation_desk.hpp"
 
 namespace saccade {
 namespace {

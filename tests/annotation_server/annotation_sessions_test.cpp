@@ -2,9 +2,9 @@
 // Sessions behind the annotation service: their beginnings and ends, folders, large clouds, and disks that are full.
 #include <fstream>
 
+#include "annotation_server/annotation_desk.hpp"
 #include "saccade/io/annotation_journal.hpp"
 #include "saccade/io/file_io.hpp"
-#include "server/annotation_desk.hpp"
 #include "support/small_disk.hpp"
 
 namespace saccade {

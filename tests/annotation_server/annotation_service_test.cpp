@@ -4,9 +4,9 @@
 
 #include <fstream>
 
+#include "annotation_server/annotation_desk.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/label_input.hpp"
-#include "server/annotation_desk.hpp"
 
 namespace saccade {
 namespace {
