@@ -69,7 +69,8 @@ TEST_F(Annotate, BadInputIsSaid) {
     EXPECT_EQ(outcome.status, status) << outcome.err;
     return outcome.err;
   };
-  EXPECT_NE(error_of({"annotate", path("cloud.csv")}, 2).find("--simulate"), std::string::npos);
+  EXPECT_NE(error_of({"annotate", path("cloud.csv"), "--picture", path("a.png")}, 2).find("--simulate"),
+            std::string::npos);
   EXPECT_NE(
       error_of({"annotate", path("cloud.csv"), "--script", path("cloud.csv"), "--clicks", "3"}, 2).find("--simulate"),
       std::string::npos);
