@@ -59,6 +59,49 @@ export interface CloudLayer {
   pointSize: number; // px, edge of the square, 1 to 16
 }
 
+export type LayerKind = "triangles" | "points" | "voxels" | "lines" | "views";
+
+/** A layer of the document (docs/protocol.md, Viewer) without its buffer. */
+export interface LayerInfo {
+  id: string;
+  kind: LayerKind;
+  count: number;
+  visible?: boolean; // true unless it is said
+  vertices?: number; // triangles
+  colors?: boolean;
+  color?: string; // "#rrggbb", where the buffer has none
+  size_m?: number; // voxels; points: a square of this edge, else the view's point size
+  fov_rad?: readonly [number, number]; // views
+  opacity?: number; // 0 to 1; 1 unless it is said
+}
+
+/** What is under the cursor: the item (view, voxel, point, triangle) of a layer. */
+export interface LayerPick {
+  layer: string;
+  item: number;
+  position: readonly [number, number, number];
+}
+
+export interface SceneLayers {
+  /** Replaces a layer of the same id. The buffer is as the protocol has it; false if it is too short for that. */
+  add(layer: LayerInfo, buffer: ArrayBuffer): boolean;
+  remove(id: string): void;
+  clear(): void;
+  has(id: string): boolean;
+  ids(): string[];
+  show(id: string, visible: boolean): void;
+  /** One view of a layer of kind `views` that stands out; null: none. */
+  select(id: string, item: number | null): void;
+  /** The nearest view whose pyramid is under these css pixels; layers that are not shown have none. */
+  pickView(x: number, y: number): LayerPick | null;
+}
+
+/** Edges of a picture that is not shown: a camera at its place in the scene. */
+export interface CameraFrame {
+  poseRows: readonly (readonly number[])[];
+  fov_rad: readonly [number, number];
+}
+
 export type Navigation = "orbit" | "fly";
 
 export interface Camera {
@@ -76,6 +119,11 @@ export interface Viewer {
   readonly element: HTMLElement;
   readonly camera: Camera;
   readonly cloud: CloudLayer;
+  readonly layers: SceneLayers;
+  /** What fit() shows, and what is up, where there is no cloud but layers. cloud.begin() does it by itself. */
+  setBounds(bounds: readonly number[], up: readonly number[]): void;
+  /** A camera drawn as a frame (the view of the step that is looked at); null: none. */
+  setFrame(frame: CameraFrame | null): void;
   /** Draws soon, once, however often it is asked. Everything above asks by itself. */
   redraw(): void;
   /** Exact, by id buffer; css pixels from the upper left corner of `element`. */
