@@ -1,0 +1,114 @@
+// SPDX-License-Identifier: Apache-2.0
+// Points as squares of their colour with a smaller square of their label's inside (thesis, Fig. 4.15).
+import * as THREE from "three";
+
+export interface PointUniforms {
+  [name: string]: THREE.IUniform;
+  palette: THREE.IUniform<THREE.DataTexture>;
+  size: THREE.IUniform<number>; // px
+  heat: THREE.IUniform<boolean>; // margins are shown
+}
+
+// A point's state: slot of its label, margin, and whether it stands out.
+const kVertex = /* glsl */ `
+precision highp float;
+precision highp int;
+uniform mat4 projectionMatrix;
+uniform mat4 modelViewMatrix;
+uniform float size;
+uniform highp sampler2D palette;
+uniform bool heat;
+in vec3 position;
+in vec4 color;
+in uint state;
+invariant gl_Position;
+#ifdef ID
+flat out vec4 id;
+#else
+flat out vec3 outer;
+#ifdef TWO_SQUARES
+flat out vec4 inner;  // alpha: half its edge, of the outer's
+#endif
+#endif
+
+vec3 heated(vec3 own, float doubt) {
+  vec3 sure = vec3(0.16 + 0.4 * dot(own, vec3(0.3, 0.59, 0.11)));
+  vec3 hot = mix(vec3(0.86, 0.16, 0.38), vec3(1.0, 0.83, 0.25), clamp(2.0 * doubt - 1.0, 0.0, 1.0));
+  return mix(sure, hot, clamp(2.0 * doubt, 0.0, 1.0));
+}
+
+void main() {
+  uint slot = state & 0xfffffu;
+  vec4 label = texelFetch(palette, ivec2(slot & 1023u, slot >> 10u), 0);
+  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
+  if (label.a == 0.0) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
+  gl_PointSize = size;
+#ifdef ID
+  uint number = uint(gl_VertexID) + 1u;
+  id = vec4(number & 255u, number >> 8u & 255u, number >> 16u & 255u, number >> 24u) / 255.0;
+#else
+  bool out_stands = (state >> 28u) != 0u;
+  vec3 own = color.rgb;
+  if (heat) own = heated(own, 1.0 - float(state >> 20u & 255u) / 255.0);
+#ifdef LABELS_ONLY
+  outer = heat && slot == 0u ? own : label.rgb;
+#elif defined(CLOUD_ONLY)
+  outer = own;
+#elif defined(TWO_SQUARES)
+  outer = own;
+  inner = vec4(label.rgb, slot == 0u ? 0.0 : INNER);
+#else
+  outer = slot == 0u ? own : mix(own, label.rgb, 0.6);
+#endif
+  if (out_stands) outer = vec3(1.0, 0.84, 0.04);
+#endif
+}`;
+
+const kFragment = /* glsl */ `
+precision mediump float;
+#ifdef ID
+flat in vec4 id;
+#else
+flat in vec3 outer;
+#ifdef TWO_SQUARES
+flat in vec4 inner;
+#endif
+#endif
+out vec4 pixel;
+void main() {
+#ifdef ID
+  pixel = id;
+#elif defined(TWO_SQUARES)
+  vec2 off = abs(gl_PointCoord - 0.5);
+  pixel = vec4(max(off.x, off.y) < inner.a ? inner.rgb : outer, 1.0);
+#else
+  pixel = vec4(outer, 1.0);
+#endif
+}`;
+
+export type PointMode = "id" | "cloud" | "labels" | "both";
+
+/** Edge of the label's square, as odd or even as the point's, so that it is in the middle. */
+export function innerEdge_px(size_px: number): number {
+  return size_px - 2 * Math.max(1, Math.round(size_px / 4));
+}
+
+export function pointMaterial(mode: PointMode, size_px: number, uniforms: PointUniforms): THREE.RawShaderMaterial {
+  const defines: Record<string, string> = {};
+  if (mode === "id") defines.ID = "";
+  if (mode === "cloud") defines.CLOUD_ONLY = "";
+  if (mode === "labels") defines.LABELS_ONLY = "";
+  if (mode === "both" && size_px >= 3) {
+    defines.TWO_SQUARES = "";
+    defines.INNER = ((0.5 * innerEdge_px(size_px)) / size_px).toFixed(6);
+  }
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: kVertex,
+    fragmentShader: kFragment,
+    uniforms,
+    defines,
+    blending: THREE.NoBlending,
+    depthFunc: THREE.LessEqualDepth,
+  });
+}

@@ -1,0 +1,178 @@
+// SPDX-License-Identifier: Apache-2.0
+// The points of the cloud: arrays of what there is room for, filled as chunks come, of which only what changed is uploaded.
+import * as THREE from "three";
+import { Palette, kSlotBits } from "./palette";
+import { type PointMode, type PointUniforms, pointMaterial } from "./point_material";
+import type { CloudInfo, PointChunk, Rgb } from "./types";
+
+const kNone = 0xffffffff;
+const kSlotMask = (1 << kSlotBits) - 1;
+const kMarginMask = 255 << kSlotBits;
+const kStandsOut = 1 << 28;
+const kBlock = 1024; // vertices that are uploaded together
+
+export class PointCloud {
+  readonly palette = new Palette();
+  readonly object = new THREE.Points();
+  readonly uniforms: PointUniforms = {
+    palette: this.palette.texture,
+    size: { value: 4 },
+    heat: { value: false },
+  };
+  vertices = 0;
+  room = 0;
+  positions = new Float32Array(); // less `origin`
+  private points = new Uint32Array(); // of vertices, in the file
+  private vertexOf = new Uint32Array();
+  private colors = new Uint8Array();
+  private states = new Uint32Array();
+  private changed = new Uint8Array(); // blocks
+  private anyChanged = false;
+  private standing: Uint32Array = new Uint32Array();
+  private materials = new Map<string, THREE.RawShaderMaterial>();
+
+  constructor(readonly origin: readonly [number, number, number] = [0, 0, 0]) {
+    this.object.frustumCulled = false;
+    this.object.visible = false;
+  }
+
+  begin(cloud: CloudInfo): void {
+    this.room = cloud.shown;
+    this.positions = new Float32Array(3 * this.room);
+    this.points = new Uint32Array(this.room);
+    this.vertexOf = new Uint32Array(cloud.points).fill(kNone);
+    this.colors = new Uint8Array(4 * this.room);
+    this.states = new Uint32Array(this.room);
+    this.changed = new Uint8Array(Math.ceil(this.room / kBlock));
+    const geometry = this.object.geometry;
+    geometry.setAttribute("position", new THREE.BufferAttribute(this.positions, 3));
+    geometry.setAttribute("color", new THREE.BufferAttribute(this.colors, 4, true));
+    geometry.setAttribute("state", new THREE.BufferAttribute(this.states, 1));
+    geometry.setDrawRange(0, 0);
+  }
+
+  append(chunk: PointChunk): void {
+    const first = this.vertices;
+    const count = Math.min(chunk.points.length, this.room - first);
+    const { positions, origin, states } = this;
+    for (let i = 0, at = 3 * first; i < 3 * count; i += 3, at += 3) {
+      positions[at] = chunk.positions[i]! - origin[0];
+      positions[at + 1] = chunk.positions[i + 1]! - origin[1];
+      positions[at + 2] = chunk.positions[i + 2]! - origin[2];
+    }
+    this.points.set(chunk.points.subarray(0, count), first);
+    this.colors.set(chunk.colors.subarray(0, 4 * count), 4 * first);
+    let label = 0;
+    let slot = 0;
+    for (let i = 0; i < count; ++i) {
+      this.vertexOf[chunk.points[i]!] = first + i;
+      if (chunk.labels[i] !== label) {
+        label = chunk.labels[i]!;
+        slot = this.palette.slotOf(label);
+      }
+      states[first + i] = slot;
+    }
+    this.vertices += count;
+    for (const [name, width] of [["position", 3], ["color", 4], ["state", 1]] as const) {
+      const attribute = this.attribute(name);
+      attribute.addUpdateRange(width * first, width * count);
+      attribute.needsUpdate = true;
+    }
+  }
+
+  setLabel(label: number, points: Uint32Array): void {
+    const slot = this.palette.slotOf(label);
+    for (const point of points) this.change(this.vertexOf[point], kSlotMask, slot);
+  }
+
+  labelOf(point: number): number {
+    const vertex = this.vertexOf[point];
+    return vertex === undefined || vertex === kNone ? 0 : this.palette.labelOf(this.states[vertex]! & kSlotMask);
+  }
+
+  positionOf(point: number): [number, number, number] | undefined {
+    const vertex = this.vertexOf[point];
+    return vertex === undefined || vertex === kNone ? undefined : this.positionOfVertex(vertex);
+  }
+
+  positionOfVertex(vertex: number): [number, number, number] {
+    const at = 3 * vertex;
+    return [
+      this.positions[at]! + this.origin[0],
+      this.positions[at + 1]! + this.origin[1],
+      this.positions[at + 2]! + this.origin[2],
+    ];
+  }
+
+  pointOfVertex(vertex: number): number {
+    return this.points[vertex]!;
+  }
+
+  isDrawn(vertex: number): boolean {
+    return this.palette.isVisible(this.states[vertex]! & kSlotMask);
+  }
+
+  setMargins(margins: Uint8Array | null): void {
+    this.uniforms.heat.value = margins !== null;
+    if (margins === null) return;
+    const count = Math.min(margins.length, this.vertices);
+    for (let i = 0; i < count; ++i) this.states[i] = (this.states[i]! & ~kMarginMask) | (margins[i]! << kSlotBits);
+    this.changed.fill(1);
+    this.anyChanged = true;
+  }
+
+  highlight(points: Uint32Array): void {
+    for (const point of this.standing) this.change(this.vertexOf[point], kStandsOut, 0);
+    for (const point of points) this.change(this.vertexOf[point], kStandsOut, kStandsOut);
+    this.standing = points;
+  }
+
+  setLabelColor(label: number, color: Rgb): void {
+    this.palette.setColor(label, color);
+  }
+
+  /** Draws these vertices next, as squares of this many pixels. */
+  draw(mode: PointMode, size_px: number, from: number, to: number): void {
+    this.upload();
+    this.object.visible = to > from;
+    this.object.geometry.setDrawRange(from, to - from);
+    this.uniforms.size.value = size_px;
+    const key = mode === "both" ? `both ${size_px}` : mode;
+    let material = this.materials.get(key);
+    if (material === undefined) {
+      material = pointMaterial(mode, size_px, this.uniforms);
+      this.materials.set(key, material);
+    }
+    this.object.material = material;
+  }
+
+  dispose(): void {
+    this.object.geometry.dispose();
+    for (const material of this.materials.values()) material.dispose();
+    this.palette.dispose();
+  }
+
+  private attribute(name: string): THREE.BufferAttribute {
+    return this.object.geometry.getAttribute(name) as THREE.BufferAttribute;
+  }
+
+  private change(vertex: number | undefined, mask: number, bits: number): void {
+    if (vertex === undefined || vertex === kNone) return;
+    this.states[vertex] = (this.states[vertex]! & ~mask) | bits;
+    this.changed[Math.floor(vertex / kBlock)] = 1;
+    this.anyChanged = true;
+  }
+
+  private upload(): void {
+    if (!this.anyChanged) return;
+    this.anyChanged = false;
+    const attribute = this.attribute("state");
+    for (let block = 0; block < this.changed.length; ++block) {
+      if (this.changed[block] === 0) continue;
+      const first = block;
+      while (this.changed[block] === 1) this.changed[block++] = 0;
+      attribute.addUpdateRange(first * kBlock, Math.min(block * kBlock, this.room) - first * kBlock);
+    }
+    attribute.needsUpdate = true;
+  }
+}
