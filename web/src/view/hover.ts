@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The nearest point whose square is under the cursor, by a bounding volume hierarchy.
 import * as THREE from "three";
-import { INTERSECTED, NOT_INTERSECTED, PointsBVH, SKIP_GENERATION } from "three-mesh-bvh";
+import { INTERSECTED, NOT_INTERSECTED, PointsBVH } from "three-mesh-bvh";
 
 /** What of a hierarchy goes from the worker to the page. */
 export interface TreeParts {
@@ -34,8 +34,9 @@ export class HoverTree {
     this.worker.onmessage = (event: MessageEvent<BuiltTree>) => {
       if (event.data.job !== this.job) return;
       const geometry = new THREE.BufferGeometry();
+      geometry.setAttribute("position", new THREE.BufferAttribute(positions.subarray(0, 3), 3));
+      const tree = new PointsBVH(geometry, { indirect: true } as object); // of one point, until it is given the parts
       geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
-      const tree = new PointsBVH(geometry, { indirect: true, [SKIP_GENERATION]: true } as object);
       const parts = tree as unknown as TreeParts;
       parts._roots = event.data.roots;
       parts._indirectBuffer = event.data.order;

@@ -1,0 +1,226 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cloud in the scene: its points, control points, marks, and what of them is under the cursor.
+import * as THREE from "three";
+import type { SceneCamera } from "./camera";
+import { ControlPoints, kControlBit } from "./control_points";
+import { HoverTree } from "./hover";
+import { PointCloud } from "./points";
+import { Ring } from "./ring";
+import type { CloudInfo, CloudLayer, Pick, PointChunk, Rgb } from "./types";
+
+/** What of the picture is no longer right. */
+export type Stale = "nothing" | "colors" | "all";
+
+const kSphere_spacings = 1.4; // radius of a control point's sphere, where it is not too small or large on the screen
+const kNoCloud: CloudInfo = { points: 0, shown: 0, bounds: [], up: [], spacing_m: 0 };
+
+export class CloudView implements CloudLayer {
+  private points = new PointCloud();
+  private controls = new ControlPoints(this.points);
+  private ring = new Ring();
+  private few = new THREE.Points(); // some points, in the id buffer
+  private tree = new HoverTree();
+  private shown = { cloud: true, labels: true, controls: true };
+  private size = 4;
+  private ringWas = false;
+
+  constructor(
+    private view: SceneCamera,
+    private scene: THREE.Scene,
+    private changed: (what: Stale) => void,
+  ) {
+    this.few.frustumCulled = false;
+    this.few.visible = false;
+    this.scene.add(this.few, this.ring.object);
+    this.replace(kNoCloud);
+  }
+
+  get vertices(): number {
+    return this.points.vertices;
+  }
+
+  get treeReady(): boolean {
+    return this.tree.ready;
+  }
+
+  begin(cloud: CloudInfo): void {
+    this.view.setBounds(cloud.bounds, cloud.up, true);
+    this.replace(cloud);
+    this.controls.setRadius_m(kSphere_spacings * cloud.spacing_m);
+    this.view.fit();
+  }
+
+  append(chunk: PointChunk): void {
+    this.points.append(chunk);
+    this.controls.refresh();
+    this.changed("nothing"); // the picture is gone on with
+    if (this.points.vertices === this.points.room) this.buildTree();
+  }
+
+  setLabel(label: number, points: Uint32Array): void {
+    this.points.setLabel(label, points);
+    this.changed("colors");
+  }
+
+  setLabelColor(label: number, color: Rgb): void {
+    this.points.setLabelColor(label, color);
+    this.changed("colors");
+  }
+
+  setLabelVisible(label: number, visible: boolean): void {
+    this.points.palette.setVisible(label, visible);
+    this.changed("all");
+  }
+
+  labelOf(point: number): number {
+    return this.points.labelOf(point);
+  }
+
+  positionOf(point: number): readonly [number, number, number] | undefined {
+    return this.points.positionOf(point);
+  }
+
+  setControlPoint(point: number, label: number | undefined): void {
+    this.controls.set(point, label);
+    this.changed("all");
+  }
+
+  clearControlPoints(): void {
+    this.controls.clear();
+    this.changed("all");
+  }
+
+  setMargins(margins: Uint8Array | null): void {
+    this.points.setMargins(margins);
+    this.changed("colors");
+  }
+
+  highlight(points: Uint32Array): void {
+    this.points.highlight(points);
+    this.changed("colors");
+  }
+
+  mark(point: number | null): void {
+    const at = point === null ? undefined : this.points.positionOf(point);
+    const { x, y, z } = this.view.origin;
+    this.ring.set(at === undefined ? null : [at[0] - x, at[1] - y, at[2] - z]);
+    this.changed("all");
+  }
+
+  show(what: { cloud: boolean; labels: boolean; controls: boolean }): void {
+    this.shown = { ...what };
+    this.changed("all");
+  }
+
+  get pointSize(): number {
+    return this.size;
+  }
+
+  set pointSize(px: number) {
+    this.size = Math.min(Math.max(px, 1), 16);
+    this.changed("all");
+  }
+
+  /** Edge of the squares in pixels of the picture. */
+  size_px(ratio: number): number {
+    return Math.min(Math.max(Math.round(this.size * ratio), 1), 64);
+  }
+
+  /** Sets the scene up for vertices `from` to `to` and what is not points. */
+  draw(from: number, to: number, size: readonly [number, number], ratio: number): void {
+    const { cloud, labels, controls } = this.shown;
+    const mode = cloud && labels ? "both" : cloud ? "cloud" : "labels";
+    this.points.draw(mode, this.size_px(ratio), from, cloud || labels ? to : from);
+    this.controls.draw(false, size[1], ratio);
+    this.controls.object.visible &&= controls;
+    this.ring.draw(ratio);
+  }
+
+  /** Sets the scene up for the id buffer of one pixel. */
+  beginPick(x: number, y: number, size: readonly [number, number], ratio: number): void {
+    const { cloud, labels, controls } = this.shown;
+    this.points.draw("id", this.size_px(ratio), 0, cloud || labels ? this.points.vertices : 0);
+    this.controls.draw(true, size[1], ratio);
+    this.controls.object.visible &&= controls;
+    this.ringWas = this.ring.object.visible;
+    this.ring.object.visible = false;
+    if (!this.points.object.visible || !this.tree.ready) return;
+    const near: number[] = [];
+    const half_px = 0.5 * this.size_px(ratio) + 1;
+    this.tree.around(x, y, half_px, this.view.clipScene(), size, (vertex) => {
+      near.push(vertex);
+      return Infinity;
+    });
+    near.sort((a, b) => a - b); // of two at the same place the later one is seen
+    const all = this.points.object;
+    for (const name of ["position", "color", "state"]) this.few.geometry.setAttribute(name, all.geometry.getAttribute(name));
+    this.few.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(near), 1));
+    this.few.material = all.material;
+    this.few.visible = near.length > 0;
+    all.visible = false;
+  }
+
+  endPick(number: number | undefined): Pick | null {
+    this.ring.object.visible = this.ringWas;
+    this.few.visible = false;
+    if (number === undefined) return null;
+    // id() of a sphere has the highest bit; it came less one.
+    const control = number >= kControlBit;
+    const point = control
+      ? this.controls.pointOfVertex(number - kControlBit)
+      : this.points.pointOfVertex(number);
+    return this.pickOf(point, control);
+  }
+
+  hover(x: number, y: number, size: readonly [number, number], ratio: number): Pick | null {
+    if (!this.tree.ready) return null;
+    const clip_scene = this.view.clipScene();
+    let vertex = -1;
+    let depth = Infinity;
+    if (this.shown.cloud || this.shown.labels) {
+      this.tree.around(x, y, 0.5 * this.size_px(ratio), clip_scene, size, (candidate, at) => {
+        if (at < depth && this.points.isDrawn(candidate)) {
+          vertex = candidate;
+          depth = at;
+        }
+        return depth;
+      });
+    }
+    const sphere = this.shown.controls ? this.controls.at(x, y, clip_scene, size[0], size[1], ratio) : null;
+    if (sphere !== null && sphere.depth_m <= depth) return this.pickOf(sphere.point, true);
+    return vertex < 0 ? null : this.pickOf(this.points.pointOfVertex(vertex), false);
+  }
+
+  dispose(): void {
+    this.tree.dispose();
+    this.controls.dispose();
+    this.points.dispose();
+    this.ring.dispose();
+    this.few.geometry.dispose();
+  }
+
+  private pickOf(point: number | undefined, control: boolean): Pick | null {
+    const position = point === undefined ? undefined : this.points.positionOf(point);
+    return point === undefined || position === undefined ? null : { point, control, position };
+  }
+
+  private buildTree(): void {
+    this.tree.build(this.points.positions, () => {});
+  }
+
+  private replace(cloud: CloudInfo): void {
+    this.scene.remove(this.points.object, this.controls.object);
+    this.controls.dispose();
+    this.points.dispose();
+    this.tree.clear();
+    this.ring.set(null);
+    this.few.geometry.dispose();
+    this.few.geometry = new THREE.BufferGeometry();
+    this.points = new PointCloud(this.view.origin.toArray());
+    this.points.begin(cloud);
+    this.controls = new ControlPoints(this.points);
+    this.controls.object.renderOrder = 1;
+    this.scene.add(this.points.object, this.controls.object);
+    this.changed("all");
+  }
+}

@@ -1,0 +1,141 @@
+// SPDX-License-Identifier: Apache-2.0
+// How layers look: surfaces in the light of a lamp at the camera, squares, and lines.
+import * as THREE from "three";
+
+const kSurfaceVertex = /* glsl */ `
+precision highp float;
+uniform mat4 projectionMatrix;
+uniform mat4 modelViewMatrix;
+uniform vec4 plain;
+in vec3 position;
+#ifdef INSTANCED
+uniform float size_m;
+in vec3 center;
+#endif
+#ifdef COLORS
+in vec4 color;
+#endif
+#ifdef NORMALS
+in vec3 normal;
+out vec3 seen_normal;
+#endif
+out vec3 seen;
+out vec4 own;
+void main() {
+#ifdef INSTANCED
+  vec4 at = modelViewMatrix * vec4(center + size_m * position, 1.0);
+#else
+  vec4 at = modelViewMatrix * vec4(position, 1.0);
+#endif
+#ifdef NORMALS
+  seen_normal = mat3(modelViewMatrix) * normal;
+#endif
+#ifdef COLORS
+  own = vec4(color.rgb, color.a * plain.a);
+#else
+  own = plain;
+#endif
+  seen = at.xyz;
+  gl_Position = projectionMatrix * at;
+}`;
+
+const kSurfaceFragment = /* glsl */ `
+precision highp float;
+in vec3 seen;
+in vec4 own;
+#ifdef NORMALS
+in vec3 seen_normal;
+#endif
+out vec4 pixel;
+void main() {
+#ifdef NORMALS
+  vec3 normal = normalize(seen_normal);
+#else
+  vec3 normal = normalize(cross(dFdx(seen), dFdy(seen)));
+#endif
+  if (dot(normal, seen) > 0.0) normal = -normal;  // both sides are lit
+  float lamp = max(dot(normal, normalize(vec3(-0.25, 0.45, 1.0))), 0.0);
+  pixel = vec4(own.rgb * (0.42 + 0.62 * lamp), own.a);
+}`;
+
+const kSquareVertex = /* glsl */ `
+precision highp float;
+uniform mat4 projectionMatrix;
+uniform mat4 modelViewMatrix;
+uniform vec4 plain;
+uniform float size_m;
+uniform float size;      // px, where size_m is 0
+uniform float height;    // px of the picture
+in vec3 position;
+#ifdef COLORS
+in vec4 color;
+#endif
+flat out vec4 own;
+void main() {
+  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
+  float px_per_m = 0.5 * height * projectionMatrix[1][1] / max(gl_Position.w, 1e-9);
+  gl_PointSize = size_m > 0.0 ? clamp(size_m * px_per_m, 1.0, 64.0) : size;
+#ifdef COLORS
+  own = vec4(color.rgb, color.a * plain.a);
+#else
+  own = plain;
+#endif
+}`;
+
+const kLineVertex = /* glsl */ `
+precision highp float;
+uniform mat4 projectionMatrix;
+uniform mat4 modelViewMatrix;
+uniform vec4 plain;
+in vec3 position;
+#ifdef COLORS
+in vec4 color;
+#endif
+flat out vec4 own;
+void main() {
+  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
+#ifdef COLORS
+  own = vec4(color.rgb, color.a * plain.a);
+#else
+  own = plain;
+#endif
+}`;
+
+const kPlainFragment = /* glsl */ `
+precision mediump float;
+flat in vec4 own;
+out vec4 pixel;
+void main() { pixel = own; }`;
+
+export interface LayerLook {
+  shape: "surface" | "cubes" | "squares" | "lines";
+  colors: boolean;
+  normals?: boolean;
+  plain: THREE.Vector4; // 0 to 1
+  size_m: number;
+  transparent: boolean;
+}
+
+/** What all layers' squares have in common. */
+export interface SquareUniforms {
+  size: THREE.IUniform<number>;
+  height: THREE.IUniform<number>;
+}
+
+export function layerMaterial(look: LayerLook, squares: SquareUniforms): THREE.RawShaderMaterial {
+  const defines: Record<string, string> = {};
+  if (look.colors) defines.COLORS = "";
+  if (look.normals === true) defines.NORMALS = "";
+  if (look.shape === "cubes") defines.INSTANCED = "";
+  const surface = look.shape === "surface" || look.shape === "cubes";
+  return new THREE.RawShaderMaterial({
+    glslVersion: THREE.GLSL3,
+    vertexShader: surface ? kSurfaceVertex : look.shape === "squares" ? kSquareVertex : kLineVertex,
+    fragmentShader: surface ? kSurfaceFragment : kPlainFragment,
+    uniforms: { plain: { value: look.plain }, size_m: { value: look.size_m }, ...squares },
+    defines,
+    side: look.shape === "surface" ? THREE.DoubleSide : THREE.FrontSide,
+    transparent: look.transparent,
+    depthWrite: !look.transparent,
+  });
+}

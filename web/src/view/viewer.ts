@@ -1,0 +1,194 @@
+// SPDX-License-Identifier: Apache-2.0
+// The 3-D view: draws when something changed, a large cloud in steps none of which takes long.
+import * as THREE from "three";
+import { SceneCamera } from "./camera";
+import { CloudView, type Stale } from "./cloud_view";
+import { Controls } from "./controls";
+import { Layers } from "./layers";
+import { PixelProbe } from "./picking";
+import { Pacer } from "./pacer";
+import type { CameraFrame, Pick, PointerTool, SelectionPicture, Viewer } from "./types";
+
+const kLight = 0xeceef2;
+const kDark = 0x24272d;
+
+export function createViewer(parent: HTMLElement): Viewer {
+  return new SceneViewer(parent);
+}
+
+class SceneViewer implements Viewer {
+  readonly element = document.createElement("div");
+  readonly camera: SceneCamera;
+  readonly cloud: CloudView;
+  readonly layers: Layers;
+  readonly stats = { frames: 0, lastFrame_ms: 0, vertices: 0 };
+  private renderer: THREE.WebGLRenderer;
+  private scene = new THREE.Scene();
+  private probe: PixelProbe;
+  private controls: Controls;
+  private pacer: Pacer;
+  private resized: ResizeObserver;
+  private stale: Stale = "all";
+  private drawn = 0; // vertices of the cloud that are in the picture
+  private asked = false;
+  private disposed = false;
+
+  constructor(parent: HTMLElement) {
+    THREE.ColorManagement.enabled = false;
+    this.element.style.cssText = "position:relative;width:100%;height:100%;overflow:hidden;outline:none;touch-action:none";
+    this.element.tabIndex = 0;
+    parent.append(this.element);
+    // Squares are drawn to the pixel. What is drawn stays, so that a picture can be refined.
+    this.renderer = new THREE.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
+    this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
+    this.renderer.autoClear = false;
+    const canvas = this.renderer.domElement;
+    canvas.style.cssText = "display:block;width:100%;height:100%";
+    this.element.append(canvas);
+    canvas.addEventListener("webglcontextrestored", () => this.redraw());
+
+    this.camera = new SceneCamera(() => this.redraw());
+    this.layers = new Layers(this.camera, this.element, () => this.redraw());
+    this.cloud = new CloudView(this.camera, this.scene, (what) => this.ask(what));
+    this.scene.add(this.layers.group);
+    this.probe = new PixelProbe(this.renderer);
+    this.pacer = new Pacer(this.renderer.getContext() as WebGL2RenderingContext);
+    this.controls = new Controls(this.element, this.camera, (x, y) => this.under(x, y), () => this.redraw());
+    this.resized = new ResizeObserver(() => this.resize());
+    this.resized.observe(this.element);
+    this.setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
+    this.resize();
+    this.camera.fit();
+  }
+
+  redraw(): void {
+    this.ask("all");
+  }
+
+  setBounds(bounds: readonly number[], up: readonly number[]): void {
+    this.camera.setBounds(bounds, up, !this.layers.any && this.cloud.vertices === 0);
+    this.redraw();
+  }
+
+  setFrame(frame: CameraFrame | null): void {
+    this.layers.setFrame(frame);
+  }
+
+  pick(x: number, y: number): Pick | null {
+    const size = this.size();
+    const [px, py] = this.toPicture(x, y).map(Math.floor) as [number, number];
+    if (px < 0 || py < 0 || px >= size[0] || py >= size[1]) return null;
+    this.camera.update();
+    this.layers.group.visible = false;
+    this.cloud.beginPick(px + 0.5, py + 0.5, size, this.ratio);
+    const bytes = this.probe.read(this.scene, this.camera.camera, px, py, size);
+    this.layers.group.visible = true;
+    return this.cloud.endPick(PixelProbe.number(bytes));
+  }
+
+  hover(x: number, y: number): Pick | null {
+    this.camera.update();
+    return this.cloud.hover(...this.toPicture(x, y), this.size(), this.ratio);
+  }
+
+  picture(): SelectionPicture {
+    this.camera.update();
+    const e = this.camera.clipWorld().elements;
+    const clip_world = Array.from({ length: 16 }, (_, i) => e[4 * (i % 4) + Math.floor(i / 4)]!);
+    return { size: this.size(), clip_world, point_size_px: this.cloud.size_px(this.ratio) };
+  }
+
+  toPicture(x: number, y: number): [number, number] {
+    const size = this.size();
+    return [(x * size[0]) / this.element.clientWidth, (y * size[1]) / this.element.clientHeight];
+  }
+
+  setPointerTool(tool: PointerTool | null): void {
+    this.controls.setTool(tool);
+  }
+
+  setTheme(dark: boolean): void {
+    this.renderer.setClearColor(dark ? kDark : kLight, 1);
+    this.redraw();
+  }
+
+  dispose(): void {
+    this.disposed = true;
+    this.resized.disconnect();
+    this.controls.dispose();
+    this.camera.stop();
+    this.cloud.dispose();
+    this.layers.dispose();
+    this.probe.dispose();
+    this.renderer.dispose();
+    this.element.remove();
+  }
+
+  private get ratio(): number {
+    return Math.min(window.devicePixelRatio || 1, 3);
+  }
+
+  private size(): [number, number] {
+    const { width, height } = this.renderer.domElement;
+    return [width, height];
+  }
+
+  private resize(): void {
+    const width = Math.max(1, Math.min(8192, Math.round(this.element.clientWidth * this.ratio)));
+    const height = Math.max(1, Math.min(8192, Math.round(this.element.clientHeight * this.ratio)));
+    const [oldWidth, oldHeight] = this.size();
+    if (width !== oldWidth || height !== oldHeight) this.renderer.setSize(width, height, false);
+    this.camera.camera.aspect = width / height;
+    this.ask("all");
+    // At once: a canvas of a new size is empty.
+    if (!this.pacer.busy) this.step();
+  }
+
+  private ask(stale: Stale): void {
+    if (stale === "all" || this.stale === "nothing") this.stale = stale;
+    if (this.asked || this.disposed) return;
+    this.asked = true;
+    requestAnimationFrame(() => this.frame());
+  }
+
+  private frame(): void {
+    this.asked = false;
+    if (this.disposed) return;
+    if (this.pacer.busy) this.ask("nothing");
+    else this.step();
+  }
+
+  /** Draws the picture anew, or goes on with it. */
+  private step(): void {
+    const { cloud } = this;
+    // Where only colours changed: the same squares once more over themselves, so that nothing flickers.
+    const clear = this.stale === "all";
+    const anew = this.stale !== "nothing";
+    if (anew) this.drawn = 0;
+    this.stale = "nothing";
+    const to = this.pacer.upTo(this.drawn, cloud.vertices);
+    if (!anew && to === this.drawn) return;
+
+    if (anew) this.camera.update();
+    const size = this.size();
+    this.layers.squares.height.value = size[1];
+    this.layers.squares.size.value = cloud.size_px(this.ratio);
+    this.layers.group.visible = anew;
+    cloud.draw(this.drawn, to, size, this.ratio);
+    if (clear) this.renderer.clear();
+    this.renderer.render(this.scene, this.camera.camera);
+    const vertices = to - this.drawn;
+    this.drawn = to;
+    this.pacer.drew(vertices, (ms) => {
+      ++this.stats.frames;
+      this.stats.lastFrame_ms = ms;
+      this.stats.vertices = this.drawn;
+      if (this.drawn < cloud.vertices || this.stale !== "nothing") this.ask("nothing");
+    });
+  }
+
+  private under(x: number, y: number): THREE.Vector3 | null {
+    const found = this.cloud.treeReady || this.cloud.vertices > 1_000_000 ? this.hover(x, y) : this.pick(x, y);
+    return found === null ? null : new THREE.Vector3(...found.position).sub(this.camera.origin);
+  }
+}
