@@ -4,6 +4,7 @@ import * as THREE from "three";
 import type { Camera, Navigation } from "./types";
 
 const kFov_rad = (50 * Math.PI) / 180;
+const kRoom = 1.08; // around the scene
 const kMove_ms = 260;
 
 export class SceneCamera implements Camera {
@@ -41,11 +42,17 @@ export class SceneCamera implements Camera {
     towards.normalize();
     const middle = this.box.getCenter(new THREE.Vector3());
     camera.fov = (kFov_rad * 180) / Math.PI;
-    const half = Math.min(0.5 * kFov_rad, Math.atan(Math.tan(0.5 * kFov_rad) * camera.aspect));
-    camera.position.copy(middle).addScaledVector(towards, this.radius_m / Math.sin(half));
-    const up = Math.abs(towards.dot(this.up)) > 0.999 ? this.anySide().negate() : this.up;
-    camera.up.copy(up);
+    camera.up.copy(Math.abs(towards.dot(this.up)) > 0.999 ? this.anySide().negate() : this.up);
+    camera.position.copy(middle).add(towards);
     camera.lookAt(middle);
+    const slope = Math.tan(0.5 * kFov_rad);
+    let distance = 0.1 * this.radius_m;
+    for (const corner of this.corners()) {
+      const seen = corner.sub(middle).applyQuaternion(camera.quaternion.clone().invert());
+      const wide = Math.max(Math.abs(seen.y), Math.abs(seen.x) / camera.aspect);
+      distance = Math.max(distance, seen.z + (kRoom * wide) / slope);
+    }
+    camera.position.copy(middle).addScaledVector(towards, distance);
     this.pivot.copy(middle);
     this.changed();
   }
@@ -99,14 +106,12 @@ export class SceneCamera implements Camera {
 
   /** Planes as near to the scene as can be, for the depth's precision; matrices are right after it. */
   update(): void {
-    const { camera, box } = this;
+    const { camera } = this;
     camera.updateMatrixWorld();
     const ahead = camera.getWorldDirection(new THREE.Vector3());
-    const corner = new THREE.Vector3();
     let near = Infinity;
     let far = -Infinity;
-    for (let i = 0; i < 8; ++i) {
-      corner.set(i & 1 ? box.max.x : box.min.x, i & 2 ? box.max.y : box.min.y, i & 4 ? box.max.z : box.min.z);
+    for (const corner of this.corners()) {
       const depth = corner.sub(camera.position).dot(ahead);
       near = Math.min(near, depth);
       far = Math.max(far, depth);
@@ -125,6 +130,11 @@ export class SceneCamera implements Camera {
 
   clipScene(): THREE.Matrix4 {
     return new THREE.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+  }
+
+  private corners(): THREE.Vector3[] {
+    const { min, max } = this.box;
+    return Array.from({ length: 8 }, (_, i) => new THREE.Vector3(i & 1 ? max.x : min.x, i & 2 ? max.y : min.y, i & 4 ? max.z : min.z));
   }
 
   private anySide(): THREE.Vector3 {

@@ -22,6 +22,7 @@ export class CloudView implements CloudLayer {
   private tree = new HoverTree();
   private shown = { cloud: true, labels: true, controls: true };
   private size = 4;
+  private spacing_m = 0; // of the vertices
   private ringWas = false;
 
   constructor(
@@ -47,6 +48,7 @@ export class CloudView implements CloudLayer {
     this.view.setBounds(cloud.bounds, cloud.up, true);
     this.replace(cloud);
     this.controls.setRadius_m(kSphere_spacings * cloud.spacing_m);
+    this.spacing_m = cloud.spacing_m * Math.sqrt(cloud.points / Math.max(cloud.shown, 1)); // they lie on surfaces
     this.view.fit();
   }
 
@@ -130,6 +132,7 @@ export class CloudView implements CloudLayer {
   draw(from: number, to: number, size: readonly [number, number], ratio: number): void {
     const { cloud, labels, controls } = this.shown;
     const mode = cloud && labels ? "both" : cloud ? "cloud" : "labels";
+    this.points.uniforms.spacing.value = 0.5 * size[1] * this.view.camera.projectionMatrix.elements[5]! * this.spacing_m;
     this.points.draw(mode, this.size_px(ratio), from, cloud || labels ? to : from);
     this.controls.draw(false, size[1], ratio);
     this.controls.object.visible &&= controls;

@@ -7,6 +7,7 @@ export interface PointUniforms {
   palette: THREE.IUniform<THREE.DataTexture>;
   size: THREE.IUniform<number>; // px
   heat: THREE.IUniform<boolean>; // margins are shown
+  spacing: THREE.IUniform<number>; // m, times the pixels that a metre is wide 1 m away
 }
 
 // A point's state: slot of its label, margin, and whether it stands out.
@@ -18,6 +19,7 @@ uniform mat4 modelViewMatrix;
 uniform float size;
 uniform highp sampler2D palette;
 uniform bool heat;
+uniform float spacing;
 in vec3 position;
 in vec4 color;
 in uint state;
@@ -55,10 +57,12 @@ void main() {
 #elif defined(CLOUD_ONLY)
   outer = own;
 #elif defined(TWO_SQUARES)
-  outer = own;
+  // Where squares cover each other's middles, from afar, they are tinted instead.
+  float covered = clamp(1.0 - spacing / (gl_Position.w * size), 0.0, 1.0);
+  outer = slot == 0u ? own : mix(own, label.rgb, 0.5 * covered);
   inner = vec4(label.rgb, slot == 0u ? 0.0 : INNER);
 #else
-  outer = slot == 0u ? own : mix(own, label.rgb, 0.6);
+  outer = slot == 0u ? own : mix(own, label.rgb, 0.5);
 #endif
   if (out_stands) outer = vec3(1.0, 0.84, 0.04);
 #endif

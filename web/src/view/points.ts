@@ -18,6 +18,7 @@ export class PointCloud {
     palette: this.palette.texture,
     size: { value: 4 },
     heat: { value: false },
+    spacing: { value: 0 },
   };
   vertices = 0;
   room = 0;
