@@ -30,7 +30,7 @@ async function settled(page: Page): Promise<void> {
   await page.waitForFunction(() => window.dev !== undefined);
   await page.evaluate(async () => {
     const { stats } = window.dev.viewer;
-    for (let frames = -1; frames !== stats.frames; ) {
+    for (let frames = -1; frames !== stats.frames || stats.pictures === 0; ) {
       frames = stats.frames;
       await new Promise((done) => setTimeout(done, 150));
     }
@@ -123,28 +123,24 @@ test("300,000 points: a redraw, and labels of all of them", async ({ page }) => 
   const result = await page.evaluate(async () => {
     const { viewer } = window.dev;
     const once = async (change: () => void) => {
-      const { frames } = viewer.stats;
+      const { pictures } = viewer.stats;
       const began = performance.now();
       change();
-      while (viewer.stats.frames === frames) await new Promise((done) => setTimeout(done, 0));
+      while (viewer.stats.pictures === pictures) await new Promise((done) => setTimeout(done, 0));
       return performance.now() - began;
-    };
-    const median = async (change: (i: number) => void) => {
-      const times: number[] = [];
-      for (let i = 0; i < 15; ++i) times.push(await once(() => change(i)));
-      return times.sort((a, b) => a - b)[7]!;
     };
     const all = Uint32Array.from({ length: 300_000 }, (_, i) => i);
     const some = all.filter((i) => i % 30 === 0);
-    const redraw_ms = await median(() => viewer.redraw());
-    const some_ms = await median((i) => viewer.cloud.setLabel(1 + (i % 4), some));
-    const all_ms = await median((i) => viewer.cloud.setLabel(1 + (i % 4), all));
-    for (const size of [1, 2, 8]) {
-      viewer.cloud.pointSize = size;
-      await once(() => viewer.redraw());
+    // In turn: what else the machine does is the same for all of them.
+    const times: [number[], number[], number[]] = [[], [], []];
+    for (let i = 0; i < 15; ++i) {
+      times[0].push(await once(() => viewer.redraw()));
+      times[1].push(await once(() => viewer.cloud.setLabel(1 + (i % 4), some)));
+      times[2].push(await once(() => viewer.cloud.setLabel(1 + (i % 4), all)));
     }
+    const [redraw_ms, some_ms, all_ms] = times.map((list) => list.sort((a, b) => a - b)[7]!) as [number, number, number];
     viewer.cloud.pointSize = 8;
-    const large_ms = await median(() => viewer.redraw());
+    const large_ms = await once(() => viewer.redraw());
     viewer.cloud.pointSize = 4;
     const began = performance.now();
     for (let i = 0; i < 20; ++i) viewer.pick(400 + 20 * i, 420);
@@ -155,5 +151,176 @@ test("300,000 points: a redraw, and labels of all of them", async ({ page }) => 
     return { redraw_ms, some_ms, all_ms, large_ms, pick_ms, hover_ms, last: viewer.stats };
   });
   console.log(result);
-  expect(result.all_ms).toBeLessThan(2 * result.redraw_ms + 20);
+  expect(result.some_ms).toBeLessThan(2 * result.redraw_ms);
+  expect(result.all_ms).toBeLessThan(2 * result.redraw_ms);
+});
+
+test("the pixels of a point's square", async ({ page }) => {
+  await open(page, 0);
+  const result = await page.evaluate(async () => {
+    const { viewer } = window.dev;
+    const canvas = viewer.element.querySelector("canvas")!;
+    const gl = canvas.getContext("webgl2")!;
+    viewer.cloud.begin({ points: 3, shown: 3, bounds: [-1, -1, -1, 1, 1, 1], up: [0, 0, 1], spacing_m: 1 });
+    viewer.cloud.append({
+      positions: Float32Array.from([0, 0, 0, 0.5, 0, 0, -0.5, 0, 0]),
+      points: Uint32Array.from([0, 1, 2]),
+      colors: Uint8Array.from([200, 100, 50, 255, 200, 100, 50, 255, 200, 100, 50, 255]),
+      labels: Uint32Array.from([7, 0, 9]),
+    });
+    viewer.cloud.setLabelColor(7, [10, 20, 250]);
+    viewer.cloud.setLabelColor(9, [90, 220, 30]);
+    viewer.cloud.pointSize = 15;
+    viewer.camera.fit([0, -1, 0]);
+    /** Colours of the pixels around a point, of how many there are. */
+    const seen = async (point: number) => {
+      const { pictures } = viewer.stats;
+      viewer.redraw();
+      while (viewer.stats.pictures === pictures) await new Promise((done) => setTimeout(done, 5));
+      const [x, y, z] = viewer.cloud.positionOf(point)!;
+      const { clip_world: m, size } = viewer.picture();
+      const w = m[12]! * x + m[13]! * y + m[14]! * z + m[15]!;
+      const u = Math.floor(((m[0]! * x + m[1]! * y + m[2]! * z + m[3]!) / w + 1) * 0.5 * size[0]);
+      const v = Math.floor(((m[4]! * x + m[5]! * y + m[6]! * z + m[7]!) / w + 1) * 0.5 * size[1]);
+      const pixels = new Uint8Array(4 * 32 * 32);
+      gl.readPixels(u - 16, v - 16, 32, 32, gl.RGBA, gl.UNSIGNED_BYTE, pixels);
+      const counts: Record<string, number> = {};
+      for (let i = 0; i < pixels.length; i += 4) {
+        const color = [...pixels.subarray(i, i + 3)].join(" ");
+        counts[color] = (counts[color] ?? 0) + 1;
+      }
+      return counts;
+    };
+    const { cloud } = viewer;
+    const out: Record<string, Record<string, number>> = {};
+    out.both = await seen(0);
+    out.none = await seen(1);
+    cloud.show({ cloud: true, labels: false, controls: true });
+    out.cloud = await seen(0);
+    cloud.show({ cloud: false, labels: true, controls: true });
+    out.labels = await seen(0);
+    out.black = await seen(1);
+    cloud.setLabel(9, Uint32Array.from([0]));
+    out.changed = await seen(0);
+    cloud.setLabelVisible(9, false);
+    out.hidden = await seen(0);
+    cloud.setLabelVisible(9, true);
+    cloud.highlight(Uint32Array.from([2]));
+    out.highlighted = await seen(2);
+    out.other = await seen(0);
+    cloud.highlight(new Uint32Array());
+    cloud.setControlPoint(0, 7);
+    out.control = await seen(0);
+    cloud.show({ cloud: true, labels: true, controls: false });
+    cloud.setMargins(Uint8Array.from([0, 255, 255]));
+    out.doubt = await seen(0);
+    out.sure = await seen(1);
+    return out;
+  });
+  const [own, blue, green, dark] = ["200 100 50", "10 20 250", "90 220 30", "36 39 45"] as const;
+  const outside = 32 * 32 - 15 * 15;
+  expect(result.both).toEqual({ [own]: 15 * 15 - 7 * 7, [blue]: 7 * 7, [dark]: outside });
+  expect(result.none).toEqual({ [own]: 15 * 15, [dark]: outside });
+  expect(result.cloud).toEqual({ [own]: 15 * 15, [dark]: outside });
+  expect(result.labels).toEqual({ [blue]: 15 * 15, [dark]: outside });
+  expect(result.black).toEqual({ "0 0 0": 15 * 15, [dark]: outside });
+  expect(result.changed).toEqual({ [green]: 15 * 15, [dark]: outside });
+  expect(result.hidden).toEqual({ [dark]: 32 * 32 });
+  expect(result.highlighted).toEqual({ "255 214 10": 15 * 15, [dark]: outside });
+  expect(result.other).toEqual({ [green]: 15 * 15, [dark]: outside });
+  expect(Object.keys(result.control!).length).toBeGreaterThan(10); // a ball has shades
+  expect(result.doubt![green]).toBe(7 * 7);
+  expect(result.doubt!["255 212 64"]).toBe(15 * 15 - 7 * 7);
+  expect(Object.keys(result.sure!).length).toBe(2);
+});
+
+test("layers of every kind", async ({ page }) => {
+  await open(page, 0);
+  const picked = await page.evaluate(() => {
+    const { viewer, makeCloud } = window.dev;
+    viewer.setBounds([-1, -1, 0, 1, 1, 1.2], [0, 0, 1]);
+    const join = (...arrays: (Float32Array | Uint8Array | Uint32Array)[]) => {
+      const bytes = new Uint8Array(arrays.reduce((sum, array) => sum + array.byteLength, 0));
+      let at = 0;
+      for (const array of arrays) {
+        bytes.set(new Uint8Array(array.buffer, array.byteOffset, array.byteLength), at);
+        at += array.byteLength;
+      }
+      return bytes.buffer;
+    };
+    // A ball of triangles, coloured.
+    const [n, m] = [48, 24];
+    const vertices: number[] = [];
+    const colors: number[] = [];
+    const faces: number[] = [];
+    for (let j = 0; j <= m; ++j) {
+      for (let i = 0; i <= n; ++i) {
+        const [a, b] = [(2 * Math.PI * i) / n, (Math.PI * j) / m];
+        vertices.push(0.3 * Math.sin(b) * Math.cos(a), 0.3 * Math.sin(b) * Math.sin(a), 0.3 + 0.3 * Math.cos(b));
+        colors.push(120 + 100 * Math.cos(3 * a), 150, 200 - 6 * j, 255);
+        const k = j * (n + 1) + i;
+        if (i < n && j < m) faces.push(k, k + n + 1, k + 1, k + 1, k + n + 1, k + n + 2);
+      }
+    }
+    const added: boolean[] = [];
+    added.push(
+      viewer.layers.add(
+        { id: "mesh", kind: "triangles", count: faces.length / 3, vertices: vertices.length / 3, colors: true },
+        join(Float32Array.from(vertices), Uint8Array.from(colors), Uint32Array.from(faces)),
+      ),
+    );
+    const cubes: number[] = [];
+    const shades: number[] = [];
+    for (let i = 0; i < 400; ++i) {
+      cubes.push(-0.95 + 0.05 * (i % 20), -0.95 + 0.05 * Math.floor(i / 20), 0.03 * Math.sin(i));
+      shades.push(90, 110 + (i % 20) * 5, 140, 255);
+    }
+    added.push(
+      viewer.layers.add(
+        { id: "map", kind: "voxels", count: 400, colors: true, size_m: 0.05 },
+        join(Float32Array.from(cubes), Uint8Array.from(shades)),
+      ),
+    );
+    const cloud = makeCloud(4000).chunks[0]!;
+    const placed = cloud.positions.map((value, i) => 0.3 * value + (i % 3 === 2 ? 0 : 0.6));
+    added.push(viewer.layers.add({ id: "cloud", kind: "points", count: 4000, colors: true, size_m: 0.012 }, join(placed, cloud.colors)));
+    const rays: number[] = [];
+    const poses: number[] = [];
+    const gains: number[] = [];
+    for (let i = 0; i < 9; ++i) {
+      const a = (2 * Math.PI * i) / 9;
+      const eye = [0.9 * Math.cos(a), 0.9 * Math.sin(a), 0.9] as const;
+      rays.push(...eye, 0, 0, 0.55);
+      const length = Math.hypot(eye[0], eye[1], eye[2] - 0.3);
+      const z = [-eye[0] / length, -eye[1] / length, (0.3 - eye[2]) / length] as const;
+      const x = [-Math.sin(a), Math.cos(a), 0] as const;
+      const y = [z[1] * x[2] - z[2] * x[1], z[2] * x[0] - z[0] * x[2], z[0] * x[1] - z[1] * x[0]] as const;
+      poses.push(x[0], y[0], z[0], eye[0], x[1], y[1], z[1], eye[1], x[2], y[2], z[2], eye[2], 0, 0, 0, 1);
+      gains.push(i === 8 ? NaN : i);
+    }
+    added.push(viewer.layers.add({ id: "rays", kind: "lines", count: 9, color: "#5a6270" }, Float32Array.from(rays).buffer));
+    added.push(
+      viewer.layers.add({ id: "views", kind: "views", count: 9, fov_rad: [1.0, 0.75] }, Float32Array.from([...poses, ...gains]).buffer),
+    );
+    added.push(viewer.layers.add({ id: "unknown", kind: "voxels", count: 1, size_m: 0.4, color: "#8070ff", opacity: 0.35 }, Float32Array.from([0.6, -0.6, 0.2]).buffer));
+    added.push(viewer.layers.add({ id: "short", kind: "lines", count: 10 }, Float32Array.from(rays).buffer));
+    viewer.camera.fit();
+    viewer.layers.select("views", 6);
+    // Every tip is found where it is seen.
+    const { clip_world: c, size } = viewer.picture();
+    const found = gains.map((_, i) => {
+      const [x, y, z] = [poses[16 * i + 3]!, poses[16 * i + 7]!, poses[16 * i + 11]!];
+      const w = c[12]! * x + c[13]! * y + c[14]! * z + c[15]!;
+      const u = ((c[0]! * x + c[1]! * y + c[2]! * z + c[3]!) / w + 1) * 0.5 * size[0];
+      const v = (1 - (c[4]! * x + c[5]! * y + c[6]! * z + c[7]!) / w) * 0.5 * size[1];
+      return viewer.layers.pickView(u, v)?.item;
+    });
+    return { added, ids: viewer.layers.ids(), found, nothing: viewer.layers.pickView(5, 5) };
+  });
+  await settled(page);
+  await page.screenshot({ path: `${kPictures}/layers.png` });
+  expect(picked.added).toEqual([true, true, true, true, true, true, false]);
+  expect(picked.ids).toEqual(["mesh", "map", "cloud", "rays", "views", "unknown"]);
+  expect(picked.found).toEqual([0, 1, 2, 3, 4, 5, 6, 7, 8]);
+  expect(picked.nothing).toBeNull();
 });

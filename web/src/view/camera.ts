@@ -46,13 +46,18 @@ export class SceneCamera implements Camera {
     camera.position.copy(middle).add(towards);
     camera.lookAt(middle);
     const slope = Math.tan(0.5 * kFov_rad);
-    let distance = 0.1 * this.radius_m;
-    for (const corner of this.corners()) {
-      const seen = corner.sub(middle).applyQuaternion(camera.quaternion.clone().invert());
-      const wide = Math.max(Math.abs(seen.y), Math.abs(seen.x) / camera.aspect);
-      distance = Math.max(distance, seen.z + (kRoom * wide) / slope);
-    }
-    camera.position.copy(middle).addScaledVector(towards, distance);
+    const turn = camera.quaternion.clone().invert();
+    const corners = this.corners().map((corner) => corner.sub(middle).applyQuaternion(turn));
+    // Of an axis of the picture: where its middle must be, and how far away so that both borders are in.
+    const between = (axis: "x" | "y", slope: number): [number, number] => {
+      const high = Math.max(...corners.map((corner) => corner[axis] + slope * corner.z));
+      const low = Math.max(...corners.map((corner) => -corner[axis] + slope * corner.z));
+      return [(high - low) / 2, (high + low) / (2 * slope)];
+    };
+    const [x, farX] = between("x", (slope * camera.aspect) / kRoom);
+    const [y, farY] = between("y", slope / kRoom);
+    const away = new THREE.Vector3(x, y, Math.max(farX, farY, 0.1 * this.radius_m));
+    camera.position.copy(middle).add(away.applyQuaternion(camera.quaternion));
     this.pivot.copy(middle);
     this.changed();
   }

@@ -1,21 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
-// How much is drawn at once: what the GPU does in about 40 ms, learnt from how long it took.
+// How much is drawn at once, learnt from how long it took: what moves is drawn often, what rests in few steps.
 
-const kStep_ms = 40;
-const kLeast = 50_000;
+const kMoving_ms = 40;
+const kResting_ms = 85;
+const kLeast = 100_000;
 const kMost = 1 << 25;
 
 export class Pacer {
   busy = false;
-  private atOnce: number; // vertices
+  private perMs: number; // vertices
 
   constructor(private gl: WebGL2RenderingContext) {
-    this.atOnce = isSoftware(gl) ? 400_000 : 2_000_000;
+    this.perMs = isSoftware(gl) ? 5_000 : 50_000;
   }
 
   /** Of vertices `from` to `all`, the end of those to draw now. */
-  upTo(from: number, all: number): number {
-    return all - from <= 1.25 * this.atOnce ? all : from + Math.floor(this.atOnce);
+  upTo(from: number, all: number, moving: boolean): number {
+    const atOnce = Math.min(Math.max(this.perMs * (moving ? kMoving_ms : kResting_ms), kLeast), kMost);
+    return all - from <= 1.25 * atOnce ? all : from + Math.floor(atOnce);
   }
 
   /** Vertices were just drawn; calls back when the GPU is done, with the time that it took. */
@@ -29,21 +31,21 @@ export class Pacer {
       const waits =
         fence !== null && !gl.isContextLost() && gl.getSyncParameter(fence, gl.SYNC_STATUS) === gl.UNSIGNALED;
       if (waits) {
-        setTimeout(poll, 1);
+        setTimeout(poll, 2);
         return;
       }
       if (fence !== null) gl.deleteSync(fence);
       this.busy = false;
       const ms = performance.now() - began;
-      if (vertices >= 0.5 * this.atOnce || ms > 1.5 * kStep_ms) this.learn(vertices, ms);
+      if (vertices >= kLeast) this.learn(vertices / Math.max(ms, 1));
       done(ms);
     };
     setTimeout(poll, 0);
   }
 
-  private learn(vertices: number, ms: number): void {
-    const factor = Math.min(Math.max(kStep_ms / ms, 0.4), 1.6);
-    this.atOnce = Math.min(Math.max(Math.max(vertices, kLeast) * factor, kLeast), kMost);
+  /** Slowly: one step may have waited for something else. */
+  private learn(perMs: number): void {
+    this.perMs *= Math.min(Math.max(perMs / this.perMs, 0.6), 1.5);
   }
 }
 

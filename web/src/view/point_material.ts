@@ -39,6 +39,11 @@ vec3 heated(vec3 own, float doubt) {
   return mix(sure, hot, clamp(2.0 * doubt, 0.0, 1.0));
 }
 
+vec3 tinted(vec3 own, vec3 label, float much) {
+  float light = 0.4 + 0.85 * dot(own, vec3(0.3, 0.59, 0.11));
+  return mix(own, min(label * light, 1.0), 0.7 * much);
+}
+
 void main() {
   uint slot = state & 0xfffffu;
   vec4 label = texelFetch(palette, ivec2(slot & 1023u, slot >> 10u), 0);
@@ -59,17 +64,17 @@ void main() {
 #elif defined(TWO_SQUARES)
   // Where squares cover each other's middles, from afar, they are tinted instead.
   float covered = clamp(1.0 - spacing / (gl_Position.w * size), 0.0, 1.0);
-  outer = slot == 0u ? own : mix(own, label.rgb, 0.5 * covered);
-  inner = vec4(label.rgb, slot == 0u ? 0.0 : INNER);
+  outer = slot == 0u ? own : tinted(own, label.rgb, covered);
+  inner = vec4(mix(label.rgb, outer, 0.8 * covered * covered), slot == 0u ? 0.0 : INNER);
 #else
-  outer = slot == 0u ? own : mix(own, label.rgb, 0.5);
+  outer = slot == 0u ? own : tinted(own, label.rgb, 1.0);
 #endif
   if (out_stands) outer = vec3(1.0, 0.84, 0.04);
 #endif
 }`;
 
 const kFragment = /* glsl */ `
-precision mediump float;
+precision highp float;
 #ifdef ID
 flat in vec4 id;
 #else
@@ -83,7 +88,7 @@ void main() {
 #ifdef ID
   pixel = id;
 #elif defined(TWO_SQUARES)
-  vec2 off = abs(gl_PointCoord - 0.5);
+  vec2 off = abs(gl_PointCoord - 0.4995);  // a border in the middle of a pixel is on one side's only
   pixel = vec4(max(off.x, off.y) < inner.a ? inner.rgb : outer, 1.0);
 #else
   pixel = vec4(outer, 1.0);

@@ -115,6 +115,14 @@ export interface Camera {
   setPoseRows(rows: readonly (readonly number[])[], fovVertical_rad?: number): void;
 }
 
+export interface Stats {
+  frames: number;
+  lastFrame_ms: number; // until the GPU was done
+  vertices: number; // of the cloud, in the picture
+  pictures: number; // that became complete
+  lastPicture_ms: number; // from its beginning until it was
+}
+
 export interface Viewer {
   readonly element: HTMLElement;
   readonly camera: Camera;
@@ -136,8 +144,8 @@ export interface Viewer {
   /** Mouse: the tool has the left button unless it returns false or there is none; the camera has the others. */
   setPointerTool(tool: PointerTool | null): void;
   setTheme(dark: boolean): void;
-  /** For tests and for the frame time in the corner. */
-  readonly stats: { frames: number; lastFrame_ms: number; vertices: number };
+  /** For tests and for the frame time in the corner. A picture of a large cloud may take several frames. */
+  readonly stats: Stats;
   dispose(): void;
 }
 

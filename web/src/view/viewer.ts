@@ -9,6 +9,7 @@ import { PixelProbe } from "./picking";
 import { Pacer } from "./pacer";
 import type { CameraFrame, Pick, PointerTool, SelectionPicture, Viewer } from "./types";
 
+const kMoving_ms = 180; // since the camera moved last
 const kLight = 0xeceef2;
 const kDark = 0x24272d;
 
@@ -21,7 +22,7 @@ class SceneViewer implements Viewer {
   readonly camera: SceneCamera;
   readonly cloud: CloudView;
   readonly layers: Layers;
-  readonly stats = { frames: 0, lastFrame_ms: 0, vertices: 0 };
+  readonly stats = { frames: 0, lastFrame_ms: 0, vertices: 0, pictures: 0, lastPicture_ms: 0 };
   private renderer: THREE.WebGLRenderer;
   private scene = new THREE.Scene();
   private probe: PixelProbe;
@@ -30,6 +31,8 @@ class SceneViewer implements Viewer {
   private resized: ResizeObserver;
   private stale: Stale = "all";
   private drawn = 0; // vertices of the cloud that are in the picture
+  private began = 0; // when the picture was
+  private movedAt = -Infinity;
   private asked = false;
   private disposed = false;
 
@@ -47,13 +50,13 @@ class SceneViewer implements Viewer {
     this.element.append(canvas);
     canvas.addEventListener("webglcontextrestored", () => this.redraw());
 
-    this.camera = new SceneCamera(() => this.redraw());
+    this.camera = new SceneCamera(() => this.moved());
     this.layers = new Layers(this.camera, this.element, () => this.redraw());
     this.cloud = new CloudView(this.camera, this.scene, (what) => this.ask(what));
     this.scene.add(this.layers.group);
     this.probe = new PixelProbe(this.renderer);
     this.pacer = new Pacer(this.renderer.getContext() as WebGL2RenderingContext);
-    this.controls = new Controls(this.element, this.camera, (x, y) => this.under(x, y), () => this.redraw());
+    this.controls = new Controls(this.element, this.camera, (x, y) => this.under(x, y), () => this.moved());
     this.resized = new ResizeObserver(() => this.resize());
     this.resized.observe(this.element);
     this.setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
@@ -166,10 +169,14 @@ class SceneViewer implements Viewer {
     const anew = this.stale !== "nothing";
     if (anew) this.drawn = 0;
     this.stale = "nothing";
-    const to = this.pacer.upTo(this.drawn, cloud.vertices);
+    const began = performance.now();
+    const to = this.pacer.upTo(this.drawn, cloud.vertices, began - this.movedAt < kMoving_ms);
     if (!anew && to === this.drawn) return;
 
-    if (anew) this.camera.update();
+    if (anew) {
+      this.began = began;
+      this.camera.update();
+    }
     const size = this.size();
     this.layers.squares.height.value = size[1];
     this.layers.squares.size.value = cloud.size_px(this.ratio);
@@ -182,9 +189,20 @@ class SceneViewer implements Viewer {
     this.pacer.drew(vertices, (ms) => {
       ++this.stats.frames;
       this.stats.lastFrame_ms = ms;
-      this.stats.vertices = this.drawn;
-      if (this.drawn < cloud.vertices || this.stale !== "nothing") this.ask("nothing");
+      this.stats.vertices = to;
+      const complete = to === cloud.vertices;
+      if (complete) {
+        ++this.stats.pictures;
+        this.stats.lastPicture_ms = performance.now() - this.began;
+      }
+      if (this.stale !== "nothing") this.ask("nothing");
+      else if (!complete && !this.disposed) this.step();
     });
+  }
+
+  private moved(): void {
+    this.movedAt = performance.now();
+    this.redraw();
   }
 
   private under(x: number, y: number): THREE.Vector3 | null {
