@@ -1,45 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The 3-D view alone, on made clouds: what is in its pixels, what is picked, and how long it takes.
-import { mkdirSync } from "node:fs";
-import { type Page, expect, test } from "@playwright/test";
-import { type ViteDevServer, createServer } from "vite";
+import { expect, test } from "@playwright/test";
 import type {} from "../dev/view";
+import { open, picture, serve } from "./view_page";
 
-const kPictures = "test-results/view";
-let server: ViteDevServer;
-
-test.beforeAll(async () => {
-  mkdirSync(kPictures, { recursive: true });
-  server = await createServer({ root: ".", configFile: false, logLevel: "error", server: { port: 0, host: "127.0.0.1" } });
-  await server.listen();
-});
-test.afterAll(() => server.close());
-
-async function open(page: Page, points: number): Promise<void> {
-  page.on("pageerror", (error) => expect(error.message).toBe(""));
-  page.on("console", (message) => {
-    if (message.type() === "error") expect(message.text()).toBe("");
-  });
-  await page.emulateMedia({ colorScheme: "dark" });
-  await page.goto(`${server.resolvedUrls!.local[0]}dev/view.html?points=${points}`);
-  await settled(page);
-}
-
-/** Until the picture is complete. */
-async function settled(page: Page): Promise<void> {
-  await page.waitForFunction(() => window.dev !== undefined);
-  await page.evaluate(async () => {
-    const { stats } = window.dev.viewer;
-    for (let frames = -1; frames !== stats.frames || stats.pictures === 0; ) {
-      frames = stats.frames;
-      await new Promise((done) => setTimeout(done, 150));
-    }
-  });
-}
+serve();
 
 test("a cloud with labels and control points", async ({ page }) => {
   await open(page, 300_000);
-  await page.screenshot({ path: `${kPictures}/both.png` });
+  await picture(page, "both");
   await page.evaluate(() => {
     const { cloud } = window.dev.viewer;
     const next = window.dev.random(3);
@@ -49,11 +18,9 @@ test("a cloud with labels and control points", async ({ page }) => {
     }
     cloud.mark(17);
   });
-  await settled(page);
-  await page.screenshot({ path: `${kPictures}/controls.png` });
+  await picture(page, "controls");
   await page.evaluate(() => window.dev.viewer.cloud.show({ cloud: false, labels: true, controls: true }));
-  await settled(page);
-  await page.screenshot({ path: `${kPictures}/labels.png` });
+  await picture(page, "labels");
 });
 
 test("what is picked is what is drawn", async ({ page }) => {
@@ -87,25 +54,27 @@ test("what is picked is what is drawn", async ({ page }) => {
       const sure = nearest(-1 / 16).w;
       const maybe = seen.filter((a) => a.w <= sure * (1 + 1e-6)).map((a) => a.point);
       if (sure === Infinity) maybe.push(-1);
-      return { right: nearest(0).point, maybe };
+      return { right: nearest(0), maybe, seen };
     };
     for (const [turn, size] of [[0, 4], [1, 1], [2, 9]] as const) {
       viewer.cloud.pointSize = size;
       viewer.camera.fit([Math.sin(turn), -Math.cos(turn), 0.4 + 0.3 * turn]);
       for (const ready of [false, true]) {
-        if (ready) for (; viewer.hover(640, 400) === null && compared < 1e6; ) await new Promise((done) => setTimeout(done, 20));
+        const hovers = () => Array.from({ length: 40 }, (_, i) => viewer.hover(640, 10 + 20 * i)).some((hover) => hover !== null);
+        while (ready && !hovers()) await new Promise((done) => setTimeout(done, 20));
         for (let i = 0; i < 120; ++i) {
           const [px, py] = [Math.floor(300 + 680 * next()), Math.floor(150 + 500 * next())];
-          const { right, maybe } = expected(px, py);
+          const { right, maybe, seen } = expected(px, py);
           const picked = viewer.pick(px + 0.5, py + 0.5)?.point ?? -1;
           ++compared;
-          if (right < 0) ++empty;
+          if (right.point < 0) ++empty;
           if (maybe.length === 1) ++sure;
-          if (!maybe.includes(picked)) wrong.push(`pick ${px} ${py}: ${picked}, not ${right}`);
+          if (!maybe.includes(picked)) wrong.push(`pick ${px} ${py}: ${picked}, not ${right.point}`);
           if (!ready) continue;
           ++hovered;
           const hover = viewer.hover(px + 0.5, py + 0.5)?.point ?? -1;
-          if (hover !== right) wrong.push(`hover ${px} ${py}: ${hover}, not ${right}`);
+          const same = seen.some((a) => a.point === hover && a.w === right.w && a.off < 0); // two may be as far
+          if (hover !== right.point && !same) wrong.push(`hover ${px} ${py}: ${hover}, not ${right.point}`);
         }
       }
     }
@@ -317,8 +286,7 @@ test("layers of every kind", async ({ page }) => {
     });
     return { added, ids: viewer.layers.ids(), found, nothing: viewer.layers.pickView(5, 5) };
   });
-  await settled(page);
-  await page.screenshot({ path: `${kPictures}/layers.png` });
+  await picture(page, "layers");
   expect(picked.added).toEqual([true, true, true, true, true, true, false]);
   expect(picked.ids).toEqual(["mesh", "map", "cloud", "rays", "views", "unknown"]);
   expect(picked.found).toEqual([0, 1, 2, 3, 4, 5, 6, 7, 8]);

@@ -175,13 +175,15 @@ export class CloudView implements CloudLayer {
     return this.pickOf(point, control);
   }
 
-  hover(x: number, y: number, size: readonly [number, number], ratio: number): Pick | null {
+  /** `reach_px`: how far from a point's middle it is found, at least. */
+  hover(x: number, y: number, size: readonly [number, number], ratio: number, reach_px = 0): Pick | null {
     if (!this.tree.ready) return null;
     const clip_scene = this.view.clipScene();
     let vertex = -1;
     let depth = Infinity;
     if (this.shown.cloud || this.shown.labels) {
-      this.tree.around(x, y, 0.5 * this.size_px(ratio), clip_scene, size, (candidate, at) => {
+      const half_px = Math.max(0.5 * this.size_px(ratio), reach_px * ratio);
+      this.tree.around(x, y, half_px, clip_scene, size, (candidate, at) => {
         if (at < depth && this.points.isDrawn(candidate)) {
           vertex = candidate;
           depth = at;

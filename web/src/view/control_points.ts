@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import type { PointCloud } from "./points";
 
-const kLeast_px = 6.5; // radius on the screen, css
+const kLeast_px = 7.5; // radius on the screen, css
 const kMost_px = 15;
 export const kControlBit = 0x80000000;
 

@@ -10,6 +10,8 @@ import { Pacer } from "./pacer";
 import type { CameraFrame, Pick, PointerTool, SelectionPicture, Viewer } from "./types";
 
 const kMoving_ms = 180; // since the camera moved last
+const kReach_px = 5; // that the camera turns around a point, from the cursor
+const kQuickPick = 1_000_000; // points that can be drawn for the camera's sake alone
 const kLight = 0xeceef2;
 const kDark = 0x24272d;
 
@@ -206,7 +208,11 @@ class SceneViewer implements Viewer {
   }
 
   private under(x: number, y: number): THREE.Vector3 | null {
-    const found = this.cloud.treeReady || this.cloud.vertices > 1_000_000 ? this.hover(x, y) : this.pick(x, y);
+    this.camera.update();
+    const found =
+      this.cloud.treeReady || this.cloud.vertices > kQuickPick
+        ? (this.hover(x, y) ?? this.cloud.hover(...this.toPicture(x, y), this.size(), this.ratio, kReach_px))
+        : this.pick(x, y);
     return found === null ? null : new THREE.Vector3(...found.position).sub(this.camera.origin);
   }
 }
