@@ -2,7 +2,7 @@
 // The 3-D view alone, on made clouds: what is in its pixels, what is picked, and how long it takes.
 import { expect, test } from "@playwright/test";
 import type {} from "../dev/view";
-import { open, picture, serve } from "./view_page";
+import { open, picture, serve, settled } from "./view_page";
 
 serve();
 
@@ -19,6 +19,31 @@ test("a cloud with labels and control points", async ({ page }) => {
     cloud.mark(17);
   });
   await picture(page, "controls");
+  await page.evaluate(() => {
+    const { cloud } = window.dev.viewer;
+    cloud.setMargins(Uint8Array.from({ length: 300_000 }, (_, point) => 127.5 + 127.5 * Math.sin(6 * cloud.positionOf(point)![0])));
+    cloud.highlight(Uint32Array.from({ length: 300_000 }, (_, i) => i).filter((point) => cloud.labelOf(point) === 2));
+  });
+  await picture(page, "margins");
+  await page.evaluate(() => {
+    const { viewer } = window.dev;
+    viewer.cloud.setMargins(null);
+    viewer.cloud.highlight(new Uint32Array());
+    viewer.cloud.mark(null);
+    viewer.cloud.pointSize = 14;
+    viewer.setTheme(false);
+    viewer.camera.goTo([0.5, -0.5, 0.34]);
+  });
+  await page.waitForTimeout(400);
+  await page.mouse.move(640, 400);
+  for (let i = 0; i < 7; ++i) await page.mouse.wheel(0, -120);
+  await picture(page, "near");
+  await page.evaluate(() => {
+    const { viewer } = window.dev;
+    viewer.cloud.pointSize = 4;
+    viewer.camera.fit();
+  });
+  await picture(page, "light");
   await page.evaluate(() => window.dev.viewer.cloud.show({ cloud: false, labels: true, controls: true }));
   await picture(page, "labels");
 });
@@ -287,6 +312,19 @@ test("layers of every kind", async ({ page }) => {
     return { added, ids: viewer.layers.ids(), found, nothing: viewer.layers.pickView(5, 5) };
   });
   await picture(page, "layers");
+  // The wheel comes to what is under the cursor: the ball.
+  const ball = await page.evaluate(() => {
+    const { clip_world: m } = window.dev.viewer.picture();
+    const row = (i: number) => 0.4 * m[4 * i + 2]! + m[4 * i + 3]!;
+    return [640 * (1 + row(0) / row(3)), 400 * (1 - row(1) / row(3))] as const;
+  });
+  await page.mouse.move(...ball);
+  for (let i = 0; i < 30; ++i) await page.mouse.wheel(0, -120);
+  await settled(page);
+  const eye = await page.evaluate(() => window.dev.viewer.camera.poseRows().map((row) => row[3]!));
+  const away = Math.hypot(eye[0]!, eye[1]!, eye[2]! - 0.3);
+  expect(away).toBeGreaterThan(0.295);
+  expect(away).toBeLessThan(0.33);
   expect(picked.added).toEqual([true, true, true, true, true, true, false]);
   expect(picked.ids).toEqual(["mesh", "map", "cloud", "rays", "views", "unknown"]);
   expect(picked.found).toEqual([0, 1, 2, 3, 4, 5, 6, 7, 8]);

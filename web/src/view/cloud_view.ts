@@ -23,7 +23,6 @@ export class CloudView implements CloudLayer {
   private shown = { cloud: true, labels: true, controls: true };
   private size = 4;
   private spacing_m = 0; // of the vertices
-  private ringWas = false;
 
   constructor(
     private view: SceneCamera,
@@ -139,13 +138,19 @@ export class CloudView implements CloudLayer {
     this.ring.draw(ratio);
   }
 
+  /** Until draw(): nothing of it. */
+  hide(): void {
+    this.points.object.visible = false;
+    this.controls.object.visible = false;
+    this.ring.object.visible = false;
+  }
+
   /** Sets the scene up for the id buffer of one pixel. */
   beginPick(x: number, y: number, size: readonly [number, number], ratio: number): void {
     const { cloud, labels, controls } = this.shown;
     this.points.draw("id", this.size_px(ratio), 0, cloud || labels ? this.points.vertices : 0);
     this.controls.draw(true, size[1], ratio);
     this.controls.object.visible &&= controls;
-    this.ringWas = this.ring.object.visible;
     this.ring.object.visible = false;
     if (!this.points.object.visible || !this.tree.ready) return;
     const near: number[] = [];
@@ -164,7 +169,6 @@ export class CloudView implements CloudLayer {
   }
 
   endPick(number: number | undefined): Pick | null {
-    this.ring.object.visible = this.ringWas;
     this.few.visible = false;
     if (number === undefined) return null;
     // id() of a sphere has the highest bit; it came less one.

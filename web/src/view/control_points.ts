@@ -16,6 +16,7 @@ uniform highp sampler2D palette;
 uniform float height;    // px of the picture
 uniform vec2 radius;     // px, least and most
 uniform float radius_m;
+uniform float size;      // px, edge of the points' squares
 in vec3 position;
 in uint slot;
 flat out vec3 color;
@@ -27,8 +28,8 @@ void main() {
   gl_Position = projectionMatrix * seen;
   float px_per_m = 0.5 * height * projectionMatrix[1][1] / max(gl_Position.w, 1e-9);
   radius_px = clamp(radius_m * px_per_m, radius.x, radius.y);
-  // As deep as the ball's front: the square of its own point does not hide it.
-  vec4 front = projectionMatrix * vec4(seen.xy, seen.z * (1.0 - radius_px / px_per_m / max(-seen.z, 1e-9)), 1.0);
+  // Before the ball's front: the squares around it do not hide it.
+  vec4 front = projectionMatrix * vec4(seen.xy, seen.z + (radius_px + 0.5 * size) / px_per_m, 1.0);
   if (front.w > 0.0) gl_Position.z = max(front.z / front.w, -1.0) * gl_Position.w;
   if (label.a == 0.0) gl_Position = vec4(0.0, 0.0, 2.0, 1.0);
   gl_PointSize = 2.0 * radius_px;
@@ -77,6 +78,7 @@ export class ControlPoints {
       height: { value: 1 },
       radius: { value: new THREE.Vector2(kLeast_px, kMost_px) },
       radius_m: { value: 0 },
+      size: cloud.uniforms.size,
       rim: { value: new THREE.Color(1, 1, 1) },
     };
     const make = (defines: Record<string, string>) =>
@@ -150,7 +152,7 @@ export class ControlPoints {
       const radius_px = Math.min(Math.max(radius_m * px_per_m, kLeast_px * ratio), kMost_px * ratio);
       const u = 0.5 * width * (place.x / place.w + 1) - x;
       const v = 0.5 * height * (1 - place.y / place.w) - y;
-      const depth_m = place.w - radius_px / px_per_m;
+      const depth_m = place.w - (radius_px + 0.5 * this.cloud.uniforms.size.value) / px_per_m;
       if (u * u + v * v <= radius_px * radius_px && (best === null || depth_m < best.depth_m)) best = { point, depth_m };
     }
     return best;

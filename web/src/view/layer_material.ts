@@ -39,14 +39,24 @@ void main() {
   gl_Position = projectionMatrix * at;
 }`;
 
-const kSurfaceFragment = /* glsl */ `
+const kPixel = /* glsl */ `
 precision highp float;
+uniform bool as_depth;  // 24 bits, for what is under the cursor; see-through layers have none
+out vec4 pixel;
+void show(vec4 color) {
+  pixel = color;
+  if (!as_depth) return;
+  if (color.a < 1.0) discard;
+  uint depth = uint(min(gl_FragCoord.z, 1.0) * 16777215.0);
+  pixel = vec4(depth & 255u, depth >> 8u & 255u, depth >> 16u, 255u) / 255.0;
+}`;
+
+const kSurfaceFragment = /* glsl */ `
 in vec3 seen;
 in vec4 own;
 #ifdef NORMALS
 in vec3 seen_normal;
 #endif
-out vec4 pixel;
 void main() {
 #ifdef NORMALS
   vec3 normal = normalize(seen_normal);
@@ -55,7 +65,7 @@ void main() {
 #endif
   if (dot(normal, seen) > 0.0) normal = -normal;  // both sides are lit
   float lamp = max(dot(normal, normalize(vec3(-0.25, 0.45, 1.0))), 0.0);
-  pixel = vec4(own.rgb * (0.42 + 0.62 * lamp), own.a);
+  show(vec4(own.rgb * (0.42 + 0.62 * lamp), own.a));
 }`;
 
 const kSquareVertex = /* glsl */ `
@@ -102,10 +112,8 @@ void main() {
 }`;
 
 const kPlainFragment = /* glsl */ `
-precision mediump float;
 flat in vec4 own;
-out vec4 pixel;
-void main() { pixel = own; }`;
+void main() { show(own); }`;
 
 export interface LayerLook {
   shape: "surface" | "cubes" | "squares" | "lines";
@@ -116,13 +124,14 @@ export interface LayerLook {
   transparent: boolean;
 }
 
-/** What all layers' squares have in common. */
-export interface SquareUniforms {
+/** What all layers have in common; size and height are of squares. */
+export interface SharedUniforms {
+  as_depth: THREE.IUniform<boolean>;
   size: THREE.IUniform<number>;
   height: THREE.IUniform<number>;
 }
 
-export function layerMaterial(look: LayerLook, squares: SquareUniforms): THREE.RawShaderMaterial {
+export function layerMaterial(look: LayerLook, shared: SharedUniforms): THREE.RawShaderMaterial {
   const defines: Record<string, string> = {};
   if (look.colors) defines.COLORS = "";
   if (look.normals === true) defines.NORMALS = "";
@@ -131,8 +140,8 @@ export function layerMaterial(look: LayerLook, squares: SquareUniforms): THREE.R
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
     vertexShader: surface ? kSurfaceVertex : look.shape === "squares" ? kSquareVertex : kLineVertex,
-    fragmentShader: surface ? kSurfaceFragment : kPlainFragment,
-    uniforms: { plain: { value: look.plain }, size_m: { value: look.size_m }, ...squares },
+    fragmentShader: kPixel + (surface ? kSurfaceFragment : kPlainFragment),
+    uniforms: { plain: { value: look.plain }, size_m: { value: look.size_m }, ...shared },
     defines,
     side: look.shape === "surface" ? THREE.DoubleSide : THREE.FrontSide,
     transparent: look.transparent,

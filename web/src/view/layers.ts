@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import type { SceneCamera } from "./camera";
 import { Frusta } from "./frusta";
-import { type LayerLook, type SquareUniforms, layerMaterial } from "./layer_material";
+import { type LayerLook, type SharedUniforms, layerMaterial } from "./layer_material";
 import type { CameraFrame, LayerInfo, LayerPick, SceneLayers } from "./types";
 
 const kReach_px = 9;
@@ -18,7 +18,7 @@ interface Layer {
 
 export class Layers implements SceneLayers {
   readonly group = new THREE.Group();
-  readonly squares: SquareUniforms = { size: { value: 3 }, height: { value: 1 } };
+  readonly shared: SharedUniforms = { size: { value: 3 }, height: { value: 1 }, as_depth: { value: false } };
   private layers = new Map<string, Layer>();
   private frame: THREE.LineSegments | null = null;
 
@@ -128,7 +128,7 @@ export class Layers implements SceneLayers {
     const transparent = this.isTransparent(info);
     const colored = info.colors === true;
     const look = (shape: LayerLook["shape"], normals = false): THREE.RawShaderMaterial =>
-      layerMaterial({ shape, colors: colored, normals, plain, size_m: info.size_m ?? 0, transparent }, this.squares);
+      layerMaterial({ shape, colors: colored, normals, plain, size_m: info.size_m ?? 0, transparent }, this.shared);
     const layer = (object: THREE.Object3D, frusta: Frusta | null = null): Layer | null =>
       reader.short ? null : { info, object, frusta, selected: null };
 
@@ -177,7 +177,7 @@ export class Layers implements SceneLayers {
     geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
     if (colors !== null) geometry.setAttribute("color", new THREE.BufferAttribute(colors, 4, true));
     const look = { shape: "lines", colors: colors !== null, plain, size_m: 0, transparent } as const;
-    const object = new THREE.LineSegments(geometry, layerMaterial(look, this.squares));
+    const object = new THREE.LineSegments(geometry, layerMaterial(look, this.shared));
     object.frustumCulled = false;
     return object;
   }

@@ -4,6 +4,7 @@
 const kMoving_ms = 40;
 const kResting_ms = 85;
 const kLeast = 100_000;
+const kLeastResting = 400_000;
 const kMost = 1 << 25;
 
 export class Pacer {
@@ -16,7 +17,10 @@ export class Pacer {
 
   /** Of vertices `from` to `all`, the end of those to draw now. */
   upTo(from: number, all: number, moving: boolean): number {
-    const atOnce = Math.min(Math.max(this.perMs * (moving ? kMoving_ms : kResting_ms), kLeast), kMost);
+    const wanted = moving
+      ? Math.max(this.perMs * kMoving_ms, kLeast)
+      : Math.max(this.perMs * kResting_ms, kLeastResting);
+    const atOnce = Math.min(wanted, kMost);
     return all - from <= 1.25 * atOnce ? all : from + Math.floor(atOnce);
   }
 

@@ -64,10 +64,10 @@ void main() {
 #elif defined(TWO_SQUARES)
   // Where squares cover each other's middles, from afar, they are tinted instead.
   float covered = clamp(1.0 - spacing / (gl_Position.w * size), 0.0, 1.0);
-  outer = slot == 0u ? own : tinted(own, label.rgb, covered);
+  outer = slot == 0u || heat ? own : tinted(own, label.rgb, covered);
   inner = vec4(mix(label.rgb, outer, 0.8 * covered * covered), slot == 0u ? 0.0 : INNER);
 #else
-  outer = slot == 0u ? own : tinted(own, label.rgb, 1.0);
+  outer = slot == 0u || heat ? own : tinted(own, label.rgb, 1.0);
 #endif
   if (out_stands) outer = vec3(1.0, 0.84, 0.04);
 #endif

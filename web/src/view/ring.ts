@@ -29,6 +29,7 @@ const kSize_px = 38;
 
 export class Ring {
   readonly object: THREE.Points;
+  private placed = false;
   private uniforms = { size: { value: kSize_px }, ratio: { value: 1 } };
 
   constructor() {
@@ -50,11 +51,12 @@ export class Ring {
 
   /** In coordinates of the scene; null: nowhere. */
   set(place: readonly [number, number, number] | null): void {
-    this.object.visible = place !== null;
+    this.placed = place !== null;
     if (place !== null) this.object.position.set(...place);
   }
 
   draw(ratio: number): void {
+    this.object.visible = this.placed;
     this.uniforms.ratio.value = ratio;
     this.uniforms.size.value = kSize_px * ratio;
   }

@@ -61,8 +61,8 @@ class SceneViewer implements Viewer {
     this.controls = new Controls(this.element, this.camera, (x, y) => this.under(x, y), () => this.moved());
     this.resized = new ResizeObserver(() => this.resize());
     this.resized.observe(this.element);
+    this.watchRatio();
     this.setTheme(matchMedia("(prefers-color-scheme: dark)").matches);
-    this.resize();
     this.camera.fit();
   }
 
@@ -138,6 +138,13 @@ class SceneViewer implements Viewer {
     return [width, height];
   }
 
+  /** Another screen may have other pixels. */
+  private watchRatio(): void {
+    if (this.disposed) return;
+    this.resize();
+    matchMedia(`(resolution: ${window.devicePixelRatio}dppx)`).addEventListener("change", () => this.watchRatio(), { once: true });
+  }
+
   private resize(): void {
     const width = Math.max(1, Math.min(8192, Math.round(this.element.clientWidth * this.ratio)));
     const height = Math.max(1, Math.min(8192, Math.round(this.element.clientHeight * this.ratio)));
@@ -180,8 +187,8 @@ class SceneViewer implements Viewer {
       this.camera.update();
     }
     const size = this.size();
-    this.layers.squares.height.value = size[1];
-    this.layers.squares.size.value = cloud.size_px(this.ratio);
+    this.layers.shared.height.value = size[1];
+    this.layers.shared.size.value = cloud.size_px(this.ratio);
     this.layers.group.visible = anew;
     cloud.draw(this.drawn, to, size, this.ratio);
     if (clear) this.renderer.clear();
@@ -213,6 +220,26 @@ class SceneViewer implements Viewer {
       this.cloud.treeReady || this.cloud.vertices > kQuickPick
         ? (this.hover(x, y) ?? this.cloud.hover(...this.toPicture(x, y), this.size(), this.ratio, kReach_px))
         : this.pick(x, y);
-    return found === null ? null : new THREE.Vector3(...found.position).sub(this.camera.origin);
+    const point = found === null ? null : new THREE.Vector3(...found.position).sub(this.camera.origin);
+    const surface = this.layers.any ? this.layerUnder(x, y) : null;
+    if (point === null || surface === null) return point ?? surface;
+    const { position } = this.camera.camera;
+    return position.distanceTo(point) < position.distanceTo(surface) ? point : surface;
+  }
+
+  /** The place on a layer. */
+  private layerUnder(x: number, y: number): THREE.Vector3 | null {
+    const size = this.size();
+    const [px, py] = this.toPicture(x, y).map(Math.floor) as [number, number];
+    this.camera.update();
+    this.layers.shared.as_depth.value = true;
+    this.cloud.hide();
+    const [a, b, c, seen] = this.probe.read(this.scene, this.camera.camera, px, py, size) as unknown as number[];
+    this.layers.shared.as_depth.value = false;
+    this.layers.group.visible = true;
+    if (seen === 0) return null;
+    const depth = (a! + 256 * b! + 65536 * c!) / 16777215;
+    const place = new THREE.Vector3((2 * (px + 0.5)) / size[0] - 1, 1 - (2 * (py + 0.5)) / size[1], 2 * depth - 1);
+    return place.unproject(this.camera.camera);
   }
 }
