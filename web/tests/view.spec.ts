@@ -300,6 +300,7 @@ test("layers of every kind", async ({ page }) => {
     added.push(viewer.layers.add({ id: "short", kind: "lines", count: 10 }, Float32Array.from(rays).buffer));
     viewer.camera.fit();
     viewer.layers.select("views", 6);
+    viewer.setFrame({ poseRows: [[1, 0, 0, 0.6], [0, 0, 1, -1.3], [0, -1, 0, 0.2], [0, 0, 0, 1]], fov_rad: [0.9, 0.7] });
     // Every tip is found where it is seen.
     const { clip_world: c, size } = viewer.picture();
     const found = gains.map((_, i) => {

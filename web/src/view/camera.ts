@@ -15,6 +15,8 @@ export class SceneCamera implements Camera {
   readonly up = new THREE.Vector3(0, 0, 1);
   /** What the camera turns around. */
   readonly pivot = new THREE.Vector3();
+  /** There may be things outside of `box`. */
+  loose = false;
   private flight = 0;
 
   constructor(private changed: () => void) {}
@@ -121,7 +123,7 @@ export class SceneCamera implements Camera {
       near = Math.min(near, depth);
       far = Math.max(far, depth);
     }
-    const slack = 0.02 * this.radius_m;
+    const slack = (this.loose ? 3 : 0.02) * this.radius_m;
     camera.far = Math.max(far + slack, 0.1 * this.radius_m);
     camera.near = Math.max(near - slack, 1e-4 * camera.far, 1e-5 * this.radius_m);
     camera.updateProjectionMatrix();

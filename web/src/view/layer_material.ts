@@ -80,7 +80,7 @@ in vec3 position;
 #ifdef COLORS
 in vec4 color;
 #endif
-flat out vec4 own;
+out vec4 own;
 void main() {
   gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
   float px_per_m = 0.5 * height * projectionMatrix[1][1] / max(gl_Position.w, 1e-9);
@@ -92,19 +92,36 @@ void main() {
 #endif
 }`;
 
+// A line is a strip as wide as on the screen; what is behind the camera is cut off.
 const kLineVertex = /* glsl */ `
 precision highp float;
 uniform mat4 projectionMatrix;
 uniform mat4 modelViewMatrix;
 uniform vec4 plain;
-in vec3 position;
+uniform vec2 picture;    // px
+uniform float width;     // px
+in vec3 position;        // x: 0 at its beginning, 1 at its end; y: the side
+in vec3 begin;
+in vec3 end;
 #ifdef COLORS
-in vec4 color;
+in vec4 begin_color;
+in vec4 end_color;
 #endif
-flat out vec4 own;
+out vec4 own;
 void main() {
-  gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
+  vec4 a = modelViewMatrix * vec4(begin, 1.0);
+  vec4 b = modelViewMatrix * vec4(end, 1.0);
+  float cut = -1.001 * projectionMatrix[3][2] / (projectionMatrix[2][2] - 1.0);
+  if (a.z > cut && b.z < cut) a = mix(b, a, (cut - b.z) / (a.z - b.z));
+  else if (b.z > cut && a.z < cut) b = mix(a, b, (cut - a.z) / (b.z - a.z));
+  a = projectionMatrix * a;
+  b = projectionMatrix * b;
+  vec2 along = (b.xy / b.w - a.xy / a.w) * picture;
+  vec2 side = vec2(-along.y, along.x) / max(length(along), 1e-6);
+  gl_Position = position.x < 0.5 ? a : b;
+  gl_Position.xy += position.y * side * width / picture * gl_Position.w;
 #ifdef COLORS
+  vec4 color = position.x < 0.5 ? begin_color : end_color;
   own = vec4(color.rgb, color.a * plain.a);
 #else
   own = plain;
@@ -112,7 +129,7 @@ void main() {
 }`;
 
 const kPlainFragment = /* glsl */ `
-flat in vec4 own;
+in vec4 own;
 void main() { show(own); }`;
 
 export interface LayerLook {
@@ -124,11 +141,13 @@ export interface LayerLook {
   transparent: boolean;
 }
 
-/** What all layers have in common; size and height are of squares. */
+/** What all layers have in common; in pixels of the picture. */
 export interface SharedUniforms {
   as_depth: THREE.IUniform<boolean>;
-  size: THREE.IUniform<number>;
+  size: THREE.IUniform<number>; // of squares
   height: THREE.IUniform<number>;
+  picture: THREE.IUniform<THREE.Vector2>;
+  width: THREE.IUniform<number>; // of lines
 }
 
 export function layerMaterial(look: LayerLook, shared: SharedUniforms): THREE.RawShaderMaterial {
@@ -143,7 +162,7 @@ export function layerMaterial(look: LayerLook, shared: SharedUniforms): THREE.Ra
     fragmentShader: kPixel + (surface ? kSurfaceFragment : kPlainFragment),
     uniforms: { plain: { value: look.plain }, size_m: { value: look.size_m }, ...shared },
     defines,
-    side: look.shape === "surface" ? THREE.DoubleSide : THREE.FrontSide,
+    side: look.shape === "cubes" ? THREE.FrontSide : THREE.DoubleSide,
     transparent: look.transparent,
     depthWrite: !look.transparent,
   });

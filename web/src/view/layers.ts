@@ -18,9 +18,15 @@ interface Layer {
 
 export class Layers implements SceneLayers {
   readonly group = new THREE.Group();
-  readonly shared: SharedUniforms = { size: { value: 3 }, height: { value: 1 }, as_depth: { value: false } };
+  readonly shared: SharedUniforms = {
+    size: { value: 3 },
+    height: { value: 1 },
+    picture: { value: new THREE.Vector2(1, 1) },
+    width: { value: 1.5 },
+    as_depth: { value: false },
+  };
   private layers = new Map<string, Layer>();
-  private frame: THREE.LineSegments | null = null;
+  private frame: THREE.Mesh | null = null;
 
   constructor(
     private view: SceneCamera,
@@ -36,6 +42,7 @@ export class Layers implements SceneLayers {
     made.object.renderOrder = this.isTransparent(info) ? 1 : 0;
     made.object.traverse((object) => (object.frustumCulled = false));
     this.layers.set(info.id, made);
+    this.view.loose = true;
     this.group.add(made.object);
     this.changed();
     return true;
@@ -76,7 +83,7 @@ export class Layers implements SceneLayers {
     const known = item !== null && item >= 0 && item < layer.frusta.count;
     if (known) layer.frusta.paint(item, true);
     layer.selected = known ? item : null;
-    (layer.object as THREE.LineSegments).geometry.getAttribute("color").needsUpdate = true;
+    (layer.object as THREE.Mesh).geometry.getAttribute("begin_color").needsUpdate = true;
     this.changed();
   }
 
@@ -108,6 +115,7 @@ export class Layers implements SceneLayers {
       frusta.paint(0, true);
       this.frame = this.lines(frusta.positions, frusta.colors, new THREE.Vector4(1, 1, 1, 1), false);
       this.group.add(this.frame);
+      this.view.loose = true;
     }
     this.changed();
   }
@@ -173,11 +181,20 @@ export class Layers implements SceneLayers {
   }
 
   private lines(places: Float32Array, colors: Uint8Array | null, plain: THREE.Vector4, transparent: boolean) {
-    const geometry = new THREE.BufferGeometry();
-    geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
-    if (colors !== null) geometry.setAttribute("color", new THREE.BufferAttribute(colors, 4, true));
+    const geometry = new THREE.InstancedBufferGeometry();
+    geometry.setIndex([0, 1, 2, 2, 1, 3]);
+    geometry.setAttribute("position", new THREE.Float32BufferAttribute([0, -1, 0, 0, 1, 0, 1, -1, 0, 1, 1, 0], 3));
+    const ends = new THREE.InstancedInterleavedBuffer(places, 6);
+    geometry.setAttribute("begin", new THREE.InterleavedBufferAttribute(ends, 3, 0));
+    geometry.setAttribute("end", new THREE.InterleavedBufferAttribute(ends, 3, 3));
+    if (colors !== null) {
+      const both = new THREE.InstancedInterleavedBuffer(colors, 8);
+      geometry.setAttribute("begin_color", new THREE.InterleavedBufferAttribute(both, 4, 0, true));
+      geometry.setAttribute("end_color", new THREE.InterleavedBufferAttribute(both, 4, 4, true));
+    }
+    geometry.instanceCount = places.length / 6;
     const look = { shape: "lines", colors: colors !== null, plain, size_m: 0, transparent } as const;
-    const object = new THREE.LineSegments(geometry, layerMaterial(look, this.shared));
+    const object = new THREE.Mesh(geometry, layerMaterial(look, this.shared));
     object.frustumCulled = false;
     return object;
   }

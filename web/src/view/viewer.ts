@@ -12,6 +12,7 @@ import type { CameraFrame, Pick, PointerTool, SelectionPicture, Viewer } from ".
 const kMoving_ms = 180; // since the camera moved last
 const kReach_px = 5; // that the camera turns around a point, from the cursor
 const kQuickPick = 1_000_000; // points that can be drawn for the camera's sake alone
+const kLine_px = 1.75;
 const kLight = 0xeceef2;
 const kDark = 0x24272d;
 
@@ -187,8 +188,11 @@ class SceneViewer implements Viewer {
       this.camera.update();
     }
     const size = this.size();
-    this.layers.shared.height.value = size[1];
-    this.layers.shared.size.value = cloud.size_px(this.ratio);
+    const { shared } = this.layers;
+    shared.height.value = size[1];
+    shared.picture.value.set(...size);
+    shared.width.value = kLine_px * this.ratio;
+    shared.size.value = cloud.size_px(this.ratio);
     this.layers.group.visible = anew;
     cloud.draw(this.drawn, to, size, this.ratio);
     if (clear) this.renderer.clear();
