@@ -13,7 +13,7 @@ const scope = self as unknown as Scope;
 scope.onmessage = (event) => {
   const geometry = new BufferGeometry();
   geometry.setAttribute("position", new BufferAttribute(event.data.positions, 3));
-  const tree = new PointsBVH(geometry, { indirect: true, maxLeafSize: 32 } as object) as unknown as TreeParts;
+  const tree = new PointsBVH(geometry, { indirect: true, targetLeafSize: 32 } as object) as unknown as TreeParts;
   const built = { job: event.data.job, roots: tree._roots, order: tree._indirectBuffer };
   scope.postMessage(built, [...built.roots, built.order.buffer as ArrayBuffer]);
 };

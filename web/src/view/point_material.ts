@@ -41,7 +41,7 @@ vec3 heated(vec3 own, float doubt) {
 
 vec3 tinted(vec3 own, vec3 label, float much) {
   float light = 0.4 + 0.85 * dot(own, vec3(0.3, 0.59, 0.11));
-  return mix(own, min(label * light, 1.0), 0.72 * min(1.7 * much, 1.0));
+  return mix(own, min(label * light, 1.0), 0.62 * min(1.7 * much, 1.0));
 }
 
 void main() {
