@@ -30,9 +30,12 @@ export class HoverTree {
   /** Begins to build; what there was stays until it is done. */
   build(positions: Float32Array, done: () => void): void {
     const job = ++this.job;
-    this.worker ??= new Worker(new URL("./hover.worker.ts", import.meta.url), { type: "module" });
+    this.worker?.terminate();
+    this.worker = new Worker(new URL("./hover.worker.ts", import.meta.url), { type: "module" });
     this.worker.onmessage = (event: MessageEvent<BuiltTree>) => {
       if (event.data.job !== this.job) return;
+      this.worker?.terminate(); // its memory is large
+      this.worker = null;
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.BufferAttribute(positions.subarray(0, 3), 3));
       const tree = new PointsBVH(geometry, { indirect: true } as object); // of one point, until it is given the parts
