@@ -1,5 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page: takes the token out of the address, asks the program what it is for, and becomes that.
-import "./ui/theme.css";
+import { Connection, ownClient } from "./connection";
+import { fill, h } from "./ui/dom";
+import "./ui/style";
 
-document.querySelector<HTMLDivElement>("#app")!.textContent = "Saccade";
+const app = document.querySelector<HTMLDivElement>("#app")!;
+
+function say(title: string, text: string): void {
+  fill(app, h("div", { class: "notice", role: "status" }, h("h1", {}, title), h("p", {}, text)));
+}
+
+async function main(): Promise<void> {
+  const address = new URL(location.href);
+  if (address.searchParams.has("token")) {
+    address.searchParams.delete("token");
+    history.replaceState(null, "", address);
+  }
+  const patience = window.setTimeout(() => say("Connecting …", "The program has not answered yet."), 800);
+  const connection = new Connection(await ownClient());
+  const stop = connection.watch((state) => {
+    if (state !== "closed") return;
+    clearTimeout(patience);
+    say("The program does not let this page in", "Open the address that it printed when it was started.");
+  });
+  const hello = await connection.start();
+  clearTimeout(patience);
+  stop();
+  document.title = hello.title ? `${hello.title} · Saccade` : "Saccade";
+  if (hello.mode === "annotate") (await import("./annotate/annotate")).startAnnotate(connection, hello, app);
+  else say("Nothing to show", `This page does not know the mode "${hello.mode}" of the program.`);
+}
+
+void main();

@@ -1,0 +1,142 @@
+// SPDX-License-Identifier: Apache-2.0
+// The annotation tool: puts its parts together.
+import type { Connection, Hello } from "../connection";
+import { fill, h } from "../ui/dom";
+import { ProgressCard } from "../ui/progress";
+import { isBoolean, isNumber, oneOf, recall, remember } from "../ui/settings";
+import { Shortcuts } from "../ui/shortcuts";
+import { ThemeSwitch } from "../ui/theme";
+import type { Viewer } from "../view/types";
+import { createViewer } from "../view/viewer";
+import "./annotate.css";
+import { makeBar } from "./bar";
+import { controlSection } from "./control_list";
+import { Edits } from "./edits";
+import { Files } from "./files";
+import { Guidance } from "./guidance";
+import { isFlightKey, shortcutsOf } from "./keys";
+import { labelSection } from "./label_section";
+import { Pointer } from "./pointer";
+import { Session } from "./session";
+import { hiddenNote, showSection, viewBar } from "./show_section";
+import { type CloudEntry, type State, Store } from "./store";
+import { actionSection, kMaxBelow_mm, kMaxBrush, toolSection } from "./tool_section";
+
+export function startAnnotate(connection: Connection, hello: Hello, app: HTMLElement): void {
+  const store = new Store(firstState(hello));
+  const view = h("div", { class: "stage-view" });
+  const panel = h("aside", { class: "panel", "aria-label": "Tools and labels" });
+  const stage = h("main", { class: "stage" }, view);
+  const page = h("div", { class: "page" });
+
+  const viewer = createViewer(view);
+  viewer.element.tabIndex = 0;
+  viewer.element.setAttribute("role", "application");
+  viewer.element.setAttribute("aria-label", "Cloud");
+  const session = new Session(connection, store, viewer);
+  const edits = new Edits(store, session, viewer);
+  const pointer = new Pointer(viewer, store, edits);
+  const files = new Files(store, session);
+  const guidance = new Guidance(store, session, viewer);
+  const shortcuts = new Shortcuts();
+  const theme = new ThemeSwitch((dark) => viewer.setTheme(dark));
+  const foldPanel = () => {
+    remember("folded", page.classList.toggle("folded"));
+  };
+  page.classList.toggle("folded", recall("folded", false, isBoolean));
+  shortcuts.taken = (key) => store.state.navigation === "fly" && isFlightKey(key);
+  shortcuts.add(...shortcutsOf({ store, edits, files, guidance, pointer, viewer, foldPanel, showHelp: () => shortcuts.showHelp() }));
+
+  fill(
+    panel,
+    actionSection(store),
+    toolSection(store),
+    showSection(store),
+    labelSection(store, edits),
+    controlSection(store, edits, viewer),
+    guidance.section(),
+  );
+  stage.append(pointer.overlay.element, pointer.overlay.hint, viewBar(store, viewer), hiddenNote(store), pointer.readout);
+  stage.append(progressOf(store), failureOf(store));
+  fill(page, makeBar({ store, edits, files, shortcuts, theme, foldPanel }), panel, stage);
+  fill(app, page);
+
+  followView(store, viewer);
+  session.onChange(() => pointer.renew());
+  keepSettings(store);
+  window.addEventListener("beforeunload", (event) => {
+    if (store.state.pending > 0) event.preventDefault();
+  });
+  void session.open(Number(hello["current"]) || 0);
+}
+
+function firstState(hello: Hello): State {
+  return {
+    connection: "connected",
+    readOnly: null,
+    clouds: (hello["clouds"] as CloudEntry[] | undefined) ?? [],
+    cloud: null,
+    failure: null,
+    progress: null,
+    pending: 0,
+    people: 1,
+    canUndo: false,
+    canRedo: false,
+    labels: new Map(),
+    controls: new Map(),
+    action: "none",
+    tool: "point",
+    depth: recall("depth", "surface", oneOf("surface", "below", "deep")),
+    below_mm: Math.min(kMaxBelow_mm, recall("below_mm", 20, isNumber)),
+    brush: Math.min(kMaxBrush, recall("brush", 20, isNumber)),
+    brushUnit: recall("brushUnit", "px", oneOf("px", "mm")),
+    wholeTree: recall("wholeTree", true, isBoolean),
+    removal: recall("removal", "control", oneOf("control", "trees", "paint")),
+    label: 1,
+    startCost: 0,
+    selected: null,
+    show: { cloud: true, labels: true, controls: true },
+    hidden: new Set(),
+    margins: false,
+    navigation: recall("navigation", "orbit", oneOf("orbit", "fly")),
+    pointSize: recall("pointSize", 4, isNumber),
+    labelList: recall("labelList", false, isBoolean),
+  };
+}
+
+function keepSettings(store: Store): void {
+  const kept = ["depth", "below_mm", "brush", "brushUnit", "wholeTree", "removal", "navigation", "pointSize", "labelList"] as const;
+  for (const key of kept) store.watch([key], (state) => remember(key, state[key]));
+}
+
+/** The view shows what the state says. */
+function followView(store: Store, viewer: Viewer): void {
+  store.watch(["show"], ({ show }) => viewer.cloud.show(show));
+  store.watch(["pointSize"], ({ pointSize }) => void (viewer.cloud.pointSize = pointSize));
+  let hidden: ReadonlySet<number> = new Set();
+  store.watch(["hidden"], (state) => {
+    for (const label of hidden) if (!state.hidden.has(label)) viewer.cloud.setLabelVisible(label, true);
+    for (const label of state.hidden) if (!hidden.has(label)) viewer.cloud.setLabelVisible(label, false);
+    hidden = state.hidden;
+  });
+}
+
+function progressOf(store: Store): HTMLElement {
+  const card = new ProgressCard();
+  store.watch(["progress"], ({ progress }) => {
+    if (!progress) return card.hide();
+    const stage = progress.stage.charAt(0).toUpperCase() + progress.stage.slice(1);
+    card.show(stage, progress.done, progress.total, progress.stage === "Loading points");
+  });
+  return card.element;
+}
+
+function failureOf(store: Store): HTMLElement {
+  const text = h("p");
+  const element = h("div", { class: "notice failure", role: "alert" }, h("h1", {}, "This cloud cannot be opened"), text);
+  store.watch(["failure"], ({ failure }) => {
+    element.hidden = failure === null;
+    text.textContent = failure;
+  });
+  return element;
+}

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: Apache-2.0
+// The bar above: which cloud, undo and redo, files, how things stand.
+import { iconButton, menuButton, textButton } from "../ui/controls";
+import { h, on } from "../ui/dom";
+import { icon } from "../ui/icons";
+import type { Shortcuts } from "../ui/shortcuts";
+import type { ThemeSwitch } from "../ui/theme";
+import type { Edits } from "./edits";
+import type { Files } from "./files";
+import type { State, Store } from "./store";
+
+interface Parts {
+  store: Store;
+  edits: Edits;
+  files: Files;
+  shortcuts: Shortcuts;
+  theme: ThemeSwitch;
+  foldPanel: () => void;
+}
+
+export function makeBar({ store, edits, files, shortcuts, theme, foldPanel }: Parts): HTMLElement {
+  const undo = iconButton("undo", "Undo (Ctrl+Z)", () => edits.undo());
+  const redo = iconButton("redo", "Redo (Ctrl+Shift+Z)", () => edits.redo());
+  const save = textButton("Save", () => void files.save(), { icon: "save", title: "Writes the labels beside the cloud (Ctrl+S)" });
+  const exportButton = textButton("Export", () => undefined, { icon: "download", title: "The labels as a file of this browser (Ctrl+E)" });
+  exportButton.dataset["command"] = "export";
+  const more = iconButton("more", "More", () => undefined);
+  const moreMenu = menuButton(more, "More", () => [
+    { text: "New annotation …", icon: "create", choose: () => void files.beginAnew() },
+    { text: "Clear all labels", icon: "clear", choose: () => void edits.clear() },
+  ]);
+  const writing = [undo, redo, save, exportButton, more];
+  store.watch(["canUndo", "canRedo", "cloud", "readOnly", "pending"], (state) => {
+    for (const button of writing) button.disabled = state.cloud === null;
+    undo.disabled = !state.cloud || state.readOnly !== null || (!state.canUndo && state.pending === 0);
+    redo.disabled = !state.cloud || state.readOnly !== null || !state.canRedo;
+  });
+  undo.setAttribute("aria-label", "Undo");
+  redo.setAttribute("aria-label", "Redo");
+  return h(
+    "header",
+    { class: "bar" },
+    iconButton("panel", "Panel (\\)", foldPanel),
+    cloudPart(store, files),
+    h("div", { class: "bar-group" }, undo, redo),
+    h("div", { class: "bar-group" }, save, menuButton(exportButton, "Export as", () => files.exports()), moreMenu),
+    h("div", { class: "bar-group push" }, people(store), status(store)),
+    h("div", { class: "bar-group" }, theme.button, iconButton("help", "Keyboard and mouse (?)", () => shortcuts.showHelp())),
+  );
+}
+
+function cloudPart(store: Store, files: Files): HTMLElement {
+  const name = h("span", { class: "cloud-name" });
+  const open = h("button", { type: "button", class: "button cloud-button", title: "Open another cloud (Ctrl+O)", "aria-label": "Open" }, icon("folder"), name);
+  on(open, { click: () => files.open() });
+  const previous = iconButton("previous", "Previous cloud (Shift+PageUp)", () => files.step(-1));
+  const next = iconButton("next", "Next cloud (Shift+PageDown)", () => files.step(1));
+  previous.setAttribute("aria-label", "Previous cloud");
+  next.setAttribute("aria-label", "Next cloud");
+  const place = h("span", { class: "soft number wide-only" });
+  const steps = h("div", { class: "bar-group" }, previous, place, next);
+  store.watch(["cloud", "clouds"], ({ cloud, clouds }) => {
+    name.textContent = cloud?.name ?? "";
+    open.setAttribute("aria-label", `Open. ${cloud ? `Now: ${cloud.name}` : "No cloud"}`);
+    steps.hidden = clouds.length < 2;
+    const index = cloud?.index ?? 0;
+    place.textContent = `${index + 1} / ${clouds.length}`;
+    previous.disabled = index <= 0;
+    next.disabled = index >= clouds.length - 1;
+    if (cloud) document.title = `${cloud.name} · Saccade`;
+  });
+  return h("div", { class: "bar-group cloud-part" }, open, steps);
+}
+
+function people(store: Store): HTMLElement {
+  const count = h("span", { class: "number" });
+  const element = h("span", { class: "people", role: "status" }, icon("people"), count);
+  store.watch(["people"], (state) => {
+    element.hidden = state.people < 2;
+    count.textContent = String(state.people);
+    element.title = `${state.people} pages have this cloud open`;
+    element.setAttribute("aria-label", element.title);
+  });
+  return element;
+}
+
+function status(store: Store): HTMLElement {
+  const element = h("span", { class: "status", role: "status", "data-testid": "status" });
+  store.watch(["connection", "readOnly", "pending", "cloud"], (state) => {
+    const [kind, text, title] = statusOf(state);
+    element.dataset["state"] = kind;
+    element.textContent = text;
+    element.title = title;
+  });
+  return element;
+}
+
+function statusOf(state: Readonly<State>): [kind: "good" | "busy" | "bad", text: string, title: string] {
+  if (state.connection === "closed") return ["bad", "Closed", "The program does not let this page in any more. Open the address that it prints."];
+  if (state.connection !== "connected") {
+    const waiting = state.pending > 0 ? ` · ${state.pending} to write` : "";
+    return ["busy", `Reconnecting …${waiting}`, "The program cannot be reached. What is not written yet is sent when it is back."];
+  }
+  if (state.readOnly !== null) return ["bad", "Read only", state.readOnly];
+  if (state.pending > 0) return ["busy", "Writing …", "Actions are on their way to the disk"];
+  return ["good", "All on disk", "Every action is on the disk; nothing is lost when the page or the program ends"];
+}

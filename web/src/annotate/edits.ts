@@ -1,0 +1,106 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the tools do: the actions that a click or an area means with the state as it is.
+import { toast } from "../ui/toast";
+import type { Pick, Viewer } from "../view/types";
+import type { Session } from "./session";
+import { type State, type Store, rowOf } from "./store";
+
+/** Of an area, in the words of an action: rectangle, lasso, polyline or brush. */
+export type Shape = Record<string, unknown>;
+
+export class Edits {
+  constructor(
+    readonly store: Store,
+    readonly session: Session,
+    private readonly viewer: Viewer,
+  ) {}
+
+  click(pick: Pick): void {
+    const { action } = this.store.state;
+    if (action === "set") this.set(pick.point);
+    else if (action === "remove") void this.removeAt(pick);
+    else if (action === "pick") this.pickLabel(pick);
+  }
+
+  set(point: number): void {
+    const { label, startCost } = this.store.state;
+    void this.session.act({ do: "set", label, points: [point], ...(startCost > 0 ? { start_cost: startCost } : {}) });
+  }
+
+  move(from: number, to: number): void {
+    if (from !== to) void this.session.act({ do: "move", from, to });
+  }
+
+  pickLabel(pick: Pick): void {
+    const label = this.store.state.controls.get(pick.control ? pick.point : -1)?.label ?? this.viewer.cloud.labelOf(pick.point);
+    if (label === 0) toast("This point has no label.");
+    else this.store.set({ label });
+  }
+
+  removeControl(point: number): void {
+    void this.session.act({ do: "remove", points: [point] });
+  }
+
+  private async removeAt(pick: Pick): Promise<void> {
+    const { controls, wholeTree } = this.store.state;
+    if (controls.has(pick.point)) return this.removeControl(pick.point);
+    if (!wholeTree) {
+      toast("There is no control point. Click its sphere, or choose “Anywhere in its tree”.");
+      return;
+    }
+    const root = await this.session.ask({ type: "root", point: pick.point });
+    if (!root) return;
+    if (root.head["painted"]) {
+      toast("This point is painted. Paint comes off with Del, an area tool and “Paint”.");
+    } else if (root.head["control_point"] === null || root.head["control_point"] === undefined) {
+      toast("No control point reaches this point.");
+    } else {
+      void this.session.act({ do: "remove", points: [pick.point] }, { trees: true });
+    }
+  }
+
+  /** Set paints what is in the area; Del takes away control points or paint. */
+  async area(shape: Shape): Promise<void> {
+    const state = this.store.state;
+    const selection = { ...shape, ...depthOf(state, shape), view: this.viewer.picture() };
+    const hidden = state.hidden.size > 0 ? { hidden: [...state.hidden] } : {};
+    if (state.action === "set") {
+      await this.session.act({ do: "paint", label: state.label, ...selection }, hidden);
+    } else if (state.action === "remove" && state.removal === "paint") {
+      await this.session.act({ do: "paint", label: 0, ...selection }, hidden);
+    } else if (state.action === "remove") {
+      await this.session.act({ do: "remove", ...selection }, { ...hidden, ...(state.removal === "trees" ? { trees: true } : {}) });
+    }
+  }
+
+  undo(): void {
+    if (this.store.state.canUndo || this.store.state.pending > 0) void this.session.act({ do: "undo" });
+  }
+
+  redo(): void {
+    if (this.store.state.canRedo || this.store.state.pending > 0) void this.session.act({ do: "redo" });
+  }
+
+  async clear(): Promise<void> {
+    const result = await this.session.act({ do: "clear" });
+    if (result?.done) toast("All labels are gone from the cloud.", { button: { text: "Undo", click: () => this.undo() } });
+  }
+
+  /** Changes what is known of a label. */
+  define(number: number, change: Partial<{ name: string; class: string; instance: number; color: string }>): void {
+    const { name, class: kind, instance, color } = rowOf(this.store.state, number);
+    void this.session.act({ do: "labels", labels: [{ number, name, class: kind, instance, color, ...change }] });
+  }
+
+  changeReach(point: number, startCost: number): void {
+    const control = this.store.state.controls.get(point);
+    if (control) void this.session.act({ do: "set", label: control.label, points: [point], start_cost: startCost });
+  }
+}
+
+function depthOf(state: Readonly<State>, shape: Shape): { below_m?: number | "any" } {
+  const brush = shape["brush"] as Record<string, unknown> | undefined;
+  if (brush && "radius_m" in brush) return {};
+  if (state.depth === "deep") return { below_m: "any" };
+  return state.depth === "below" ? { below_m: state.below_mm / 1000 } : {};
+}

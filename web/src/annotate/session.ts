@@ -1,0 +1,288 @@
+// SPDX-License-Identifier: Apache-2.0
+// The cloud that is open: brings it here, keeps it as the program has it, and sends actions.
+import { type Connection, Disconnected } from "../connection";
+import type { ControlPoint, LabelRow, Message } from "../protocol";
+import { Refusal } from "../protocol";
+import { toast } from "../ui/toast";
+import type { Viewer } from "../view/types";
+import { type ActionObject, ActionQueue, type ActionResult } from "./action_queue";
+import { toRgb } from "./label_colors";
+import { type OpenCloud, type Store, isEmpty } from "./store";
+
+const kFirstChunk = 65_536; // something to see soon
+const kChunk = 262_144;
+const kInFlight = 3;
+const kControlBytes = 12;
+
+/** Points that this page holds: about 100 bytes each, on both sides of the graphics driver. */
+export function pointBudget(): number {
+  const memory_gb = (navigator as Navigator & { deviceMemory?: number }).deviceMemory ?? 8;
+  return memory_gb >= 8 ? 4_000_000 : memory_gb >= 4 ? 2_000_000 : 1_000_000;
+}
+
+export class Session {
+  readonly queue: ActionQueue;
+  private opening = 0; // counts up: an older one gives up
+  private wanted = 0; // the cloud that is open, or will be
+  private sequence = -1;
+  private complete = false; // all points are here
+  private readonly changeListeners: (() => void)[] = [];
+
+  constructor(
+    readonly connection: Connection,
+    private readonly store: Store,
+    private readonly viewer: Viewer,
+  ) {
+    this.queue = new ActionQueue(connection, (pending, answer) => {
+      store.set({ pending });
+      if (answer) this.takeUndo(answer);
+    });
+    connection.on("changes", (message) => this.takeChanges(message));
+    connection.on("progress", ({ head }) => {
+      if (this.complete) return;
+      const number = (key: string) => (typeof head[key] === "number" ? head[key] : 0);
+      store.set({ progress: { stage: String(head["stage"]), done: number("done"), total: number("total") } });
+    });
+    connection.on("people", ({ head }) => store.set({ people: Number(head["count"]) || 1 }));
+    connection.on("read_only", ({ head }) => store.set({ readOnly: String(head["why"]) }));
+    connection.on("reset", () => {
+      toast("This annotation was begun anew.");
+      this.queue.drop();
+      void this.open(this.wanted);
+    });
+    connection.watch((state) => {
+      store.set({ connection: state });
+      if (state !== "connected") this.queue.pause();
+      else if (this.opening > 0) void this.open(this.wanted);
+    });
+  }
+
+  /** After every change of labels, and when a cloud was opened. */
+  onChange(listener: () => void): void {
+    this.changeListeners.push(listener);
+  }
+
+  /** @return null where it was refused, which is said. */
+  async act(action: ActionObject, options: Record<string, unknown> = {}): Promise<ActionResult | null> {
+    if (this.store.state.readOnly) {
+      toast(`Nothing can be changed: ${this.store.state.readOnly}`, { kind: "error" });
+      return null;
+    }
+    try {
+      return await this.queue.submit(action, options);
+    } catch (error) {
+      toast(textOf(error), { kind: "error" });
+      return null;
+    }
+  }
+
+  /** A question whose refusal is said. */
+  async ask(question: Record<string, unknown> & { type: string }): Promise<Message | null> {
+    try {
+      return await this.connection.ask(question);
+    } catch (error) {
+      toast(error instanceof Disconnected ? "The program cannot be reached at the moment." : textOf(error), { kind: "error" });
+      return null;
+    }
+  }
+
+  /** Another cloud of the folder. */
+  async change(index: number): Promise<void> {
+    if (index === this.store.state.cloud?.index || index < 0 || index >= this.store.state.clouds.length) return;
+    this.queue.drop();
+    await this.open(index);
+  }
+
+  /** Opens a cloud, or the same again: then only what differs is brought. */
+  async open(index: number): Promise<void> {
+    const mine = ++this.opening;
+    this.wanted = index;
+    this.queue.pause();
+    const name = this.store.state.clouds[index]?.name ?? "";
+    if (index !== this.store.state.cloud?.index) this.complete = false;
+    if (!this.complete) this.store.set({ failure: null, progress: { stage: `Opening ${name}`, done: 0, total: 0 } });
+    await this.load(mine, () => this.connection.ask({ type: "open", cloud: index, budget: pointBudget() }));
+  }
+
+  /** An empty annotation of the same cloud; the earlier one stays beside it. */
+  async beginAnew(): Promise<void> {
+    const mine = ++this.opening;
+    this.queue.drop();
+    this.complete = false;
+    let kept = "";
+    await this.load(mine, async () => {
+      const answer = await this.connection.ask({ type: "new" });
+      kept = String(answer.head["kept"] ?? "");
+      return answer;
+    });
+    if (kept) toast(`A new annotation has begun. The earlier one is kept as ${kept}.`);
+  }
+
+  private async load(mine: number, ask: () => Promise<Message>): Promise<void> {
+    try {
+      const answer = await ask();
+      if (mine !== this.opening) return;
+      const kept = this.takeOpen(answer);
+      this.queue.opened(Number(answer.head["client_actions"]) || 0);
+      if (!kept) await this.bringPoints(mine, this.store.state.cloud!.shown);
+      if (mine !== this.opening) return;
+      this.store.set({ progress: null });
+      this.changed();
+    } catch (error) {
+      // Where the connection ended, the next one opens it again.
+      if (mine !== this.opening || error instanceof Disconnected) return;
+      this.store.set({ progress: null, cloud: null, failure: textOf(error) });
+      toast(textOf(error), { kind: "error" });
+    }
+  }
+
+  /** @return true where the points that are here are still as they were. */
+  private takeOpen({ head, body }: Message): boolean {
+    const state = this.store.state;
+    const before = state.cloud;
+    const cloud = cloudOf(head);
+    const labels = new Map((head["labels"] as LabelRow[]).map((row) => [row.number, row]));
+    const controls = new Map(controlsOf(body, Number(head["control_points"])).map((control) => [control.point, control]));
+    const sequence = Number(head["sequence"]);
+    const same = before?.index === cloud.index && before.name === cloud.name && before.shown === cloud.shown;
+    const kept =
+      this.complete && same && sequence === this.sequence && sameCounts(labels, state.labels) && controls.size === state.controls.size;
+    this.sequence = sequence;
+    this.store.set({
+      cloud,
+      labels,
+      controls,
+      failure: null,
+      readOnly: typeof head["read_only"] === "string" ? head["read_only"] : null,
+      clouds: state.clouds.map((entry, i) => (i === cloud.index ? { ...entry, begun: true } : entry)),
+    });
+    if (!same) this.store.set({ selected: null, hidden: new Set(), startCost: 0 });
+    this.takeUndo(head);
+    if (!kept) {
+      this.complete = false;
+      this.beginView(cloud, same);
+    }
+    return kept;
+  }
+
+  private beginView(cloud: OpenCloud, same: boolean): void {
+    const view = this.viewer.cloud;
+    const pose = same ? this.viewer.camera.poseRows() : null;
+    view.begin(cloud);
+    view.highlight(new Uint32Array());
+    view.mark(null);
+    view.clearControlPoints();
+    for (const row of this.store.state.labels.values()) view.setLabelColor(row.number, toRgb(row.color));
+    for (const control of this.store.state.controls.values()) view.setControlPoint(control.point, control.label);
+    for (const label of this.store.state.hidden) view.setLabelVisible(label, false);
+    if (pose) this.viewer.camera.setPoseRows(pose);
+    else this.viewer.camera.fit();
+  }
+
+  private async bringPoints(mine: number, total: number): Promise<void> {
+    const questions: Promise<Message>[] = [];
+    let asked = 0;
+    let here = 0;
+    while (here < total) {
+      while (asked < total && questions.length < kInFlight) {
+        const count = Math.min(total - asked, asked === 0 ? kFirstChunk : kChunk);
+        const question = this.connection.ask({ type: "points", from: asked, count });
+        question.catch(() => undefined); // told below, for the first that fails
+        questions.push(question);
+        asked += count;
+      }
+      const { head, body } = await questions.shift()!;
+      if (mine !== this.opening) return;
+      const count = Number(head["count"]);
+      if (!(count > 0)) break;
+      this.viewer.cloud.append({
+        positions: new Float32Array(body, 0, 3 * count),
+        points: new Uint32Array(body, 12 * count, count),
+        colors: new Uint8Array(body, 16 * count, 4 * count),
+        labels: new Uint32Array(body, 20 * count, count),
+      });
+      here += count;
+      // Control points of which the view did not know the place yet.
+      for (const control of this.store.state.controls.values()) this.viewer.cloud.setControlPoint(control.point, control.label);
+      this.store.set({ progress: { stage: "Loading points", done: here, total } });
+    }
+    this.complete = true;
+  }
+
+  private takeChanges({ head, body }: Message): void {
+    if (!this.store.state.cloud) return;
+    this.sequence = Number(head["sequence"]);
+    this.takeUndo(head);
+    const view = this.viewer.cloud;
+    const rows = head["labels"] as LabelRow[];
+    if (rows.length > 0) {
+      const labels = new Map(this.store.state.labels);
+      for (const row of rows) {
+        if (!row.defined && isEmpty(row)) labels.delete(row.number);
+        else labels.set(row.number, row);
+        if (row.color) view.setLabelColor(row.number, toRgb(row.color));
+      }
+      this.store.set({ labels });
+    }
+    const count = Number(head["control_points"]);
+    if (count > 0) {
+      const controls = new Map(this.store.state.controls);
+      for (const control of controlsOf(body, count)) {
+        if (control.label === 0) controls.delete(control.point);
+        else controls.set(control.point, control);
+        view.setControlPoint(control.point, control.label === 0 ? undefined : control.label);
+      }
+      this.store.set({ controls });
+      const selected = this.store.state.selected;
+      if (selected !== null && !controls.has(selected)) this.store.set({ selected: null });
+    }
+    let at = kControlBytes * count;
+    for (const [label, points] of head["groups"] as [number, number][]) {
+      view.setLabel(label, new Uint32Array(body, at, points));
+      at += 4 * points;
+    }
+    this.changed();
+  }
+
+  private takeUndo(head: Record<string, unknown>): void {
+    if (typeof head["can_undo"] === "boolean") this.store.set({ canUndo: head["can_undo"] });
+    if (typeof head["can_redo"] === "boolean") this.store.set({ canRedo: head["can_redo"] });
+  }
+
+  private changed(): void {
+    for (const listener of this.changeListeners) listener();
+  }
+}
+
+function cloudOf(head: Record<string, unknown>): OpenCloud {
+  const cloud = head["cloud"] as OpenCloud & { graph?: Record<string, unknown> };
+  const most = cloud.graph?.["max_path"];
+  return { ...cloud, maxPath: typeof most === "number" ? most : 100 };
+}
+
+function controlsOf(body: ArrayBuffer, count: number): ControlPoint[] {
+  const words = new Uint32Array(body, 0, 3 * count);
+  const costs = new Float32Array(body, 0, 3 * count);
+  return Array.from({ length: count }, (_, i) => ({
+    point: words[3 * i]!,
+    label: words[3 * i + 1]!,
+    start_cost: costs[3 * i + 2]!,
+  }));
+}
+
+function sameCounts(a: ReadonlyMap<number, LabelRow>, b: ReadonlyMap<number, LabelRow>): boolean {
+  if (a.size !== b.size) return false;
+  for (const [number, row] of a) {
+    const other = b.get(number);
+    if (!other || other.points !== row.points || other.control_points !== row.control_points) return false;
+  }
+  return true;
+}
+
+export function textOf(error: unknown): string {
+  if (error instanceof Refusal) {
+    const text = error.message.charAt(0).toUpperCase() + error.message.slice(1);
+    return error.context && error.context !== "action" ? `${text} (${error.context})` : text;
+  }
+  return error instanceof Error ? error.message : String(error);
+}

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// What is drawn, and the buttons at the lower edge of the view.
+import { iconButton, section, segmented, slider, toggleButton } from "../ui/controls";
+import { h, on } from "../ui/dom";
+import { icon } from "../ui/icons";
+import type { Viewer } from "../view/types";
+import { type State, type Store } from "./store";
+
+type Shown = keyof State["show"];
+
+export const kPointSizes = { min: 1, max: 16 };
+
+export function toggleShown(store: Store, what: Shown): void {
+  store.set({ show: { ...store.state.show, [what]: !store.state.show[what] } });
+}
+
+export function showSection(store: Store): HTMLElement {
+  const toggles: [Shown, string, string][] = [
+    ["cloud", "Cloud", "The colours of the cloud; without them points are their label's colour, black without one (Shift+C)"],
+    ["labels", "Labels", "Labels as squares in the points (Shift+L)"],
+    ["controls", "Control points", "Control points as spheres (Shift+P)"],
+  ];
+  const row = h("div", { class: "toggle-row", role: "group", "aria-label": "Show" });
+  for (const [what, text, title] of toggles) {
+    const toggle = toggleButton([h("span", {}, text)], text, title, () => toggleShown(store, what));
+    toggle.element.classList.add("outline");
+    store.watch(["show"], ({ show }) => toggle.set(show[what]));
+    row.append(toggle.element);
+  }
+  const size = slider("Point size", { min: kPointSizes.min, max: kPointSizes.max, title: "Edge of a point's square (+ and −)" }, (pointSize) =>
+    store.set({ pointSize }),
+  );
+  store.watch(["pointSize"], ({ pointSize }) => size.set(pointSize, `${pointSize} px`));
+  return section("Show", {}, row, size.element);
+}
+
+/** Where the viewer stands to look at the front, side or top of a scene with this up. */
+export function standpoint(up: readonly number[], which: "top" | "front" | "side"): [number, number, number] {
+  const axis = [Math.abs(up[0] ?? 0), Math.abs(up[1] ?? 0), Math.abs(up[2] ?? 1)];
+  const most = axis.indexOf(Math.max(...axis));
+  if (which === "top") return [up[0] ?? 0, up[1] ?? 0, up[2] ?? 1];
+  // Up z: the front is seen from −y, the side from +x. Up y, as cameras have it: from −z and +x.
+  const directions: Record<number, [number, number, number][]> = {
+    0: [[0, -1, 0], [0, 0, 1]],
+    1: [[0, 0, -1], [1, 0, 0]],
+    2: [[0, -1, 0], [1, 0, 0]],
+  };
+  return directions[most]![which === "front" ? 0 : 1]!;
+}
+
+export function viewBar(store: Store, viewer: Viewer): HTMLElement {
+  const look = (which: "top" | "front" | "side") => () => viewer.camera.fit(standpoint(store.state.cloud?.up ?? [0, 0, 1], which));
+  const navigation = segmented<"orbit" | "fly">(
+    "Navigation",
+    [
+      { value: "orbit", text: "Orbit", title: "Turn around what is under the cursor (O)", icon: "orbit" },
+      { value: "fly", text: "Fly", title: "Move with W A S D, Q and E, look with the mouse (O)", icon: "fly" },
+    ],
+    (value) => store.set({ navigation: value }),
+  );
+  navigation.element.classList.add("plain");
+  store.watch(["navigation"], (state) => {
+    navigation.set(state.navigation);
+    viewer.camera.navigation = state.navigation;
+  });
+  const legend = h("span", { class: "heat-legend", hidden: true }, "in doubt", h("span", { class: "heat-scale" }), "sure");
+  store.watch(["margins"], ({ margins }) => void (legend.hidden = !margins));
+  const bar = h(
+    "div",
+    { class: "floating view-bar", role: "toolbar", "aria-label": "View" },
+    legend,
+    navigation.element,
+    h("span", { class: "divider" }),
+    iconButton("fit", "Whole cloud (F)", () => viewer.camera.fit()),
+    iconButton("top", "From the top (T)", look("top")),
+    iconButton("front", "From the front (Shift+F)", look("front")),
+    iconButton("side", "From the side (Shift+T)", look("side")),
+  );
+  return bar;
+}
+
+export function hiddenNote(store: Store): HTMLElement {
+  const button = h("button", { type: "button", class: "floating hidden-note", hidden: true }, icon("hidden"), h("span"));
+  on(button, { click: () => store.set({ hidden: new Set() }) });
+  store.watch(["hidden"], ({ hidden }) => {
+    button.hidden = hidden.size === 0;
+    button.lastElementChild!.textContent = `${hidden.size === 1 ? "1 label is" : `${hidden.size} labels are`} hidden · Show all`;
+  });
+  return button;
+}

@@ -1,0 +1,123 @@
+// SPDX-License-Identifier: Apache-2.0
+// The state of the tool, and who is told when it changes.
+import type { ConnectionState } from "../connection";
+import type { ControlPoint, LabelRow } from "../protocol";
+import type { CloudInfo, Navigation } from "../view/types";
+import { generatedColor, toHex } from "./label_colors";
+
+export type Action = "none" | "set" | "remove" | "pick";
+export type Tool = "point" | "rectangle" | "polyline" | "lasso" | "brush";
+export type Depth = "surface" | "below" | "deep";
+/** What Del takes away in an area. */
+export type Removal = "control" | "trees" | "paint";
+
+export interface CloudEntry {
+  name: string;
+  bytes: number;
+  begun: boolean;
+}
+
+export interface OpenCloud extends CloudInfo {
+  index: number;
+  name: string;
+  finite: number;
+  has_colors: boolean;
+  maxPath: number; // Ω_max
+}
+
+export interface Progress {
+  stage: string;
+  done: number;
+  total: number;
+}
+
+export interface State {
+  connection: ConnectionState;
+  readOnly: string | null;
+  clouds: readonly CloudEntry[];
+  cloud: OpenCloud | null;
+  failure: string | null; // why no cloud could be opened
+  progress: Progress | null;
+  pending: number; // actions without an answer
+  people: number;
+  canUndo: boolean;
+  canRedo: boolean;
+  labels: ReadonlyMap<number, LabelRow>;
+  controls: ReadonlyMap<number, ControlPoint>; // by point
+  action: Action;
+  tool: Tool;
+  depth: Depth;
+  below_mm: number;
+  brush: number; // px or mm
+  brushUnit: "px" | "mm";
+  wholeTree: boolean; // Del with the point tool: a click anywhere in it
+  removal: Removal;
+  label: number; // 1 and up
+  startCost: number;
+  selected: number | null; // a control point
+  show: Readonly<{ cloud: boolean; labels: boolean; controls: boolean }>;
+  hidden: ReadonlySet<number>;
+  margins: boolean;
+  navigation: Navigation;
+  pointSize: number;
+  labelList: boolean; // instead of the grid
+}
+
+export const kPage = 20;
+export const kMaxLabel = 4294967294;
+
+export function pageOf(label: number): number {
+  return Math.floor((label - 1) / kPage) * kPage + 1;
+}
+
+/** The row of any label; of one that nobody has used, what it would be. */
+export function rowOf(state: Readonly<State>, label: number): LabelRow {
+  return (
+    state.labels.get(label) ?? {
+      number: label,
+      name: "",
+      class: "",
+      instance: 0,
+      color: label === 0 ? "#000000" : toHex(generatedColor(label)),
+      defined: false,
+      points: 0,
+      control_points: 0,
+    }
+  );
+}
+
+export function isEmpty(row: LabelRow): boolean {
+  return row.points === 0 && row.control_points === 0;
+}
+
+export class Store {
+  private readonly watchers: { keys: readonly (keyof State)[]; listener: (state: Readonly<State>) => void }[] = [];
+  private changed = new Set<keyof State>();
+
+  constructor(private current: State) {}
+
+  get state(): Readonly<State> {
+    return this.current;
+  }
+
+  set(patch: Partial<State>): void {
+    for (const key of Object.keys(patch) as (keyof State)[]) {
+      if (Object.is(patch[key], this.current[key])) continue;
+      if (this.changed.size === 0) queueMicrotask(() => this.tell());
+      this.changed.add(key);
+    }
+    this.current = { ...this.current, ...patch };
+  }
+
+  /** Called now, and soon after one of these changed. */
+  watch(keys: readonly (keyof State)[], listener: (state: Readonly<State>) => void): void {
+    this.watchers.push({ keys, listener });
+    listener(this.current);
+  }
+
+  private tell(): void {
+    const changed = this.changed;
+    this.changed = new Set();
+    for (const { keys, listener } of this.watchers) if (keys.some((key) => changed.has(key))) listener(this.current);
+  }
+}
