@@ -78,6 +78,7 @@ function firstState(hello: Hello): State {
     cloud: null,
     failure: null,
     progress: null,
+    ready: false,
     pending: 0,
     people: 1,
     canUndo: false,
@@ -126,7 +127,7 @@ function progressOf(store: Store): HTMLElement {
   store.watch(["progress"], ({ progress }) => {
     if (!progress) return card.hide();
     const stage = progress.stage.charAt(0).toUpperCase() + progress.stage.slice(1);
-    card.show(stage, progress.done, progress.total, progress.stage === "Loading points");
+    card.show(stage, progress.done, progress.total, progress.seen);
   });
   return card.element;
 }

@@ -38,10 +38,12 @@ export class Session {
       if (answer) this.takeUndo(answer);
     });
     connection.on("changes", (message) => this.takeChanges(message));
+    connection.on("ready", (message) => this.takeReady(message));
     connection.on("progress", ({ head }) => {
-      if (this.complete) return;
+      if (this.complete && store.state.ready) return;
       const number = (key: string) => (typeof head[key] === "number" ? head[key] : 0);
-      store.set({ progress: { stage: String(head["stage"]), done: number("done"), total: number("total") } });
+      const seen = this.complete;
+      store.set({ progress: { stage: String(head["stage"]), done: number("done"), total: number("total"), seen } });
     });
     connection.on("people", ({ head }) => store.set({ people: Number(head["count"]) || 1 }));
     connection.on("read_only", ({ head }) => store.set({ readOnly: String(head["why"]) }));
@@ -100,7 +102,7 @@ export class Session {
     this.queue.pause();
     const name = this.store.state.clouds[index]?.name ?? "";
     if (index !== this.store.state.cloud?.index) this.complete = false;
-    if (!this.complete) this.store.set({ failure: null, progress: { stage: `Opening ${name}`, done: 0, total: 0 } });
+    if (!this.complete) this.store.set({ failure: null, progress: { stage: `Opening ${name}`, done: 0, total: 0, seen: false } });
     await this.load(mine, () => this.connection.ask({ type: "open", cloud: index, budget: pointBudget() }));
   }
 
@@ -123,10 +125,10 @@ export class Session {
       const answer = await ask();
       if (mine !== this.opening) return;
       const kept = this.takeOpen(answer);
-      this.queue.opened(Number(answer.head["client_actions"]) || 0);
+      if (this.store.state.ready) this.queue.opened(Number(answer.head["client_actions"]) || 0);
       if (!kept) await this.bringPoints(mine, this.store.state.cloud!.shown);
       if (mine !== this.opening) return;
-      this.store.set({ progress: null });
+      this.store.set({ progress: this.store.state.ready ? null : { stage: "preparing", done: 0, total: 0, seen: true } });
       this.changed();
     } catch (error) {
       // Where the connection ended, the next one opens it again.
@@ -141,8 +143,8 @@ export class Session {
     const state = this.store.state;
     const before = state.cloud;
     const cloud = cloudOf(head);
-    const labels = new Map((head["labels"] as LabelRow[]).map((row) => [row.number, row]));
-    const controls = new Map(controlsOf(body, Number(head["control_points"])).map((control) => [control.point, control]));
+    const labels = new Map(((head["labels"] ?? []) as LabelRow[]).map((row) => [row.number, row]));
+    const controls = new Map(controlsOf(body, Number(head["control_points"] ?? 0)).map((control) => [control.point, control]));
     const sequence = Number(head["sequence"]);
     const same = before?.index === cloud.index && before.name === cloud.name && before.shown === cloud.shown;
     const kept =
@@ -153,6 +155,7 @@ export class Session {
       labels,
       controls,
       failure: null,
+      ready: head["ready"] !== false,
       readOnly: typeof head["read_only"] === "string" ? head["read_only"] : null,
       clouds: state.clouds.map((entry, i) => (i === cloud.index ? { ...entry, begun: true } : entry)),
     });
@@ -204,9 +207,18 @@ export class Session {
       here += count;
       // Control points of which the view did not know the place yet.
       for (const control of this.store.state.controls.values()) this.viewer.cloud.setControlPoint(control.point, control.label);
-      this.store.set({ progress: { stage: "Loading points", done: here, total } });
+      this.store.set({ progress: { stage: "loading points", done: here, total, seen: true } });
     }
     this.complete = true;
+  }
+
+  /** Of a large cloud, what was not known when it was opened. */
+  private takeReady(message: Message): void {
+    const { head } = message;
+    this.store.set({ ready: true, readOnly: typeof head["read_only"] === "string" ? head["read_only"] : null });
+    this.takeChanges(message);
+    this.queue.opened(Number(head["client_actions"]) || 0);
+    if (this.complete) this.store.set({ progress: null });
   }
 
   private takeChanges({ head, body }: Message): void {

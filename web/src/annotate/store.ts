@@ -29,6 +29,7 @@ export interface Progress {
   stage: string;
   done: number;
   total: number;
+  seen: boolean; // some of the cloud is in the picture already
 }
 
 export interface State {
@@ -38,6 +39,7 @@ export interface State {
   cloud: OpenCloud | null;
   failure: string | null; // why no cloud could be opened
   progress: Progress | null;
+  ready: boolean; // the graph is there
   pending: number; // actions without an answer
   people: number;
   canUndo: boolean;
