@@ -51,8 +51,8 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
     panel,
     actionSection(store),
     toolSection(store),
-    showSection(store),
     labelSection(store, edits),
+    showSection(store),
     controlSection(store, edits, viewer),
     guidance.section(),
   );

@@ -10,7 +10,7 @@ import { emptyLabel, toggleHidden, toggleSolo, turnPage } from "./label_section"
 import type { Pointer } from "./pointer";
 import { kPointSizes, standpoint, toggleShown } from "./show_section";
 import { type Action, type Depth, type Store, type Tool, kMaxLabel, pageOf } from "./store";
-import { kMaxBrush } from "./tool_section";
+import { chooseTool, kMaxBrush } from "./tool_section";
 
 export interface KeyParts {
   store: Store;
@@ -43,7 +43,7 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
     run: () => store.set({ action: value }),
     ...(shown ? { shown } : {}),
   });
-  const tool = (key: string, value: Tool, text: string): Shortcut => ({ keys: [key], group, text, run: () => store.set({ tool: value }) });
+  const tool = (key: string, value: Tool, text: string): Shortcut => ({ keys: [key], group, text, run: () => chooseTool(store, value) });
   const brush = (by: number) => store.set({ brush: Math.max(2, Math.min(kMaxBrush, Math.round(store.state.brush * by + Math.sign(by - 1)))) });
   const none = (): void => {
     if (!pointer.giveUp()) store.set({ action: "none" });
@@ -137,8 +137,10 @@ function mouse(): Shortcut[] {
   const row = (shown: string, text: string): Shortcut => ({ keys: [], group, text, shown, run: () => undefined });
   return [
     row("Left", "The tool; where there is none, turns the view"),
-    row("Right", "Shifts the view"),
-    row("Wheel", "Nearer or farther"),
+    row("Right", "Turns the view around what is under the cursor"),
+    row("Middle or Shift", "Moves the view"),
+    row("Ctrl", "With the button held: rolls the view"),
+    row("Wheel", "Nearer or farther, towards the cursor"),
     row("Space", "Held: the left button moves the view, whatever the tool"),
     row("← ↑ → ↓", "In the view: the cursor of the keyboard (Shift: by pixels)"),
     row("Enter", "A click there"),

@@ -47,6 +47,13 @@ export function actionSection(store: Store): HTMLElement {
   return section("Action", {}, actions.element);
 }
 
+/** An area tool is chosen to paint with, where the action has no areas. */
+export function chooseTool(store: Store, tool: Tool): void {
+  const { action, readOnly } = store.state;
+  const paints = tool !== "point" && (action === "none" || action === "pick") && readOnly === null;
+  store.set(paints ? { tool, action: "set" } : { tool });
+}
+
 export function toolSection(store: Store): HTMLElement {
   const tools = segmented<Tool>(
     "Tool",
@@ -57,13 +64,10 @@ export function toolSection(store: Store): HTMLElement {
       { value: "lasso", text: "Lasso", title: "Draw around an area (L)", icon: "lasso" },
       { value: "brush", text: "Brush", title: "Paint along a line (B)", icon: "brush" },
     ],
-    (tool) => store.set({ tool }),
+    (tool) => chooseTool(store, tool),
   );
-  tools.element.classList.add("tall");
-  store.watch(["tool", "action"], ({ tool, action }) => {
-    tools.set(action === "pick" ? "point" : tool);
-    for (const area of ["rectangle", "polyline", "lasso", "brush"] as const) tools.enable(area, action !== "pick");
-  });
+  tools.element.classList.add("tall", "soft-choice");
+  store.watch(["tool", "action"], ({ tool, action }) => tools.set(action === "pick" ? "point" : tool));
   return section("Tool", {}, tools.element, optionsPart(store));
 }
 
@@ -92,15 +96,14 @@ function isArea(state: Readonly<State>): boolean {
 
 function hintOf(state: Readonly<State>): string {
   const { action, tool } = state;
-  if (action === "none") return "Drag to turn the view, right button to shift it, wheel to come nearer.";
-  if (action === "pick") return "Click a point to work on with its label.";
+  if (action === "none") return "Drag turns the view, Shift and drag moves it.";
+  if (action === "pick") return "Click a point to go on with its label.";
   if (action === "set") {
-    if (tool === "point") return "Click a point: its surroundings get the label. Drag a sphere to move it.";
-    return "The points in the area are painted with the label.";
+    if (tool === "point") return "Click a point; drag a sphere to move it.";
+    return "Points in the area are painted with the label.";
   }
-  if (tool === "point") return state.wholeTree ? "Click anywhere in what a control point labels." : "Click the sphere of a control point.";
-  const what = { control: "The control points in the area are", trees: "All control points that label points in the area are", paint: "Paint in the area is" };
-  return `${what[state.removal]} taken away.`;
+  if (tool === "point") return state.wholeTree ? "Click anywhere in what a sphere has labelled." : "Click the sphere of a control point.";
+  return { control: "Control points in the area go.", trees: "What labels points in the area goes.", paint: "Paint in the area goes." }[state.removal];
 }
 
 function reachPart(store: Store): HTMLElement {
@@ -175,8 +178,10 @@ function brushPart(store: Store): HTMLElement {
   );
   unit.element.classList.add("plain");
   store.watch(["brush", "brushUnit"], (state) => {
-    radius.set(state.brush, `${state.brush} ${state.brushUnit}`);
+    radius.set(state.brush, String(state.brush));
+    radius.input.setAttribute("aria-valuetext", `${state.brush} ${state.brushUnit}`);
     unit.set(state.brushUnit);
   });
-  return h("div", {}, radius.element, h("div", { class: "option" }, h("span", { class: "slider-name" }, "Measured in"), unit.element));
+  unit.element.classList.add("mini");
+  return h("div", { class: "brush-option" }, radius.element, unit.element);
 }
