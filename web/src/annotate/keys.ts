@@ -70,7 +70,7 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
     { keys: ["Enter"], group, text: "Close the polyline", run: () => void pointer.finish() },
     { keys: ["Backspace"], group, text: "Take back its last corner", run: () => void pointer.back() },
     { keys: ["Ctrl+Z"], group, text: "Undo", run: () => edits.undo() },
-    { keys: ["Ctrl+Shift+Z", "Ctrl+Y"], group, text: "Redo", shown: "Ctrl+Shift+Z or Ctrl+Y", run: () => edits.redo() },
+    { keys: ["Ctrl+Shift+Z", "Ctrl+Y"], group, text: "Redo", shown: "Ctrl+Shift+Z", run: () => edits.redo() },
     { keys: ["Delete"], group, text: "Delete the selected control point", run: () => removeSelected(store, edits) },
   ];
 }
@@ -126,7 +126,7 @@ function fileKeys({ store, files }: KeyParts): Shortcut[] {
     { keys: ["Ctrl+S"], group, text: "Save", run: () => void files.save() },
     { keys: ["Ctrl+E"], group, text: "Export", run: () => document.querySelector<HTMLButtonElement>("[data-command=export]")?.click() },
     { keys: ["Ctrl+O"], group, text: "Open", run: () => files.open() },
-    { keys: ["Shift+PageUp"], group, text: "Previous, next cloud", shown: "Shift+PageUp PageDown", run: () => several() && files.step(-1) },
+    { keys: ["Shift+PageUp"], group, text: "Previous, next cloud", shown: "Shift+PageUp – PageDown", run: () => several() && files.step(-1) },
     { keys: ["Shift+PageDown"], group, text: "", run: () => several() && files.step(1) },
   ];
 }

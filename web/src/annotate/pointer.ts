@@ -9,6 +9,7 @@ import { BrushTool, LassoTool, PointTool, PolylineTool, RectangleTool, type Tool
 
 const kTreeRest_ms = 120; // the cursor rests this long before a tree is asked for
 const kCursorStep_px = 12;
+const kNear_px = [3, 6];
 
 export class Pointer {
   readonly overlay = new Overlay();
@@ -99,8 +100,20 @@ export class Pointer {
 
   private click(x: number, y: number): void {
     if (this.store.state.action === "none") return;
-    const pick = this.viewer.pick(x, y);
+    const pick = this.viewer.pick(x, y) ?? this.near(x, y);
     if (pick) this.edits.click(pick);
+  }
+
+  /** Between points, one that is a few pixels away. */
+  private near(x: number, y: number): Pick | null {
+    for (const distance of kNear_px) {
+      for (let turn = 0; turn < 8; turn++) {
+        const [dx, dy] = [Math.cos((turn * Math.PI) / 4), Math.sin((turn * Math.PI) / 4)];
+        const pick = this.viewer.hover(x + distance * dx, y + distance * dy);
+        if (pick) return pick;
+      }
+    }
+    return null;
   }
 
   /** What is under the mouse: the line in the corner, and the tree that Del would take. */
@@ -108,7 +121,7 @@ export class Pointer {
     this.frame = 0;
     if (!this.at) return;
     if (this.tool instanceof BrushTool) this.tool.hover(...this.at);
-    const pick = this.viewer.hover(...this.at);
+    const pick = this.viewer.hover(...this.at) ?? this.near(...this.at);
     this.readout.textContent = pick ? describe(this.store.state, pick, this.viewer) : "";
     const { action, tool, wholeTree } = this.store.state;
     const wanted = pick && action === "remove" && tool === "point" && wholeTree ? pick.point : null;
