@@ -12,6 +12,7 @@ export class Disconnected extends Error {}
 
 const kProtocol = 1;
 const kWaits_ms = [250, 500, 1000, 2000, 4000, 5000];
+const kLetsGo_ms = 700;
 const kQuietLimit_ms = 20_000; // for the program's hello
 
 interface Waiting {
@@ -176,13 +177,14 @@ export async function ownClient(): Promise<number> {
   return client;
 }
 
-/** True where this page is the only one with this name, and from now until it ends. */
+/** True where this page is the only one with this name, and from now until it ends. A page that is reloaded lets go soon. */
 function holdName(name: string): Promise<boolean> {
   if (!("locks" in navigator)) return Promise.resolve(true);
   return new Promise((resolve) => {
-    void navigator.locks.request(name, { ifAvailable: true }, (lock) => {
-      resolve(lock !== null);
-      return lock ? new Promise<void>(() => undefined) : undefined;
+    const held = navigator.locks.request(name, { signal: AbortSignal.timeout(kLetsGo_ms) }, () => {
+      resolve(true);
+      return new Promise<void>(() => undefined);
     });
+    held.catch(() => resolve(false));
   });
 }

@@ -8,7 +8,8 @@ import type { Files } from "./files";
 import type { Guidance } from "./guidance";
 import { emptyLabel, toggleHidden, toggleSolo, turnPage } from "./label_section";
 import type { Pointer } from "./pointer";
-import { kPointSizes, standpoint, toggleShown } from "./show_section";
+import { kPointSizes, toggleShown } from "./show_section";
+import { type Side, lookFrom } from "./standpoint";
 import { type Action, type Depth, type Store, type Tool, kMaxLabel, pageOf } from "./store";
 import { chooseTool, kMaxBrush } from "./tool_section";
 
@@ -99,7 +100,7 @@ function labelKeys({ store }: KeyParts): Shortcut[] {
 
 function viewKeys({ store, viewer, guidance, foldPanel, showHelp }: KeyParts): Shortcut[] {
   const group = "View";
-  const look = (which: "top" | "front" | "side") => () => viewer.camera.fit(standpoint(store.state.cloud?.up ?? [0, 0, 1], which));
+  const look = (which: Side) => () => lookFrom(viewer.camera, store.state.cloud?.up ?? [0, 0, 1], which);
   const size = (by: number) => store.set({ pointSize: Math.max(kPointSizes.min, Math.min(kPointSizes.max, store.state.pointSize + by)) });
   return [
     { keys: ["F"], group, text: "Whole cloud", run: () => viewer.camera.fit() },

@@ -7,6 +7,7 @@ import { toast } from "../ui/toast";
 import type { Viewer } from "../view/types";
 import { type ActionObject, ActionQueue, type ActionResult } from "./action_queue";
 import { toRgb } from "./label_colors";
+import { firstLook } from "./standpoint";
 import { type OpenCloud, type Store, isEmpty } from "./store";
 
 const kFirstChunk = 65_536; // something to see soon
@@ -179,7 +180,7 @@ export class Session {
     for (const control of this.store.state.controls.values()) view.setControlPoint(control.point, control.label);
     for (const label of this.store.state.hidden) view.setLabelVisible(label, false);
     if (pose) this.viewer.camera.setPoseRows(pose);
-    else this.viewer.camera.fit();
+    else firstLook(this.viewer.camera, cloud.up);
   }
 
   private async bringPoints(mine: number, total: number): Promise<void> {

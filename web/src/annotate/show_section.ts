@@ -4,6 +4,7 @@ import { iconButton, section, segmented, slider, toggleButton } from "../ui/cont
 import { h, on } from "../ui/dom";
 import { icon } from "../ui/icons";
 import type { Viewer } from "../view/types";
+import { type Side, lookFrom } from "./standpoint";
 import { type State, type Store } from "./store";
 
 type Shown = keyof State["show"];
@@ -34,22 +35,8 @@ export function showSection(store: Store): HTMLElement {
   return section("Show", {}, row, size.element);
 }
 
-/** Where the viewer stands to look at the front, side or top of a scene with this up. */
-export function standpoint(up: readonly number[], which: "top" | "front" | "side"): [number, number, number] {
-  const axis = [Math.abs(up[0] ?? 0), Math.abs(up[1] ?? 0), Math.abs(up[2] ?? 1)];
-  const most = axis.indexOf(Math.max(...axis));
-  if (which === "top") return [up[0] ?? 0, up[1] ?? 0, up[2] ?? 1];
-  // Up z: the front is seen from −y, the side from +x. Up y, as cameras have it: from −z and +x.
-  const directions: Record<number, [number, number, number][]> = {
-    0: [[0, -1, 0], [0, 0, 1]],
-    1: [[0, 0, -1], [1, 0, 0]],
-    2: [[0, -1, 0], [1, 0, 0]],
-  };
-  return directions[most]![which === "front" ? 0 : 1]!;
-}
-
 export function viewBar(store: Store, viewer: Viewer): HTMLElement {
-  const look = (which: "top" | "front" | "side") => () => viewer.camera.fit(standpoint(store.state.cloud?.up ?? [0, 0, 1], which));
+  const look = (which: Side) => () => lookFrom(viewer.camera, store.state.cloud?.up ?? [0, 0, 1], which);
   const navigation = segmented<"orbit" | "fly">(
     "Navigation",
     [
