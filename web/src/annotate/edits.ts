@@ -62,6 +62,7 @@ export class Edits {
   /** Set paints what is in the area; Del takes away control points or paint. */
   async area(shape: Shape): Promise<void> {
     const state = this.store.state;
+    if (!state.cloud) return;
     const { clip_world: clip, ...view } = this.viewer.picture();
     const rows = [0, 4, 8, 12].map((i) => clip.slice(i, i + 4));
     const selection = { ...shape, ...depthOf(state, shape), view: { ...view, clip_world: rows } };

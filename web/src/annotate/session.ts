@@ -74,7 +74,9 @@ export class Session {
     try {
       return await this.queue.submit(action, options);
     } catch (error) {
-      toast(textOf(error), { kind: "error" });
+      const nothing = error instanceof Refusal && error.message.startsWith("nothing is selected");
+      if (nothing) toast(action.do === "remove" && !options["trees"] ? "There is no control point in the area." : "There is nothing in the area.");
+      else toast(textOf(error), { kind: "error" });
       return null;
     }
   }
