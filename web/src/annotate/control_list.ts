@@ -51,17 +51,21 @@ function controlRow(store: Store, control: ControlPoint): HTMLElement {
     swatch,
     h("span", { class: "number row-number" }, String(control.label)),
     h("span", { class: "row-name" }, row.name),
-    control.start_cost > 0 ? h("span", { class: "number soft", title: "Start cost" }, reachText(control.start_cost)) : null,
+    control.start_cost > 0 ? h("span", { class: "number soft", title: `Start cost ${control.start_cost.toPrecision(3)}` }, reachText(control.start_cost, mostOf(store))) : null,
     h("span", { class: "number soft" }, `#${control.point}`),
   );
 }
 
+function mostOf(store: Store): number {
+  return store.state.cloud?.maxPath ?? 100;
+}
+
 /** Reach and removal of the one that is selected. */
 function selectedPart(store: Store, edits: Edits): HTMLElement {
-  const most = () => store.state.cloud?.maxPath ?? 100;
+  const most = () => mostOf(store);
   const reach = reachSlider(
     "How far the selected control point reaches, compared with others",
-    (position) => reach.set(position, reachText(costOfReach(position, most()))),
+    (position) => reach.set(position, reachText(costOfReach(position, most()), most())),
     (position) => {
       if (store.state.selected !== null) edits.changeReach(store.state.selected, costOfReach(position, most()));
     },
@@ -72,7 +76,7 @@ function selectedPart(store: Store, edits: Edits): HTMLElement {
   store.watch(["selected", "controls", "cloud"], ({ selected, controls }) => {
     const control = selected === null ? undefined : controls.get(selected);
     element.hidden = !control;
-    if (control) reach.set(reachOfCost(control.start_cost, most()), reachText(control.start_cost));
+    if (control) reach.set(reachOfCost(control.start_cost, most()), reachText(control.start_cost, most()));
   });
   return element;
 }

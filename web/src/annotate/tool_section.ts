@@ -19,8 +19,8 @@ export function reachOfCost(cost: number, maxPath: number): number {
   return Math.round(kReachSteps * (1 - Math.cbrt(Math.min(1, cost / maxPath))));
 }
 
-export function reachText(cost: number): string {
-  return cost === 0 ? "full" : `− ${cost < 10 ? cost.toFixed(2) : cost.toFixed(1)}`;
+export function reachText(cost: number, maxPath: number): string {
+  return cost === 0 ? "full" : `${reachOfCost(cost, maxPath)} %`;
 }
 
 export function reachSlider(title: string, input: (position: number) => void, change: (position: number) => void) {
@@ -112,7 +112,7 @@ function reachPart(store: Store): HTMLElement {
     (position) => store.set({ startCost: costOfReach(position, store.state.cloud?.maxPath ?? 100) }),
     () => undefined,
   );
-  store.watch(["startCost", "cloud"], ({ startCost, cloud }) => reach.set(reachOfCost(startCost, cloud?.maxPath ?? 100), reachText(startCost)));
+  store.watch(["startCost", "cloud"], ({ startCost, cloud }) => reach.set(reachOfCost(startCost, cloud?.maxPath ?? 100), reachText(startCost, cloud?.maxPath ?? 100)));
   return reach.element;
 }
 
