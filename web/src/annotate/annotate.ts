@@ -122,12 +122,18 @@ function followView(store: Store, viewer: Viewer): void {
   });
 }
 
+const kStages: Record<string, string> = {
+  reading: "Reading the cloud",
+  points: "Loading points",
+  graph: "Joining neighbouring points",
+  seeds: "Placing control points",
+};
+
 function progressOf(store: Store): HTMLElement {
   const card = new ProgressCard();
   store.watch(["progress"], ({ progress }) => {
     if (!progress) return card.hide();
-    const stage = progress.stage.charAt(0).toUpperCase() + progress.stage.slice(1);
-    card.show(stage, progress.done, progress.total, progress.seen);
+    card.show(kStages[progress.stage] ?? progress.stage, progress.done, progress.total, progress.seen);
   });
   return card.element;
 }

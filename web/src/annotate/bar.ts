@@ -86,7 +86,7 @@ function people(store: Store): HTMLElement {
 
 function status(store: Store): HTMLElement {
   const element = h("span", { class: "status", role: "status", "data-testid": "status" });
-  store.watch(["connection", "readOnly", "pending", "cloud"], (state) => {
+  store.watch(["connection", "readOnly", "pending", "cloud", "ready"], (state) => {
     const [kind, text, title] = statusOf(state);
     element.dataset["state"] = kind;
     element.textContent = text;
@@ -102,6 +102,7 @@ function statusOf(state: Readonly<State>): [kind: "good" | "busy" | "bad", text:
     return ["busy", `Reconnecting …${waiting}`, "The program cannot be reached. What is not written yet is sent when it is back."];
   }
   if (state.readOnly !== null) return ["bad", "Read only", state.readOnly];
-  if (state.pending > 0) return ["busy", "Writing …", "Actions are on their way to the disk"];
+  if (state.pending > 0 && state.ready) return ["busy", "Writing …", "Actions are on their way to the disk"];
+  if (state.cloud && !state.ready) return ["busy", "Getting ready …", "Labels can be set when the neighbourhood graph is there"];
   return ["good", "All on disk", "Every action is on the disk; nothing is lost when the page or the program ends"];
 }

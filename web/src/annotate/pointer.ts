@@ -146,9 +146,10 @@ export class Pointer {
     this.treeOf = null;
   }
 
-  /** After changes the tree under the mouse is another one. */
+  /** After changes something else may be under the mouse. */
   renew(): void {
     this.forgetTree();
+    this.frame ||= requestAnimationFrame(() => this.look());
   }
 
   private key(event: KeyboardEvent): void {

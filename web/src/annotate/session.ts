@@ -27,6 +27,7 @@ export class Session {
   private wanted = 0; // the cloud that is open, or will be
   private sequence = -1;
   private complete = false; // all points are here
+  private bringing = false; // they are coming
   private readonly changeListeners: (() => void)[] = [];
 
   constructor(
@@ -41,7 +42,8 @@ export class Session {
     connection.on("changes", (message) => this.takeChanges(message));
     connection.on("ready", (message) => this.takeReady(message));
     connection.on("progress", ({ head }) => {
-      if (this.complete && store.state.ready) return;
+      // While points come, their number says more.
+      if (this.bringing || (this.complete && store.state.ready)) return;
       const number = (key: string) => (typeof head[key] === "number" ? head[key] : 0);
       const seen = this.complete;
       store.set({ progress: { stage: String(head["stage"]), done: number("done"), total: number("total"), seen } });
@@ -101,6 +103,7 @@ export class Session {
   /** Opens a cloud, or the same again: then only what differs is brought. */
   async open(index: number): Promise<void> {
     const mine = ++this.opening;
+    this.bringing = false;
     this.wanted = index;
     this.queue.pause();
     const name = this.store.state.clouds[index]?.name ?? "";
@@ -129,9 +132,11 @@ export class Session {
       if (mine !== this.opening) return;
       const kept = this.takeOpen(answer);
       if (this.store.state.ready) this.queue.opened(Number(answer.head["client_actions"]) || 0);
+      this.bringing = !kept;
       if (!kept) await this.bringPoints(mine, this.store.state.cloud!.shown);
       if (mine !== this.opening) return;
-      this.store.set({ progress: this.store.state.ready ? null : { stage: "preparing", done: 0, total: 0, seen: true } });
+      this.bringing = false;
+      this.store.set({ progress: this.store.state.ready ? null : { stage: "graph", done: 0, total: 0, seen: true } });
       this.changed();
     } catch (error) {
       // Where the connection ended, the next one opens it again.
@@ -210,7 +215,7 @@ export class Session {
       here += count;
       // Control points of which the view did not know the place yet.
       for (const control of this.store.state.controls.values()) this.viewer.cloud.setControlPoint(control.point, control.label);
-      this.store.set({ progress: { stage: "loading points", done: here, total, seen: true } });
+      this.store.set({ progress: { stage: "points", done: here, total, seen: true } });
     }
     this.complete = true;
   }
