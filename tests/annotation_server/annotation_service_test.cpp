@@ -70,6 +70,14 @@ TEST_F(AnnotationServiceTest, GivesPointsAsTheyAreInTheFile) {
   }
 }
 
+/// All of the cloud, from the origin.
+json view() {
+  return {{"size", {400, 300}},
+          {"fov_deg", 40},
+          {"point_size_px", 8},
+          {"T_world_camera", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
+}
+
 TEST_F(AnnotationServiceTest, AnnotatesAWholeCloud) {
   Page page = this->page(1);
   four_clicks(page);
@@ -94,11 +102,7 @@ TEST_F(AnnotationServiceTest, AnnotatesAWholeCloud) {
   EXPECT_EQ(page.labelled_as(5), 3U);
   EXPECT_TRUE(page.act({{"do", "set"}, {"label", 1}, {"at", {-0.299, -0.2501, 1.0}}, {"start_cost", 2.5}}).ok());
   EXPECT_EQ(page.control_points.at(0), (std::pair<std::uint32_t, float>{1, 2.5F}));
-  const json view{{"size", {400, 300}},
-                  {"fov_deg", 40},
-                  {"point_size_px", 8},
-                  {"T_world_camera", {{1, 0, 0, 0}, {0, 1, 0, 0}, {0, 0, 1, 0}, {0, 0, 0, 1}}}};
-  EXPECT_TRUE(page.act({{"do", "paint"}, {"label", 6}, {"rectangle", {200, 150, 220, 170}}, {"view", view}}).ok());
+  EXPECT_TRUE(page.act({{"do", "paint"}, {"label", 6}, {"rectangle", {200, 150, 220, 170}}, {"view", view()}}).ok());
   EXPECT_GT(page.labelled_as(6), 50U);
   expect_up_to_date(page);
 
@@ -113,6 +117,27 @@ TEST_F(AnnotationServiceTest, AnnotatesAWholeCloud) {
   EXPECT_EQ(page.labelled_as(0), kPoints - 1);
   for (int i = 0; i < 9; ++i) EXPECT_EQ(page.act({{"do", "redo"}}).head.at("done"), true);
   EXPECT_TRUE(page.labels == before);
+  expect_up_to_date(page);
+}
+
+TEST_F(AnnotationServiceTest, SelectsNothingThatThePageHides) {
+  Page page = this->page(1);
+  four_clicks(page);
+  const auto paint = [&](const json& hidden) {
+    const json action{{"do", "paint"}, {"label", 6}, {"rectangle", {0, 0, 400, 300}}, {"view", view()}};
+    return page.ask({{"type", "action"}, {"action", action}, {"hidden", hidden}});
+  };
+  for (const json& wrong : {json(1), json{-1}, json{1.5}, json{4294967295U}, json{"1"}}) {
+    EXPECT_EQ(paint(wrong).error(), "invalid argument") << wrong;
+  }
+  EXPECT_EQ(paint({0, 1, 2, 3, 4}).error(), "invalid argument") << "there is nothing else";
+  EXPECT_TRUE(paint({4, 1, 1}).ok());
+  EXPECT_EQ(page.labelled_as(1), 9600U);
+  EXPECT_EQ(page.labelled_as(4), 800U);
+  EXPECT_EQ(page.labelled_as(6), 1600U);
+  EXPECT_TRUE(paint(json::array()).ok());
+  EXPECT_EQ(page.labelled_as(4), 0U);
+  EXPECT_GT(page.labelled_as(6), 9000U);
   expect_up_to_date(page);
 }
 

@@ -3,7 +3,9 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <string>
+#include <vector>
 
 #include "saccade/io/annotation_script.hpp"
 
@@ -85,12 +87,41 @@ Result<bool> asks_for_trees(const nlohmann::json& head) {
   return trees->get<bool>();
 }
 
+/// In ascending order.
+Result<std::vector<std::uint32_t>> hidden_labels(const nlohmann::json& head) {
+  std::vector<std::uint32_t> hidden;
+  const auto list = head.find("hidden");
+  if (list == head.end()) return hidden;
+  if (!list->is_array()) return too_much("hidden is a list of labels");
+  for (const auto& label : *list) {
+    const bool fits = label.is_number_unsigned() && label.get<std::uint64_t>() <= kMaxLabel;
+    if (!fits) return too_much("hidden is a list of labels, 0 to " + std::to_string(kMaxLabel));
+    hidden.push_back(label.get<std::uint32_t>());
+  }
+  std::sort(hidden.begin(), hidden.end());
+  return hidden;
+}
+
+/// Points with hidden labels are nowhere: they are not selected, and hide nothing.
+std::vector<Eigen::Vector3f> without_hidden(std::span<const Eigen::Vector3f> positions_m, const Annotation& annotation,
+                                            const std::vector<std::uint32_t>& hidden) {
+  std::vector<Eigen::Vector3f> shown_m(positions_m.begin(), positions_m.end());
+  const std::span<const std::uint32_t> labels = annotation.labels();
+  for (std::size_t i = 0; i < shown_m.size(); ++i) {
+    if (std::binary_search(hidden.begin(), hidden.end(), labels[i])) {
+      shown_m[i].setConstant(std::numeric_limits<float>::quiet_NaN());
+    }
+  }
+  return shown_m;
+}
+
 }  // namespace
 
 Result<AnnotationAction> asked_action(const nlohmann::json& head, std::span<const Eigen::Vector3f> positions_m,
                                       const Annotation& annotation, std::uint64_t client, const Executor& executor) {
   SACCADE_TRY(ScriptedAction scripted, parsed_action(head));
   SACCADE_TRY(const bool trees, asks_for_trees(head));
+  SACCADE_TRY(const std::vector<std::uint32_t> hidden, hidden_labels(head));
   SACCADE_CHECK(check_work(scripted));
   const auto in_action = [](Error error) {
     error.context = "action";  // there are no lines
@@ -102,6 +133,11 @@ Result<AnnotationAction> asked_action(const nlohmann::json& head, std::span<cons
   const double max_path = annotation.forest().neighbourhood().config().max_path;
   if (const Status fits = check_script({&scripted, 1}, positions_m.size(), max_path); !fits) {
     return in_action(fits.error());
+  }
+  std::vector<Eigen::Vector3f> shown_m;
+  if (scripted.selection && !hidden.empty()) {
+    shown_m = without_hidden(positions_m, annotation, hidden);
+    positions_m = shown_m;
   }
   auto action = resolve_action(scripted, positions_m, annotation, client, executor);
   if (!action) return in_action(action.error());

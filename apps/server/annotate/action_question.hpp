@@ -10,7 +10,7 @@
 
 namespace saccade::server {
 
-/// @param head  of the question: `action`, as in a line of an annotation script without `client`, and `trees`.
+/// @param head  of the question: `action`, as in a line of an annotation script without `client`, `trees` and `hidden`.
 /// @return invalid_argument for what is no such action, what takes too much work (docs/protocol.md), and as
 /// resolve_action. It may still not fit the annotation (Annotation::validate).
 [[nodiscard]] Result<AnnotationAction> asked_action(const nlohmann::json& head,
