@@ -90,7 +90,7 @@ export class Connection {
     const patience = window.setTimeout(() => socket.close(), kQuietLimit_ms);
     try {
       const { head } = await this.ask({ type: "hello", protocol: kProtocol, client: this.client });
-    const before = this.hello;
+      const before = this.hello;
       this.hello = head as unknown as Hello;
       // Another program, or another folder, answers at this address now.
       if (before && (before.mode !== this.hello.mode || before.version !== this.hello.version)) location.reload();

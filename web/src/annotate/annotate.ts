@@ -45,7 +45,9 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
   };
   page.classList.toggle("folded", recall("folded", false, isBoolean));
   shortcuts.taken = (key) => store.state.navigation === "fly" && isFlightKey(key);
-  shortcuts.add(...shortcutsOf({ store, edits, files, guidance, pointer, viewer, foldPanel, showHelp: () => shortcuts.showHelp() }));
+  shortcuts.add(
+    ...shortcutsOf({ store, edits, files, guidance, pointer, viewer, foldPanel, showHelp: () => shortcuts.showHelp() }),
+  );
 
   fill(
     panel,
@@ -56,7 +58,13 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
     controlSection(store, edits, viewer),
     guidance.section(),
   );
-  stage.append(pointer.overlay.element, pointer.overlay.hint, viewBar(store, viewer), hiddenNote(store), pointer.readout);
+  stage.append(
+    pointer.overlay.element,
+    pointer.overlay.hint,
+    viewBar(store, viewer),
+    hiddenNote(store),
+    pointer.readout,
+  );
   stage.append(progressOf(store), failureOf(store));
   fill(page, makeBar({ store, edits, files, shortcuts, theme, foldPanel }), panel, stage);
   fill(app, page);
@@ -106,7 +114,17 @@ function firstState(hello: Hello): State {
 }
 
 function keepSettings(store: Store): void {
-  const kept = ["depth", "below_mm", "brush", "brushUnit", "wholeTree", "removal", "navigation", "pointSize", "labelList"] as const;
+  const kept = [
+    "depth",
+    "below_mm",
+    "brush",
+    "brushUnit",
+    "wholeTree",
+    "removal",
+    "navigation",
+    "pointSize",
+    "labelList",
+  ] as const;
   for (const key of kept) store.watch([key], (state) => remember(key, state[key]));
 }
 
@@ -140,7 +158,12 @@ function progressOf(store: Store): HTMLElement {
 
 function failureOf(store: Store): HTMLElement {
   const text = h("p");
-  const element = h("div", { class: "notice failure", role: "alert" }, h("h1", {}, "This cloud cannot be opened"), text);
+  const element = h(
+    "div",
+    { class: "notice failure", role: "alert" },
+    h("h1", {}, "This cloud cannot be opened"),
+    text,
+  );
   store.watch(["failure"], ({ failure }) => {
     element.hidden = failure === null;
     text.textContent = failure;

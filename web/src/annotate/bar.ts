@@ -21,8 +21,14 @@ interface Parts {
 export function makeBar({ store, edits, files, shortcuts, theme, foldPanel }: Parts): HTMLElement {
   const undo = iconButton("undo", "Undo (Ctrl+Z)", () => edits.undo());
   const redo = iconButton("redo", "Redo (Ctrl+Shift+Z)", () => edits.redo());
-  const save = textButton("Save", () => void files.save(), { icon: "save", title: "Writes the labels beside the cloud (Ctrl+S)" });
-  const exportButton = textButton("Export", () => undefined, { icon: "download", title: "The labels as a file of this browser (Ctrl+E)" });
+  const save = textButton("Save", () => void files.save(), {
+    icon: "save",
+    title: "Writes the labels beside the cloud (Ctrl+S)",
+  });
+  const exportButton = textButton("Export", () => undefined, {
+    icon: "download",
+    title: "The labels as a file of this browser (Ctrl+E)",
+  });
   exportButton.dataset["command"] = "export";
   const more = iconButton("more", "More", () => undefined);
   const moreMenu = menuButton(more, "More", () => [
@@ -43,15 +49,31 @@ export function makeBar({ store, edits, files, shortcuts, theme, foldPanel }: Pa
     iconButton("panel", "Panel (\\)", foldPanel),
     cloudPart(store, files),
     h("div", { class: "bar-group" }, undo, redo),
-    h("div", { class: "bar-group" }, save, menuButton(exportButton, "Export as", () => files.exports()), moreMenu),
+    h(
+      "div",
+      { class: "bar-group" },
+      save,
+      menuButton(exportButton, "Export as", () => files.exports()),
+      moreMenu,
+    ),
     h("div", { class: "bar-group push" }, people(store), status(store)),
-    h("div", { class: "bar-group" }, theme.button, iconButton("help", "Keyboard and mouse (?)", () => shortcuts.showHelp())),
+    h(
+      "div",
+      { class: "bar-group" },
+      theme.button,
+      iconButton("help", "Keyboard and mouse (?)", () => shortcuts.showHelp()),
+    ),
   );
 }
 
 function cloudPart(store: Store, files: Files): HTMLElement {
   const name = h("span", { class: "cloud-name" });
-  const open = h("button", { type: "button", class: "button cloud-button", title: "Open another cloud (Ctrl+O)", "aria-label": "Open" }, icon("folder"), name);
+  const open = h(
+    "button",
+    { type: "button", class: "button cloud-button", title: "Open another cloud (Ctrl+O)", "aria-label": "Open" },
+    icon("folder"),
+    name,
+  );
   on(open, { click: () => files.open() });
   const previous = iconButton("previous", "Previous cloud (Shift+PageUp)", () => files.step(-1));
   const next = iconButton("next", "Next cloud (Shift+PageDown)", () => files.step(1));
@@ -96,13 +118,19 @@ function status(store: Store): HTMLElement {
 }
 
 function statusOf(state: Readonly<State>): [kind: "good" | "busy" | "bad", text: string, title: string] {
-  if (state.connection === "closed") return ["bad", "Closed", "The program does not let this page in any more. Open the address that it prints."];
+  if (state.connection === "closed")
+    return ["bad", "Closed", "The program does not let this page in any more. Open the address that it prints."];
   if (state.connection !== "connected") {
     const waiting = state.pending > 0 ? ` · ${state.pending} to write` : "";
-    return ["busy", `Reconnecting …${waiting}`, "The program cannot be reached. What is not written yet is sent when it is back."];
+    return [
+      "busy",
+      `Reconnecting …${waiting}`,
+      "The program cannot be reached. What is not written yet is sent when it is back.",
+    ];
   }
   if (state.readOnly !== null) return ["bad", "Read only", state.readOnly];
   if (state.pending > 0 && state.ready) return ["busy", "Writing …", "Actions are on their way to the disk"];
-  if (state.cloud && !state.ready) return ["busy", "Getting ready …", "Labels can be set when the neighbourhood graph is there"];
+  if (state.cloud && !state.ready)
+    return ["busy", "Getting ready …", "Labels can be set when the neighbourhood graph is there"];
   return ["good", "All on disk", "Every action is on the disk; nothing is lost when the page or the program ends"];
 }

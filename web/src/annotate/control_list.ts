@@ -19,12 +19,17 @@ export function controlSection(store: Store, edits: Edits, viewer: Viewer): HTML
     onlyCurrent = checked;
     draw();
   });
-  const list = new VirtualList<ControlPoint>("Control points", kRow_px, (control) => controlRow(store, control), (control) => {
-    store.set({ selected: control.point });
-    const place = viewer.cloud.positionOf(control.point);
-    if (place) viewer.camera.goTo(place);
-    viewer.cloud.mark(control.point);
-  });
+  const list = new VirtualList<ControlPoint>(
+    "Control points",
+    kRow_px,
+    (control) => controlRow(store, control),
+    (control) => {
+      store.set({ selected: control.point });
+      const place = viewer.cloud.positionOf(control.point);
+      if (place) viewer.camera.goTo(place);
+      viewer.cloud.mark(control.point);
+    },
+  );
   const empty = h("p", { class: "soft" }, "None yet. Choose Set and click a point.");
   const draw = () => {
     const state = store.state;
@@ -38,7 +43,14 @@ export function controlSection(store: Store, edits: Edits, viewer: Viewer): HTML
     list.set(shown);
   };
   store.watch(["controls", "label", "labels", "selected"], draw);
-  return section("Control points", { fold: true, open: true, aside: count }, only.element, empty, list.element, selectedPart(store, edits));
+  return section(
+    "Control points",
+    { fold: true, open: true, aside: count },
+    only.element,
+    empty,
+    list.element,
+    selectedPart(store, edits),
+  );
 }
 
 function controlRow(store: Store, control: ControlPoint): HTMLElement {
@@ -51,7 +63,13 @@ function controlRow(store: Store, control: ControlPoint): HTMLElement {
     swatch,
     h("span", { class: "number row-number" }, String(control.label)),
     h("span", { class: "row-name" }, row.name),
-    control.start_cost > 0 ? h("span", { class: "number soft", title: `Start cost ${control.start_cost.toPrecision(3)}` }, reachText(control.start_cost, mostOf(store))) : null,
+    control.start_cost > 0
+      ? h(
+          "span",
+          { class: "number soft", title: `Start cost ${control.start_cost.toPrecision(3)}` },
+          reachText(control.start_cost, mostOf(store)),
+        )
+      : null,
     h("span", { class: "number soft" }, `#${control.point}`),
   );
 }
@@ -71,7 +89,11 @@ function selectedPart(store: Store, edits: Edits): HTMLElement {
     },
   );
   reach.input.setAttribute("aria-label", "Reach of the selected control point");
-  const remove = textButton("Delete", () => removeSelected(store, edits), { icon: "clear", title: "Takes it away (Delete)", kind: "outline" });
+  const remove = textButton("Delete", () => removeSelected(store, edits), {
+    icon: "clear",
+    title: "Takes it away (Delete)",
+    kind: "outline",
+  });
   const element = h("div", { class: "selected-control" }, reach.element, remove);
   store.watch(["selected", "controls", "cloud"], ({ selected, controls }) => {
     const control = selected === null ? undefined : controls.get(selected);

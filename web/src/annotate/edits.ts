@@ -32,7 +32,8 @@ export class Edits {
   }
 
   pickLabel(pick: Pick): void {
-    const label = this.store.state.controls.get(pick.control ? pick.point : -1)?.label ?? this.viewer.cloud.labelOf(pick.point);
+    const label =
+      this.store.state.controls.get(pick.control ? pick.point : -1)?.label ?? this.viewer.cloud.labelOf(pick.point);
     if (label === 0) toast("This point has no label.");
     else this.store.set({ label });
   }
@@ -72,7 +73,10 @@ export class Edits {
     } else if (state.action === "remove" && state.removal === "paint") {
       await this.session.act({ do: "paint", label: 0, ...selection }, hidden);
     } else if (state.action === "remove") {
-      await this.session.act({ do: "remove", ...selection }, { ...hidden, ...(state.removal === "trees" ? { trees: true } : {}) });
+      await this.session.act(
+        { do: "remove", ...selection },
+        { ...hidden, ...(state.removal === "trees" ? { trees: true } : {}) },
+      );
     }
   }
 
@@ -86,7 +90,8 @@ export class Edits {
 
   async clear(): Promise<void> {
     const result = await this.session.act({ do: "clear" });
-    if (result?.done) toast("All labels are gone from the cloud.", { button: { text: "Undo", click: () => this.undo() } });
+    if (result?.done)
+      toast("All labels are gone from the cloud.", { button: { text: "Undo", click: () => this.undo() } });
   }
 
   /** Changes what is known of a label. */

@@ -45,7 +45,10 @@ export class Files {
       if (!answer.ok) throw new Error((await answer.text()).slice(0, 400) || `the program answered ${answer.status}`);
       const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition") ?? "")?.[1];
       const address = URL.createObjectURL(await answer.blob());
-      const link = h("a", { href: address, download: name ?? `${cloud.name.replace(/\.[^.]*$/, "")}_labels.${format}` });
+      const link = h("a", {
+        href: address,
+        download: name ?? `${cloud.name.replace(/\.[^.]*$/, "")}_labels.${format}`,
+      });
       link.click();
       window.setTimeout(() => URL.revokeObjectURL(address), 60_000);
     } catch (error) {
@@ -74,7 +77,11 @@ export class Files {
       "Open",
       {},
       clouds.length > 8 ? search : null,
-      h("p", { class: "soft cloud-count" }, `${clouds.length === 1 ? "1 cloud" : `${clouds.length} clouds`}, ${begun} begun`),
+      h(
+        "p",
+        { class: "soft cloud-count" },
+        `${clouds.length === 1 ? "1 cloud" : `${clouds.length} clouds`}, ${begun} begun`,
+      ),
       list,
     );
     const choose = (index: number) => {

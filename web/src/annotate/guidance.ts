@@ -37,7 +37,12 @@ export class Guidance {
   async jump(): Promise<void> {
     const answer = await this.session.ask({ type: "next_best_click" });
     if (!answer) return;
-    const { point, position, label, gain } = answer.head as { point?: unknown; position?: unknown; label?: unknown; gain?: unknown };
+    const { point, position, label, gain } = answer.head as {
+      point?: unknown;
+      position?: unknown;
+      label?: unknown;
+      gain?: unknown;
+    };
     if (typeof point !== "number") {
       toast("There is no place where one more click would help.");
       return;
@@ -46,15 +51,27 @@ export class Guidance {
     const place = known ?? (Array.isArray(position) ? (position as [number, number, number]) : null);
     if (place) this.viewer.camera.goTo(place);
     this.viewer.cloud.mark(point);
-    const settles = typeof gain === "number" && gain >= 1 ? ` A click there settles about ${Math.round(gain).toLocaleString("en")} points.` : "";
+    const settles =
+      typeof gain === "number" && gain >= 1
+        ? ` A click there settles about ${Math.round(gain).toLocaleString("en")} points.`
+        : "";
     toast(`The ring is where labels are most in doubt${label ? `; now it is label ${String(label)}` : ""}.${settles}`);
   }
 
   section(): HTMLElement {
-    const heat = toggleButton([icon("heat"), h("span", {}, "Heat map")], "Heat map of doubt", "Shows where labels are in doubt (M)", () => this.toggle());
+    const heat = toggleButton(
+      [icon("heat"), h("span", {}, "Heat map")],
+      "Heat map of doubt",
+      "Shows where labels are in doubt (M)",
+      () => this.toggle(),
+    );
     heat.element.classList.add("outline");
     this.store.watch(["margins"], ({ margins }) => heat.set(margins));
-    const next = textButton("Next best click", () => void this.jump(), { icon: "target", kind: "outline", title: "Goes to where one more control point helps most (G)" });
+    const next = textButton("Next best click", () => void this.jump(), {
+      icon: "target",
+      kind: "outline",
+      title: "Goes to where one more control point helps most (G)",
+    });
     return section("Guidance", {}, h("div", { class: "toggle-row" }, heat.element, next));
   }
 

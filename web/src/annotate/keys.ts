@@ -44,8 +44,14 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
     run: () => store.set({ action: value }),
     ...(shown ? { shown } : {}),
   });
-  const tool = (key: string, value: Tool, text: string): Shortcut => ({ keys: [key], group, text, run: () => chooseTool(store, value) });
-  const brush = (by: number) => store.set({ brush: Math.max(2, Math.min(kMaxBrush, Math.round(store.state.brush * by + Math.sign(by - 1)))) });
+  const tool = (key: string, value: Tool, text: string): Shortcut => ({
+    keys: [key],
+    group,
+    text,
+    run: () => chooseTool(store, value),
+  });
+  const brush = (by: number) =>
+    store.set({ brush: Math.max(2, Math.min(kMaxBrush, Math.round(store.state.brush * by + Math.sign(by - 1)))) });
   const none = (): void => {
     if (!pointer.giveUp()) store.set({ action: "none" });
   };
@@ -83,16 +89,39 @@ function labelKeys({ store }: KeyParts): Shortcut[] {
   const choose = (place: number) => () => store.set({ label: Math.min(kMaxLabel, pageOf(store.state.label) + place) });
   const jump = (which: "first" | "next" | "last") => () => store.set({ label: emptyLabel(store, which) });
   return [
-    ...digits.map((digit, i) => ({ keys: [String(digit)], group, text: i === 0 ? "Labels of the first row" : "", shown: "1 – 0", run: choose(i) })),
-    ...digits.map((digit, i) => ({ keys: [`Shift+${digit}`], group, text: i === 0 ? "Labels of the second row" : "", shown: "Shift+1 – 0", run: choose(10 + i) })),
+    ...digits.map((digit, i) => ({
+      keys: [String(digit)],
+      group,
+      text: i === 0 ? "Labels of the first row" : "",
+      shown: "1 – 0",
+      run: choose(i),
+    })),
+    ...digits.map((digit, i) => ({
+      keys: [`Shift+${digit}`],
+      group,
+      text: i === 0 ? "Labels of the second row" : "",
+      shown: "Shift+1 – 0",
+      run: choose(10 + i),
+    })),
     { keys: [","], group, text: "Previous, next label", shown: ", .", run: () => step(-1) },
     { keys: ["."], group, text: "", run: () => step(1) },
-    { keys: ["PageUp"], group, text: "Previous, next twenty", shown: "PageUp PageDown", run: () => turnPage(store, -1) },
+    {
+      keys: ["PageUp"],
+      group,
+      text: "Previous, next twenty",
+      shown: "PageUp PageDown",
+      run: () => turnPage(store, -1),
+    },
     { keys: ["PageDown"], group, text: "", run: () => turnPage(store, 1) },
     { keys: ["J"], group, text: "Next empty label", run: jump("next") },
     { keys: ["Shift+J"], group, text: "First empty label", run: jump("first") },
     { keys: ["Alt+J"], group, text: "Last empty label", run: jump("last") },
-    { keys: ["F2"], group, text: "Name the label", run: () => document.querySelector<HTMLInputElement>(".current-label input[type=text]")?.select() },
+    {
+      keys: ["F2"],
+      group,
+      text: "Name the label",
+      run: () => document.querySelector<HTMLInputElement>(".current-label input[type=text]")?.select(),
+    },
     { keys: ["H"], group, text: "Hide or show the label", run: () => toggleHidden(store, store.state.label) },
     { keys: ["Shift+H"], group, text: "Show it alone, or all", run: () => toggleSolo(store, store.state.label) },
   ];
@@ -101,13 +130,19 @@ function labelKeys({ store }: KeyParts): Shortcut[] {
 function viewKeys({ store, viewer, guidance, foldPanel, showHelp }: KeyParts): Shortcut[] {
   const group = "View";
   const look = (which: Side) => () => lookFrom(viewer.camera, store.state.cloud?.up ?? [0, 0, 1], which);
-  const size = (by: number) => store.set({ pointSize: Math.max(kPointSizes.min, Math.min(kPointSizes.max, store.state.pointSize + by)) });
+  const size = (by: number) =>
+    store.set({ pointSize: Math.max(kPointSizes.min, Math.min(kPointSizes.max, store.state.pointSize + by)) });
   return [
     { keys: ["F"], group, text: "Whole cloud", run: () => viewer.camera.fit() },
     { keys: ["T"], group, text: "From the top", run: look("top") },
     { keys: ["Shift+F"], group, text: "From the front", run: look("front") },
     { keys: ["Shift+T"], group, text: "From the side", run: look("side") },
-    { keys: ["O"], group, text: "Orbit or fly", run: () => store.set({ navigation: store.state.navigation === "orbit" ? "fly" : "orbit" }) },
+    {
+      keys: ["O"],
+      group,
+      text: "Orbit or fly",
+      run: () => store.set({ navigation: store.state.navigation === "orbit" ? "fly" : "orbit" }),
+    },
     { keys: ["+", "="], group, text: "Points larger, smaller", shown: "+ −", run: () => size(1) },
     { keys: ["-", "−"], group, text: "", run: () => size(-1) },
     { keys: ["Shift+C"], group, text: "Cloud on or off", run: () => toggleShown(store, "cloud") },
@@ -125,9 +160,20 @@ function fileKeys({ store, files }: KeyParts): Shortcut[] {
   const several = () => store.state.clouds.length > 1;
   return [
     { keys: ["Ctrl+S"], group, text: "Save", run: () => void files.save() },
-    { keys: ["Ctrl+E"], group, text: "Export", run: () => document.querySelector<HTMLButtonElement>("[data-command=export]")?.click() },
+    {
+      keys: ["Ctrl+E"],
+      group,
+      text: "Export",
+      run: () => document.querySelector<HTMLButtonElement>("[data-command=export]")?.click(),
+    },
     { keys: ["Ctrl+O"], group, text: "Open", run: () => files.open() },
-    { keys: ["Shift+PageUp"], group, text: "Previous, next cloud", shown: "Shift+PageUp – PageDown", run: () => several() && files.step(-1) },
+    {
+      keys: ["Shift+PageUp"],
+      group,
+      text: "Previous, next cloud",
+      shown: "Shift+PageUp – PageDown",
+      run: () => several() && files.step(-1),
+    },
     { keys: ["Shift+PageDown"], group, text: "", run: () => several() && files.step(1) },
   ];
 }

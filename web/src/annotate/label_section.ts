@@ -16,7 +16,10 @@ const kMostRows = 9;
 export function emptyLabel(store: Store, which: "first" | "next" | "last"): number {
   const used = (label: number) => !isEmpty(rowOf(store.state, label));
   if (which === "last") {
-    const most = Math.max(0, ...[...store.state.labels.values()].filter((row) => !isEmpty(row)).map((row) => row.number));
+    const most = Math.max(
+      0,
+      ...[...store.state.labels.values()].filter((row) => !isEmpty(row)).map((row) => row.number),
+    );
     return Math.min(most + 1, kMaxLabel);
   }
   let label = which === "first" ? 1 : store.state.label + 1;
@@ -128,7 +131,11 @@ function labelRow(store: Store, row: LabelRow): HTMLElement {
   swatch.style.background = row.color;
   const element = h(
     "div",
-    { class: `list-row${hidden ? " off" : ""}`, "aria-selected": String(row.number === store.state.label), title: row.number > 0 ? describeLabel(row) : undefined },
+    {
+      class: `list-row${hidden ? " off" : ""}`,
+      "aria-selected": String(row.number === store.state.label),
+      title: row.number > 0 ? describeLabel(row) : undefined,
+    },
     swatch,
     h("span", { class: "number row-number" }, row.number > 0 ? String(row.number) : ""),
     h("span", { class: "row-name" }, row.number === 0 ? "No label" : row.name),
@@ -140,7 +147,14 @@ function labelRow(store: Store, row: LabelRow): HTMLElement {
 
 function currentPart(store: Store, edits: Edits): HTMLElement {
   const number = h("span", { class: "current-number number", "data-testid": "current-label" });
-  const name = h("input", { type: "text", "aria-label": "Name of the label", placeholder: "Name", maxlength: 256, autocomplete: "off", spellcheck: "false" });
+  const name = h("input", {
+    type: "text",
+    "aria-label": "Name of the label",
+    placeholder: "Name",
+    maxlength: 256,
+    autocomplete: "off",
+    spellcheck: "false",
+  });
   const eye = iconButton("eye", "Hide this label (H)", (event) => {
     if (event.altKey) toggleSolo(store, store.state.label);
     else toggleHidden(store, store.state.label);
@@ -173,12 +187,19 @@ function currentPart(store: Store, edits: Edits): HTMLElement {
 }
 
 function detailsPart(store: Store, edits: Edits): HTMLElement {
-  const kind = h("input", { type: "text", "aria-label": "Class", maxlength: 256, autocomplete: "off", placeholder: "as cup, 40" });
+  const kind = h("input", {
+    type: "text",
+    "aria-label": "Class",
+    maxlength: 256,
+    autocomplete: "off",
+    placeholder: "as cup, 40",
+  });
   const instance = h("input", { type: "number", "aria-label": "Instance", min: 0, max: 4294967295, step: 1 });
   on(kind, { change: () => edits.define(store.state.label, { class: kind.value.trim() }) });
   on(instance, {
     change: () => {
-      if (instance.checkValidity() && instance.value !== "") edits.define(store.state.label, { instance: instance.valueAsNumber });
+      if (instance.checkValidity() && instance.value !== "")
+        edits.define(store.state.label, { instance: instance.valueAsNumber });
     },
   });
   store.watch(["label", "labels"], (state) => {

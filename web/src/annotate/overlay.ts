@@ -12,7 +12,16 @@ export class Overlay {
   private readonly corners = svg("g", { class: "overlay-corners" });
   private readonly cross = svg("path", { class: "overlay-cross" });
   readonly hint = h("div", { class: "overlay-hint", hidden: true });
-  readonly element = svg("svg", { class: "overlay", "aria-hidden": "true" }, this.shade, this.edge, this.stroke, this.circle, this.corners, this.cross);
+  readonly element = svg(
+    "svg",
+    { class: "overlay", "aria-hidden": "true" },
+    this.shade,
+    this.edge,
+    this.stroke,
+    this.circle,
+    this.corners,
+    this.cross,
+  );
 
   clear(): void {
     for (const path of [this.shade, this.edge, this.stroke]) path.removeAttribute("d");
@@ -28,9 +37,7 @@ export class Overlay {
     const path = pathOf(corners, true);
     this.shade.setAttribute("d", path);
     this.edge.setAttribute("d", path);
-    this.corners.replaceChildren(
-      ...(marked ? corners.map(([x, y]) => svg("circle", { cx: x, cy: y, r: 3.5 })) : []),
-    );
+    this.corners.replaceChildren(...(marked ? corners.map(([x, y]) => svg("circle", { cx: x, cy: y, r: 3.5 })) : []));
   }
 
   line(line: readonly ScreenPoint[], width_px: number): void {

@@ -153,7 +153,12 @@ export class Pointer {
   }
 
   private key(event: KeyboardEvent): void {
-    const steps: Record<string, ScreenPoint> = { ArrowLeft: [-1, 0], ArrowRight: [1, 0], ArrowUp: [0, -1], ArrowDown: [0, 1] };
+    const steps: Record<string, ScreenPoint> = {
+      ArrowLeft: [-1, 0],
+      ArrowRight: [1, 0],
+      ArrowUp: [0, -1],
+      ArrowDown: [0, 1],
+    };
     const step = steps[event.key];
     if (step && !event.ctrlKey && !event.altKey && this.store.state.navigation !== "fly") {
       const { clientWidth: width, clientHeight: height } = this.viewer.element;

@@ -77,7 +77,12 @@ export class Session {
       return await this.queue.submit(action, options);
     } catch (error) {
       const nothing = error instanceof Refusal && error.message.startsWith("nothing is selected");
-      if (nothing) toast(action.do === "remove" && !options["trees"] ? "There is no control point in the area." : "There is nothing in the area.");
+      if (nothing)
+        toast(
+          action.do === "remove" && !options["trees"]
+            ? "There is no control point in the area."
+            : "There is nothing in the area.",
+        );
       else toast(textOf(error), { kind: "error" });
       return null;
     }
@@ -88,7 +93,9 @@ export class Session {
     try {
       return await this.connection.ask(question);
     } catch (error) {
-      toast(error instanceof Disconnected ? "The program cannot be reached at the moment." : textOf(error), { kind: "error" });
+      toast(error instanceof Disconnected ? "The program cannot be reached at the moment." : textOf(error), {
+        kind: "error",
+      });
       return null;
     }
   }
@@ -108,7 +115,8 @@ export class Session {
     this.queue.pause();
     const name = this.store.state.clouds[index]?.name ?? "";
     if (index !== this.store.state.cloud?.index) this.complete = false;
-    if (!this.complete) this.store.set({ failure: null, progress: { stage: `Opening ${name}`, done: 0, total: 0, seen: false } });
+    if (!this.complete)
+      this.store.set({ failure: null, progress: { stage: `Opening ${name}`, done: 0, total: 0, seen: false } });
     await this.load(mine, () => this.connection.ask({ type: "open", cloud: index, budget: pointBudget() }));
   }
 
@@ -152,11 +160,17 @@ export class Session {
     const before = state.cloud;
     const cloud = cloudOf(head);
     const labels = new Map(((head["labels"] ?? []) as LabelRow[]).map((row) => [row.number, row]));
-    const controls = new Map(controlsOf(body, Number(head["control_points"] ?? 0)).map((control) => [control.point, control]));
+    const controls = new Map(
+      controlsOf(body, Number(head["control_points"] ?? 0)).map((control) => [control.point, control]),
+    );
     const sequence = Number(head["sequence"]);
     const same = before?.index === cloud.index && before.name === cloud.name && before.shown === cloud.shown;
     const kept =
-      this.complete && same && sequence === this.sequence && sameCounts(labels, state.labels) && controls.size === state.controls.size;
+      this.complete &&
+      same &&
+      sequence === this.sequence &&
+      sameCounts(labels, state.labels) &&
+      controls.size === state.controls.size;
     this.sequence = sequence;
     this.store.set({
       cloud,
@@ -214,7 +228,8 @@ export class Session {
       });
       here += count;
       // Control points of which the view did not know the place yet.
-      for (const control of this.store.state.controls.values()) this.viewer.cloud.setControlPoint(control.point, control.label);
+      for (const control of this.store.state.controls.values())
+        this.viewer.cloud.setControlPoint(control.point, control.label);
       this.store.set({ progress: { stage: "points", done: here, total, seen: true } });
     }
     this.complete = true;

@@ -17,7 +17,11 @@ export function toggleShown(store: Store, what: Shown): void {
 
 export function showSection(store: Store): HTMLElement {
   const toggles: [Shown, string, string][] = [
-    ["cloud", "Cloud", "The colours of the cloud; without them points are their label's colour, black without one (Shift+C)"],
+    [
+      "cloud",
+      "Cloud",
+      "The colours of the cloud; without them points are their label's colour, black without one (Shift+C)",
+    ],
     ["labels", "Labels", "Labels as squares in the points (Shift+L)"],
     ["controls", "Control points", "Control points as spheres (Shift+P)"],
   ];
@@ -28,8 +32,10 @@ export function showSection(store: Store): HTMLElement {
     store.watch(["show"], ({ show }) => toggle.set(show[what]));
     row.append(toggle.element);
   }
-  const size = slider("Point size", { min: kPointSizes.min, max: kPointSizes.max, title: "Edge of a point's square (+ and −)" }, (pointSize) =>
-    store.set({ pointSize }),
+  const size = slider(
+    "Point size",
+    { min: kPointSizes.min, max: kPointSizes.max, title: "Edge of a point's square (+ and −)" },
+    (pointSize) => store.set({ pointSize }),
   );
   store.watch(["pointSize"], ({ pointSize }) => size.set(pointSize, `${pointSize} px`));
   return section("Show", {}, row, size.element);
@@ -50,7 +56,13 @@ export function viewBar(store: Store, viewer: Viewer): HTMLElement {
     navigation.set(state.navigation);
     viewer.camera.navigation = state.navigation;
   });
-  const legend = h("span", { class: "heat-legend", hidden: true }, "in doubt", h("span", { class: "heat-scale" }), "sure");
+  const legend = h(
+    "span",
+    { class: "heat-legend", hidden: true },
+    "in doubt",
+    h("span", { class: "heat-scale" }),
+    "sure",
+  );
   store.watch(["margins"], ({ margins }) => void (legend.hidden = !margins));
   const bar = h(
     "div",
@@ -67,7 +79,12 @@ export function viewBar(store: Store, viewer: Viewer): HTMLElement {
 }
 
 export function hiddenNote(store: Store): HTMLElement {
-  const button = h("button", { type: "button", class: "floating hidden-note", hidden: true }, icon("hidden"), h("span"));
+  const button = h(
+    "button",
+    { type: "button", class: "floating hidden-note", hidden: true },
+    icon("hidden"),
+    h("span"),
+  );
   on(button, { click: () => store.set({ hidden: new Set() }) });
   store.watch(["hidden"], ({ hidden }) => {
     button.hidden = hidden.size === 0;

@@ -32,9 +32,19 @@ export function actionSection(store: Store): HTMLElement {
     "Action",
     [
       { value: "none", text: "None", title: "The left button moves the view (N, Esc)", icon: "none" },
-      { value: "set", text: "Set", title: "Sets control points, or paints areas, with the current label (C)", icon: "set" },
+      {
+        value: "set",
+        text: "Set",
+        title: "Sets control points, or paints areas, with the current label (C)",
+        icon: "set",
+      },
       { value: "remove", text: "Del", label: "Del", title: "Takes control points or paint away (X)", icon: "remove" },
-      { value: "pick", text: "Pick", title: "Makes the label of the point that is clicked the current one (I)", icon: "pick" },
+      {
+        value: "pick",
+        text: "Pick",
+        title: "Makes the label of the point that is clicked the current one (I)",
+        icon: "pick",
+      },
     ],
     (action) => store.set({ action }),
   );
@@ -60,7 +70,12 @@ export function toolSection(store: Store): HTMLElement {
     [
       { value: "point", text: "Point", title: "Single points and control points (P)", icon: "point" },
       { value: "rectangle", text: "Rect", label: "Rectangle", title: "Drag a rectangle (R)", icon: "rectangle" },
-      { value: "polyline", text: "Polyline", title: "Click the corners of an area; Enter closes it (Y)", icon: "polyline" },
+      {
+        value: "polyline",
+        text: "Polyline",
+        title: "Click the corners of an area; Enter closes it (Y)",
+        icon: "polyline",
+      },
       { value: "lasso", text: "Lasso", title: "Draw around an area (L)", icon: "lasso" },
       { value: "brush", text: "Brush", title: "Paint along a line (B)", icon: "brush" },
     ],
@@ -78,14 +93,29 @@ function optionsPart(store: Store): HTMLElement {
     part(store, ["action", "tool"], treePart(store), (s) => s.action === "remove" && s.tool === "point"),
     part(store, ["action", "tool"], removalPart(store), (s) => s.action === "remove" && s.tool !== "point"),
     part(store, ["action", "tool"], brushPart(store), (s) => isArea(s) && s.tool === "brush"),
-    part(store, ["action", "tool", "brushUnit"], depthPart(store), (s) => isArea(s) && !(s.tool === "brush" && s.brushUnit === "mm")),
-    part(store, ["action", "tool", "depth", "brushUnit"], belowPart(store), (s) => isArea(s) && s.depth === "below" && !(s.tool === "brush" && s.brushUnit === "mm")),
+    part(
+      store,
+      ["action", "tool", "brushUnit"],
+      depthPart(store),
+      (s) => isArea(s) && !(s.tool === "brush" && s.brushUnit === "mm"),
+    ),
+    part(
+      store,
+      ["action", "tool", "depth", "brushUnit"],
+      belowPart(store),
+      (s) => isArea(s) && s.depth === "below" && !(s.tool === "brush" && s.brushUnit === "mm"),
+    ),
   ];
   store.watch(["action", "tool", "removal", "wholeTree"], (state) => void (hint.textContent = hintOf(state)));
   return h("div", { class: "tool-options" }, hint, ...parts);
 }
 
-function part(store: Store, keys: readonly (keyof State)[], element: HTMLElement, shown: (state: Readonly<State>) => boolean): HTMLElement {
+function part(
+  store: Store,
+  keys: readonly (keyof State)[],
+  element: HTMLElement,
+  shown: (state: Readonly<State>) => boolean,
+): HTMLElement {
   store.watch(keys, (state) => void (element.hidden = !shown(state)));
   return element;
 }
@@ -102,8 +132,13 @@ function hintOf(state: Readonly<State>): string {
     if (tool === "point") return "Click a point; drag a sphere to move it.";
     return "Points in the area are painted with the label.";
   }
-  if (tool === "point") return state.wholeTree ? "Click anywhere in what a sphere has labelled." : "Click the sphere of a control point.";
-  return { control: "Control points in the area go.", trees: "What labels points in the area goes.", paint: "Paint in the area goes." }[state.removal];
+  if (tool === "point")
+    return state.wholeTree ? "Click anywhere in what a sphere has labelled." : "Click the sphere of a control point.";
+  return {
+    control: "Control points in the area go.",
+    trees: "What labels points in the area goes.",
+    paint: "Paint in the area goes.",
+  }[state.removal];
 }
 
 function reachPart(store: Store): HTMLElement {
@@ -112,13 +147,17 @@ function reachPart(store: Store): HTMLElement {
     (position) => store.set({ startCost: costOfReach(position, store.state.cloud?.maxPath ?? 100) }),
     () => undefined,
   );
-  store.watch(["startCost", "cloud"], ({ startCost, cloud }) => reach.set(reachOfCost(startCost, cloud?.maxPath ?? 100), reachText(startCost, cloud?.maxPath ?? 100)));
+  store.watch(["startCost", "cloud"], ({ startCost, cloud }) =>
+    reach.set(reachOfCost(startCost, cloud?.maxPath ?? 100), reachText(startCost, cloud?.maxPath ?? 100)),
+  );
   return reach.element;
 }
 
 function treePart(store: Store): HTMLElement {
-  const box = checkbox("Anywhere in its tree", "A click on any point takes its control point away; the points that it labels are shown before", (wholeTree) =>
-    store.set({ wholeTree }),
+  const box = checkbox(
+    "Anywhere in its tree",
+    "A click on any point takes its control point away; the points that it labels are shown before",
+    (wholeTree) => store.set({ wholeTree }),
   );
   store.watch(["wholeTree"], ({ wholeTree }) => box.set(wholeTree));
   return box.element;
@@ -161,13 +200,19 @@ function depthPart(store: Store): HTMLElement {
 }
 
 function belowPart(store: Store): HTMLElement {
-  const below = slider("Down to", { min: 1, max: kMaxBelow_mm, title: "How far below the surface that is seen" }, (mm) => store.set({ below_mm: mm }));
+  const below = slider(
+    "Down to",
+    { min: 1, max: kMaxBelow_mm, title: "How far below the surface that is seen" },
+    (mm) => store.set({ below_mm: mm }),
+  );
   store.watch(["below_mm"], ({ below_mm: mm }) => below.set(mm, `${mm} mm`));
   return below.element;
 }
 
 function brushPart(store: Store): HTMLElement {
-  const radius = slider("Radius", { min: 2, max: kMaxBrush, title: "Of the brush ([ and ])" }, (brush) => store.set({ brush }));
+  const radius = slider("Radius", { min: 2, max: kMaxBrush, title: "Of the brush ([ and ])" }, (brush) =>
+    store.set({ brush }),
+  );
   const unit = segmented<"px" | "mm">(
     "Unit of the radius",
     [

@@ -4,11 +4,19 @@ import { type Child, fill, h, on, setAttribute } from "./dom";
 import { icon, type IconName } from "./icons";
 
 export function iconButton(name: IconName, label: string, click: (event: MouseEvent) => void): HTMLButtonElement {
-  const button = h("button", { type: "button", class: "button icon-only", "aria-label": label, title: label }, icon(name));
+  const button = h(
+    "button",
+    { type: "button", class: "button icon-only", "aria-label": label, title: label },
+    icon(name),
+  );
   return on(button, { click });
 }
 
-export function textButton(text: string, click: () => void, options: { icon?: IconName; title?: string; kind?: string } = {}) {
+export function textButton(
+  text: string,
+  click: () => void,
+  options: { icon?: IconName; title?: string; kind?: string } = {},
+) {
   const button = h(
     "button",
     { type: "button", class: `button ${options.kind ?? ""}`, title: options.title },
@@ -20,7 +28,13 @@ export function textButton(text: string, click: () => void, options: { icon?: Ic
 
 /** A button that is in or out. */
 export function toggleButton(content: Child[], label: string, title: string, changed: (pressed: boolean) => void) {
-  const button = h("button", { type: "button", class: "button toggle", "aria-pressed": "false", "aria-label": label, title });
+  const button = h("button", {
+    type: "button",
+    class: "button toggle",
+    "aria-pressed": "false",
+    "aria-label": label,
+    title,
+  });
   fill(button, ...content);
   on(button, { click: () => changed(button.getAttribute("aria-pressed") !== "true") });
   return { element: button, set: (pressed: boolean) => button.setAttribute("aria-pressed", String(pressed)) };
@@ -42,12 +56,22 @@ export interface Segmented<T extends string> {
 }
 
 /** One of a few: a group of radio buttons, with one stop for Tab and the arrow keys within. */
-export function segmented<T extends string>(label: string, choices: readonly Choice<T>[], changed: (value: T) => void): Segmented<T> {
+export function segmented<T extends string>(
+  label: string,
+  choices: readonly Choice<T>[],
+  changed: (value: T) => void,
+): Segmented<T> {
   const buttons = new Map<T, HTMLButtonElement>();
   for (const choice of choices) {
     const button = h(
       "button",
-      { type: "button", role: "radio", class: "segment", "aria-label": choice.label ?? choice.text, title: choice.title },
+      {
+        type: "button",
+        role: "radio",
+        class: "segment",
+        "aria-label": choice.label ?? choice.text,
+        title: choice.title,
+      },
       choice.icon ? icon(choice.icon) : null,
       choice.text ? h("span", {}, choice.text) : null,
     );
@@ -100,7 +124,14 @@ export function slider(
   input: (position: number) => void,
   change: (position: number) => void = () => undefined,
 ): Slider {
-  const field = h("input", { type: "range", min: range.min, max: range.max, step: 1, "aria-label": label, title: range.title });
+  const field = h("input", {
+    type: "range",
+    min: range.min,
+    max: range.max,
+    step: 1,
+    "aria-label": label,
+    title: range.title,
+  });
   const value = h("output", { class: "slider-value" });
   on(field, { input: () => input(field.valueAsNumber), change: () => change(field.valueAsNumber) });
   return {
@@ -122,13 +153,22 @@ export function checkbox(label: string, title: string, changed: (checked: boolea
 }
 
 /** A part of a panel; with `fold` it can be folded up. */
-export function section(title: string, options: { fold?: boolean; open?: boolean; aside?: Node }, ...children: Child[]): HTMLElement {
+export function section(
+  title: string,
+  options: { fold?: boolean; open?: boolean; aside?: Node },
+  ...children: Child[]
+): HTMLElement {
   if (!options.fold) {
     const head = h("header", { class: "section-head" }, h("h2", {}, title), options.aside ?? null);
     return h("section", { class: "section", "aria-label": title }, head, ...children);
   }
   const summary = h("summary", { class: "section-head" }, h("h2", {}, title), options.aside ?? null, icon("down"));
-  return h("details", { class: "section", open: options.open ?? false }, summary, h("div", { class: "section-body" }, ...children));
+  return h(
+    "details",
+    { class: "section", open: options.open ?? false },
+    summary,
+    h("div", { class: "section-body" }, ...children),
+  );
 }
 
 export interface MenuItem {

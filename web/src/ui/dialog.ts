@@ -13,7 +13,13 @@ export function openSheet(title: string, options: { wide?: boolean }, ...childre
   const element = h("dialog", { class: options.wide ? "sheet wide" : "sheet", "aria-label": title });
   const close = () => element.close();
   element.append(h("header", { class: "sheet-head" }, h("h1", {}, title), iconButton("close", "Close", close)));
-  element.append(h("div", { class: "sheet-body", tabindex: -1, autofocus: true }, ...children.filter((child): child is Node | string => !!child)));
+  element.append(
+    h(
+      "div",
+      { class: "sheet-body", tabindex: -1, autofocus: true },
+      ...children.filter((child): child is Node | string => !!child),
+    ),
+  );
   on(element, {
     close: () => {
       element.remove();

@@ -36,5 +36,8 @@ export function toast(text: string, options: ToastOptions = {}): void {
 
   const stays = options.stays_ms ?? (kind === "error" ? kErrorStays_ms : kStays_ms);
   let timer = window.setTimeout(close, stays);
-  on(row, { pointerenter: () => clearTimeout(timer), pointerleave: () => void (timer = window.setTimeout(close, stays)) });
+  on(row, {
+    pointerenter: () => clearTimeout(timer),
+    pointerleave: () => void (timer = window.setTimeout(close, stays)),
+  });
 }
