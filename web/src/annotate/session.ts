@@ -14,6 +14,7 @@ const kFirstChunk = 65_536; // something to see soon
 const kChunk = 262_144;
 const kInFlight = 3;
 const kControlBytes = 12;
+const kClosed = "The program was started anew and does not let this page in any more. Open the address that it printed.";
 
 /** Points that this page holds: about 100 bytes each, on both sides of the graphics driver. */
 export function pointBudget(): number {
@@ -57,6 +58,7 @@ export class Session {
     });
     connection.watch((state) => {
       store.set({ connection: state });
+      if (state === "closed") toast(kClosed, { kind: "error", stays_ms: 86_400_000 });
       if (state !== "connected") this.queue.pause();
       else if (this.opening > 0) void this.open(this.wanted);
     });
