@@ -76,7 +76,12 @@ export class Guidance {
   }
 
   private async bring(): Promise<void> {
-    if (this.asking || !this.store.state.cloud) return;
+    if (!this.store.state.cloud) return;
+    if (this.asking) {
+      clearTimeout(this.timer);
+      this.timer = window.setTimeout(() => void this.bring(), kRest_ms);
+      return;
+    }
     this.asking = true;
     const answer = await this.session.ask({ type: "margins" });
     this.asking = false;
