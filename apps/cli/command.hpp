@@ -43,6 +43,7 @@ void add_robot(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_scene(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_score(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_segment(CLI::App& program, const GlobalOptions& global, Action& action);
+void add_show(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_sample(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_update(CLI::App& program, const GlobalOptions& global, Action& action);
 

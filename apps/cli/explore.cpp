@@ -11,6 +11,7 @@
 #include "exit_status.hpp"
 #include "explore_report.hpp"
 #include "explore_run.hpp"
+#include "explore_show.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
@@ -46,7 +47,7 @@ Status make_room(const ExploreOptions& options, const RunFolder& out) {
   std::vector<std::string> names;
   for (const auto& entry : std::filesystem::directory_iterator{out.path()}) {
     const std::string name = entry.path().filename().string();
-    if (is_view_picture(name)) names.push_back(name);
+    if (is_view_file(name)) names.push_back(name);
   }
   SACCADE_CHECK(remove_journal(out.path()));
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
@@ -207,7 +208,14 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   SACCADE_TRY(ExploreRun run, ExploreRun::create(options, subject, devices, out, executor, progress));
   if (saved) SACCADE_CHECK(run.resume(std::move(*saved)));
 
-  const auto ended = run.run();
+  std::unique_ptr<ExploreShow> show;
+  if (options.show) {
+    SACCADE_TRY(show, ExploreShow::start(options.serve, global, subject.scene, out.path()));
+    if (options.resume) show->changed();
+  }
+  const auto ended = run.run([&show] {
+    if (show) show->changed();
+  });
   if (!ended) return kept(ended.error(), out);
   const StopReason reason = *ended;
   const Status written = write_map(out, run, subject.scene.workspace, executor);
@@ -221,6 +229,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   if (!global.json_to_stdout()) print_summary(options, result);
   if (reason != StopReason::cancelled) {
     SACCADE_CHECK(remove_journal(out.path()));
+    if (show) show->finish();
     if (!run.views().empty() || reason != StopReason::no_candidate) return static_cast<int>(ExitStatus::done);
     print_error("explore", "not one view could be taken (" + refused_text(run.refused_at_end()) +
                                "); does the robot stand where it should?");

@@ -38,11 +38,22 @@ Status remove_checkpoints(const fs::path& folder, const std::string& but) {
   return {};
 }
 
+/// The file under a second name, at no cost where the file system can.
+Status name_too(const fs::path& file, const fs::path& name) {
+  std::error_code code;
+  fs::remove(name, code);
+  fs::create_hard_link(file, name, code);
+  if (code) fs::copy_file(file, name, code);
+  return code ? Status{Error{Errc::io_failure, "cannot be written: " + code.message(), name.string()}} : Status{};
+}
+
 }  // namespace
 
-Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, const Executor& executor) const {
+Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, const Executor& executor,
+                            const std::string& keep_as) const {
   const std::string checkpoint = "checkpoint-" + std::to_string(views.size()) + ".sacmap";
   SACCADE_CHECK(save_map(map, folder / checkpoint, executor));
+  if (!keep_as.empty()) SACCADE_CHECK(name_too(folder / checkpoint, folder / keep_as));
   json document{{"schema", kSchema},  {"settings", settings}, {"map", checkpoint}, {"frames", frames},
                 {"initial", initial}, {"views", views},       {"arm", arm}};
   document["crc32"] = checksum_of(document);

@@ -19,9 +19,9 @@ struct ExploreJournal {
   nlohmann::json arm;     ///< joint values as it stands; null for what is no arm
 
   /// Writes the map and then the journal that names it, and removes the map of the last time: whatever happens in
-  /// between, one complete pair is there. io_failure.
-  [[nodiscard]] Status save(const std::filesystem::path& folder, const TsdfSnapshot& map,
-                            const Executor& executor) const;
+  /// between, one complete pair is there. With `keep_as` the map stays under that name, too. io_failure.
+  [[nodiscard]] Status save(const std::filesystem::path& folder, const TsdfSnapshot& map, const Executor& executor,
+                            const std::string& keep_as = {}) const;
 };
 
 struct SavedExploration {

@@ -85,12 +85,16 @@ void add_explore_options(CLI::App& command, ExploreOptions& options) {
       ->capture_default_str();
   command.add_flag("--step", options.step, "ask before each move");
   command.add_flag("--resume", options.resume, "go on with the interrupted run in RUN");
-  command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
+  command.add_flag("--no-pictures{false}", options.write_pictures,
+                   "draw no pictures, write no report, and keep no maps of views");
+  command.add_flag("--show", options.show, "show the run in the browser while it goes on, and after it until Ctrl-C");
+  add_serve_options(command, options.serve);
   command.add_flag("--force", options.force, "write into a folder that holds other files or an interrupted run");
 }
 
 void check_explore_options(ExploreOptions& options, const GlobalOptions& global) {
   if (options.resume && options.force) usage_error("--resume", "goes on with a run, --force starts it anew: not both");
+  if (!options.show && !options.serve.given.empty()) usage_error(options.serve.given, "is for --show");
   require_positive(options.process_timeout_s, "--process-timeout");
   check_run_options(options);
   const auto strategy = strategy_kind(options.strategy);

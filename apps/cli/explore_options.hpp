@@ -10,6 +10,7 @@
 #include "command.hpp"
 #include "run_options.hpp"
 #include "segment_saliency.hpp"
+#include "serve.hpp"
 
 namespace saccade::cli {
 
@@ -30,6 +31,11 @@ struct ExploreOptions : RunOptions {
   std::string strategy{"attention"};  ///< as it was given
   SaliencyOptions saliency;
 
+  bool show{false};
+  ServeOptions serve;
+
+  /// What each view was chosen from, and the map after it, for saccade show.
+  [[nodiscard]] bool keeps_views() const { return write_pictures || show; }
   [[nodiscard]] bool has_arm() const { return robot_command.empty() && robot != "free"; }
   /// Boxes that are known to be free from the beginning.
   [[nodiscard]] std::vector<Box> free_boxes() const;

@@ -198,8 +198,9 @@ std::string refused_text(const json& refused) {
   return text;
 }
 
-bool is_view_picture(const std::string& file_name) {
-  return file_name.starts_with("view-") && file_name.ends_with(".png");
+bool is_view_file(const std::string& file_name) {
+  return file_name.starts_with("view-") &&
+         (file_name.ends_with(".png") || file_name.ends_with(".json") || file_name.ends_with(".sacmap"));
 }
 
 Status write_report(const RunFolder& out, const json& document, const ExploreOptions& options) {

@@ -33,7 +33,8 @@ struct ViewScenes {
 /// Writes view-00-map.png.
 [[nodiscard]] Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& workspace,
                                const Executor& executor, const RobotDrawing* robot = nullptr);
-[[nodiscard]] bool is_view_picture(const std::string& file_name);
+/// Of a view of a run: a picture, what it was chosen from, the map after it.
+[[nodiscard]] bool is_view_file(const std::string& file_name);
 
 /// A view of the document for the page, with the pictures that draw_view made of it. Where the map was not measured
 /// after it, nothing is unknown.

@@ -4,6 +4,7 @@
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <cmath>
 #include <iomanip>
 #include <iostream>
@@ -11,9 +12,11 @@
 
 #include "explore_report.hpp"
 #include "interrupt.hpp"
+#include "saccade/explore/object_attention.hpp"
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/scene/scene_hash.hpp"
+#include "server/show/view_record.hpp"
 #include "view_json.hpp"
 
 namespace saccade::cli {
@@ -67,6 +70,12 @@ Result<std::vector<ExploredView>> views_from_json(const json& views) {
     return Error{Errc::corrupt_data, std::string{"the journal is damaged: "} + e.what(), ""};
   }
   return all;
+}
+
+/// The virtual sensor that gains are counted with.
+PinholeCamera gain_sensor(const SimulatedRunConfig& run, const PinholeCamera& camera) {
+  return widened_vertically(coarser(camera, std::min(run.gain_width_px, camera.width)),
+                            run.exploration.oscillation_rad);
 }
 
 /// One line from the terminal; nullopt at its end, or when the user interrupts.
@@ -133,15 +142,16 @@ Status ExploreRun::resume(SavedExploration saved) {
   }
 }
 
-Result<StopReason> ExploreRun::run() {
+Result<StopReason> ExploreRun::run(const std::function<void()>& recorded) {
+  recorded_ = recorded;
   ExplorationCell cell{devices_.camera(), [this](const Pose& pose) { return devices_.observe(pose); },
                        devices_.robot()};
-  Status recorded;
+  Status last;
   ExplorationHooks hooks;
   hooks.before_move = [this](const Proposal& view) { return ask(view); };
   hooks.after_view = [&](const ExploredView& view, const Proposals& proposals) {
-    recorded = record_view(view, proposals);
-    return recorded.ok() && !interrupted();
+    last = record_view(view, proposals);
+    return last.ok() && !interrupted();
   };
   const ExplorationConfig& config = options_.run.exploration;
   if (journal_.initial.is_null()) {
@@ -157,7 +167,7 @@ Result<StopReason> ExploreRun::run() {
   SACCADE_TRY(std::vector<ExploredView> so_far, views_from_json(journal_.views));
   SACCADE_TRY(const ExplorationResult explored,
               explore(map_, cell, regions, *strategy, config, executor_, hooks, {}, std::move(so_far)));
-  if (!recorded.ok()) return recorded.error();
+  if (!last.ok()) return last.error();
   refused_at_end_ = refused_json(explored.refused_at_end);
   return explored.stopped_because;
 }
@@ -202,7 +212,7 @@ Status ExploreRun::record_scan(const ScanResult& scanned) {
     const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), devices_.robot().configuration(), {});
     SACCADE_CHECK(draw_scan(out_, map(), subject_.scene.workspace, executor_, robot ? &*robot : nullptr));
   }
-  return journal_.save(out_.path(), map(), executor_);
+  return save_journal();
 }
 
 Status ExploreRun::record_view(const ExploredView& view, const Proposals& proposals) {
@@ -222,8 +232,9 @@ Status ExploreRun::record_view(const ExploredView& view, const Proposals& propos
   progress_.update("exploring", journal_.views.size(), static_cast<std::size_t>(options_.run.exploration.max_views));
   const std::vector<Frame> frames = devices_.take_frames();
   if (options_.write_pictures) SACCADE_CHECK(draw(view, proposals, frames));
+  if (options_.keeps_views()) SACCADE_CHECK(keep_choice(view, proposals));
   before_ = map_.snapshot();
-  return journal_.save(out_.path(), map(), executor_);
+  return save_journal();
 }
 
 json ExploreRun::final() const {
@@ -238,11 +249,39 @@ json ExploreRun::final() const {
           {"f_score", optional_json(metrics.f_score)}};
 }
 
+Region ExploreRun::region_of(const ExploredView& view, const Proposals& proposals) const {
+  return proposals.gained.value_or(regions_of(subject_.scene, options_.run.strategy).at(view.region));
+}
+
+Status ExploreRun::save_journal() const {
+  const std::string kept = options_.keeps_views() ? server::view_file(journal_.views.size(), ".sacmap") : "";
+  SACCADE_CHECK(journal_.save(out_.path(), map(), executor_, kept));
+  if (recorded_) recorded_();
+  return {};
+}
+
+Status ExploreRun::keep_choice(const ExploredView& view, const Proposals& proposals) const {
+  server::ViewRecord record;
+  record.view = journal_.views.size();
+  record.region = region_of(view, proposals);
+  record.sensor = gain_sensor(options_.run, devices_.camera());
+  for (const Proposal& proposal : proposals.views) {
+    record.T_world_candidates.push_back(proposal.T_world_camera);
+    record.gains.push_back(proposal.gain);
+  }
+  if (proposals.attention) {
+    for (const Saliency& saliency : proposals.attention->saliency) record.saliency.push_back(saliency.value);
+  }
+  record.segment = proposals.segment;
+  record.path = view.path;
+  return server::write_view_record(out_.path(), record);
+}
+
 Status ExploreRun::draw(const ExploredView& view, const Proposals& proposals, const std::vector<Frame>& frames) const {
   SACCADE_TRY(std::vector<ExploredView> views, views_from_json(journal_.views));
   std::vector<Pose> earlier;
   for (std::size_t i = 0; i + 1 < views.size(); ++i) earlier.push_back(views[i].T_world_camera);
-  const Region region = proposals.gained.value_or(regions_of(subject_.scene, options_.run.strategy).at(view.region));
+  const Region region = region_of(view, proposals);
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.q, view.path);
   return draw_view(out_,
                    {views.size(), before_, map(), region, view, proposals, std::move(earlier), frames,

@@ -2,6 +2,8 @@
 #pragma once
 // ExploreRun: one exploration with its journal, its pictures and its figures.
 
+#include <functional>
+
 #include "explore_devices.hpp"
 #include "explore_journal.hpp"
 #include "progress_bar.hpp"
@@ -18,8 +20,9 @@ class ExploreRun {
   /// Takes up what an earlier run left in the folder. invalid_argument when that ran with other settings.
   [[nodiscard]] Status resume(SavedExploration saved);
 
-  /// Scans, unless that was done before, and explores. After the scan and after every view the journal is written.
-  [[nodiscard]] Result<StopReason> run();
+  /// Scans, unless that was done before, and explores. After the scan and after every view the journal is written, and
+  /// then `recorded` is called.
+  [[nodiscard]] Result<StopReason> run(const std::function<void()>& recorded = {});
 
   [[nodiscard]] const TsdfSnapshot& map() const { return map_.content(); }
   [[nodiscard]] const nlohmann::json& initial() const { return journal_.initial; }
@@ -35,6 +38,10 @@ class ExploreRun {
   [[nodiscard]] Consent ask(const Proposal& view);
   [[nodiscard]] Status record_scan(const ScanResult& scanned);
   [[nodiscard]] Status record_view(const ExploredView& view, const Proposals& proposals);
+  /// What it was chosen from, for saccade show.
+  [[nodiscard]] Status keep_choice(const ExploredView& view, const Proposals& proposals) const;
+  [[nodiscard]] Status save_journal() const;
+  [[nodiscard]] Region region_of(const ExploredView& view, const Proposals& proposals) const;
   [[nodiscard]] Status draw(const ExploredView& view, const Proposals& proposals,
                             const std::vector<Frame>& frames) const;
   [[nodiscard]] MeasuredMap measure_now() const;
@@ -48,6 +55,7 @@ class ExploreRun {
   TsdfMap map_;
   TsdfSnapshot before_;  // the map as it was before the view that is being taken
   ExploreJournal journal_;
+  std::function<void()> recorded_;
   nlohmann::json refused_at_end_ = nlohmann::json::object();
 };
 

@@ -117,7 +117,7 @@ Status remove_update_pictures(const RunFolder& out) {
   std::vector<std::string> names{"before.png", "hand.png", "regions.png", "after.png", "report.html"};
   for (const auto& entry : std::filesystem::directory_iterator{out.path()}) {
     std::string name = entry.path().filename().string();
-    if (is_view_picture(name)) names.push_back(std::move(name));
+    if (is_view_file(name)) names.push_back(std::move(name));
   }
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
 }

@@ -256,6 +256,23 @@ Result<TernaryPoints> write_ternary_points(const TsdfSnapshot& map, const std::f
   return counts;
 }
 
+std::vector<Eigen::Vector3f> frontier_voxels(const TsdfSnapshot& map, std::size_t most) {
+  TernaryPointsConfig config;
+  config.occupied = false;
+  const PointExport points{map, config, kEverything};
+  std::vector<Eigen::Vector3f> centers;
+  const Status within =
+      points.for_each_brick([&](const Index3& lo, const BrickRef&, const Mask512&, const Mask512& frontier) -> Status {
+        if (centers.size() + static_cast<std::size_t>(frontier.count()) > most) return bad_box("too many voxels");
+        for (int i = 0; i < kBrickVoxels; ++i) {
+          if (!frontier.test(i)) continue;
+          centers.emplace_back(voxel_center(lo + child_offset(i), map.config.voxel_size_m).cast<float>());
+        }
+        return {};
+      });
+  return within ? centers : std::vector<Eigen::Vector3f>{};
+}
+
 Result<IndexBox> write_ternary_volume(const TsdfSnapshot& map, const std::filesystem::path& path,
                                       const TernaryVolumeConfig& config) {
   SACCADE_TRY(const IndexBox box, volume_box(map, config));

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// write_ternary_points: occupied and frontier voxels as a PLY cloud; write_ternary_volume: a dense NPY volume.
+// write_ternary_points: occupied and frontier voxels as a PLY cloud; write_ternary_volume: a dense NPY volume;
+// frontier_voxels.
 
 #include <cstddef>
 #include <cstdint>
 #include <filesystem>
 #include <optional>
+#include <vector>
 
 #include "saccade/core/region.hpp"
 #include "saccade/core/result.hpp"
@@ -30,6 +32,10 @@ struct TernaryPoints {
 /// @return invalid_argument for an empty box, io_failure. O(bricks), two passes; memory does not grow with the map.
 [[nodiscard]] Result<TernaryPoints> write_ternary_points(const TsdfSnapshot& map, const std::filesystem::path& path,
                                                          const TernaryPointsConfig& config = {});
+
+/// Centres of the unknown voxels with an empty voxel at one of their six faces, inside the workspace; in the order of
+/// write_ternary_points. None where there are more than `most`. O(bricks).
+[[nodiscard]] std::vector<Eigen::Vector3f> frontier_voxels(const TsdfSnapshot& map, std::size_t most);
 
 struct TernaryVolumeConfig {
   std::optional<Box> box;  ///< voxels with their centre in it; without one, the smallest box around all known bricks

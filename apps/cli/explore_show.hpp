@@ -1,0 +1,49 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ExploreShow: an exploration in the browser while it runs.
+
+#include <condition_variable>
+#include <memory>
+#include <mutex>
+#include <thread>
+
+#include "explore_devices.hpp"
+#include "serve.hpp"
+#include "server/show/run_reader.hpp"
+#include "server/show/viewer_service.hpp"
+
+namespace saccade::cli {
+
+/// Reads the run's folder on a thread of its own whenever the run says that there is something new: the run waits for
+/// nobody.
+class ExploreShow {
+ public:
+  /// Serves the page and says where it is. Errors of listen().
+  [[nodiscard]] static Result<std::unique_ptr<ExploreShow>> start(const ServeOptions& options,
+                                                                  const GlobalOptions& global, const Scene& scene,
+                                                                  const std::filesystem::path& folder);
+  ~ExploreShow();
+
+  /// The folder has another view.
+  void changed() { wake(Wanted::live); }
+  /// The run is over; what it left is shown until Ctrl-C.
+  void finish();
+
+ private:
+  enum class Wanted : std::uint8_t { nothing, live, end, stop };
+  ExploreShow(std::unique_ptr<server::HttpServer> server, server::SceneDocument document,
+              const std::filesystem::path& folder);
+  void wake(Wanted wanted);
+  void read_and_show();
+
+  std::unique_ptr<server::HttpServer> server_;
+  std::unique_ptr<server::ViewerService> service_;
+  server::RunReader reader_;
+  std::mutex mutex_;
+  std::condition_variable woken_;
+  Wanted wanted_{Wanted::nothing};
+  bool quiet_{false};
+  std::thread thread_;
+};
+
+}  // namespace saccade::cli

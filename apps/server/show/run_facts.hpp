@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Facts of an exploration and its views, from its JSON; the pictures of a view that lie in the folder.
+
+#include <filesystem>
+
+#include "server/show/scene_document.hpp"
+
+namespace saccade::server {
+
+/// Of what the JSON says; what it lacks, or says in another way than expected, is left out.
+/// @param result  as in run.json.
+[[nodiscard]] Facts facts_of_run(const nlohmann::json& result);
+[[nodiscard]] Facts facts_of_scan(const nlohmann::json& initial);
+/// @param view  an entry of `views`.
+[[nodiscard]] Facts facts_of_view(const nlohmann::json& view);
+
+/// Those that are there, the camera's first; 0: of the scan.
+[[nodiscard]] std::vector<StepPicture> pictures_of_view(const std::filesystem::path& folder, std::size_t view);
+/// All PNG files of a folder, by their names.
+[[nodiscard]] std::vector<StepPicture> pictures_in(const std::filesystem::path& folder);
+
+}  // namespace saccade::server

@@ -1,0 +1,241 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "server/show/run_reader.hpp"
+
+#include "saccade/io/json_io.hpp"
+#include "saccade/io/ply_io.hpp"
+#include "saccade/io/sacmap.hpp"
+#include "saccade/io/urdf.hpp"
+#include "server/show/open_document.hpp"
+#include "server/show/run_facts.hpp"
+#include "server/show/run_layers.hpp"
+
+namespace saccade::server {
+namespace {
+
+namespace fs = std::filesystem;
+using nlohmann::json;
+
+bool is_there(const fs::path& path) {
+  std::error_code ignored;
+  return fs::is_regular_file(path, ignored);
+}
+
+std::string text_in(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() && found->is_string() ? found->get<std::string>() : std::string{};
+}
+
+json entry_in(const json& object, const char* key) {
+  const auto found = object.find(key);
+  return found != object.end() ? *found : json(nullptr);
+}
+
+/// What a journal says, in the words of a result.
+json result_of_journal(const json& journal) {
+  json result = entry_in(journal, "settings");
+  if (!result.is_object()) result = json::object();
+  result["command"] = "explore";
+  result["camera"] = entry_in(result, "intrinsics");
+  result["initial"] = entry_in(journal, "initial");
+  result["views"] = entry_in(journal, "views");
+  result["final"] = result["initial"];
+  if (result["views"].is_array() && !result["views"].empty()) result["final"] = result["views"].back();
+  return result;
+}
+
+std::string title_of(const json& result, const fs::path& folder) {
+  const std::string command = text_in(result, "command");
+  const std::string scene = text_in(result, "scene");
+  if (command == "explore") return "Exploration of " + scene;
+  if (command == "update") return "Update of " + scene;
+  const std::string name = folder.filename().empty() ? folder.parent_path().filename().string()  // "run/"
+                                                     : folder.filename().string();
+  return command == "fuse" ? "Fusion: " + name : name;
+}
+
+std::array<double, 2> fov_in(const json& result) {
+  const json camera = entry_in(result, "camera");
+  if (!camera.is_object()) return {0.0, 0.0};
+  PinholeCamera pinhole;
+  pinhole.fx = camera.value("fx", pinhole.fx);
+  pinhole.fy = camera.value("fy", pinhole.fy);
+  pinhole.cx = camera.value("cx", pinhole.cx);
+  pinhole.cy = camera.value("cy", pinhole.cy);
+  pinhole.width = camera.value("width", pinhole.width);
+  pinhole.height = camera.value("height", pinhole.height);
+  return pinhole.validate() ? fov_of(pinhole) : std::array<double, 2>{0.0, 0.0};
+}
+
+}  // namespace
+
+RunReader::RunReader(fs::path folder, const Executor& executor) : folder_{std::move(folder)}, executor_{executor} {}
+
+Result<SceneDocument> RunReader::read(bool live) {
+  try {
+    SACCADE_TRY(const json result, read_result());
+    SACCADE_CHECK(read_steps(result));
+    SceneDocument document;
+    document.title = title_of(result, folder_);
+    document.kind = DocumentKind::run;
+    document.live = live;
+    document.facts = facts_of_run(result);
+    if (!live && result.value("unfinished", false)) document.facts.emplace_back("state", "interrupted");
+    SACCADE_CHECK(add_end(document));
+    for (const ReadStep& read : steps_) {
+      document.steps.push_back(read.step);
+      document.layers.insert(document.layers.end(), read.layers.begin(), read.layers.end());
+    }
+    return document;
+  } catch (const json::exception& e) {
+    return Error{Errc::corrupt_data, std::string{"the run's figures are not what they should be: "} + e.what(),
+                 folder_.string()};
+  }
+}
+
+Result<json> RunReader::read_result() const {
+  if (is_there(folder_ / "journal.json")) {
+    SACCADE_TRY(const json journal, read_json(folder_ / "journal.json"));
+    if (!journal.is_object()) return Error{Errc::corrupt_data, "is no journal", (folder_ / "journal.json").string()};
+    json result = result_of_journal(journal);
+    result["unfinished"] = true;
+    return result;
+  }
+  if (is_there(folder_ / "run.json")) {
+    SACCADE_TRY(const json run, read_json(folder_ / "run.json"));
+    if (!run.is_object() || !entry_in(run, "result").is_object()) {
+      return Error{Errc::corrupt_data, "is no result of saccade", (folder_ / "run.json").string()};
+    }
+    json result = run["result"];
+    result["command"] = text_in(run, "command");
+    return result;
+  }
+  if (is_there(folder_ / "map.sacmap") || is_there(folder_ / "mesh.ply")) return json::object();
+  return Error{Errc::not_found, "holds no run: neither run.json nor map.sacmap nor mesh.ply", folder_.string()};
+}
+
+Status RunReader::read_steps(const json& result) {
+  const bool has_scan = entry_in(result, "initial").is_object();
+  const json views = entry_in(result, "views");
+  const std::size_t count = views.is_array() ? views.size() : 0;
+  if (has_scan && steps_.empty()) {
+    ReadStep scan;
+    scan.step = {"Scan", std::nullopt, fov_in(result), facts_of_scan(result["initial"]), pictures_of_view(folder_, 0)};
+    SACCADE_CHECK(add_map(0, scan));
+    steps_.push_back(std::move(scan));
+  }
+  const std::size_t before_views = has_scan ? 1 : 0;
+  for (std::size_t i = steps_.size() - std::min(steps_.size(), before_views); i < count; ++i) {
+    SACCADE_CHECK(read_step(result, views[i], i + 1));
+  }
+  if (steps_.empty()) {
+    std::vector<StepPicture> pictures = pictures_in(folder_);
+    if (!pictures.empty()) steps_.push_back({{"Pictures", std::nullopt, {}, {}, std::move(pictures)}, {}});
+  }
+  return {};
+}
+
+Status RunReader::read_step(const json& result, const json& view, std::size_t number) {
+  ReadStep read;
+  SACCADE_TRY(const Pose T_world_camera, pose_from_json(view.at("T_world_camera")));
+  read.step = {"View " + std::to_string(number), T_world_camera, fov_in(result), facts_of_view(view),
+               pictures_of_view(folder_, number)};
+  SACCADE_CHECK(add_choice(result, number, read));
+  SACCADE_CHECK(add_map(number, read));
+  add_arm(result, view, read);
+  steps_.push_back(std::move(read));
+  return {};
+}
+
+Status RunReader::add_choice(const json& result, std::size_t number, ReadStep& out) {
+  auto record = read_view_record(folder_, number);
+  if (!record) return record.error().code == Errc::not_found ? Status{} : Status{record.error()};
+  const std::size_t step = steps_.size();
+  if (!record->T_world_candidates.empty()) out.layers.push_back(candidates_layer(*record, fov_in(result), step));
+  if (last_map_ && last_map_->step + 1 == number) {
+    out.layers.push_back(hits_layer(last_map_->map, *record, *out.step.T_world_camera, step, executor_));
+    SACCADE_CHECK(add_attention(*last_map_, record->saliency, record->segment, step, out.layers));
+  }
+  out.layers.push_back(region_layer(record->region, step));
+  if (record->path.size() > 1) out.layers.push_back(path_layer(record->path, step));
+  return {};
+}
+
+Status RunReader::add_attention(const StepMap& before, const std::vector<double>& saliency,
+                                std::optional<std::uint32_t> segment, std::size_t step, std::vector<Layer>& layers) {
+  if (!attention_) {
+    SACCADE_TRY(attention_, LiveObjectAttention::create());
+  }
+  SACCADE_TRY(const ObjectAttention seen, attention_->look(before.map, executor_));
+  const LayerPlace place{"-" + std::to_string(step), step};
+  const bool same_segments = !saliency.empty() && saliency.size() == seen.surface.segments();
+  if (same_segments) {
+    layers.push_back(saliency_layer(before.map, before.mesh, seen.surface, saliency, place, executor_));
+  }
+  if (auto contours = contours_layer(seen, same_segments ? segment : std::nullopt, place)) {
+    layers.push_back(std::move(*contours));
+  }
+  return {};
+}
+
+Status RunReader::add_map(std::size_t number, ReadStep& out) {
+  const fs::path path = folder_ / view_file(number, ".sacmap");
+  if (!is_there(path)) return {};
+  SACCADE_TRY(TsdfSnapshot map, load_map(path, executor_));
+  TriangleMesh mesh = extract_mesh(map, executor_);
+  const LayerPlace place{"-" + std::to_string(steps_.size()), steps_.size()};
+  Layer surface = triangles_layer("surface" + place.suffix, kSurfaceName, mesh);
+  surface.step = place.step;
+  out.layers.insert(out.layers.begin(), std::move(surface));
+  if (auto frontier = frontier_layer(map, place)) out.layers.push_back(std::move(*frontier));
+  last_map_ = StepMap{number, std::move(map), std::move(mesh)};
+  return {};
+}
+
+void RunReader::add_arm(const json& result, const json& view, ReadStep& out) {
+  const json q = entry_in(view, "q");
+  const std::string name = text_in(result, "robot");
+  if (!q.is_array() || name.empty()) return;
+  if (name != arm_name_) {
+    auto read = find_robot(name);
+    arm_ = read ? std::optional{std::move(read->arm)} : std::nullopt;
+    arm_name_ = name;
+  }
+  const auto values = q.get<std::vector<double>>();
+  if (!arm_ || values.size() != arm_->joints().size()) return;
+  const Configuration posture = Eigen::Map<const Eigen::VectorXd>{values.data(), std::ssize(values)};
+  if (posture.allFinite()) out.layers.push_back(arm_layer(*arm_, posture, steps_.size()));
+}
+
+/// Where steps have no maps, what the run came to.
+Status RunReader::add_end(SceneDocument& document) const {
+  if (last_map_) {
+    const TsdfSnapshot& map = last_map_->map;
+    document.bounds = bounds_of_map(map, last_map_->mesh);
+    if (map.config.workspace) document.layers.push_back(box_layer("workspace", "Workspace", *map.config.workspace));
+    return {};
+  }
+  if (is_there(folder_ / "map.sacmap")) {
+    SACCADE_TRY(const TsdfSnapshot map, load_map(folder_ / "map.sacmap", executor_));
+    const TriangleMesh mesh = extract_mesh(map, executor_);
+    document.bounds = bounds_of_map(map, mesh);
+    SACCADE_TRY(document.layers, layers_of_map(map, mesh, executor_));
+  } else if (is_there(folder_ / "mesh.ply")) {
+    SACCADE_TRY(const TriangleMesh mesh, read_mesh(folder_ / "mesh.ply"));
+    document.bounds = bounds_of_points(mesh.vertices);
+    document.layers.push_back(triangles_layer("surface", kSurfaceName, mesh));
+  } else {
+    document.bounds = bounds_of_points({});
+  }
+  if (is_there(folder_ / "before.sacmap")) {
+    SACCADE_TRY(const TsdfSnapshot before, load_map(folder_ / "before.sacmap", executor_));
+    document.layers.push_back(triangles_layer("before", "Surface before", extract_mesh(before, executor_)));
+    document.layers.back().visible = false;
+  }
+  return {};
+}
+
+Result<SceneDocument> run_document(const fs::path& folder, const Executor& executor) {
+  return RunReader{folder, executor}.read(false);
+}
+
+}  // namespace saccade::server

@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ViewerService: answers the pages that look at a document. docs/protocol.md, "Viewer".
+
+#include <functional>
+#include <map>
+#include <memory>
+#include <set>
+#include <string>
+
+#include "server/message.hpp"
+#include "server/service.hpp"
+#include "server/show/scene_document.hpp"
+
+namespace saccade::server {
+
+struct ViewerConfig {
+  std::string version;  ///< of the program, for hello
+  /// Runs work on the service's thread: HttpServer::post.
+  std::function<void(std::function<void()>)> post;
+};
+
+class ViewerService final : public Service {
+ public:
+  /// `clients` outlives the service.
+  ViewerService(Clients& clients, ViewerConfig config, SceneDocument document);
+
+  /// There is another document: pages are told. From any thread; the service must live until what was posted has run.
+  void update(SceneDocument document);
+
+  void opened(ConnectionId connection) override;
+  void received(ConnectionId connection, std::span<const std::uint8_t> message) override;
+  void closed(ConnectionId connection) override;
+  [[nodiscard]] HttpAnswer get(const HttpRequest& request) override;
+
+ private:
+  using Buffers = std::map<std::string, std::shared_ptr<const LayerBuffer>, std::less<>>;
+
+  /// What is looked up by names that clients say: nothing else can be asked for.
+  struct Shown {
+    nlohmann::json document;
+    Buffers buffers;
+    std::map<std::string, std::filesystem::path, std::less<>> pictures;
+  };
+
+  [[nodiscard]] static Shown prepare(const SceneDocument& document);
+  void replace(Shown shown);
+  [[nodiscard]] Result<SharedMessage> answer(ConnectionId connection, const Question& question);
+  [[nodiscard]] Result<SharedMessage> answer_hello(ConnectionId connection, const Question& question);
+  [[nodiscard]] Result<SharedMessage> answer_buffer(const Question& question) const;
+
+  Clients& clients_;
+  ViewerConfig config_;
+  Shown shown_;
+  Buffers earlier_;  ///< of the document before, which pages may still be reading
+  std::uint64_t revision_{1};
+  std::set<ConnectionId> greeted_;  ///< who said hello, and is told of other documents
+};
+
+}  // namespace saccade::server
