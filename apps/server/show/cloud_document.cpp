@@ -40,8 +40,8 @@ Layer label_layer(std::span<const std::uint32_t> labels, std::span<const std::si
   std::vector<Rgb8> colors;
   for (const std::size_t i : shown) {
     const std::uint32_t label = labels[i];
-    colors.push_back(label == kUnlabelled ? kNoLabel : color_of(label + 1));
-    if (label != kUnlabelled) ++counts[label + 1];
+    colors.push_back(label == kUnlabelled ? kNoLabel : color_of(label));
+    if (label != kUnlabelled) ++counts[label];
   }
   Layer layer = points_layer("labels", "Labels", points, colors);
   for (const auto& [label, count] : counts) {

@@ -24,7 +24,7 @@ struct RayHit {
 
 /// The first voxel that is not empty of every ray that meets one within the sensor's range, ray by ray, row by row.
 /// Those that gained are as many as evaluate_views counts rays (eq. 2.10, unknown outside blocks). Voxels outside the
-/// workspace are transparent; what is met before the minimum range ends a ray without a hit.
+/// workspace are transparent; what is met before the minimum range, or holds the camera, ends a ray without a hit.
 /// O(voxels along the rays).
 [[nodiscard]] std::vector<RayHit> ray_hits(const TsdfSnapshot& map, const Region& region, const PinholeCamera& sensor,
                                            const Pose& T_world_camera, const Executor& executor);
