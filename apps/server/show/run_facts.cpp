@@ -105,6 +105,7 @@ Facts facts_of_run(const json& result) {
     std::replace(why->begin(), why->end(), '_', ' ');
     facts.add("stopped", *why);
   }
+  facts.number_of("unknown_after_task", "unknown after the task", voxels);
   return facts.take();
 }
 

@@ -100,10 +100,11 @@ Result<json> RunReader::read_result() const {
     result["unfinished"] = true;
     return result;
   }
-  if (is_there(folder_ / "run.json")) {
-    SACCADE_TRY(const json run, read_json(folder_ / "run.json"));
+  for (const char* name : {"run.json", "update.json"}) {
+    if (!is_there(folder_ / name)) continue;
+    SACCADE_TRY(const json run, read_json(folder_ / name));
     if (!run.is_object() || !entry_in(run, "result").is_object()) {
-      return Error{Errc::corrupt_data, "is no result of saccade", (folder_ / "run.json").string()};
+      return Error{Errc::corrupt_data, "is no result of saccade", (folder_ / name).string()};
     }
     json result = run["result"];
     result["command"] = text_in(run, "command");
