@@ -2,6 +2,7 @@
 #include "server/show/open_document.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cctype>
 
 #include "saccade/io/mesh_scene.hpp"

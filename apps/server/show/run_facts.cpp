@@ -2,7 +2,9 @@
 #include "server/show/run_facts.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
+#include <string_view>
 
 #include "server/show/figures.hpp"
 #include "server/show/view_record.hpp"
@@ -56,14 +58,26 @@ std::string voxels(double count) { return grouped(static_cast<std::size_t>(std::
 std::string whole(double count) { return grouped(static_cast<std::size_t>(std::max(count, 0.0))); }
 std::string gain_words(double gain) { return gain == std::floor(gain) ? whole(gain) : decimals(gain, 2); }
 
+std::string why_refused(const std::string& reason) {
+  constexpr std::array<std::pair<std::string_view, const char*>, 6> kWords{
+      {{"no_ik", "out of reach"},
+       {"outside_limits", "beyond a joint's limits"},
+       {"goal_in_collision", "in collision there"},
+       {"start_in_collision", "in collision at the start"},
+       {"no_path", "without a path"},
+       {"declined", "declined by the robot"}}};
+  for (const auto& [name, words] : kWords) {
+    if (name == reason) return words;
+  }
+  return reason;
+}
+
 std::string refused_words(const json& refused) {
   std::string words;
   if (!refused.is_object()) return words;
   for (const auto& [reason, count] : refused.items()) {
     if (!count.is_number()) continue;
-    std::string plain = reason;
-    std::replace(plain.begin(), plain.end(), '_', ' ');
-    words += (words.empty() ? "" : ", ") + whole(count.get<double>()) + " " + plain;
+    words += (words.empty() ? "" : ", ") + whole(count.get<double>()) + " " + why_refused(reason);
   }
   return words;
 }
