@@ -29,6 +29,7 @@ export default defineConfig({
       output: {
         entryFileNames: "assets/[name].js",
         chunkFileNames: "assets/[name].js",
+        manualChunks: (id) => (/\/(node_modules\/three|src\/view)/.test(id) ? "view" : undefined),
         assetFileNames: "assets/[name][extname]",
       },
     },

@@ -8,7 +8,7 @@
 #include <cstring>
 
 #include "saccade/io/json_io.hpp"
-#include "server/asked.hpp"
+#include "viewer_server/asked.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade::test {

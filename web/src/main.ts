@@ -28,6 +28,7 @@ async function main(): Promise<void> {
   stop();
   document.title = hello.title ? `${hello.title} · Saccade` : "Saccade";
   if (hello.mode === "annotate") (await import("./annotate/annotate")).startAnnotate(connection, hello, app);
+  else if (hello.mode === "show") (await import("./show/show")).startShow(connection, hello, app);
   else say("Nothing to show", `This page does not know the mode "${hello.mode}" of the program.`);
 }
 

@@ -9,7 +9,7 @@ import type { Guidance } from "./guidance";
 import { emptyLabel, toggleHidden, toggleSolo, turnPage } from "./label_section";
 import type { Pointer } from "./pointer";
 import { kPointSizes, toggleShown } from "./show_section";
-import { type Side, lookFrom } from "./standpoint";
+import { type Side, lookFrom } from "../view/standpoint";
 import { type Action, type Depth, type Store, type Tool, kMaxLabel, pageOf } from "./store";
 import { chooseTool, kMaxBrush } from "./tool_section";
 

@@ -7,7 +7,7 @@ import { toast } from "../ui/toast";
 import type { Viewer } from "../view/types";
 import { type ActionObject, ActionQueue, type ActionResult } from "./action_queue";
 import { toRgb } from "./label_colors";
-import { firstLook } from "./standpoint";
+import { firstLook } from "../view/standpoint";
 import { type OpenCloud, type Store, isEmpty } from "./store";
 
 const kFirstChunk = 65_536; // something to see soon

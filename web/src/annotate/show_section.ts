@@ -4,7 +4,7 @@ import { iconButton, section, segmented, slider, toggleButton } from "../ui/cont
 import { h, on } from "../ui/dom";
 import { icon } from "../ui/icons";
 import type { Viewer } from "../view/types";
-import { type Side, lookFrom } from "./standpoint";
+import { type Side, lookFrom } from "../view/standpoint";
 import { type State, type Store } from "./store";
 
 type Shown = keyof State["show"];

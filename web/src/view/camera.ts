@@ -44,7 +44,7 @@ export class SceneCamera implements Camera {
     towards.normalize();
     const middle = this.box.getCenter(new THREE.Vector3());
     camera.fov = (kFov_rad * 180) / Math.PI;
-    camera.up.copy(Math.abs(towards.dot(this.up)) > 0.999 ? this.anySide().negate() : this.up);
+    camera.up.copy(Math.abs(towards.dot(this.up)) > 0.999 ? this.upFromAbove() : this.up);
     camera.position.copy(middle).add(towards);
     camera.lookAt(middle);
     const slope = Math.tan(0.5 * kFov_rad);
@@ -137,6 +137,12 @@ export class SceneCamera implements Camera {
 
   clipScene(): THREE.Matrix4 {
     return new THREE.Matrix4().multiplyMatrices(this.camera.projectionMatrix, this.camera.matrixWorldInverse);
+  }
+
+  /** y where z is up; as cameras have it, z. */
+  private upFromAbove(): THREE.Vector3 {
+    const side = Math.abs(this.up.y) < 0.9 ? new THREE.Vector3(0, 1, 0) : new THREE.Vector3(0, 0, -Math.sign(this.up.y));
+    return side.addScaledVector(this.up, -side.dot(this.up)).normalize();
   }
 
   private corners(): THREE.Vector3[] {

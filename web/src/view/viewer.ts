@@ -16,8 +16,9 @@ const kLine_px = 1.75;
 const kLight = 0xeceef2;
 const kDark = 0x24272d;
 
-export function createViewer(parent: HTMLElement): Viewer {
-  return new SceneViewer(parent);
+/** `smooth`: edges of surfaces and lines are, at some cost; squares of points are drawn to the pixel without. */
+export function createViewer(parent: HTMLElement, options: { smooth?: boolean } = {}): Viewer {
+  return new SceneViewer(parent, options.smooth === true);
 }
 
 class SceneViewer implements Viewer {
@@ -39,13 +40,13 @@ class SceneViewer implements Viewer {
   private asked = false;
   private disposed = false;
 
-  constructor(parent: HTMLElement) {
+  constructor(parent: HTMLElement, smooth: boolean) {
     THREE.ColorManagement.enabled = false;
     this.element.style.cssText = "position:relative;width:100%;height:100%;overflow:hidden;outline:none;touch-action:none";
     this.element.tabIndex = 0;
     parent.append(this.element);
-    // Squares are drawn to the pixel. What is drawn stays, so that a picture can be refined.
-    this.renderer = new THREE.WebGLRenderer({ antialias: false, preserveDrawingBuffer: true, powerPreference: "high-performance" });
+    // What is drawn stays, so that a picture can be refined.
+    this.renderer = new THREE.WebGLRenderer({ antialias: smooth, preserveDrawingBuffer: true, powerPreference: "high-performance" });
     this.renderer.outputColorSpace = THREE.LinearSRGBColorSpace;
     this.renderer.autoClear = false;
     const canvas = this.renderer.domElement;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // From where a cloud is looked at.
-import type { Camera } from "../view/types";
+import type { Camera } from "./types";
 
 export type Side = "top" | "front" | "side";
 type Direction = [number, number, number];
