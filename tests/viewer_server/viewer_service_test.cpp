@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include "saccade/io/json_io.hpp"
-#include "viewer_server/asked.hpp"
 #include "support/temp_folder.hpp"
+#include "viewer_server/asked.hpp"
 
 namespace saccade::test {
 namespace {
