@@ -29,7 +29,9 @@ CORE_PACKAGES = {"Eigen3", "TBB", "HWY", "hwy", "nanoflann", "zstd"}
 
 MAX_LINES = 400
 SOURCES = {".hpp", ".cpp", ".cu", ".cuh"}
-NEED_SPDX = SOURCES | {".cmake", ".in", ".sh", ".py", ".yaml"}
+PAGE = {".ts", ".css", ".mjs"}
+NEED_SPDX = SOURCES | PAGE | {".cmake", ".in", ".sh", ".py", ".yaml"}
+NOT_OURS = {"__pycache__", "corpus", "node_modules", "dist"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PRINTS = re.compile(r"\bstd::(?:cout|cerr|clog)\b|\b(?:std::)?(?:f?printf|puts|exit|abort|_Exit|quick_exit)\s*\(")
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
@@ -113,7 +115,7 @@ def check_links_match(root, room, texts):
 def files_below(root, folders):
     for folder in folders:
         for path in sorted((root / folder).rglob("*")):
-            if path.is_file() and "__pycache__" not in path.parts and "corpus" not in path.parts:
+            if path.is_file() and not NOT_OURS & set(path.parts):
                 yield path
 
 
@@ -122,7 +124,7 @@ def check_text(name, path, text):
     if path.suffix in NEED_SPDX or path.name in ("CMakeLists.txt", "Makefile"):
         if not any("SPDX-License-Identifier: Apache-2.0" in line for line in lines[:2]):
             yield f"{name}: no SPDX line at the top"
-    if path.suffix in SOURCES | {".py", ".sh", ".cmake"} and len(lines) >= MAX_LINES:
+    if path.suffix in SOURCES | {".ts", ".mjs", ".py", ".sh", ".cmake"} and len(lines) >= MAX_LINES:
         yield f"{name}: {len(lines)} lines; files stay under {MAX_LINES}"
     once = re.search(r"^#pragma once$|^// No include guard", text, re.MULTILINE)
     if path.suffix in (".hpp", ".cuh") and not once:
@@ -146,7 +148,7 @@ def check(root):
             elif path.name == "CMakeLists.txt":
                 violations += check_room_cmake(name, room, text)
         violations += check_links_match(root, room, texts)
-    for path in files_below(root, ["lib", "apps", "tests", "examples", "bench", "scripts", "cmake"]):
+    for path in files_below(root, ["lib", "apps", "tests", "examples", "bench", "scripts", "cmake", "web"]):
         if path.suffix in NEED_SPDX or path.name == "CMakeLists.txt":
             checked += 1
             violations += check_text(str(path.relative_to(root)), path, path.read_text())
