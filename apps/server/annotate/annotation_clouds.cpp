@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The clouds of an AnnotationService, and its notices.
 #include <algorithm>
+#include <utility>
 
 #include "server/annotate/annotation_answers.hpp"
 #include "server/annotate/annotation_service.hpp"
@@ -94,10 +95,10 @@ void AnnotationService::built(std::size_t index, const OpenCloud* cloud, const R
   send_ready(index, *there->second);
 }
 
-void AnnotationService::leave(Page& page) {
-  if (!page.cloud) return;
-  const std::size_t index = *page.cloud;
-  page.cloud.reset();
+void AnnotationService::leave(Page& page, std::optional<std::size_t> next) {
+  const std::optional<std::size_t> before = std::exchange(page.cloud, next);
+  if (!before) return;
+  const std::size_t index = *before;
   send_people(index);
   if (!pages_of(index).empty()) return;
   if (last_used_ && last_used_ != index && pages_of(*last_used_).empty()) clouds_.erase(*last_used_);

@@ -134,8 +134,7 @@ Status AnnotationService::open(Page& page, const Question& question) {
   SACCADE_TRY(page.budget, whole_number(question.head, "budget", 1, kMost32));
   SACCADE_TRY(OpenCloud* const cloud, opened_cloud(index, &page));
   const bool is_new = page.cloud != index;
-  if (is_new) leave(page);
-  page.cloud = index;
+  if (is_new) leave(page, index);
   show(page, *cloud);
   clients_.send(page.id, opened_message(answer_head(question), *cloud, index, page.shown, page.client));
   if (is_new) send_people(index);

@@ -83,7 +83,8 @@ class AnnotationService final : public Service {
   std::size_t drop_unused();
   void build(std::size_t index, OpenCloud& cloud);
   void built(std::size_t index, const OpenCloud* cloud, const Result<OpenCloud::Built>& built);
-  void leave(Page& page);
+  /// The page has this cloud instead, or none: the one that it had may be dropped.
+  void leave(Page& page, std::optional<std::size_t> next = {});
   void show(Page& page, const OpenCloud& cloud);
 
   // Notices, to all pages that have a cloud open.
