@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+// Ten million points: how soon there is something to see, and what the page needs. For make evidence: with SACCADE_LARGE=1 alone.
+import { readFileSync, readdirSync } from "node:fs";
+import { join } from "node:path";
+import { kTops, kTable, kBox, makeTable } from "./support/clouds";
+import { expect, keep, test } from "./support/desk";
+import { Annotator } from "./support/annotator";
+
+const kFirstPicture_ms = 10_000;
+const kMostHeap_mb = 1500;
+const kMostBrowser_mb = 4000; // all its processes, with what software rendering keeps in place of a graphics card
+
+/** Memory of a process's descendants by their names, in MiB. What processes share is left out. */
+function memoryOf(root: number): Map<string, number> {
+  const parents = new Map<number, number>();
+  const all = new Map<number, { name: string; mb: number }>();
+  for (const number of readdirSync("/proc").filter((one) => /^\d+$/.test(one)).map(Number)) {
+    try {
+      const status = readFileSync(`/proc/${number}/status`, "utf8");
+      parents.set(number, Number(/^PPid:\s+(\d+)/m.exec(status)?.[1]));
+      all.set(number, { name: /^Name:\s+(\S+)/m.exec(status)?.[1] ?? "", mb: Number(/^RssAnon:\s+(\d+)/m.exec(status)?.[1] ?? 0) / 1024 });
+    } catch {
+      // has ended meanwhile
+    }
+  }
+  const belongs = (process: number | undefined): boolean => process !== undefined && (process === root || belongs(parents.get(process)));
+  const sums = new Map<string, number>();
+  for (const [process, { name, mb }] of all) if (process !== root && belongs(process)) sums.set(name, (sums.get(name) ?? 0) + mb);
+  return sums;
+}
+
+test("ten million points", async ({ desk, context }) => {
+  test.setTimeout(900_000);
+  const cloud = makeTable(join(desk.folder, "large.pcd"), { spacing_m: 0.000398 });
+  expect(cloud.truth.length).toBeGreaterThan(9_900_000);
+  const started = performance.now();
+  const program = await desk.start("annotate", cloud.file);
+  const ready_ms = performance.now() - started;
+
+  const page = await context.newPage();
+  const annotator = new Annotator(page, cloud);
+  const began = performance.now();
+  await page.goto(program.url);
+  await expect(annotator.view).toBeVisible();
+  const empty = (await annotator.pixels([[700, 60]]))[0]!;
+  const middle: [number, number] = [800, 500];
+  await expect
+    .poll(async () => (await annotator.pixels([middle]))[0]!.some((c, i) => Math.abs(c - empty[i]!) > 20), { intervals: [50], timeout: 120_000 })
+    .toBe(true);
+  const first_ms = performance.now() - began;
+  await keep(page, "large-first");
+  await expect(page.locator(".progress")).toBeHidden({ timeout: 600_000 });
+  await annotator.ready();
+  const all_ms = performance.now() - began;
+  await annotator.labelTops([kTable, kBox]);
+  await annotator.click([kTops[kTable]![0] + 0.05, kTops[kTable]![1], 0]);
+  await annotator.written();
+  await annotator.settled();
+  await keep(page, "large");
+
+  const session = await context.newCDPSession(page);
+  await session.send("HeapProfiler.collectGarbage");
+  const heap_mb = await page.evaluate(() => (performance as Performance & { memory: { usedJSHeapSize: number } }).memory.usedJSHeapSize / 1048576);
+  const memory = memoryOf(process.pid);
+  const program_mb = memory.get("saccade") ?? NaN;
+  const browser_mb = memory.get("chromium") ?? NaN;
+  const figures = `${cloud.truth.length} points: the program listens after ${(ready_ms / 1000).toFixed(1)} s; first picture ${(first_ms / 1000).toFixed(1)} s after the page is asked for, ready to annotate after ${(all_ms / 1000).toFixed(1)} s; JavaScript's heap ${heap_mb.toFixed(0)} MiB, all processes of the browser ${browser_mb.toFixed(0)} MiB, the program ${program_mb.toFixed(0)} MiB`;
+  console.log(figures);
+  test.info().annotations.push({ type: "figures", description: figures });
+  expect(first_ms).toBeLessThanOrEqual(kFirstPicture_ms);
+  expect(heap_mb).toBeLessThanOrEqual(kMostHeap_mb);
+  expect(browser_mb).toBeLessThanOrEqual(kMostBrowser_mb);
+});
