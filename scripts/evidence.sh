@@ -116,6 +116,9 @@ fi
 echo "Annotation sessions: a thousand processes killed while they annotate"
 step annotation_kills env SACCADE_KILL_CASES=1000 build/release/tests/unit_io '--gtest_filter=AnnotationSessionKilled*'
 
+echo "The annotation page with ten million points"
+step browser_large env SACCADE_LARGE=1 scripts/web.sh test large
+
 echo "Fuzzing"
 { configure asan-ubsan && compile asan-ubsan tests/fuzz/all; } >"$out/build_fuzzers.log" || failed=1
 for source in tests/fuzz/fuzz_*.cpp; do
