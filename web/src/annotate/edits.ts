@@ -8,7 +8,16 @@ import { type State, type Store, rowOf } from "./store";
 /** Of an area, in the words of an action: rectangle, lasso, polyline or brush. */
 export type Shape = Record<string, unknown>;
 
+interface Definition {
+  name: string;
+  class: string;
+  instance: number;
+  color: string;
+}
+
 export class Edits {
+  private readonly defining = new Map<number, Definition>(); // on its way to the program
+
   constructor(
     readonly store: Store,
     readonly session: Session,
@@ -94,10 +103,13 @@ export class Edits {
       toast("All labels are gone from the cloud.", { button: { text: "Undo", click: () => this.undo() } });
   }
 
-  /** Changes what is known of a label. */
-  define(number: number, change: Partial<{ name: string; class: string; instance: number; color: string }>): void {
-    const { name, class: kind, instance, color } = rowOf(this.store.state, number);
-    void this.session.act({ do: "labels", labels: [{ number, name, class: kind, instance, color, ...change }] });
+  /** Changes what is known of a label. One change may follow another that the program has not answered yet. */
+  async define(number: number, change: Partial<Definition>): Promise<void> {
+    const { name, class: kind, instance, color } = this.defining.get(number) ?? rowOf(this.store.state, number);
+    const definition = { name, class: kind, instance, color, ...change };
+    this.defining.set(number, definition);
+    await this.session.act({ do: "labels", labels: [{ number, ...definition }] });
+    if (this.defining.get(number) === definition) this.defining.delete(number);
   }
 
   changeReach(point: number, startCost: number): void {

@@ -163,13 +163,13 @@ function currentPart(store: Store, edits: Edits): HTMLElement {
   let named = store.state.label; // what is typed belongs to the label that was current when it was begun
   on(name, {
     focus: () => void (named = store.state.label),
-    change: () => edits.define(named, { name: name.value.trim() }),
+    change: () => void edits.define(named, { name: name.value.trim() }),
     keydown: (event) => {
       if (event.key === "Escape") name.value = rowOf(store.state, store.state.label).name;
       if (event.key === "Enter" || event.key === "Escape") name.blur();
     },
   });
-  on(color, { change: () => edits.define(store.state.label, { color: color.value }) });
+  on(color, { change: () => void edits.define(store.state.label, { color: color.value }) });
   store.watch(["label", "labels", "hidden"], (state) => {
     const row = rowOf(state, state.label);
     number.textContent = String(row.number);
@@ -195,11 +195,11 @@ function detailsPart(store: Store, edits: Edits): HTMLElement {
     placeholder: "as cup, 40",
   });
   const instance = h("input", { type: "number", "aria-label": "Instance", min: 0, max: 4294967295, step: 1 });
-  on(kind, { change: () => edits.define(store.state.label, { class: kind.value.trim() }) });
+  on(kind, { change: () => void edits.define(store.state.label, { class: kind.value.trim() }) });
   on(instance, {
     change: () => {
       if (instance.checkValidity() && instance.value !== "")
-        edits.define(store.state.label, { instance: instance.valueAsNumber });
+        void edits.define(store.state.label, { instance: instance.valueAsNumber });
     },
   });
   store.watch(["label", "labels"], (state) => {
