@@ -130,13 +130,22 @@ test("pictures for README and docs", async ({ desk }) => {
   const cloud = makeTable(join(desk.folder, "table.pcd"), { spacing_m: 0.0036 });
   const annotator = await desk.open(await desk.start("annotate", cloud.file), cloud);
   const { page } = annotator;
-  const names: [number, string][] = [[kTable, "Table"], [kBox, "Tea box"], [kCylinder, "Tin"], [kSphere, "Ball"], [kFlatBox, "Soap"]];
-  await annotator.labelTops(names.map(([label]) => label));
-  for (const [label, name] of names) {
-    await annotator.chooseLabel(label);
+  const labels = [
+    { number: kTable, name: "Table", color: "#6f8fb4" },
+    { number: kBox, name: "Tea box", color: "#f0653c" },
+    { number: kCylinder, name: "Tin", color: "#2fae74" },
+    { number: kSphere, name: "Ball", color: "#9a5be0" },
+    { number: kFlatBox, name: "Soap", color: "#f2c230" },
+  ];
+  await annotator.labelTops(labels.map(({ number }) => number));
+  for (const { number, name, color } of labels) {
+    await annotator.chooseLabel(number);
+    await page.getByLabel("Colour of the label").fill(color);
     await page.getByLabel("Name of the label").fill(name);
     await page.keyboard.press("Enter");
-    await annotator.expectLabel(label, { name });
+    await annotator.expectLabel(number, { name });
+    await annotator.written();
+    expect(await annotator.colorOf(number)).toEqual([1, 3, 5].map((i) => Number.parseInt(color.slice(i, i + 2), 16)));
   }
   await annotator.choose("Labels as", "List");
   await page.mouse.move(900, 100);

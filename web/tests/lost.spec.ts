@@ -41,17 +41,22 @@ test("the page loaded again, the program killed and back", async ({ desk }) => {
     await expect(annotator.status).toHaveText(/^Reconnecting/);
     await annotator.click(kTops[kCylinder]!); // a sixth
     await expect(annotator.status).toHaveText("Reconnecting … · 1 to write");
+    await page.getByLabel("Colour of the label").fill("#2fae74"); // a seventh
+    await page.getByLabel("Name of the label").fill("Tin");
+    await page.keyboard.press("Enter"); // an eighth, which is not to take the colour back
+    await expect(annotator.status).toHaveText("Reconnecting … · 3 to write");
     await keep(page, "annotate-reconnecting");
     await program.start();
     await annotator.written();
-    await annotator.expectLabel(kCylinder, { controls: 1 });
+    await annotator.expectLabel(kCylinder, { name: "Tin", controls: 1 });
+    expect(await annotator.colorOf(kCylinder)).toEqual([0x2f, 0xae, 0x74]);
     await annotator.expectLabel(kBox, { name: "Tea box", controls: 1 });
   });
 
   await test.step("what is under way when the program is killed is done once", async () => {
     for (const object of [kSphere, kFlatBox]) {
       await annotator.chooseLabel(object);
-      await Promise.all([annotator.click(kTops[object]!), program.kill()]); // a seventh and an eighth
+      await Promise.all([annotator.click(kTops[object]!), program.kill()]); // a ninth and a tenth
       await program.start();
       await annotator.written();
       await annotator.expectLabel(object, { controls: 1 });
@@ -73,8 +78,8 @@ test("the page loaded again, the program killed and back", async ({ desk }) => {
       expect(iou(labels, object, cloud.truth, object), `label ${object}`).toBeGreaterThan(0.9);
     }
     await program.kill();
-    // Eight, an undo and a redo.
-    expect(actionsIn(cloud.file, join(desk.folder, "table.sacann"))).toMatchObject({ actions: 10, control_points: 5 });
+    // Ten, an undo and a redo.
+    expect(actionsIn(cloud.file, join(desk.folder, "table.sacann"))).toMatchObject({ actions: 12, control_points: 5 });
   });
 });
 

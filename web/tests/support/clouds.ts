@@ -67,7 +67,7 @@ function table(): Surface {
       inBox(box, x, y) ||
       inBox(flatBox, x, y) ||
       Math.hypot(x - cylinder.x, y - cylinder.y) < cylinder.r ||
-      Math.hypot(x - sphere.x, y - sphere.y) < 0.06;
+      Math.hypot(x - sphere.x, y - sphere.y) < 0.045;
     return covered ? null : [x, y, 0];
   };
   return { label: kTable, color: [150, 112, 78], u_m: 2 * kHalf[0], v_m: 2 * kHalf[1], at };
