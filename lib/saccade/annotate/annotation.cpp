@@ -140,25 +140,37 @@ void Annotation::change_forest(const std::vector<ControlPoint>& placed, const st
   }
 }
 
-std::uint32_t Annotation::found_label(std::uint32_t point) const {
-  if (const std::uint32_t paint = painted(point); paint != kNoLabel) return paint;
-  const std::optional<std::uint32_t> root = forest_.root_of(point);
-  return root ? control_.at(*root).label : kNoLabel;
-}
-
 void Annotation::relabel() {
+  std::optional<ControlPoint> last;  // points one after the other mostly have the same one
+  Moved moved;
   for (const std::uint32_t point : suspects_) {
-    const std::uint32_t now = found_label(point);
+    std::uint32_t now = painted(point);
+    if (now == kNoLabel) {
+      const std::optional<std::uint32_t> root = forest_.root_of(point);
+      if (root && (!last || last->point != *root)) last = control_.at(*root);
+      if (root) now = last->label;
+    }
     const std::uint32_t before = labels_[point];
     if (now == before) continue;
-    if (before != kNoLabel) {
-      const auto count = counts_.find(before);
-      if (--count->second == 0) counts_.erase(count);
+    if (before != moved.from || now != moved.to) {
+      count(moved);
+      moved = {before, now, 0};
     }
-    if (now != kNoLabel) ++counts_[now];
+    ++moved.points;
     labels_[point] = now;
     changed_points_.push_back(point);
   }
+  count(moved);
+}
+
+void Annotation::count(const Moved& moved) {
+  if (moved.points == 0) return;
+  if (moved.from != kNoLabel) {
+    const auto count = counts_.find(moved.from);
+    count->second -= moved.points;
+    if (count->second == 0) counts_.erase(count);
+  }
+  if (moved.to != kNoLabel) counts_[moved.to] += moved.points;
 }
 
 std::vector<ControlPoint> Annotation::control_points() const {

@@ -60,12 +60,19 @@ class Annotation {
   [[nodiscard]] const ShortestPathForest& forest() const { return forest_; }
 
  private:
+  /// Points that went from one label to another.
+  struct Moved {
+    std::uint32_t from{kNoLabel};
+    std::uint32_t to{kNoLabel};
+    std::size_t points{0};
+  };
+
   void change_slots(const SlotChanges& slots);
   void change_control_points(std::span<const std::uint32_t> slots);
   void change_forest(const std::vector<ControlPoint>& placed, const std::vector<std::uint32_t>& removed);
   void change_definitions(std::span<const std::uint32_t> slots);
   void relabel();
-  [[nodiscard]] std::uint32_t found_label(std::uint32_t point) const;
+  void count(const Moved& moved);
 
   ShortestPathForest forest_;
   ActionHistory history_;

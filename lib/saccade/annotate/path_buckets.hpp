@@ -27,12 +27,16 @@ class PathBuckets {
  public:
   /// The neighbourhood stays where it is.
   explicit PathBuckets(const Neighbourhood& neighbourhood)
-      : neighbourhood_{&neighbourhood}, shift_{bucket_shift(neighbourhood)}, buckets_((kPathUnits >> shift_) + 1) {}
+      : neighbourhood_{&neighbourhood},
+        shift_{bucket_shift(neighbourhood)},
+        buckets_((kPathUnits >> shift_) + 1),
+        first_{buckets_.size()} {}
 
   /// Expects path < Ω_max, in path units.
   void push(std::uint32_t path, std::uint32_t node) {
     const std::size_t bucket = path >> shift_;
     buckets_[bucket].push_back({path, node});
+    first_ = std::min(first_, bucket);
     last_ = std::max(last_, bucket);
     fetch_edges(*neighbourhood_, node);
   }
@@ -40,7 +44,7 @@ class PathBuckets {
   /// Calls visit(path, node), the shorter paths first, until there is none; visit may push what is not shorter.
   template <class Visit>
   void drain(const Visit& visit) {
-    for (std::size_t b = 0; b <= last_; ++b) {
+    for (std::size_t b = first_; b <= last_; ++b) {
       std::vector<Reached>& bucket = buckets_[b];
       for (std::size_t i = 0; i < bucket.size(); ++i) {
         if (i + kAhead < bucket.size()) fetch_edges(*neighbourhood_, bucket[i + kAhead].node);
@@ -49,6 +53,7 @@ class PathBuckets {
       }
       bucket.clear();
     }
+    first_ = buckets_.size();
     last_ = 0;
   }
 
@@ -71,6 +76,7 @@ class PathBuckets {
   const Neighbourhood* neighbourhood_;
   unsigned shift_;
   std::vector<std::vector<Reached>> buckets_;
+  std::size_t first_;  ///< of those that are not empty; as many as there are where all are
   std::size_t last_{0};
 };
 

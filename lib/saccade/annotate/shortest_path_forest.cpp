@@ -87,25 +87,14 @@ void ShortestPathForest::remove(std::uint32_t point) {
   touched_.assign(1, first);
   entered_.clear();
   path_[first] = kNoPath;
+  bool is_cleared{false};
   for (std::size_t i = 0; i < touched_.size(); ++i) {
-    const std::uint32_t node = touched_[i];
-    Entered best{kPathUnits, 0};
-    if (is_start_[node]) {
-      const Start& start = *start_of(neighbourhood_->point_of(node));
-      best = {start.path, start.point};
+    if (!is_cleared && is_large(touched_.size())) {
+      clear_all_of(point);
+      is_cleared = true;
+      if (starts_.empty()) break;  // there is nobody to enter
     }
-    for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
-      std::uint32_t& beyond = path_[edge.node];
-      if (beyond == kNoPath) continue;
-      if (root_[edge.node] == point) {
-        beyond = kNoPath;
-        touched_.push_back(edge.node);
-        fetch_edges(*neighbourhood_, edge.node);
-      } else {
-        best = std::min(best, Entered{beyond + edge.cost, root_[edge.node]});
-      }
-    }
-    entered_.push_back(best);
+    entered_.push_back(clear_beside(touched_[i], point));
   }
   for (std::size_t i = 0; i < entered_.size(); ++i) {
     if (entered_[i].path < kPathUnits) reach(touched_[i], entered_[i].path, entered_[i].root);
@@ -114,6 +103,37 @@ void ShortestPathForest::remove(std::uint32_t point) {
   spread();
   touched_.resize(cleared);  // none but the cleared ones
   name_touched();
+}
+
+/// What is left of a tree, without looking for it along its edges.
+void ShortestPathForest::clear_all_of(std::uint32_t root) {
+  for (std::uint32_t node = 0; node < path_.size(); ++node) {
+    if (path_[node] == kNoPath || root_[node] != root) continue;
+    path_[node] = kNoPath;
+    touched_.push_back(node);
+  }
+}
+
+/// Clears the neighbours that belong to the root, too.
+/// @return how a node that was cleared is entered from other trees, or starts one.
+ShortestPathForest::Entered ShortestPathForest::clear_beside(std::uint32_t node, std::uint32_t root) {
+  Entered best{kPathUnits, 0};
+  if (is_start_[node]) {
+    const Start& start = *start_of(neighbourhood_->point_of(node));
+    best = {start.path, start.point};
+  }
+  for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
+    std::uint32_t& beyond = path_[edge.node];
+    if (beyond == kNoPath) continue;
+    if (root_[edge.node] == root) {
+      beyond = kNoPath;
+      touched_.push_back(edge.node);
+      fetch_edges(*neighbourhood_, edge.node);
+    } else {
+      best = std::min(best, Entered{beyond + edge.cost, root_[edge.node]});
+    }
+  }
+  return best;
 }
 
 std::vector<Root> ShortestPathForest::roots() const {
@@ -148,8 +168,27 @@ std::uint32_t ShortestPathForest::start_units(std::uint32_t point) const {
   return start_of(point)->path;
 }
 
-/// Nodes become points.
+/// Whether so many nodes are better gone through in their order in memory.
+bool ShortestPathForest::is_large(std::size_t nodes) const {
+  constexpr std::size_t kShare{32};
+  return nodes > path_.size() / kShare;
+}
+
+/// Nodes become points. Of many, each is named once, and near each other are those that are near in memory: what is
+/// done with them waits for memory else.
 void ShortestPathForest::name_touched() {
+  if (is_large(touched_.size())) {
+    constexpr std::size_t kBits{64};
+    std::vector<std::uint64_t> marks(path_.size() / kBits + 1, 0);
+    for (const std::uint32_t node : touched_) marks[node / kBits] |= std::uint64_t{1} << node % kBits;
+    touched_.clear();
+    for (std::size_t word = 0; word < marks.size(); ++word) {
+      for (std::uint64_t bits = marks[word]; bits != 0; bits &= bits - 1) {
+        touched_.push_back(static_cast<std::uint32_t>(kBits * word) +
+                           static_cast<std::uint32_t>(std::countr_zero(bits)));
+      }
+    }
+  }
   for (std::uint32_t& touched : touched_) touched = neighbourhood_->point_of(touched);
 }
 

@@ -68,6 +68,9 @@ class ShortestPathForest {
   void reach(std::uint32_t node, std::uint32_t path, std::uint32_t root);
   void spread();
   void spread_from(std::uint32_t node);
+  [[nodiscard]] Entered clear_beside(std::uint32_t node, std::uint32_t root);
+  void clear_all_of(std::uint32_t root);
+  [[nodiscard]] bool is_large(std::size_t nodes) const;
   void name_touched();
   [[nodiscard]] std::vector<Start>::const_iterator start_of(std::uint32_t point) const;
 
