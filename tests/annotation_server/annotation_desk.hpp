@@ -172,6 +172,7 @@ class Page {
   std::vector<std::uint32_t> order;               ///< points in the order in which they were given
   std::map<std::uint32_t, std::uint32_t> labels;  ///< of points that are shown
   std::map<std::uint32_t, std::pair<std::uint32_t, float>> control_points;  ///< label and start cost
+  std::map<std::uint32_t, std::array<float, 3>> places;                     ///< of control points
   std::map<std::uint32_t, json> rows;                                       ///< of labels
   [[nodiscard]] std::size_t labelled_as(std::uint32_t label) const {
     std::size_t count{0};
@@ -180,14 +181,19 @@ class Page {
   }
 
  private:
+  static constexpr std::size_t kControlPointBytes{24};
+
   void read_control_points(const Received& message, std::size_t count, std::size_t from) {
-    const auto words = message.array<std::uint32_t>(from, 3 * count);
-    const auto costs = message.array<float>(from, 3 * count);
-    for (std::size_t i = 0; i < words.size(); i += 3) {
+    constexpr std::size_t kWords{kControlPointBytes / 4};
+    const auto words = message.array<std::uint32_t>(from, kWords * count);
+    const auto values = message.array<float>(from, kWords * count);
+    for (std::size_t i = 0; i < words.size(); i += kWords) {
       if (words[i + 1] == 0) {
         control_points.erase(words[i]);
+        places.erase(words[i]);
       } else {
-        control_points[words[i]] = {words[i + 1], costs[i + 2]};
+        control_points[words[i]] = {words[i + 1], values[i + 2]};
+        places[words[i]] = {values[i + 3], values[i + 4], values[i + 5]};
       }
     }
   }
@@ -205,7 +211,7 @@ class Page {
     const std::size_t count = message.head.at("control_points");
     read_control_points(message, count, 0);
     read_rows(message.head);
-    std::size_t at = 12 * count;
+    std::size_t at = kControlPointBytes * count;
     for (const json& group : message.head.at("groups")) {
       for (const std::uint32_t point : message.array<std::uint32_t>(at, group.at(1))) {
         EXPECT_TRUE(order.empty() || labels.contains(point)) << point << " is not shown";
@@ -303,6 +309,7 @@ class AnnotationDesk : public ::testing::Test {
     EXPECT_EQ(page.order, other.order);
     EXPECT_TRUE(page.labels == other.labels) << "labels differ";
     EXPECT_EQ(page.control_points, other.control_points);
+    EXPECT_EQ(page.places, other.places);
     EXPECT_EQ(page.rows, other.rows);
     other.close();
   }

@@ -2,6 +2,7 @@
 // The annotation service as its pages see it.
 #include "server/annotate/annotation_service.hpp"
 
+#include <array>
 #include <fstream>
 
 #include "annotation_server/annotation_desk.hpp"
@@ -244,6 +245,12 @@ TEST_F(AnnotationServiceTest, APageThatShowsPartSeesPart) {
   part.listen();  // that only points which are shown change, the page checks
   EXPECT_EQ(part.labels.size(), kBudget);
   EXPECT_EQ(part.rows, whole.rows) << "counts are of all points";
+  EXPECT_FALSE(part.labels.contains(kOnBox1)) << "a control point that the page has not as a point";
+  ASSERT_EQ(part.places.size(), 4U);
+  const std::array<float, 3> on_box_1 = part.places.at(kOnBox1);
+  EXPECT_NEAR(on_box_1[0], 0.005 * (20 - 60), 1e-6);
+  EXPECT_NEAR(on_box_1[1], 0.0, 1e-6);
+  EXPECT_NEAR(on_box_1[2], 0.95, 1e-6);
   for (const auto& [point, label] : part.labels) ASSERT_EQ(label, whole.labels.at(point));
   EXPECT_EQ(part.ask({{"type", "margins"}}).body.size(), kBudget);
   EXPECT_EQ(part.ask({{"type", "tree"}, {"point", kOnBox1}}).head.at("count"), part.labelled_as(2));

@@ -21,6 +21,7 @@ export interface ControlPoint {
   point: number;
   label: number;
   start_cost: number;
+  position: readonly [number, number, number];
 }
 
 /** Of a question that the program refused. */

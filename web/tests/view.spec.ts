@@ -14,9 +14,9 @@ test("a cloud with labels and control points", async ({ page }) => {
     const next = window.dev.random(3);
     for (let i = 0; i < 40; ++i) {
       const point = Math.floor(next() * 300_000);
-      cloud.setControlPoint(point, cloud.labelOf(point));
+      cloud.setControlPoint({ point, label: cloud.labelOf(point), position: cloud.positionOf(point)! });
     }
-    cloud.mark(17);
+    cloud.mark(cloud.positionOf(17)!);
   });
   await picture(page, "controls");
   await page.evaluate(() => {
@@ -203,7 +203,7 @@ test("the pixels of a point's square", async ({ page }) => {
     out.highlighted = await seen(2);
     out.other = await seen(0);
     cloud.highlight(new Uint32Array());
-    cloud.setControlPoint(0, 7);
+    cloud.setControlPoint({ point: 0, label: 7, position: cloud.positionOf(0)! });
     out.control = await seen(0);
     cloud.show({ cloud: true, labels: true, controls: false });
     cloud.setMargins(Uint8Array.from([0, 255, 255]));

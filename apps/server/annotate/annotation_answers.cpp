@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <optional>
 #include <string>
 #include <unordered_map>
 
@@ -78,8 +79,15 @@ json cloud_json(const OpenCloud& cloud, std::size_t index, std::size_t shown) {
           {"graph", graph_json(cloud.graph_config())}};
 }
 
-ControlPointRow row_of(const ControlPoint& control) {
-  return {control.point, control.label, static_cast<float>(control.start_cost)};
+/// Label and start cost are of a control point there; none: it is none any more.
+ControlPointRow row_of(std::uint32_t point, const std::optional<ControlPoint>& control, const OpenCloud& cloud) {
+  const Eigen::Vector3f& p = cloud.cloud().points.positions_m[point];
+  ControlPointRow row{point, kNoLabel, 0.0F, {p.x(), p.y(), p.z()}};
+  if (control) {
+    row.label = control->label;
+    row.start_cost = static_cast<float>(control->start_cost);
+  }
+  return row;
 }
 
 }  // namespace
@@ -95,17 +103,18 @@ Result<std::uint64_t> whole_number(const json& head, const char* key, std::uint6
                key};
 }
 
-std::vector<ControlPointRow> all_control_points(const Annotation& annotation) {
+std::vector<ControlPointRow> all_control_points(const OpenCloud& cloud) {
   std::vector<ControlPointRow> rows;
-  for (const ControlPoint& control : annotation.control_points()) rows.push_back(row_of(control));
+  for (const ControlPoint& control : cloud.annotation().control_points()) {
+    rows.push_back(row_of(control.point, control, cloud));
+  }
   return rows;
 }
 
-std::vector<ControlPointRow> control_points_now(std::span<const std::uint32_t> points, const Annotation& annotation) {
+std::vector<ControlPointRow> control_points_now(std::span<const std::uint32_t> points, const OpenCloud& cloud) {
   std::vector<ControlPointRow> rows;
   for (const std::uint32_t point : points) {
-    const auto control = annotation.control_point(point);
-    rows.push_back(control ? row_of(*control) : ControlPointRow{point, kNoLabel, 0.0F});
+    rows.push_back(row_of(point, cloud.annotation().control_point(point), cloud));
   }
   return rows;
 }
@@ -153,7 +162,7 @@ SharedMessage opened_message(json head, const OpenCloud& cloud, std::size_t inde
   add_state(head, cloud, client);
   add_annotation(head, cloud);
   MessageWriter message{head};
-  if (cloud.ready()) message.append(std::span<const ControlPointRow>{all_control_points(cloud.annotation())});
+  if (cloud.ready()) message.append(std::span<const ControlPointRow>{all_control_points(cloud)});
   return std::move(message).finish();
 }
 

@@ -2,6 +2,7 @@
 #pragma once
 // What the annotation service says of an open cloud. docs/protocol.md.
 
+#include <array>
 #include <nlohmann/json.hpp>
 #include <span>
 #include <vector>
@@ -15,17 +16,18 @@ namespace saccade::server {
 [[nodiscard]] Result<std::uint64_t> whole_number(const nlohmann::json& head, const char* key, std::uint64_t least,
                                                  std::uint64_t most);
 
-/// As messages have it; 0: none any more.
+/// As messages have it; label 0: none any more.
 struct ControlPointRow {
   std::uint32_t point{0};
   std::uint32_t label{kNoLabel};
   float start_cost{0.0F};
+  std::array<float, 3> position_m{};  ///< a page may not have the point
 };
-static_assert(sizeof(ControlPointRow) == 12);
+static_assert(sizeof(ControlPointRow) == 24);
 
-[[nodiscard]] std::vector<ControlPointRow> all_control_points(const Annotation& annotation);
+[[nodiscard]] std::vector<ControlPointRow> all_control_points(const OpenCloud& cloud);
 [[nodiscard]] std::vector<ControlPointRow> control_points_now(std::span<const std::uint32_t> points,
-                                                              const Annotation& annotation);
+                                                              const OpenCloud& cloud);
 
 /// Shown points by their label.
 struct LabelGroups {

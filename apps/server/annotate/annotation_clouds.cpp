@@ -153,7 +153,7 @@ void AnnotationService::send_read_only(std::size_t index, const std::string& why
 }
 
 void AnnotationService::send_ready(std::size_t index, const OpenCloud& cloud) {
-  const std::vector<ControlPointRow> control_points = all_control_points(cloud.annotation());
+  const std::vector<ControlPointRow> control_points = all_control_points(cloud);
   json common{{"type", "ready"}};
   add_annotation(common, cloud);
   for (const Page* page : pages_of(index)) {
@@ -166,7 +166,7 @@ void AnnotationService::send_ready(std::size_t index, const OpenCloud& cloud) {
 void AnnotationService::send_changes(std::size_t index, const OpenCloud& cloud, const OpenCloud::Change& change,
                                      std::uint64_t client) {
   const Annotation& annotation = cloud.annotation();
-  const std::vector<ControlPointRow> control_points = control_points_now(change.applied.control_points, annotation);
+  const std::vector<ControlPointRow> control_points = control_points_now(change.applied.control_points, cloud);
   const json rows = label_rows(change.labels, annotation, cloud.census());
   std::map<std::size_t, LabelGroups> groups;  // by the number of points that are shown
   for (const Page* page : pages_of(index)) {

@@ -25,9 +25,8 @@ export function controlSection(store: Store, edits: Edits, viewer: Viewer): HTML
     (control) => controlRow(store, control),
     (control) => {
       store.set({ selected: control.point });
-      const place = viewer.cloud.positionOf(control.point);
-      if (place) viewer.camera.goTo(place);
-      viewer.cloud.mark(control.point);
+      viewer.camera.goTo(control.position);
+      viewer.cloud.mark(control.position);
     },
   );
   const empty = h("p", { class: "soft" }, "None yet. Choose Set and click a point.");

@@ -47,10 +47,9 @@ export class Guidance {
       toast("There is no place where one more click would help.");
       return;
     }
-    const known = this.viewer.cloud.positionOf(point);
-    const place = known ?? (Array.isArray(position) ? (position as [number, number, number]) : null);
-    if (place) this.viewer.camera.goTo(place);
-    this.viewer.cloud.mark(point);
+    const place = position as [number, number, number];
+    this.viewer.camera.goTo(place);
+    this.viewer.cloud.mark(place);
     const settles =
       typeof gain === "number" && gain >= 1
         ? ` A click there settles about ${Math.round(gain).toLocaleString("en")} points.`

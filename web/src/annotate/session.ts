@@ -13,7 +13,7 @@ import { type OpenCloud, type Store, isEmpty } from "./store";
 const kFirstChunk = 65_536; // something to see soon
 const kChunk = 262_144;
 const kInFlight = 3;
-const kControlBytes = 12;
+const kControlWords = 6;
 const kClosed = "The program was started anew and does not let this page in any more. Open the address that it printed.";
 
 /** Points that this page holds: about 100 bytes each, on both sides of the graphics driver. */
@@ -200,7 +200,7 @@ export class Session {
     view.mark(null);
     view.clearControlPoints();
     for (const row of this.store.state.labels.values()) view.setLabelColor(row.number, toRgb(row.color));
-    for (const control of this.store.state.controls.values()) view.setControlPoint(control.point, control.label);
+    for (const control of this.store.state.controls.values()) view.setControlPoint(control);
     for (const label of this.store.state.hidden) view.setLabelVisible(label, false);
     if (pose) this.viewer.camera.setPoseRows(pose);
     else firstLook(this.viewer.camera, cloud.up);
@@ -229,9 +229,6 @@ export class Session {
         labels: new Uint32Array(body, 20 * count, count),
       });
       here += count;
-      // Control points of which the view did not know the place yet.
-      for (const control of this.store.state.controls.values())
-        this.viewer.cloud.setControlPoint(control.point, control.label);
       this.store.set({ progress: { stage: "points", done: here, total, seen: true } });
     }
     this.complete = true;
@@ -267,13 +264,13 @@ export class Session {
       for (const control of controlsOf(body, count)) {
         if (control.label === 0) controls.delete(control.point);
         else controls.set(control.point, control);
-        view.setControlPoint(control.point, control.label === 0 ? undefined : control.label);
+        view.setControlPoint(control);
       }
       this.store.set({ controls });
       const selected = this.store.state.selected;
       if (selected !== null && !controls.has(selected)) this.store.set({ selected: null });
     }
-    let at = kControlBytes * count;
+    let at = 4 * kControlWords * count;
     for (const [label, points] of head["groups"] as [number, number][]) {
       view.setLabel(label, new Uint32Array(body, at, points));
       at += 4 * points;
@@ -298,13 +295,17 @@ function cloudOf(head: Record<string, unknown>): OpenCloud {
 }
 
 function controlsOf(body: ArrayBuffer, count: number): ControlPoint[] {
-  const words = new Uint32Array(body, 0, 3 * count);
-  const costs = new Float32Array(body, 0, 3 * count);
-  return Array.from({ length: count }, (_, i) => ({
-    point: words[3 * i]!,
-    label: words[3 * i + 1]!,
-    start_cost: costs[3 * i + 2]!,
-  }));
+  const words = new Uint32Array(body, 0, kControlWords * count);
+  const values = new Float32Array(body, 0, kControlWords * count);
+  return Array.from({ length: count }, (_, i) => {
+    const at = kControlWords * i;
+    return {
+      point: words[at]!,
+      label: words[at + 1]!,
+      start_cost: values[at + 2]!,
+      position: [values[at + 3]!, values[at + 4]!, values[at + 5]!],
+    };
+  });
 }
 
 function sameCounts(a: ReadonlyMap<number, LabelRow>, b: ReadonlyMap<number, LabelRow>): boolean {

@@ -43,7 +43,7 @@ export class PointTool implements PointerTool {
     const { viewer, overlay } = this.tools;
     const under = viewer.hover(x, y);
     overlay.line([this.start, [x, y]], 2);
-    if (under) viewer.cloud.mark(under.point);
+    if (under) viewer.cloud.mark(under.position);
   }
 
   up(x: number, y: number): void {

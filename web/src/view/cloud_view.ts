@@ -6,7 +6,7 @@ import { ControlPoints, kControlBit } from "./control_points";
 import { HoverTree } from "./hover";
 import { PointCloud } from "./points";
 import { Ring } from "./ring";
-import type { CloudInfo, CloudLayer, Pick, PointChunk, Rgb } from "./types";
+import type { CloudInfo, CloudLayer, ControlPlace, Pick, PointChunk, Rgb } from "./types";
 
 /** What of the picture is no longer right. */
 export type Stale = "nothing" | "colors" | "all";
@@ -53,7 +53,6 @@ export class CloudView implements CloudLayer {
 
   append(chunk: PointChunk): void {
     this.points.append(chunk);
-    this.controls.refresh();
     this.changed("nothing"); // the picture is gone on with
     if (this.points.vertices === this.points.room) this.buildTree();
   }
@@ -81,8 +80,8 @@ export class CloudView implements CloudLayer {
     return this.points.positionOf(point);
   }
 
-  setControlPoint(point: number, label: number | undefined): void {
-    this.controls.set(point, label);
+  setControlPoint(control: ControlPlace): void {
+    this.controls.set(control);
     this.changed("all");
   }
 
@@ -101,10 +100,9 @@ export class CloudView implements CloudLayer {
     this.changed("colors");
   }
 
-  mark(point: number | null): void {
-    const at = point === null ? undefined : this.points.positionOf(point);
+  mark(place: readonly [number, number, number] | null): void {
     const { x, y, z } = this.view.origin;
-    this.ring.set(at === undefined ? null : [at[0] - x, at[1] - y, at[2] - z]);
+    this.ring.set(place && [place[0] - x, place[1] - y, place[2] - z]);
     this.changed("all");
   }
 
@@ -209,8 +207,9 @@ export class CloudView implements CloudLayer {
   }
 
   private pickOf(point: number | undefined, control: boolean): Pick | null {
-    const position = point === undefined ? undefined : this.points.positionOf(point);
-    return point === undefined || position === undefined ? null : { point, control, position };
+    if (point === undefined) return null;
+    const position = control ? this.controls.positionOf(point) : this.points.positionOf(point);
+    return position === undefined ? null : { point, control, position };
   }
 
   private buildTree(): void {

@@ -2,6 +2,7 @@
 // Control points as spheres, and a ring around one point. A sphere is one vertex; its fragments are shaded as a ball's.
 import * as THREE from "three";
 import type { PointCloud } from "./points";
+import type { ControlPlace } from "./types";
 
 const kLeast_px = 7.5; // radius on the screen, css
 const kMost_px = 15;
@@ -65,7 +66,7 @@ void main() {
 
 export class ControlPoints {
   readonly object = new THREE.Points();
-  private labels = new Map<number, number>(); // of points
+  private known = new Map<number, ControlPlace>(); // by point
   private points: number[] = []; // of vertices
   private stale = true;
   private material: THREE.RawShaderMaterial;
@@ -99,24 +100,19 @@ export class ControlPoints {
     this.uniforms.radius_m!.value = radius_m;
   }
 
-  set(point: number, label: number | undefined): void {
-    if (label === undefined) this.labels.delete(point);
-    else this.labels.set(point, label);
+  set(control: ControlPlace): void {
+    if (control.label === 0) this.known.delete(control.point);
+    else this.known.set(control.point, control);
     this.stale = true;
   }
 
   clear(): void {
-    this.labels.clear();
+    this.known.clear();
     this.stale = true;
   }
 
-  /** Points that were not there yet may be now. */
-  refresh(): void {
-    if (this.labels.size > this.points.length) this.stale = true;
-  }
-
-  labelOf(point: number): number | undefined {
-    return this.labels.get(point);
+  positionOf(point: number): readonly [number, number, number] | undefined {
+    return this.known.get(point)?.position;
   }
 
   pointOfVertex(vertex: number): number | undefined {
@@ -145,7 +141,7 @@ export class ControlPoints {
     const positions = this.object.geometry.getAttribute("position");
     for (let i = 0; i < this.points.length; ++i) {
       const point = this.points[i]!;
-      if (!this.cloud.palette.isVisible(this.cloud.palette.slotOf(this.labels.get(point) ?? 0))) continue;
+      if (!this.cloud.palette.isVisible(this.cloud.palette.slotOf(this.known.get(point)?.label ?? 0))) continue;
       place.set(positions.getX(i), positions.getY(i), positions.getZ(i), 1).applyMatrix4(clip_scene);
       if (place.w <= 0) continue;
       const px_per_m = px_per_clip / place.w;
@@ -175,11 +171,9 @@ export class ControlPoints {
     this.points = [];
     const positions: number[] = [];
     const slots: number[] = [];
-    for (const [point, label] of this.labels) {
-      const at = this.cloud.positionOf(point);
-      if (at === undefined) continue;
+    for (const { point, label, position } of this.known.values()) {
       this.points.push(point);
-      for (const axis of [0, 1, 2] as const) positions.push(at[axis] - this.cloud.origin[axis]);
+      for (const axis of [0, 1, 2] as const) positions.push(position[axis] - this.cloud.origin[axis]);
       slots.push(this.cloud.palette.slotOf(label));
     }
     this.object.geometry.dispose();

@@ -28,6 +28,13 @@ export interface Pick {
   position: readonly [number, number, number];
 }
 
+/** What is drawn of a control point. */
+export interface ControlPlace {
+  point: number;
+  label: number;
+  position: readonly [number, number, number];
+}
+
 /** The picture as the program's selection takes it (docs/protocol.md: "view" of an action). */
 export interface SelectionPicture {
   size: [number, number];
@@ -45,15 +52,15 @@ export interface CloudLayer {
   setLabelVisible(label: number, visible: boolean): void;
   labelOf(point: number): number;
   positionOf(point: number): readonly [number, number, number] | undefined;
-  /** start_cost is not drawn. `undefined`: it is none any more. */
-  setControlPoint(point: number, label: number | undefined): void;
+  /** Label 0: it is none any more. Its point may be none of the cloud's that are here. */
+  setControlPoint(control: ControlPlace): void;
   clearControlPoints(): void;
   /** Of the shown points in the order of their chunks: 0 in doubt … 255 sure; null takes the heat map away. */
   setMargins(margins: Uint8Array | null): void;
   /** Points that stand out (a tree about to be removed); empty: none. */
   highlight(points: Uint32Array): void;
-  /** One point that stands out with a ring (the next best click, a control point jumped to). */
-  mark(point: number | null): void;
+  /** A place that stands out with a ring (the next best click, a control point jumped to). */
+  mark(place: readonly [number, number, number] | null): void;
   /** Thesis §4.2.2: with `cloud` off a point is its label's colour, black without one; with `labels` off its own. */
   show(what: { cloud: boolean; labels: boolean; controls: boolean }): void;
   pointSize: number; // px, edge of the square, 1 to 16
