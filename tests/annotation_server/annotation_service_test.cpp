@@ -25,6 +25,7 @@ TEST_F(AnnotationServiceTest, SaysWhatThereIs) {
   EXPECT_EQ(head.at("version"), "1.2.3");
   EXPECT_EQ(head.at("mode"), "annotate");
   EXPECT_EQ(head.at("title"), "table.pcd");
+  ASSERT_EQ(head.at("colors").size(), 256U);
   EXPECT_EQ(head.at("current"), 0);
   ASSERT_EQ(head.at("clouds").size(), 1U);
   EXPECT_EQ(head.at("clouds")[0].at("name"), "table.pcd");
@@ -49,6 +50,8 @@ TEST_F(AnnotationServiceTest, SaysWhatThereIs) {
   EXPECT_EQ(page.notices["people"].back().head.at("count"), 1);
   EXPECT_FALSE(page.notices["progress"].empty());
   EXPECT_EQ(Page{connect(8)}.hello().head.at("clouds")[0].at("begun"), true);
+  page.act(set(3, kOnTable));
+  EXPECT_EQ(page.rows.at(3).at("color"), head.at("colors")[2]);
 }
 
 TEST_F(AnnotationServiceTest, GivesPointsAsTheyAreInTheFile) {

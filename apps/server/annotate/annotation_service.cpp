@@ -124,6 +124,7 @@ Status AnnotationService::hello(Page& page, const Question& question) {
   head["mode"] = "annotate";
   head["title"] = config_.title;
   head["clouds"] = std::move(clouds);
+  head["colors"] = well_apart_colors();
   head["current"] = last_used_.value_or(0);
   clients_.send(page.id, MessageWriter{head}.finish());
   return {};

@@ -79,6 +79,14 @@ std::string color_text(const std::array<std::uint8_t, 3>& color) {
   return text;
 }
 
+nlohmann::json well_apart_colors() {
+  constexpr std::uint32_t kWellApart{256};
+  const DistinctColors color_of;
+  nlohmann::json colors = nlohmann::json::array();
+  for (std::uint32_t label = 1; label <= kWellApart; ++label) colors.push_back(color_text(color_of(label)));
+  return colors;
+}
+
 nlohmann::json label_rows(const std::set<std::uint32_t>& labels, const Annotation& annotation,
                           const LabelCensus& census) {
   nlohmann::json rows = nlohmann::json::array();

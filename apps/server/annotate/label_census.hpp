@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// LabelCensus: how many points and control points each label has, and of which labels that changed. label_row.
+// LabelCensus: how many points and control points each label has, and of which labels that changed. Rows and colours.
 
 #include <cstdint>
 #include <map>
@@ -33,6 +33,8 @@ class LabelCensus {
 
 /// "#rrggbb"
 [[nodiscard]] std::string color_text(const std::array<std::uint8_t, 3>& color);
+/// Of labels 1, 2 and so on, as long as nobody chose others.
+[[nodiscard]] nlohmann::json well_apart_colors();
 [[nodiscard]] nlohmann::json label_rows(const std::set<std::uint32_t>& labels, const Annotation& annotation,
                                         const LabelCensus& census);
 

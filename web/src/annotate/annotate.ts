@@ -92,6 +92,7 @@ function firstState(hello: Hello): State {
     canUndo: false,
     canRedo: false,
     labels: new Map(),
+    colors: (hello["colors"] as string[] | undefined) ?? [],
     controls: new Map(),
     action: "none",
     tool: "point",

@@ -12,7 +12,7 @@ interface Definition {
   name: string;
   class: string;
   instance: number;
-  color: string;
+  color?: string; // else the program's own
 }
 
 export class Edits {
@@ -105,8 +105,9 @@ export class Edits {
 
   /** Changes what is known of a label. One change may follow another that the program has not answered yet. */
   async define(number: number, change: Partial<Definition>): Promise<void> {
-    const { name, class: kind, instance, color } = this.defining.get(number) ?? rowOf(this.store.state, number);
-    const definition = { name, class: kind, instance, color, ...change };
+    const row = rowOf(this.store.state, number);
+    const known = { name: row.name, class: row.class, instance: row.instance, ...(row.defined ? { color: row.color } : {}) };
+    const definition = { ...(this.defining.get(number) ?? known), ...change };
     this.defining.set(number, definition);
     await this.session.act({ do: "labels", labels: [{ number, ...definition }] });
     if (this.defining.get(number) === definition) this.defining.delete(number);

@@ -2,7 +2,7 @@
 // Twenty labels as buttons in their colours, page by page. Thesis Fig. 4.17.
 import { h, on } from "../ui/dom";
 import type { LabelRow } from "../protocol";
-import { isBright, toRgb } from "./label_colors";
+import { textOn } from "../ui/colors";
 import { type Store, isEmpty, kMaxLabel, kPage, pageOf, rowOf } from "./store";
 
 export class LabelGrid {
@@ -42,7 +42,7 @@ export class LabelGrid {
       const chosen = row.number === state.label;
       button.hidden = row.number > kMaxLabel;
       button.style.setProperty("--label", row.color);
-      button.style.setProperty("--on-label", isBright(toRgb(row.color)) ? "#10151c" : "#ffffff");
+      button.style.setProperty("--on-label", textOn(row.color));
       button.classList.toggle("empty", empty);
       button.classList.toggle("off", state.hidden.has(row.number));
       button.setAttribute("aria-checked", String(chosen));

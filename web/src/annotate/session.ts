@@ -6,7 +6,7 @@ import { Refusal } from "../protocol";
 import { toast } from "../ui/toast";
 import type { Viewer } from "../view/types";
 import { type ActionObject, ActionQueue, type ActionResult } from "./action_queue";
-import { toRgb } from "./label_colors";
+import { toRgb } from "../ui/colors";
 import { firstLook } from "../view/standpoint";
 import { type OpenCloud, type Store, isEmpty } from "./store";
 

@@ -3,7 +3,6 @@
 import type { ConnectionState } from "../connection";
 import type { ControlPoint, LabelRow } from "../protocol";
 import type { CloudInfo, Navigation } from "../view/types";
-import { generatedColor, toHex } from "./label_colors";
 
 export type Action = "none" | "set" | "remove" | "pick";
 export type Tool = "point" | "rectangle" | "polyline" | "lasso" | "brush";
@@ -45,6 +44,7 @@ export interface State {
   canUndo: boolean;
   canRedo: boolean;
   labels: ReadonlyMap<number, LabelRow>;
+  colors: readonly string[]; // of labels from 1, as long as nobody chose others
   controls: ReadonlyMap<number, ControlPoint>; // by point
   action: Action;
   tool: Tool;
@@ -67,6 +67,7 @@ export interface State {
 
 export const kPage = 20;
 export const kMaxLabel = 4294967294;
+const kColorToCome = "#9aa0a6"; // of a label that gets one with its first point
 
 export function pageOf(label: number): number {
   return Math.floor((label - 1) / kPage) * kPage + 1;
@@ -80,7 +81,7 @@ export function rowOf(state: Readonly<State>, label: number): LabelRow {
       name: "",
       class: "",
       instance: 0,
-      color: label === 0 ? "#000000" : toHex(generatedColor(label)),
+      color: label === 0 ? "#000000" : (state.colors[label - 1] ?? kColorToCome),
       defined: false,
       points: 0,
       control_points: 0,
