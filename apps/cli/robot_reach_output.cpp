@@ -71,7 +71,7 @@ void print_row(const std::string& name, const ReachCounts& counts) {
 
 void print_head(const char* name) {
   std::cout << '\n' << std::right << std::setw(8) << name;
-  for (const char* column : {"reachable", "no ik", "outside limits", "in collision"}) {
+  for (const char* column : {"reachable", "out of reach", "outside limits", "in collision"}) {
     std::cout << std::setw(16) << column;
   }
   std::cout << '\n';

@@ -12,6 +12,7 @@ namespace saccade::server {
 namespace {
 
 constexpr std::size_t kMostVoxels{1'500'000};
+constexpr double kFrontierOpacity{0.3};
 constexpr Rgb8 kUnknown{82, 88, 104};
 constexpr Rgb8 kNoSegment{150, 154, 160};
 constexpr Rgb8 kChosenContour{0, 150, 136};
@@ -98,7 +99,11 @@ std::optional<Layer> contours_layer(const ObjectAttention& seen, std::optional<s
 Result<std::vector<Layer>> layers_of_map(const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {
   std::vector<Layer> layers{triangles_layer("surface", kSurfaceName, mesh)};
   const LayerPlace always{"", std::nullopt};
-  if (std::optional<Layer> frontier = frontier_layer(map, always)) layers.push_back(std::move(*frontier));
+  if (std::optional<Layer> frontier = frontier_layer(map, always)) {
+    frontier->visible = true;
+    frontier->opacity = kFrontierOpacity;
+    layers.push_back(std::move(*frontier));
+  }
   SACCADE_TRY(LiveObjectAttention attention, LiveObjectAttention::create());
   SACCADE_TRY(const ObjectAttention seen, attention.look(map, executor));
   std::vector<double> saliency;

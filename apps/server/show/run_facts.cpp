@@ -115,6 +115,8 @@ Facts facts_of_run(const json& result) {
   if (const auto chamfer = number(final, "chamfer_m")) facts.add("Chamfer distance", millimetres(*chamfer));
   if (const auto score = number(final, "f_score")) facts.add("F-score at 5 mm", decimals(*score, 3));
   facts.number_of("voxel_size_m", "voxel size", millimetres);
+  facts.number_of("frames", "frames", whole);
+  facts.text_of("tracking", "tracking");
   if (auto why = text(result, "stopped_because")) {
     std::replace(why->begin(), why->end(), '_', ' ');
     facts.add("stopped", *why);
@@ -150,7 +152,7 @@ Facts facts_of_view(const json& view) {
   facts.number_of("frames", "frames", whole);
   facts.number_of("motion_s", "motion", [](double s) { return decimals(s, 1) + " s"; });
   facts.number_of("path_m", "camera's way", [](double m) { return decimals(m, 2) + " m"; });
-  if (const auto ms = thinking_ms(view)) facts.add("computing", decimals(*ms, 0) + " ms");
+  if (const auto ms = thinking_ms(view)) facts.add("computing", whole(std::round(*ms)) + " ms");
   return facts.take();
 }
 

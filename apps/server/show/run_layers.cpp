@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <numbers>
+#include <optional>
 
 #include "saccade/report/robot_drawing.hpp"
 #include "saccade/robot/arm_mesh.hpp"
@@ -16,8 +17,8 @@ constexpr Rgb8 kGained{255, 140, 26};
 constexpr Rgb8 kUnknownElsewhere{112, 120, 138};
 constexpr Rgb8 kSurfaceHit{64, 152, 222};
 
-Layer placed(Layer layer, std::size_t step, bool visible = true) {
-  layer.id += "-" + std::to_string(step);
+Layer placed(Layer layer, std::optional<std::size_t> step, bool visible = true) {
+  if (step) layer.id += "-" + std::to_string(*step);
   layer.step = step;
   layer.visible = visible;
   return layer;
@@ -96,7 +97,7 @@ Layer region_layer(const Region& region, std::size_t step) {
   return placed(std::move(layer), step, false);
 }
 
-Layer path_layer(std::span<const Eigen::Vector3d> path, std::size_t step) {
+Layer path_layer(std::span<const Eigen::Vector3d> path, std::optional<std::size_t> step) {
   SACCADE_EXPECTS(path.size() > 1);
   std::vector<Eigen::Vector3f> ends;
   for (std::size_t i = 1; i < path.size(); ++i) {
@@ -109,7 +110,9 @@ Layer path_layer(std::span<const Eigen::Vector3d> path, std::size_t step) {
 }
 
 Layer arm_layer(const ArmModel& arm, const Configuration& q, std::size_t step) {
-  return placed(triangles_layer("arm", "Arm", arm_mesh(arm, q)), step);
+  Layer layer = triangles_layer("arm", "Arm", arm_mesh(arm, q));
+  layer.holds_camera = true;
+  return placed(std::move(layer), step);
 }
 
 }  // namespace saccade::server

@@ -15,8 +15,8 @@ namespace saccade::server {
                                std::size_t step, const Executor& executor);
 /// Edges of the region that the gain is of; hidden at first.
 [[nodiscard]] Layer region_layer(const Region& region, std::size_t step);
-/// The way of the camera's centre. Expects two places or more.
-[[nodiscard]] Layer path_layer(std::span<const Eigen::Vector3d> path, std::size_t step);
+/// The way of the camera's centre, on its way to a step or of the whole run. Expects two places or more.
+[[nodiscard]] Layer path_layer(std::span<const Eigen::Vector3d> path, std::optional<std::size_t> step);
 /// The arm's bodies. Expects a value per joint.
 [[nodiscard]] Layer arm_layer(const ArmModel& arm, const Configuration& q, std::size_t step);
 

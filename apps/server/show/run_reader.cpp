@@ -4,6 +4,7 @@
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/sacmap.hpp"
+#include "saccade/io/trajectory_io.hpp"
 #include "saccade/io/urdf.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
@@ -80,7 +81,9 @@ Result<SceneDocument> RunReader::read(bool live) {
     document.live = live;
     document.facts = facts_of_run(result);
     if (!live && result.value("unfinished", false)) document.facts.emplace_back("state", "interrupted");
+    if (!why_no_arm_.empty()) document.facts.emplace_back("arm", why_no_arm_);
     SACCADE_CHECK(add_end(document));
+    add_trajectory(document);
     for (const ReadStep& read : steps_) {
       document.steps.push_back(read.step);
       document.layers.insert(document.layers.end(), read.layers.begin(), read.layers.end());
@@ -198,11 +201,16 @@ void RunReader::add_arm(const json& result, const json& view, ReadStep& out) {
   if (!q.is_array() || name.empty()) return;
   if (name != arm_name_) {
     auto read = find_robot(name);
+    why_no_arm_ = read ? "" : "not shown: " + read.error().to_string();
     arm_ = read ? std::optional{std::move(read->arm)} : std::nullopt;
     arm_name_ = name;
   }
   const auto values = q.get<std::vector<double>>();
-  if (!arm_ || values.size() != arm_->joints().size()) return;
+  if (!arm_) return;
+  if (values.size() != arm_->joints().size()) {
+    why_no_arm_ = "not shown: " + name + " has other joints than the arm of the run";
+    return;
+  }
   const Configuration posture = Eigen::Map<const Eigen::VectorXd>{values.data(), std::ssize(values)};
   if (posture.allFinite()) out.layers.push_back(arm_layer(*arm_, posture, steps_.size()));
 }
@@ -233,6 +241,16 @@ Status RunReader::add_end(SceneDocument& document) const {
     document.layers.back().visible = false;
   }
   return {};
+}
+
+/// Of a fusion, where the camera was; what is no trajectory is left out.
+void RunReader::add_trajectory(SceneDocument& document) const {
+  if (!is_there(folder_ / "trajectory.txt")) return;
+  const auto trajectory = read_tum_trajectory(folder_ / "trajectory.txt");
+  if (!trajectory || trajectory->size() < 2) return;
+  std::vector<Eigen::Vector3d> centers;
+  for (const StampedPose& stamped : *trajectory) centers.push_back(stamped.T_world_camera.translation());
+  document.layers.push_back(path_layer(centers, std::nullopt));
 }
 
 Result<SceneDocument> run_document(const fs::path& folder, const Executor& executor) {

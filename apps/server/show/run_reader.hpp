@@ -47,6 +47,7 @@ class RunReader {
   void add_arm(const nlohmann::json& result, const nlohmann::json& view, ReadStep& out);
   [[nodiscard]] Status add_map(std::size_t number, ReadStep& out);
   [[nodiscard]] Status add_end(SceneDocument& document) const;
+  void add_trajectory(SceneDocument& document) const;
 
   std::filesystem::path folder_;
   Executor executor_;
@@ -55,6 +56,7 @@ class RunReader {
   std::optional<LiveObjectAttention> attention_;
   std::string arm_name_;
   std::optional<ArmModel> arm_;  ///< of that name; nullopt: none could be read
+  std::string why_no_arm_;       ///< it is not shown; empty: it is
 };
 
 }  // namespace saccade::server

@@ -79,6 +79,8 @@ json layer_json(const Layer& layer) {
   }
   if (layer.kind == LayerKind::triangles) out["vertices"] = layer.vertices;
   if (layer.size_m) out["size_m"] = *layer.size_m;
+  if (layer.opacity < 1.0) out["opacity"] = layer.opacity;
+  if (layer.holds_camera) out["holds_camera"] = true;
   for (const LegendEntry& entry : layer.legend) out["legend"].push_back({entry.text, hex(entry.color)});
   return out;
 }

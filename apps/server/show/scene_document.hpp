@@ -46,6 +46,8 @@ struct Layer {
   std::array<double, 2> fov_rad{};    ///< views only
   std::vector<LegendEntry> legend{};  ///< what its colours mean
   bool visible{true};                 ///< at first
+  double opacity{1.0};                ///< at first
+  bool holds_camera{false};           ///< in the way of who looks through the step's camera
   std::optional<std::size_t> step{};  ///< whose layer it is; nullopt: it is always there
   std::shared_ptr<const LayerBuffer> buffer{};
 };

@@ -18,7 +18,7 @@ import { isFlightKey, shortcutsOf } from "./keys";
 import { labelSection } from "./label_section";
 import { Pointer } from "./pointer";
 import { Session } from "./session";
-import { hiddenNote, showSection, viewBar } from "./show_section";
+import { firstNote, hiddenNote, showSection, viewBar } from "./show_section";
 import { type CloudEntry, type State, Store } from "./store";
 import { actionSection, kMaxBelow_mm, kMaxBrush, toolSection } from "./tool_section";
 
@@ -62,6 +62,7 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
     pointer.overlay.element,
     pointer.overlay.hint,
     viewBar(store, viewer),
+    firstNote(store),
     hiddenNote(store),
     pointer.readout,
   );

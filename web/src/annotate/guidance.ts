@@ -2,6 +2,7 @@
 // Where labels are in doubt, and where a click would help most.
 import { section, textButton, toggleButton } from "../ui/controls";
 import { h } from "../ui/dom";
+import { grouped } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { toast } from "../ui/toast";
 import type { Viewer } from "../view/types";
@@ -52,7 +53,7 @@ export class Guidance {
     this.viewer.cloud.mark(place);
     const settles =
       typeof gain === "number" && gain >= 1
-        ? ` A click there settles about ${Math.round(gain).toLocaleString("en")} points.`
+        ? ` A click there settles about ${grouped(gain)} points.`
         : "";
     toast(`The ring is where labels are most in doubt${label ? `; now it is label ${String(label)}` : ""}.${settles}`);
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // The keys of the annotation tool.
-import type { Shortcut } from "../ui/shortcuts";
+import type { Gesture, Shortcut } from "../ui/shortcuts";
 import type { Viewer } from "../view/types";
 import { removeSelected } from "./control_list";
 import type { Edits } from "./edits";
@@ -31,18 +31,17 @@ export function isFlightKey(key: string): boolean {
   return /^(Shift\+)?[WASDQE]$/.test(key);
 }
 
-export function shortcutsOf(parts: KeyParts): Shortcut[] {
+export function shortcutsOf(parts: KeyParts): (Shortcut | Gesture)[] {
   return [...actionKeys(parts), ...labelKeys(parts), ...viewKeys(parts), ...fileKeys(parts), ...mouse()];
 }
 
 function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
   const group = "Actions and tools";
-  const action = (key: string, value: Action, text: string, shown?: string): Shortcut => ({
+  const action = (key: string, value: Action, text: string): Shortcut => ({
     keys: [key],
     group,
     text,
     run: () => store.set({ action: value }),
-    ...(shown ? { shown } : {}),
   });
   const tool = (key: string, value: Tool, text: string): Shortcut => ({
     keys: [key],
@@ -52,12 +51,11 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
   });
   const brush = (by: number) =>
     store.set({ brush: Math.max(2, Math.min(kMaxBrush, Math.round(store.state.brush * by + Math.sign(by - 1)))) });
-  const none = (): void => {
-    if (!pointer.giveUp()) store.set({ action: "none" });
+  const none = (which: number): void => {
+    if (which === 0 || !pointer.giveUp()) store.set({ action: "none" });
   };
   return [
-    { keys: ["Escape"], group, text: "", run: none },
-    action("N", "none", "None: the left button moves the view", "N or Esc"),
+    { keys: ["N", "Escape"], group, text: "None: the left button moves the view", run: none },
     action("C", "set", "Set control points, or paint"),
     action("X", "remove", "Del"),
     action("I", "pick", "Pick a label"),
@@ -72,12 +70,11 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
       text: "Surface, slightly below, deep",
       run: () => store.set({ depth: kDepths[(kDepths.indexOf(store.state.depth) + 1) % kDepths.length]! }),
     },
-    { keys: ["["], group, text: "Brush smaller, larger", shown: "[ ]", run: () => brush(1 / 1.2) },
-    { keys: ["]"], group, text: "", run: () => brush(1.2) },
+    { keys: ["[", "]"], group, text: "Brush smaller, larger", run: (which) => brush(which === 0 ? 1 / 1.2 : 1.2) },
     { keys: ["Enter"], group, text: "Close the polyline", run: () => void pointer.finish() },
     { keys: ["Backspace"], group, text: "Take back its last corner", run: () => void pointer.back() },
     { keys: ["Ctrl+Z"], group, text: "Undo", run: () => edits.undo() },
-    { keys: ["Ctrl+Shift+Z", "Ctrl+Y"], group, text: "Redo", shown: "Ctrl+Shift+Z", run: () => edits.redo() },
+    { keys: ["Ctrl+Shift+Z"], or: ["Ctrl+Y"], group, text: "Redo", run: () => edits.redo() },
     { keys: ["Delete"], group, text: "Delete the selected control point", run: () => removeSelected(store, edits) },
   ];
 }
@@ -85,34 +82,24 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
 function labelKeys({ store }: KeyParts): Shortcut[] {
   const group = "Labels";
   const step = (by: number) => store.set({ label: Math.max(1, Math.min(kMaxLabel, store.state.label + by)) });
-  const digits = [1, 2, 3, 4, 5, 6, 7, 8, 9, 0];
-  const choose = (place: number) => () => store.set({ label: Math.min(kMaxLabel, pageOf(store.state.label) + place) });
+  const digits = [..."1234567890"];
+  const choose = (place: number) => store.set({ label: Math.min(kMaxLabel, pageOf(store.state.label) + place) });
   const jump = (which: "first" | "next" | "last") => () => store.set({ label: emptyLabel(store, which) });
   return [
-    ...digits.map((digit, i) => ({
-      keys: [String(digit)],
-      group,
-      text: i === 0 ? "Labels of the first row" : "",
-      shown: "1 – 0",
-      run: choose(i),
-    })),
-    ...digits.map((digit, i) => ({
-      keys: [`Shift+${digit}`],
-      group,
-      text: i === 0 ? "Labels of the second row" : "",
-      shown: "Shift+1 – 0",
-      run: choose(10 + i),
-    })),
-    { keys: [","], group, text: "Previous, next label", shown: ", .", run: () => step(-1) },
-    { keys: ["."], group, text: "", run: () => step(1) },
+    { keys: digits, group, text: "Labels of the first row", run: choose },
     {
-      keys: ["PageUp"],
+      keys: digits.map((digit) => `Shift+${digit}`),
+      group,
+      text: "Labels of the second row",
+      run: (which) => choose(10 + which),
+    },
+    { keys: [",", "."], group, text: "Previous, next label", run: (which) => step(sign(which)) },
+    {
+      keys: ["PageUp", "PageDown"],
       group,
       text: "Previous, next twenty",
-      shown: "PageUp PageDown",
-      run: () => turnPage(store, -1),
+      run: (which) => turnPage(store, sign(which)),
     },
-    { keys: ["PageDown"], group, text: "", run: () => turnPage(store, 1) },
     { keys: ["J"], group, text: "Next empty label", run: jump("next") },
     { keys: ["Shift+J"], group, text: "First empty label", run: jump("first") },
     { keys: ["Alt+J"], group, text: "Last empty label", run: jump("last") },
@@ -143,15 +130,14 @@ function viewKeys({ store, viewer, guidance, foldPanel, showHelp }: KeyParts): S
       text: "Orbit or fly",
       run: () => store.set({ navigation: store.state.navigation === "orbit" ? "fly" : "orbit" }),
     },
-    { keys: ["+", "="], group, text: "Points larger, smaller", shown: "+ −", run: () => size(1) },
-    { keys: ["-", "−"], group, text: "", run: () => size(-1) },
+    { keys: ["+", "-"], group, text: "Points larger, smaller", run: (which) => size(-sign(which)) },
     { keys: ["Shift+C"], group, text: "Cloud on or off", run: () => toggleShown(store, "cloud") },
     { keys: ["Shift+L"], group, text: "Labels on or off", run: () => toggleShown(store, "labels") },
     { keys: ["Shift+P"], group, text: "Control points on or off", run: () => toggleShown(store, "controls") },
     { keys: ["M"], group, text: "Heat map of doubt", run: () => guidance.toggle() },
     { keys: ["G"], group, text: "Next best click", run: () => void guidance.jump() },
     { keys: ["\\"], group, text: "Panel on or off", run: foldPanel },
-    { keys: ["?", "F1"], group, text: "This sheet", run: showHelp },
+    { keys: ["?"], or: ["F1"], group, text: "This sheet", run: showHelp },
   ];
 }
 
@@ -168,20 +154,23 @@ function fileKeys({ store, files }: KeyParts): Shortcut[] {
     },
     { keys: ["Ctrl+O"], group, text: "Open", run: () => files.open() },
     {
-      keys: ["Shift+PageUp"],
+      keys: ["Shift+PageUp", "Shift+PageDown"],
       group,
       text: "Previous, next cloud",
-      shown: "Shift+PageUp – PageDown",
-      run: () => several() && files.step(-1),
+      run: (which) => several() && files.step(sign(which)),
     },
-    { keys: ["Shift+PageDown"], group, text: "", run: () => several() && files.step(1) },
   ];
 }
 
-/** Rows of the sheet without keys of their own. */
-function mouse(): Shortcut[] {
+/** Of two keys the first goes back, the second on. */
+function sign(which: number): 1 | -1 {
+  return which === 0 ? -1 : 1;
+}
+
+/** What the view has itself. */
+function mouse(): Gesture[] {
   const group = "Mouse and cursor";
-  const row = (shown: string, text: string): Shortcut => ({ keys: [], group, text, shown, run: () => undefined });
+  const row = (shown: string, text: string): Gesture => ({ group, text, shown });
   return [
     row("Left", "The tool; where there is none, turns the view"),
     row("Right", "Turns the view around what is under the cursor"),
@@ -191,6 +180,8 @@ function mouse(): Shortcut[] {
     row("Space", "Held: the left button moves the view, whatever the tool"),
     row("← ↑ → ↓", "In the view: the cursor of the keyboard (Shift: by pixels)"),
     row("Enter", "A click there"),
+    row("W A S D", "In flight: forward, left, back, right"),
+    row("Q E", "In flight: down, up (Shift: faster)"),
     row("Alt+Click", "On an eye: this label alone"),
   ];
 }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Twenty labels as buttons in their colours, page by page. Thesis Fig. 4.17.
 import { h, on } from "../ui/dom";
+import { compact, grouped } from "../ui/figures";
 import type { LabelRow } from "../protocol";
 import { textOn } from "../ui/colors";
 import { type Store, isEmpty, kMaxLabel, kPage, pageOf, rowOf } from "./store";
@@ -60,12 +61,5 @@ export function describeLabel(row: LabelRow): string {
   const name = row.name ? ` ${row.name}` : "";
   if (isEmpty(row)) return `Label ${row.number}${name}: empty`;
   const control = row.control_points === 1 ? "1 control point" : `${row.control_points} control points`;
-  return `Label ${row.number}${name}: ${control}, ${row.points.toLocaleString("en")} points`;
-}
-
-/** A count in four characters: 950, 12k, 1.2M. */
-export function compact(count: number): string {
-  if (count < 1000) return String(count);
-  if (count < 999_500) return count < 9950 ? `${(count / 1000).toFixed(1)}k` : `${Math.round(count / 1000)}k`;
-  return count < 9_950_000 ? `${(count / 1e6).toFixed(1)}M` : `${Math.round(count / 1e6)}M`;
+  return `Label ${row.number}${name}: ${control}, ${grouped(row.points)} points`;
 }

@@ -2,11 +2,12 @@
 // The labels: choosing one, naming it, finding an empty one, hiding some.
 import { fill, h, on } from "../ui/dom";
 import { iconButton, section, segmented } from "../ui/controls";
+import { compact } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { VirtualList } from "../ui/virtual_list";
 import type { LabelRow } from "../protocol";
 import type { Edits } from "./edits";
-import { LabelGrid, compact, describeLabel } from "./label_grid";
+import { LabelGrid, describeLabel } from "./label_grid";
 import { type Store, isEmpty, kMaxLabel, kPage, pageOf, rowOf } from "./store";
 
 const kRow_px = 28;

@@ -5,7 +5,7 @@ import { h, on } from "../ui/dom";
 import { icon } from "../ui/icons";
 import type { Viewer } from "../view/types";
 import { type Side, lookFrom } from "../view/standpoint";
-import { type State, type Store } from "./store";
+import { type State, type Store, isEmpty } from "./store";
 
 type Shown = keyof State["show"];
 
@@ -76,6 +76,22 @@ export function viewBar(store: Store, viewer: Viewer): HTMLElement {
     iconButton("side", "From the side (Shift+T)", look("side")),
   );
   return bar;
+}
+
+/** What to do first, until something was done. */
+export function firstNote(store: Store): HTMLElement {
+  const note = h(
+    "p",
+    { class: "floating first-note", hidden: true },
+    "Choose a label, then Set, and click a point of the table; then another label, and a point of each object.",
+  );
+  store.watch(["cloud", "ready", "progress", "readOnly", "labels", "canUndo", "canRedo", "pending"], (state) => {
+    const untouched = !state.canUndo && !state.canRedo && state.pending === 0;
+    const empty = [...state.labels.values()].every(isEmpty);
+    const usable = state.cloud !== null && state.ready && state.progress === null && state.readOnly === null;
+    note.hidden = !(usable && untouched && empty);
+  });
+  return note;
 }
 
 export function hiddenNote(store: Store): HTMLElement {

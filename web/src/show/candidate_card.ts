@@ -2,6 +2,7 @@
 // Candidates under the cursor: their gain on a tip; of the one that was clicked, a card.
 import { iconButton, textButton } from "../ui/controls";
 import { fill, h, on } from "../ui/dom";
+import { grouped } from "../ui/figures";
 import type { LayerPick, Viewer } from "../view/types";
 import { kUsualFov_rad } from "./document";
 import { gainText, rankOf } from "./gains";
@@ -117,6 +118,6 @@ export class CandidateCard {
     const gain = found.gains.gains[pick.item] ?? Number.NaN;
     if (Number.isNaN(gain)) return "Gain not known";
     const rank = rankOf(found.gains, pick.item);
-    return `Gain ${gainText(gain)} · ${rank === 1 ? "the best" : `number ${rank}`} of ${found.layer.count}`;
+    return `Gain ${gainText(gain)} · ${rank === 1 ? "the best" : `number ${rank}`} of ${grouped(found.layer.count)}`;
   }
 }

@@ -7,6 +7,7 @@ export interface Layer extends LayerInfo {
   buffer: string;
   visible: boolean;
   step?: number;
+  holds_camera?: boolean; // in the way of who looks through it
   legend?: readonly (readonly [string, string])[]; // text, "#rrggbb"
 }
 

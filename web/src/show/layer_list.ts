@@ -2,9 +2,10 @@
 // The list of layers: what is shown, its colours and what they mean, opacity and size.
 import { slider } from "../ui/controls";
 import { type Child, fill, h, on, setAttribute } from "../ui/dom";
+import { compact, grouped } from "../ui/figures";
 import { icon } from "../ui/icons";
 import { kNoColor, type Layer, layerKey, type SceneDocument } from "./document";
-import { gainText } from "./gains";
+import { type Candidates, gainText } from "./gains";
 import type { Look } from "./look_of_layers";
 
 const kUnits = { triangles: "triangles", points: "points", voxels: "voxels", lines: "lines", views: "views" } as const;
@@ -36,11 +37,11 @@ export class LayerList {
   }
 
   /** What the colours of candidates mean, once their gains are known. */
-  setGains(id: string, high: number): void {
+  setGains(id: string, { best, low, high }: Candidates): void {
     const scale = this.element.querySelector(`[data-layer="${CSS.escape(id)}"] .gain-scale`);
     if (!scale) return;
-    const known = high > 0;
-    fill(scale, h("span", {}, known ? "0" : ""), h("i", { class: "ramp" }), h("span", {}, known ? `${gainText(high)} gain` : "gain not known"));
+    const known = best >= 0;
+    fill(scale, h("span", {}, known ? gainText(low) : ""), h("i", { class: "ramp" }), h("span", {}, known ? `${gainText(high)} gain` : "gain not known"));
   }
 
   private row(layer: Layer): HTMLElement {
@@ -52,7 +53,7 @@ export class LayerList {
     });
     row.classList.toggle("off", !this.look.visible(layer));
     const settings = h("div", { class: "layer-settings", hidden: !this.open.has(key) });
-    const name = h("button", { type: "button", class: "layer-name", "aria-expanded": this.open.has(key), title: `${layer.name}: ${layer.count.toLocaleString("en")} ${kUnits[layer.kind]}`, "data-focus": `name ${key}` }, swatch(layer), h("span", { class: "name" }, layer.name), h("span", { class: "count" }, count(layer)), icon("down"));
+    const name = h("button", { type: "button", class: "layer-name", "aria-expanded": this.open.has(key), title: `${layer.name}: ${grouped(layer.count)} ${kUnits[layer.kind]}`, "data-focus": `name ${key}` }, swatch(layer), h("span", { class: "name" }, layer.name), h("span", { class: "count" }, count(layer)), icon("down"));
     name.setAttribute("aria-expanded", String(this.open.has(key)));
     on(name, {
       click: () => {
@@ -121,8 +122,7 @@ export class LayerList {
 }
 
 function count(layer: Layer): string {
-  if (layer.count < 10_000) return String(layer.count);
-  return Intl.NumberFormat("en", { notation: "compact", maximumFractionDigits: 1 }).format(layer.count);
+  return layer.count < 10_000 ? grouped(layer.count) : compact(layer.count);
 }
 
 /** One colour, several of a legend, or many that nobody named. */

@@ -16,7 +16,7 @@ export class Look {
   }
 
   opacity(layer: Layer): number {
-    return this.opacities.get(layerKey(layer)) ?? 1;
+    return this.opacities.get(layerKey(layer)) ?? layer.opacity ?? 1;
   }
   setOpacity(layer: Layer, opacity: number): void {
     this.opacities.set(layerKey(layer), opacity);

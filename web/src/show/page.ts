@@ -33,7 +33,7 @@ const kStates: Record<ConnectionState, [string, string]> = {
   reconnecting: ["busy", "Reconnecting"],
   closed: ["bad", "The program has ended or does not let this page in"],
 };
-const kKinds = { run: "Exploration run", mesh: "Mesh", map: "Map", cloud: "Point cloud" } as const;
+const kKinds = { run: "Run", mesh: "Mesh", map: "Map", cloud: "Point cloud" } as const;
 
 export class ShowPage {
   readonly view = h("div", { class: "stage-view" });

@@ -11,8 +11,9 @@ export class Scene {
   private turn = 0;
   private readonly shown = new Map<string, string>(); // what the view has, id to what it was made of
   private frame: CameraFrame | null = null;
-  private cameras: string[] = []; // layers of views and what was made
+  private cameras: string[] = []; // layers of views, what was made, and what holds the camera
   private camerasShown = true;
+  holderShown = false; // something that holds the camera is among them
   private candidates = new Map<string, { layer: Layer; data: ArrayBuffer; gains: Candidates }>();
 
   constructor(
@@ -63,7 +64,7 @@ export class Scene {
     return found && item < found.layer.count ? poseOf(found.data, item) : undefined;
   }
 
-  /** Cameras and their path: in the way of who looks through one of them. */
+  /** Cameras, their path, and an arm: in the way of who looks through one of them. */
   showCameras(shown: boolean): void {
     this.camerasShown = shown;
     this.viewer.setFrame(shown ? this.frame : null);
@@ -109,7 +110,9 @@ export class Scene {
       this.viewer.layers.select(layer.id, gains.best >= 0 ? gains.best : null);
     }
     for (const { layer, data } of made) this.put(layer, data, String(step));
-    this.cameras = [...this.candidates.keys(), ...made.map(({ layer }) => layer.id)];
+    const holders = [...ready.keys()].filter((layer) => layer.holds_camera).map((layer) => layer.id);
+    this.holderShown = holders.length > 0;
+    this.cameras = [...this.candidates.keys(), ...made.map(({ layer }) => layer.id), ...holders];
     const now = document.steps[step];
     this.frame = now?.T_world_camera ? { poseRows: now.T_world_camera, fov_rad: fovOf(now) } : null;
     this.showCameras(this.camerasShown);

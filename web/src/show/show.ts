@@ -67,7 +67,7 @@ class Show {
     this.card = new CandidateCard(this.viewer, this.scene, {
       lookFrom: (rows, fov_rad, name) => {
         this.ownStep = false;
-        this.lookThrough.through(rows, fov_rad, name);
+        this.lookThrough.through(rows, fov_rad, this.withoutArm(name));
       },
       goTo: (item) => this.player.go(this.earlier()[item] ?? 0),
       trailName: (item) => this.document?.steps[this.earlier()[item] ?? 0]?.name ?? "",
@@ -142,7 +142,7 @@ class Show {
     if (!exchanged) return; // a later one is under way
     this.page.stage.ariaBusy = "false";
     this.card.clear();
-    for (const { layer, gains } of this.scene.allCandidates()) this.page.layers.setGains(layer.id, gains.high);
+    for (const { layer, gains } of this.scene.allCandidates()) this.page.layers.setGains(layer.id, gains);
     if (this.lookThrough.active && this.ownStep) this.setLooking(true);
   }
 
@@ -153,8 +153,12 @@ class Show {
   private setLooking(through: boolean): void {
     const step = this.document?.steps[this.player.step];
     this.ownStep = true;
-    if (through && step?.T_world_camera) this.lookThrough.through(step.T_world_camera, fovOf(step), step.name);
+    if (through && step?.T_world_camera) this.lookThrough.through(step.T_world_camera, fovOf(step), this.withoutArm(step.name));
     else this.lookThrough.end(true);
+  }
+
+  private withoutArm(name: string): string {
+    return this.scene.holderShown ? `${name} · the arm is hidden` : name;
   }
 
   private lookingChanged(active: boolean): void {

@@ -33,9 +33,9 @@ export class StepPanel {
     this.element.hidden = step === undefined;
     if (!step) return;
     this.title.textContent = step.name;
-    this.place.textContent = `${index + 1} of ${document.steps.length}`;
+    this.place.textContent = document.steps.length > 1 ? `${index + 1} of ${document.steps.length}` : "";
     fill(this.facts, step.facts.length > 0 ? factsTable(step.facts) : null);
-    this.lookThrough.element.disabled = step.T_world_camera === null;
+    this.lookThrough.element.hidden = step.T_world_camera === null;
   }
 
   setLooking(through: boolean): void {

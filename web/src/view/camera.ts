@@ -74,9 +74,11 @@ export class SceneCamera implements Camera {
     this.stop();
     const flight = this.flight;
     const began = performance.now();
+    const length_ms = matchMedia("(prefers-reduced-motion: reduce)").matches ? 0 : kMove_ms;
     const step = () => {
       if (flight !== this.flight) return;
-      const t = Math.min(1, (performance.now() - began) / kMove_ms);
+      const spent_ms = performance.now() - began;
+      const t = spent_ms < length_ms ? spent_ms / length_ms : 1;
       this.camera.position.lerpVectors(start, end, t * t * (3 - 2 * t));
       this.changed();
       if (t < 1) requestAnimationFrame(step);

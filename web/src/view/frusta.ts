@@ -42,11 +42,15 @@ export class Frusta {
     this.positions = new Float32Array(3 * kLines.length * count);
     this.colors = new Uint8Array(4 * kLines.length * count);
     const shape = corners(fov_rad, length_m);
-    let most = 0;
-    for (let i = 0; i < count; ++i) if (gains[i]! > most) most = gains[i]!;
+    let least = Infinity;
+    let most = -Infinity;
+    for (let i = 0; i < count; ++i) {
+      if (gains[i]! < least) least = gains[i]!;
+      if (gains[i]! > most) most = gains[i]!;
+    }
     this.own = Array.from({ length: count }, (_, i) => {
       const gain = gains[i]!;
-      return Number.isNaN(gain) ? kUnknown : gainColor(most > 0 ? gain / most : 0);
+      return Number.isNaN(gain) ? kUnknown : gainColor(most > least ? (gain - least) / (most - least) : 1);
     });
     const pose = new THREE.Matrix4();
     const at = new THREE.Vector3();

@@ -33,9 +33,10 @@ flat out vec4 inner;  // alpha: half its edge, of the outer's
 #endif
 #endif
 
+// From blue to yellow, lighter and lighter: read without telling red from green. annotate.css has the same as a legend.
 vec3 heated(vec3 own, float doubt) {
-  vec3 sure = vec3(0.16 + 0.4 * dot(own, vec3(0.3, 0.59, 0.11)));
-  vec3 hot = mix(vec3(0.86, 0.16, 0.38), vec3(1.0, 0.83, 0.25), clamp(2.0 * doubt - 1.0, 0.0, 1.0));
+  vec3 sure = vec3(0.10, 0.16, 0.34) + 0.26 * dot(own, vec3(0.3, 0.59, 0.11));
+  vec3 hot = mix(vec3(0.80, 0.32, 0.44), vec3(1.0, 0.87, 0.22), clamp(2.0 * doubt - 1.0, 0.0, 1.0));
   return mix(sure, hot, clamp(2.0 * doubt, 0.0, 1.0));
 }
 
@@ -58,14 +59,14 @@ void main() {
   vec3 own = color.rgb;
   if (heat) own = heated(own, 1.0 - float(state >> 20u & 255u) / 255.0);
 #ifdef LABELS_ONLY
-  outer = heat && slot == 0u ? own : label.rgb;
+  outer = heat ? own : label.rgb;
 #elif defined(CLOUD_ONLY)
   outer = own;
 #elif defined(TWO_SQUARES)
   // Where squares cover each other's middles, from afar, they are tinted instead.
   float covered = clamp(1.0 - spacing / (gl_Position.w * size), 0.0, 1.0);
   outer = slot == 0u || heat ? own : tinted(own, label.rgb, covered);
-  inner = vec4(mix(label.rgb, outer, 0.8 * covered * covered), slot == 0u ? 0.0 : INNER);
+  inner = vec4(mix(label.rgb, outer, 0.8 * covered * covered), slot == 0u || heat ? 0.0 : INNER);
 #else
   outer = slot == 0u || heat ? own : tinted(own, label.rgb, 1.0);
 #endif
