@@ -92,6 +92,8 @@ TEST(ShowDocuments, AMapHasItsSurfaceAndFrontier) {
   ASSERT_NE(frontier, nullptr);
   EXPECT_EQ(surface->count, extract_mesh(map, {}).triangles.size());
   EXPECT_GT(surface->count, 0U);
+  EXPECT_EQ(frontier->visible, map.config.workspace.has_value());
+  EXPECT_LT(frontier->opacity, 1.0) << "the surface is seen through it";
   ASSERT_EQ(frontier->buffer->bytes.size(), 12 * frontier->count);
   EXPECT_EQ(frontier->size_m, map.config.voxel_size_m);
   std::size_t checked{0};
@@ -108,6 +110,24 @@ TEST(ShowDocuments, AMapHasItsSurfaceAndFrontier) {
     checked += map.grid.state(voxel) == VoxelState::unknown && beside_empty ? 1 : 0;
   }
   EXPECT_EQ(checked, frontier->count);
+}
+
+TEST(ShowDocuments, AFusionHasTheCamerasWay) {
+  const TempFolder folder;
+  folder.write("run.json", R"({"command": "fuse", "result": {"frames": 3, "tracking": "icp"}})");
+  folder.write("trajectory.txt", "0 0 0 1 0 0 0 1\n1 0.1 0 1 0 0 0 1\n2 0.1 0.2 1 0 0 0 1\n");
+  const auto shown = open_document(folder.path(), {});
+  ASSERT_TRUE(shown) << shown.error().to_string();
+  EXPECT_EQ(shown->kind, DocumentKind::run);
+  EXPECT_EQ(shown->facts, (Facts{{"frames", "3"}, {"tracking", "icp"}}));
+  ASSERT_EQ(shown->layers.size(), 1U) << "no map, no mesh";
+  EXPECT_EQ(shown->layers[0].count, 2U);
+  EXPECT_FALSE(shown->layers[0].step);
+
+  folder.write("trajectory.txt", "no trajectory");
+  const auto without = open_document(folder.path(), {});
+  ASSERT_TRUE(without) << without.error().to_string();
+  EXPECT_TRUE(without->layers.empty());
 }
 
 TEST(ShowDocuments, SaysWhatIsNothingToShow) {

@@ -100,7 +100,7 @@ Result<std::vector<Layer>> layers_of_map(const TsdfSnapshot& map, const Triangle
   std::vector<Layer> layers{triangles_layer("surface", kSurfaceName, mesh)};
   const LayerPlace always{"", std::nullopt};
   if (std::optional<Layer> frontier = frontier_layer(map, always)) {
-    frontier->visible = true;
+    frontier->visible = map.config.workspace.has_value();  // without one it is around all that was seen
     frontier->opacity = kFrontierOpacity;
     layers.push_back(std::move(*frontier));
   }

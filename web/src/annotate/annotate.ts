@@ -19,6 +19,7 @@ import { labelSection } from "./label_section";
 import { Pointer } from "./pointer";
 import { Session } from "./session";
 import { firstNote, hiddenNote, showSection, viewBar } from "./show_section";
+import "./stage.css";
 import { type CloudEntry, type State, Store } from "./store";
 import { actionSection, kMaxBelow_mm, kMaxBrush, toolSection } from "./tool_section";
 

@@ -83,7 +83,7 @@ export function firstNote(store: Store): HTMLElement {
   const note = h(
     "p",
     { class: "floating first-note", hidden: true },
-    "Choose a label, then Set, and click a point of the table; then another label, and a point of each object.",
+    "Choose a label and Set, and click a point of the table; then another label for each object.",
   );
   store.watch(["cloud", "ready", "progress", "readOnly", "labels", "canUndo", "canRedo", "pending"], (state) => {
     const untouched = !state.canUndo && !state.canRedo && state.pending === 0;

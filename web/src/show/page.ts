@@ -13,6 +13,7 @@ import type { SceneDocument } from "./document";
 import { LayerList } from "./layer_list";
 import type { Look } from "./look_of_layers";
 import { thumbnails } from "./pictures";
+import "./pictures.css";
 import type { Player } from "./player";
 import "./show.css";
 import { StepBar } from "./step_bar";
