@@ -92,7 +92,7 @@ test("candidates say their gain", async ({ page }) => {
     if (await tip.isVisible()) seen.add((await tip.textContent()) ?? "");
   }
   expect(seen.size).toBeGreaterThan(5);
-  for (const text of seen) expect(text).toMatch(/^(Gain [\d,]+ · (the best|number \d+) of 24|Gain not known|Initial scan|View \d)$/);
+  for (const text of seen) expect(text).toMatch(/^(Gain [\d\u202f]+ · (the best|number \d+) of 24|Gain not known|Initial scan|View \d)$/);
 });
 
 test("pictures are enlarged", async ({ page }) => {
