@@ -66,8 +66,13 @@ void ExploreShow::read_and_show() {
       wanted = std::exchange(wanted_, Wanted::nothing);
     }
     if (wanted == Wanted::stop) return;
-    // A folder that cannot be read now may be complete the next time; the run itself reports what it cannot write.
-    if (auto document = reader_.read(wanted == Wanted::live)) service_->update(std::move(*document));
+    // A folder that cannot be read now may be complete the next time; the run itself reports what it cannot write, and
+    // goes on whatever becomes of its picture.
+    try {
+      if (auto document = reader_.read(wanted == Wanted::live)) service_->update(std::move(*document));
+    } catch (const std::exception&) {
+      continue;
+    }
   }
 }
 

@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <pwd.h>
+#include <signal.h>
 #include <spawn.h>
 #include <sys/stat.h>
 #include <sys/wait.h>
@@ -107,10 +108,18 @@ Result<std::string> token_of(const std::filesystem::path& file) {
   return read_token(file);
 }
 
-/// Its own words go nowhere; whether it could is the user's to see.
+/// Its own words go nowhere; whether it could is the user's to see. It outlives the program: Ctrl-C is not for it, and
+/// the signals that the program ignores it does not.
 void open_browser(const std::string& url) {
+  posix_spawnattr_t attributes;
+  if (::posix_spawnattr_init(&attributes) != 0) return;
+  sigset_t as_usual;
+  sigemptyset(&as_usual);
+  for (const int signal : {SIGPIPE, SIGXFSZ}) sigaddset(&as_usual, signal);
+  ::posix_spawnattr_setsigdefault(&attributes, &as_usual);
+  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF);
   posix_spawn_file_actions_t actions;
-  if (::posix_spawn_file_actions_init(&actions) != 0) return;
+  ::posix_spawn_file_actions_init(&actions);
   for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
     ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
   }
@@ -118,8 +127,9 @@ void open_browser(const std::string& url) {
   std::string address = url;
   const std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
   pid_t child{0};
-  const bool begun = ::posix_spawnp(&child, program.c_str(), &actions, nullptr, arguments.data(), environ) == 0;
+  const bool begun = ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments.data(), environ) == 0;
   ::posix_spawn_file_actions_destroy(&actions);
+  ::posix_spawnattr_destroy(&attributes);
   if (begun) std::thread{[child] { ::waitpid(child, nullptr, 0); }}.detach();
 }
 

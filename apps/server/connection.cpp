@@ -128,6 +128,10 @@ void Connection::serve_one() {
   bool is_end{false};
   {
     const std::lock_guard lock{mutex_};
+    if (thread_.hurries()) {  // nobody is told the answers any more
+      asked_.clear();
+      asked_bytes_ = 0;
+    }
     if (asked_.empty()) {
       scheduled_ = false;
       if (!ended_) return;  // it was closed meanwhile

@@ -122,8 +122,10 @@ class BeastServer final : public HttpServer {
 BeastServer::~BeastServer() {
   if (!network_thread_.joinable()) return;
   ending_ = true;
+  state_.service_thread.hurry();
   asio::post(network_, [this] {
     state_.stopping = true;
+    state_.data_waiting.clear();
     first_.close();
     second_.close();
     const auto sessions = state_.sessions;  // they take themselves off

@@ -39,7 +39,8 @@ class HttpServer : public Clients {
  public:
   /// @return unavailable where the port is taken or the address is not this machine's; invalid_argument.
   [[nodiscard]] static Result<std::unique_ptr<HttpServer>> listen(const ServerConfig& config);
-  /// Ends every connection (1001), tells the service so, does what was posted, and joins its threads.
+  /// Ends every connection (1001), tells the service so, does what was posted, and joins its threads. What connections
+  /// have asked and the service has not seen is not asked any more.
   ~HttpServer() override;
 
   /// From here on requests are answered. `service` outlives the server. Called once.

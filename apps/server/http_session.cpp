@@ -60,6 +60,7 @@ void HttpSession::stop() { finish(); }
 void HttpSession::finish() {
   if (std::exchange(finished_, true)) return;
   stream_.close();
+  end_data();
   state_.sessions.erase(this);
 }
 
@@ -167,22 +168,28 @@ void HttpSession::answer_data(const Target& target) {
     return refuse(status::service_unavailable, "Too many files are asked for at once.");
   }
   ++state_.data_requests;
+  gives_data_ = true;
   HttpRequest request{target.path.substr(kDataPrefix.size()), target.query};
   request.query.erase("token");
-  state_.service_thread.post([self = shared_from_this(), request = std::move(request)]() mutable {
+  state_.ask_data([self = shared_from_this(), request = std::move(request)]() mutable {
     HttpAnswer answer;
     try {
-      answer = self->state_.service.load()->get(request);
+      if (!self->state_.service_thread.hurries()) answer = self->state_.service.load()->get(request);
     } catch (const std::exception&) {
       const std::string_view text{"A bug in the program."};
       answer = {500, "text/plain; charset=utf-8", "", {text.begin(), text.end()}};
     }
     auto executor = self->stream_.get_executor();
     boost::asio::post(executor, [self = std::move(self), answer = std::move(answer)]() mutable {
-      --self->state_.data_requests;
+      self->state_.data_answered();
       if (!self->finished_) self->guard([&] { self->on_data(std::move(answer)); });
     });
   });
+}
+
+/// It counts until it is written, as it takes memory until then.
+void HttpSession::end_data() {
+  if (std::exchange(gives_data_, false)) --state_.data_requests;
 }
 
 void HttpSession::on_data(HttpAnswer data) {
@@ -233,6 +240,7 @@ void HttpSession::write_some() {
   const bool head_only = request_.method() == http::verb::head || answer_.result() == status::not_modified;
   if (serializer_->is_done() || (head_only && serializer_->is_header_done())) {
     data_ = {};
+    end_data();
     return answer_.keep_alive() ? read() : linger();
   }
   stream_.expires_after(state_.config.request_timeout);  // for this part

@@ -38,6 +38,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   void answer_page(const Target& target, const std::string& path);
   void answer_data(const Target& target);
   void on_data(HttpAnswer answer);
+  void end_data();
   void open_socket();
   [[nodiscard]] bool has_token(const Target& target) const;
   /// Of the browser's own making: another site's page asked.
@@ -59,8 +60,9 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> parser_;
   Request request_;
-  std::string text_;  ///< what is answered, where it is text
-  HttpAnswer data_;   ///< where it is data
+  std::string text_;        ///< what is answered, where it is text
+  HttpAnswer data_;         ///< where it is data
+  bool gives_data_{false};  ///< from its question until it is written
   boost::beast::http::response<Body> answer_;
   std::optional<boost::beast::http::response_serializer<Body>> serializer_;
   std::size_t discarded_{0};

@@ -34,6 +34,18 @@ ServerState::ServerState(ServerConfig server_config)
   }
 }
 
+void ServerState::ask_data(std::function<void()> work) {
+  if (std::exchange(data_asked, true)) return data_waiting.push_back(std::move(work));
+  service_thread.post(std::move(work));
+}
+
+void ServerState::data_answered() {
+  data_asked = !data_waiting.empty();
+  if (!data_asked) return;
+  service_thread.post(std::move(data_waiting.front()));
+  data_waiting.pop_front();
+}
+
 bool ServerState::is_host(std::string_view header, const std::string& local_address) const {
   const std::string name = host_name(header);
   return !name.empty() && (host_names.contains(name) || name == local_address);

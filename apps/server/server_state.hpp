@@ -3,7 +3,9 @@
 // ServerState: what the sessions of a server share. Session: one socket, plain or grown to a WebSocket.
 
 #include <atomic>
+#include <deque>
 #include <exception>
+#include <functional>
 #include <map>
 #include <memory>
 #include <mutex>
@@ -63,6 +65,11 @@ struct ServerState {
   /// Whether a Host header means this server, at this address of this machine.
   [[nodiscard]] bool is_host(std::string_view header, const std::string& local_address) const;
 
+  /// Files are asked for one at a time, so that a question waits for one of them at most. Of the network's thread, as
+  /// is data_answered(), which is called after each.
+  void ask_data(std::function<void()> work);
+  void data_answered();
+
   const ServerConfig config;
   std::set<std::string> host_names;
   std::string cookie;                            ///< its name
@@ -74,7 +81,9 @@ struct ServerState {
   // Of the network's thread.
   std::unordered_map<const Session*, std::shared_ptr<Session>> sessions;
   std::size_t web_sockets{0};
-  std::size_t data_requests{0};  ///< under way
+  std::size_t data_requests{0};                    ///< under way, until they are written
+  std::deque<std::function<void()>> data_waiting;  ///< to be asked
+  bool data_asked{false};                          ///< one, by which the service's thread is busy
   ConnectionId last_id{0};
   bool stopping{false};
 };

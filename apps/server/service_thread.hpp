@@ -2,6 +2,7 @@
 #pragma once
 // ServiceThread: does one thing after the other.
 
+#include <atomic>
 #include <condition_variable>
 #include <deque>
 #include <functional>
@@ -19,12 +20,16 @@ class ServiceThread {
 
   /// Any thread may call. `work` does not throw. After finish() it is not done.
   void post(std::function<void()> work);
+  /// Says that finish() is near: whoever can leave work undone does. Any thread may call both.
+  void hurry() { hurries_ = true; }
+  [[nodiscard]] bool hurries() const { return hurries_; }
   /// Does what waits, and what that posts, then ends.
   void finish();
 
  private:
   void run();
 
+  std::atomic<bool> hurries_{false};
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<std::function<void()>> waiting_;

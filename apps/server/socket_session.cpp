@@ -10,8 +10,9 @@ namespace websocket = boost::beast::websocket;
 
 constexpr std::uint16_t kGoingAway{1001};
 constexpr std::uint16_t kUnknownData{1003};
-constexpr std::size_t kFragmentBytes{64U << 10U};  // between two of a long message, pings find their way
-constexpr std::chrono::seconds kGrace{2};          // for an urgent end's last words
+constexpr std::size_t kFragmentBytes{64U << 10U};      // between two of a long message, pings find their way
+constexpr std::chrono::milliseconds kGrace{2000};      // for an urgent end's last words
+constexpr std::chrono::milliseconds kGraceAtEnd{200};  // of the program, whose user waits
 
 }  // namespace
 
@@ -59,10 +60,7 @@ void SocketSession::on_accept(ErrorCode error) {
 
 void SocketSession::on_woken() {
   if (finished_) return;
-  if (connection_->woken() && !std::exchange(in_grace_, true)) {
-    grace_.expires_after(kGrace);
-    grace_.async_wait([self = shared_from_this()](ErrorCode) { self->finish(); });
-  }
+  if (connection_->woken() && !std::exchange(in_grace_, true)) end_within(kGrace);
   write();
   if (!reading_ && connection_->may_read()) read();
 }
@@ -108,8 +106,17 @@ void SocketSession::close(const Connection::Closing& closing) {
   stream_.async_close(reason, [self = shared_from_this()](ErrorCode) { self->finish(); });
 }
 
+void SocketSession::end_within(std::chrono::milliseconds grace) {
+  grace_.expires_after(grace);
+  grace_.async_wait([self = shared_from_this()](ErrorCode error) {
+    if (!error) self->finish();
+  });
+}
+
 void SocketSession::stop() {
   if (!connection_) return finish();
+  in_grace_ = true;
+  end_within(kGraceAtEnd);
   connection_->close({kGoingAway, "the program ends", true});
 }
 

@@ -10,6 +10,7 @@
 #include <boost/beast/http/empty_body.hpp>
 #include <boost/beast/http/message.hpp>
 #include <boost/beast/websocket/stream.hpp>
+#include <chrono>
 #include <memory>
 
 #include "server/server_state.hpp"
@@ -32,6 +33,7 @@ class SocketSession : public Session, public std::enable_shared_from_this<Socket
   void on_read(ErrorCode error);
   void write();
   void close(const Connection::Closing& closing);
+  void end_within(std::chrono::milliseconds grace);
   void finish() override;
   void begin(boost::beast::http::request<boost::beast::http::empty_body> request);
 

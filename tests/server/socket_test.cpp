@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // WebSockets between good clients and a service: order, limits, ends.
+#include <algorithm>
 #include <cstdlib>
 #include <set>
 
@@ -12,6 +13,10 @@ namespace {
 std::size_t message_count() {
   const char* const given = std::getenv("SACCADE_TEST_MESSAGES");
   return given == nullptr ? 20'000 : static_cast<std::size_t>(std::atoll(given));
+}
+
+std::string request_line(const std::string& target, const std::string& host, const std::string& headers) {
+  return "GET " + target + " HTTP/1.1\r\nHost: " + host + "\r\n" + headers + "\r\n";
 }
 
 class Socket : public ServedPage {
@@ -135,8 +140,59 @@ TEST_F(Socket, EndOfTheServerWaitsForNobody) {
   ASSERT_TRUE(eventually([this] { return service_->opened_count == 5; }));
   const auto begin = std::chrono::steady_clock::now();
   server_.reset();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds{4});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds{1500});
   EXPECT_EQ(service_->closed_count, 5);
+}
+
+TEST_F(Socket, WhatWaitsAtTheEndIsLeftUndone) {
+  service_->on_message = [this](ConnectionId, const std::string&) {
+    while (!lets_go_) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+  };
+  RawClient gone = socket();
+  RawClient there = socket();
+  for (RawClient* const asks : {&gone, &there}) {
+    for (int i = 0; i < 20; ++i) asks->send_message("action");
+  }
+  ASSERT_TRUE(eventually([this] { return service_->received_count == 1; }));
+  std::this_thread::sleep_for(std::chrono::milliseconds{100});
+  gone.reset();
+  std::thread ends{[this] { server_.reset(); }};
+  EXPECT_EQ(there.read_close_code(), 1001);
+  lets_go_ = true;
+  ends.join();
+  EXPECT_EQ(service_->received_count, 1U);
+  EXPECT_EQ(service_->closed_count, 2);
+}
+
+TEST_F(Socket, ConnectionsTakeTurns) {
+  std::vector<std::string> served;
+  service_->on_message = [&, this](ConnectionId /*from*/, const std::string& text) {
+    while (!lets_go_) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    served.push_back(text);
+  };
+  service_->on_get = [&served](const server::HttpRequest&) {
+    served.emplace_back("file");
+    return server::HttpAnswer{};
+  };
+  RawClient floods = socket();
+  for (int i = 0; i < 30; ++i) floods.send_message("flood");
+  ASSERT_TRUE(eventually([this] { return service_->received_count == 1; }));
+  std::vector<RawClient> readers;
+  for (int i = 0; i < 10; ++i) readers.push_back(client());
+  for (const RawClient& reader : readers) {
+    reader.send(request_line("/data/a", reader.host(), RawClient::cookie_of(server_->port())));
+  }
+  std::this_thread::sleep_for(std::chrono::milliseconds{200});
+  RawClient good = socket();
+  good.send_message("good");
+  std::this_thread::sleep_for(std::chrono::milliseconds{200});
+  lets_go_ = true;
+  EXPECT_TRUE(eventually([this] { return service_->received_count == 31; }));
+  for (RawClient& reader : readers) EXPECT_EQ(reader.read_answer().status, 200);
+  server_.reset();
+  ASSERT_EQ(served.size(), 41U);
+  EXPECT_LE(std::find(served.begin(), served.end(), "good") - served.begin(), 3)
+      << "a question waits for one of each other connection, and for one file";
 }
 
 TEST_F(Socket, PostedWorkIsDoneOnTheServiceThread) {

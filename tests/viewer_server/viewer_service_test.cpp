@@ -6,8 +6,10 @@
 
 #include <cmath>
 #include <cstring>
+#include <thread>
 
 #include "saccade/io/json_io.hpp"
+#include "server/service_thread.hpp"
 #include "support/temp_folder.hpp"
 #include "viewer_server/asked.hpp"
 
@@ -205,6 +207,35 @@ TEST_F(ViewerServiceTest, TellsThoseWhoGreetedOfAnotherDocument) {
   service_.update(some_document(picture_));
   run_posted();
   EXPECT_EQ(clients_.take(7).size(), 2U);
+}
+
+TEST_F(ViewerServiceTest, OtherThreadsBringDocuments) {
+  constexpr int kEach{100};
+  server::ServiceThread thread;
+  RecordedClients clients;
+  ViewerService service{
+      clients, {"1", [&thread](auto work) { thread.post(std::move(work)); }}, some_document(picture_)};
+  thread.post([&] { service.received(1, question_of({{"type", "hello"}, {"request", 1}, {"protocol", 1}})); });
+  std::vector<std::thread> readers;
+  for (int i = 0; i < 3; ++i) {
+    readers.emplace_back([&] {
+      for (int k = 0; k < kEach; ++k) service.update(some_document(picture_));
+    });
+  }
+  for (int k = 0; k < kEach; ++k) {
+    thread.post([&] { service.received(2, question_of({{"type", "document"}, {"request", 1}})); });
+  }
+  for (std::thread& reader : readers) reader.join();
+  thread.finish();
+  const std::vector<SaidMessage> told = clients.take(1);
+  ASSERT_EQ(told.size(), 1U + 3 * kEach);
+  EXPECT_EQ(told.back().head.at("revision"), 1 + 3 * kEach);
+  std::uint64_t last{0};
+  for (const SaidMessage& answer : clients.take(2)) {
+    EXPECT_GE(answer.head.at("revision").get<std::uint64_t>(), last);
+    last = answer.head.at("revision");
+  }
+  EXPECT_GT(last, 0U);
 }
 
 TEST_F(ViewerServiceTest, GivesPicturesOfTheDocumentAlone) {

@@ -151,9 +151,19 @@ Status AnnotationService::points(Page& page, const Question& question) {
   return {};
 }
 
+Status AnnotationService::check_room(std::size_t index) const {
+  const fs::path& session = config_.clouds[index].session;
+  std::error_code ignored;  // writing says it better
+  const std::uintmax_t bytes = fs::file_size(session, ignored);
+  if (ignored || bytes < config_.most_session_bytes) return {};
+  return Error{Errc::unavailable, "the session is as large as sessions may be; save the labels and begin a new one",
+               session.filename().string()};
+}
+
 Status AnnotationService::action(Page& page, const Question& question) {
   SACCADE_TRY(OpenCloud* const cloud, ready_cloud_of(page));
   if (const auto why = cloud->read_only()) return *why;
+  SACCADE_CHECK(check_room(*page.cloud));
   SACCADE_TRY(AnnotationAction asked, asked_action(question.head, cloud->cloud().points.positions_m,
                                                    cloud->annotation(), page.client, executor_));
   const auto change = cloud->apply(std::move(asked));

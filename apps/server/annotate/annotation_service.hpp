@@ -27,6 +27,7 @@ struct AnnotationServiceConfig {
   std::size_t graph_at_once_points{300'000};  ///< of more points the graph is built apart from questions
   std::size_t most_open_points{40'000'000};   ///< of all open clouds together; one alone may have more
   std::size_t most_shown_points{12'000'000};  ///< to a page, whatever its budget
+  std::uintmax_t most_session_bytes{std::uintmax_t{2} << 30U};  ///< then it takes no more; in memory it has four times
 };
 
 /// Clouds are read when a page opens them, and kept while one has them open; of the others the last. Every action is on
@@ -79,6 +80,7 @@ class AnnotationService final : public Service {
   [[nodiscard]] Result<OpenCloud*> cloud_of(const Page& page);
   [[nodiscard]] Result<OpenCloud*> ready_cloud_of(const Page& page);
   [[nodiscard]] Result<std::uint32_t> point_of(const OpenCloud& cloud, const Question& question) const;
+  [[nodiscard]] Status check_room(std::size_t index) const;
   Status make_room(std::size_t index, const OpenCloud& cloud, Page* page);
   std::size_t drop_unused();
   void build(std::size_t index, OpenCloud& cloud);
