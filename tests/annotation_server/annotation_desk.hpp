@@ -35,7 +35,8 @@ struct Received {
   [[nodiscard]] std::vector<T> array(std::size_t from, std::size_t count) const {
     std::vector<T> values(count);
     EXPECT_LE(from + count * sizeof(T), body.size());
-    if (from + count * sizeof(T) <= body.size()) std::memcpy(values.data(), body.data() + from, count * sizeof(T));
+    const bool fits = from + count * sizeof(T) <= body.size();
+    if (count > 0 && fits) std::memcpy(values.data(), body.data() + from, count * sizeof(T));
     return values;
   }
   [[nodiscard]] bool ok() const { return head.value("ok", false); }
