@@ -33,13 +33,12 @@ Result<std::unique_ptr<ExploreShow>> ExploreShow::start(const ServeOptions& opti
   return show;
 }
 
-ExploreShow::ExploreShow(std::unique_ptr<server::HttpServer> server, server::SceneDocument document,
+ExploreShow::ExploreShow(std::unique_ptr<server::HttpServer> server, const server::SceneDocument& document,
                          const std::filesystem::path& folder)
     : server_{std::move(server)}, reader_{folder, Executor{}} {
   server::HttpServer* const serving = server_.get();
   const auto post = [serving](std::function<void()> work) { serving->post(std::move(work)); };
-  service_ = std::make_unique<server::ViewerService>(*server_, server::ViewerConfig{SACCADE_VERSION, post},
-                                                     std::move(document));
+  service_ = std::make_unique<server::ViewerService>(*server_, server::ViewerConfig{SACCADE_VERSION, post}, document);
   thread_ = std::thread{[this] { read_and_show(); }};
 }
 
@@ -69,7 +68,7 @@ void ExploreShow::read_and_show() {
     // A folder that cannot be read now may be complete the next time; the run itself reports what it cannot write, and
     // goes on whatever becomes of its picture.
     try {
-      if (auto document = reader_.read(wanted == Wanted::live)) service_->update(std::move(*document));
+      if (auto document = reader_.read(wanted == Wanted::live)) service_->update(*document);
     } catch (const std::exception&) {
       continue;
     }

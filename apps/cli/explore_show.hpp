@@ -31,7 +31,7 @@ class ExploreShow {
 
  private:
   enum class Wanted : std::uint8_t { nothing, live, end, stop };
-  ExploreShow(std::unique_ptr<server::HttpServer> server, server::SceneDocument document,
+  ExploreShow(std::unique_ptr<server::HttpServer> server, const server::SceneDocument& document,
               const std::filesystem::path& folder);
   void wake(Wanted wanted);
   void read_and_show();

@@ -187,7 +187,7 @@ TEST_F(ViewerServiceTest, TellsThoseWhoGreetedOfAnotherDocument) {
   TriangleMesh moved = two_triangles();
   moved.vertices[0].x() = -1.0F;
   next.layers[0] = triangles_layer("mesh", "Mesh", moved);
-  service_.update(std::move(next));
+  service_.update(next);
   EXPECT_TRUE(clients_.take(7).empty());  // nothing happens but on the service's thread
   EXPECT_EQ(document(), before);
   run_posted();

@@ -35,7 +35,7 @@ const char* picture_type(const std::filesystem::path& path) {
 
 }  // namespace
 
-ViewerService::ViewerService(Clients& clients, ViewerConfig config, SceneDocument document)
+ViewerService::ViewerService(Clients& clients, ViewerConfig config, const SceneDocument& document)
     : clients_{clients}, config_{std::move(config)}, shown_{prepare(document)} {
   SACCADE_EXPECTS(config_.post != nullptr);
 }
@@ -49,7 +49,7 @@ ViewerService::Shown ViewerService::prepare(const SceneDocument& document) {
   return shown;
 }
 
-void ViewerService::update(SceneDocument document) {
+void ViewerService::update(const SceneDocument& document) {
   // Prepared here, so that the service's thread has little to do.
   auto shown = std::make_shared<Shown>(prepare(document));
   config_.post([this, shown] { replace(std::move(*shown)); });

@@ -23,10 +23,10 @@ struct ViewerConfig {
 class ViewerService final : public Service {
  public:
   /// `clients` outlives the service.
-  ViewerService(Clients& clients, ViewerConfig config, SceneDocument document);
+  ViewerService(Clients& clients, ViewerConfig config, const SceneDocument& document);
 
   /// There is another document: pages are told. From any thread; the service must live until what was posted has run.
-  void update(SceneDocument document);
+  void update(const SceneDocument& document);
 
   void opened(ConnectionId connection) override;
   void received(ConnectionId connection, std::span<const std::uint8_t> message) override;
