@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
-// Browser tests, in Debian's Chromium with software rendering, one after the other: two slow cores are enough.
+// Browser tests, in Debian's Chromium with software rendering, on two slow cores. What measures times runs when the
+// others are through, alone; with --no-deps without them.
 import { defineConfig } from "@playwright/test";
+
+const large = process.env["SACCADE_LARGE"] === "1" ? [] : ["**/large.spec.ts"];
+const measuring = "**/*performance.spec.ts";
 
 export default defineConfig({
   testDir: "tests",
-  testIgnore: process.env["SACCADE_LARGE"] === "1" ? [] : ["**/large.spec.ts"],
-  workers: 1,
+  projects: [
+    { name: "pages", testIgnore: [measuring, ...large] },
+    { name: "times", testMatch: measuring, dependencies: ["pages"], workers: 1 },
+  ],
+  workers: 2,
   retries: 0,
   timeout: 120_000,
   expect: { timeout: 20_000 },

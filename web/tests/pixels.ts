@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the 3-D view shows, as numbers of pixels.
 import { expect, type Page } from "@playwright/test";
+import { complete } from "./support/picture";
 
 export interface ColorRange {
   low: readonly [number, number, number];
@@ -19,26 +20,14 @@ export function countPixels(page: Page, range: ColorRange): Promise<number> {
     context.drawImage(source, 0, 0);
     const { data } = context.getImageData(0, 0, copy.width, copy.height);
     let count = 0;
-    for (let i = 0; i < data.length; i += 4) if ([0, 1, 2].every((k) => data[i + k]! >= low[k]! && data[i + k]! <= high[k]!)) ++count;
+    const inside = (i: number, k: 0 | 1 | 2) => data[i + k]! >= low[k] && data[i + k]! <= high[k];
+    for (let i = 0; i < data.length; i += 4) if (inside(i, 0) && inside(i, 1) && inside(i, 2)) ++count;
     return count;
   }, range);
 }
 
-/** Until the viewer has what it shows, and its canvas stays as it is. */
+/** Until the viewer has what it shows, and has drawn it. */
 export async function settled(page: Page): Promise<void> {
   await expect(page.locator("main")).toHaveAttribute("aria-busy", "false", { timeout: 30_000 });
-  let before = "";
-  const same = async (): Promise<boolean> => {
-    const now = await page.evaluate(() => {
-      const copy = document.createElement("canvas");
-      [copy.width, copy.height] = [320, 200];
-      const context = copy.getContext("2d")!;
-      context.drawImage(document.querySelector("canvas")!, 0, 0, 320, 200);
-      return context.getImageData(0, 0, 320, 200).data.join();
-    });
-    const same = now === before;
-    before = now;
-    return same;
-  };
-  await expect.poll(same, { intervals: [250], timeout: 30_000 }).toBe(true);
+  await complete(page);
 }

@@ -1,13 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade show on a real run, map, mesh and cloud: what is in the page and in its pixels. Pictures in test-results/show.
-import { existsSync, mkdirSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
+// saccade show on a real run, map, mesh and cloud: what is in the page and in its pixels.
+import { existsSync, mkdtempSync, readFileSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { expect, type Page, test } from "@playwright/test";
 import { countPixels, settled } from "./pixels";
-import { kProgram, run, type Served, serve } from "./program";
+import { keep } from "./support/picture";
+import { Program } from "./support/program";
 
-const kPictures = "test-results/show";
 const gained = { low: [225, 120, 15], high: [255, 160, 60] } as const; // where rays end in the unknown of the region
 const table = { low: [130, 100, 60], high: [190, 155, 115] } as const;
 
@@ -17,48 +17,65 @@ interface RunJson {
 }
 
 let folder = "";
-let served: Served | undefined;
+let exploration: Program;
+let shown: Program | undefined;
 
-test.beforeAll(() => {
-  test.setTimeout(300_000);
-  expect(existsSync(kProgram), `${kProgram}: SACCADE_PROGRAM says where the program is`).toBe(true);
-  mkdirSync(kPictures, { recursive: true });
+// One run for all of these: the first test follows it, the others wait until it is written.
+test.beforeAll(async () => {
   folder = mkdtempSync(join(tmpdir(), "saccade-show-"));
-  run("explore", "tabletop-1", "--max-views", "2", "--out", join(folder, "run"));
+  exploration = new Program(["explore", "tabletop-1", "--max-views", "2", "--out", join(folder, "run"), "--show"], join(folder, "live-token"));
+  await exploration.start();
 });
 test.afterEach(async () => {
-  await served?.stop();
-  served = undefined;
+  await shown?.stop();
+  shown = undefined;
 });
-test.afterAll(() => rmSync(folder, { recursive: true, force: true }));
+test.afterAll(async () => {
+  await exploration.stop();
+  rmSync(folder, { recursive: true, force: true });
+});
 
-/** The page of what the program shows, once it is drawn. */
-async function open(page: Page, ...words: string[]): Promise<string[]> {
+/** The page of a file or of the run, once it is drawn. */
+async function show(page: Page, file = ""): Promise<string[]> {
+  await expect.poll(() => existsSync(join(folder, "run", "run.json")), { message: "the run is written", timeout: 100_000 }).toBe(true);
+  shown = new Program(["show", join(folder, "run", file)], join(folder, "token"));
+  return open(page, await shown.start());
+}
+
+async function open(page: Page, program: Program): Promise<string[]> {
   const errors: string[] = [];
   page.on("pageerror", (error) => errors.push(error.message));
   page.on("console", (message) => {
     if (message.type() === "error") errors.push(message.text());
   });
   await page.emulateMedia({ colorScheme: "light" });
-  served = await serve(...words);
-  await page.goto(served.address);
+  await page.goto(program.url);
   await expect(page.locator(".layer").first()).toBeVisible();
   await expect(page).toHaveURL(/^[^?]*$/); // the token is not in the address any more
   await settled(page);
   return errors;
 }
 
+test("an exploration while it runs", async ({ page }) => {
+  await open(page, exploration);
+  const step = page.getByRole("region", { name: "Step" });
+  await expect(step).toContainText("3 of 3", { timeout: 90_000 }); // who follows sees the last one
+  await expect(page.getByText("live", { exact: true })).toBeHidden({ timeout: 60_000 });
+  await settled(page);
+  expect(await countPixels(page, table)).toBeGreaterThan(10_000);
+});
+
 test("a run: its steps, layers, pictures and camera", async ({ page }) => {
   await page.setViewportSize({ width: 1440, height: 900 });
+  const errors = await show(page);
   const { result } = JSON.parse(readFileSync(join(folder, "run", "run.json"), "utf8")) as { result: RunJson };
-  const errors = await open(page, "show", join(folder, "run"));
   const step = page.getByRole("region", { name: "Step" });
   await expect(step).toContainText(`View ${result.views.length}`);
   await expect(step).toContainText(`${result.views.length + 1} of ${result.views.length + 1}`);
   await expect(page.getByRole("region", { name: "About" })).toContainText(`${(100 * result.final.coverage).toFixed(1)} %`);
   expect(await countPixels(page, table)).toBeGreaterThan(20_000);
   expect(await countPixels(page, gained)).toBeGreaterThan(300);
-  await page.screenshot({ path: `${kPictures}/run.png` });
+  await keep(page, "show-run");
 
   await page.getByRole("button", { name: "Show Where rays end" }).click();
   await settled(page);
@@ -71,7 +88,7 @@ test("a run: its steps, layers, pictures and camera", async ({ page }) => {
   await page.getByRole("button", { name: "Show Saliency of segments" }).click();
   await settled(page);
   expect(await countPixels(page, table)).toBeLessThan(5_000);
-  await page.screenshot({ path: `${kPictures}/saliency.png` });
+  await keep(page, "show-saliency");
   await page.getByRole("button", { name: "Show Surface" }).click();
   await page.getByRole("button", { name: "Show Saliency of segments" }).click();
 
@@ -79,7 +96,7 @@ test("a run: its steps, layers, pictures and camera", async ({ page }) => {
   await expect(step).toContainText("Scan");
   await page.getByRole("button", { name: "Show Frontier of the unknown" }).click();
   await settled(page);
-  await page.screenshot({ path: `${kPictures}/scan.png` });
+  await keep(page, "show-scan");
   await page.getByRole("button", { name: "Show Frontier of the unknown" }).click();
   await page.keyboard.press("ArrowRight");
   await expect(step).toContainText("View 1");
@@ -88,7 +105,7 @@ test("a run: its steps, layers, pictures and camera", async ({ page }) => {
   await settled(page);
   await expect(page.locator(".look")).toContainText("View 1");
   expect(await countPixels(page, table)).toBeGreaterThan(20_000); // the camera looks at the table
-  await page.screenshot({ path: `${kPictures}/camera.png` });
+  await keep(page, "show-camera");
   await page.keyboard.press("Escape");
 
   const picture = page.getByRole("button", { name: "Enlarge: What the camera saw" });
@@ -101,48 +118,36 @@ test("a run: its steps, layers, pictures and camera", async ({ page }) => {
 
 test("a run in the dark, on a small screen", async ({ page }) => {
   await page.setViewportSize({ width: 1024, height: 720 });
-  await open(page, "show", join(folder, "run"));
+  await show(page);
   await page.getByRole("button", { name: /^Theme/ }).click();
   await page.getByRole("button", { name: /^Theme/ }).click();
   await expect(page.locator("html")).toHaveAttribute("data-theme", "dark");
   await settled(page);
-  await page.screenshot({ path: `${kPictures}/dark.png` });
+  await keep(page, "show-dark");
   const widths = await page.evaluate(() => [document.documentElement.scrollWidth, window.innerWidth]);
   expect(widths[0]).toBe(widths[1]); // nothing is beyond the edge
 });
 
 test("a map and a mesh", async ({ page }) => {
   for (const file of ["map.sacmap", "mesh.ply"]) {
-    const errors = await open(page, "show", join(folder, "run", file));
+    const errors = await show(page, file);
     await expect(page.getByRole("heading", { name: file })).toBeVisible();
     await expect(page.getByRole("region", { name: "Step" })).toBeHidden();
     expect(await countPixels(page, table)).toBeGreaterThan(20_000);
-    await page.screenshot({ path: `${kPictures}/${file.replace(/\..*/, "")}.png` });
+    await keep(page, `show-${file.replace(/\..*/, "")}`);
     expect(errors).toEqual([]);
-    await served?.stop();
     await page.goto("about:blank");
+    await shown?.stop();
   }
 });
 
-test("an exploration while it runs", async ({ page }) => {
-  test.setTimeout(300_000);
-  await open(page, "explore", "tabletop-1", "--max-views", "2", "--out", join(folder, "live"), "--show");
-  const step = page.getByRole("region", { name: "Step" });
-  await expect(step).toContainText("3 of 3", { timeout: 120_000 }); // who follows sees the last one
-  await expect(page.getByText("live", { exact: true })).toBeHidden({ timeout: 60_000 });
-  await settled(page);
-  expect(await countPixels(page, table)).toBeGreaterThan(10_000);
-});
-
 test("the program ends, and comes back", async ({ page }) => {
-  const words = ["show", join(folder, "run"), "--token-file", join(folder, "token"), "--port"];
-  await open(page, ...words, "0");
-  const port = new URL(served!.address).port;
+  await show(page);
   await page.keyboard.press("Home");
   await expect(page.getByRole("region", { name: "Step" })).toContainText("Scan");
-  await served!.stop();
+  await shown!.stop();
   await expect(page.getByText("Reconnecting")).toBeVisible();
-  served = await serve(...words, port);
+  await shown!.start();
   await expect(page.getByText("Connected")).toBeVisible({ timeout: 30_000 });
   await expect(page.getByRole("region", { name: "Step" })).toContainText("Scan");
   await page.keyboard.press("End");

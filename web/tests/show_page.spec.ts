@@ -1,19 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // The viewer's page alone: a document with every kind of layer, served by the test itself.
 import { expect, type Page, test } from "@playwright/test";
-import { createServer, type ViteDevServer } from "vite";
 import { countPixels } from "./pixels";
 import { type Mock, mockRun, serveMock } from "./show_mock";
+import { serveSources } from "./support/dev_server";
 
-let server: ViteDevServer;
-let address = "";
-
-test.beforeAll(async () => {
-  server = await createServer({ logLevel: "error", server: { host: "127.0.0.1", port: 0 } });
-  await server.listen();
-  address = server.resolvedUrls?.local[0] ?? "";
-});
-test.afterAll(() => server.close());
+const address = serveSources();
 
 const blue = { low: [40, 90, 180], high: [90, 160, 255] } as const; // the frontier's voxels
 const orange = { low: [150, 90, 20], high: [240, 175, 80] } as const; // the arm
@@ -22,7 +14,7 @@ async function open(page: Page, mock: Mock = mockRun()) {
   const errors: string[] = [];
   page.on("pageerror", (error) => errors.push(error.message));
   const program = await serveMock(page, mock);
-  await page.goto(address);
+  await page.goto(address());
   await expect(page.getByRole("heading", { name: mock.document.title })).toBeVisible();
   await expect(page.locator(".progress")).toBeHidden();
   await expect.poll(() => countPixels(page, blue)).toBeGreaterThan(500);
@@ -85,7 +77,7 @@ test("candidates say their gain", async ({ page }) => {
   const box = (await page.locator(".stage-view").boundingBox())!;
   const tip = page.getByRole("tooltip");
   const seen = new Set<string>();
-  for (let i = 0; i < 90; ++i) {
+  for (let i = 0; i < 90 && seen.size <= 5; ++i) {
     const [angle, radius] = [(i / 30) * 2 * Math.PI, 150 + 30 * Math.floor(i / 30)];
     await page.mouse.move(box.x + box.width / 2 + Math.cos(angle) * radius, box.y + box.height / 2 + Math.sin(angle) * radius);
     await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The 3-D view alone, on made clouds: what is in its pixels, what is picked, and how long it takes.
+// The 3-D view alone, on made clouds: what is in its pixels, and what is picked.
 import { expect, test } from "@playwright/test";
 import type {} from "../dev/view";
 import { open, picture, serve, settled } from "./view_page";
@@ -34,7 +34,7 @@ test("a cloud with labels and control points", async ({ page }) => {
     viewer.setTheme(false);
     viewer.camera.goTo([0.5, -0.5, 0.34]);
   });
-  await page.waitForTimeout(400);
+  await settled(page); // it has come there
   await page.mouse.move(640, 400);
   for (let i = 0; i < 7; ++i) await page.mouse.wheel(0, -120);
   await picture(page, "near");
@@ -81,12 +81,20 @@ test("what is picked is what is drawn", async ({ page }) => {
       if (sure === Infinity) maybe.push(-1);
       return { right: nearest(0), maybe, seen };
     };
+    // In the middle of a point's square there is this or another one; elsewhere small squares leave gaps.
+    const seenAt = (point: number): [number, number] => {
+      const { size, clip_world: m } = viewer.picture();
+      const row = (i: number) => [0, 1, 2].reduce((sum, axis) => sum + m[4 * i + axis]! * positions[3 * point + axis]!, m[4 * i + 3]!);
+      return [(row(0) / row(3) + 1) * 0.5 * size[0], (1 - row(1) / row(3)) * 0.5 * size[1]];
+    };
     for (const [turn, size] of [[0, 4], [1, 1], [2, 9]] as const) {
       viewer.cloud.pointSize = size;
       viewer.camera.fit([Math.sin(turn), -Math.cos(turn), 0.4 + 0.3 * turn]);
       for (const ready of [false, true]) {
-        const hovers = () => Array.from({ length: 40 }, (_, i) => viewer.hover(640, 10 + 20 * i)).some((hover) => hover !== null);
-        while (ready && !hovers()) await new Promise((done) => setTimeout(done, 20));
+        for (const began = performance.now(); ready && viewer.hover(...seenAt(0)) === null; ) {
+          if (performance.now() - began > 20_000) throw new Error("the hierarchy of the points is not there after 20 s");
+          await new Promise((done) => setTimeout(done, 20));
+        }
         for (let i = 0; i < 120; ++i) {
           const [px, py] = [Math.floor(300 + 680 * next()), Math.floor(150 + 500 * next())];
           const { right, maybe, seen } = expected(px, py);
@@ -110,43 +118,6 @@ test("what is picked is what is drawn", async ({ page }) => {
   expect(result.empty).toBeLessThan(600);
   expect(result.sure).toBeGreaterThan(650);
   expect(result.wrong).toEqual([]);
-});
-
-test("300,000 points: a redraw, and labels of all of them", async ({ page }) => {
-  await open(page, 300_000);
-  const result = await page.evaluate(async () => {
-    const { viewer } = window.dev;
-    const once = async (change: () => void) => {
-      const { pictures } = viewer.stats;
-      const began = performance.now();
-      change();
-      while (viewer.stats.pictures === pictures) await new Promise((done) => setTimeout(done, 0));
-      return performance.now() - began;
-    };
-    const all = Uint32Array.from({ length: 300_000 }, (_, i) => i);
-    const some = all.filter((i) => i % 30 === 0);
-    // In turn: what else the machine does is the same for all of them.
-    const times: [number[], number[], number[]] = [[], [], []];
-    for (let i = 0; i < 15; ++i) {
-      times[0].push(await once(() => viewer.redraw()));
-      times[1].push(await once(() => viewer.cloud.setLabel(1 + (i % 4), some)));
-      times[2].push(await once(() => viewer.cloud.setLabel(1 + (i % 4), all)));
-    }
-    const [redraw_ms, some_ms, all_ms] = times.map((list) => list.sort((a, b) => a - b)[7]!) as [number, number, number];
-    viewer.cloud.pointSize = 8;
-    const large_ms = await once(() => viewer.redraw());
-    viewer.cloud.pointSize = 4;
-    const began = performance.now();
-    for (let i = 0; i < 20; ++i) viewer.pick(400 + 20 * i, 420);
-    const pick_ms = (performance.now() - began) / 20;
-    const hoverBegan = performance.now();
-    for (let i = 0; i < 200; ++i) viewer.hover(300 + 3 * i, 420);
-    const hover_ms = (performance.now() - hoverBegan) / 200;
-    return { redraw_ms, some_ms, all_ms, large_ms, pick_ms, hover_ms, last: viewer.stats };
-  });
-  console.log(result);
-  expect(result.some_ms).toBeLessThan(2 * result.redraw_ms);
-  expect(result.all_ms).toBeLessThan(2 * result.redraw_ms);
 });
 
 test("the pixels of a point's square", async ({ page }) => {

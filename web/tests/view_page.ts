@@ -1,18 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // The page that has the 3-D view alone (dev/view.html), for its tests.
-import { type Page, expect, test } from "@playwright/test";
-import { type ViteDevServer, createServer } from "vite";
+import { type Page, expect } from "@playwright/test";
 import type {} from "../dev/view";
+import { serveSources } from "./support/dev_server";
+import { complete, keep } from "./support/picture";
 
-let server: ViteDevServer;
+let address = () => "";
 
 /** Serves the page while the tests of a file run. */
 export function serve(): void {
-  test.beforeAll(async () => {
-    server = await createServer({ root: ".", configFile: false, logLevel: "error", server: { port: 0, host: "127.0.0.1" } });
-    await server.listen();
-  });
-  test.afterAll(() => server.close());
+  address = serveSources();
 }
 
 export async function open(page: Page, points: number): Promise<void> {
@@ -21,24 +18,18 @@ export async function open(page: Page, points: number): Promise<void> {
     if (message.type() === "error") expect(message.text()).toBe("");
   });
   await page.emulateMedia({ colorScheme: "dark" });
-  await page.goto(`${server.resolvedUrls!.local[0]}dev/view.html?points=${points}`);
+  await page.goto(`${address()}dev/view.html?points=${points}`);
   await settled(page);
 }
 
 /** Until the picture is complete. */
 export async function settled(page: Page): Promise<void> {
   await page.waitForFunction(() => window.dev !== undefined);
-  await page.evaluate(async () => {
-    const { stats } = window.dev.viewer;
-    for (let frames = -1; frames !== stats.frames || stats.pictures === 0; ) {
-      frames = stats.frames;
-      await new Promise((done) => setTimeout(done, 150));
-    }
-  });
+  await complete(page);
 }
 
 /** Keeps a picture of the page. */
 export async function picture(page: Page, name: string): Promise<void> {
   await settled(page);
-  await page.screenshot({ path: `test-results/view/${name}.png` });
+  await keep(page, `view-${name}`);
 }

@@ -18,6 +18,9 @@ interface Parts {
   foldPanel: () => void;
 }
 
+const kWriting = "Writing …";
+const kShort_ms = 150; // writing that is over sooner is not worth a frame that says so
+
 export function makeBar({ store, edits, files, shortcuts, theme, foldPanel }: Parts): HTMLElement {
   const undo = iconButton("undo", "Undo (Ctrl+Z)", () => edits.undo());
   const redo = iconButton("redo", "Redo (Ctrl+Shift+Z)", () => edits.redo());
@@ -106,13 +109,26 @@ function people(store: Store): HTMLElement {
   return element;
 }
 
+/** data-pending: how many actions are not on the disk yet. */
 function status(store: Store): HTMLElement {
   const element = h("span", { class: "status", role: "status", "data-testid": "status" });
-  store.watch(["connection", "readOnly", "pending", "cloud", "ready"], (state) => {
-    const [kind, text, title] = statusOf(state);
+  let timer = 0;
+  const show = () => {
+    timer = 0;
+    const [kind, text, title] = statusOf(store.state);
+    if (element.textContent === text && element.title === title) return;
     element.dataset["state"] = kind;
     element.textContent = text;
     element.title = title;
+  };
+  store.watch(["connection", "readOnly", "pending", "cloud", "ready"], (state) => {
+    element.dataset["pending"] = String(state.pending);
+    if (statusOf(state)[1] === kWriting) {
+      timer ||= window.setTimeout(show, kShort_ms);
+      return;
+    }
+    clearTimeout(timer);
+    show();
   });
   return element;
 }
@@ -129,7 +145,7 @@ function statusOf(state: Readonly<State>): [kind: "good" | "busy" | "bad", text:
     ];
   }
   if (state.readOnly !== null) return ["bad", "Read only", state.readOnly];
-  if (state.pending > 0 && state.ready) return ["busy", "Writing …", "Actions are on their way to the disk"];
+  if (state.pending > 0 && state.ready) return ["busy", kWriting, "Actions are on their way to the disk"];
   if (state.cloud && !state.ready)
     return ["busy", "Getting ready …", "Labels can be set when the neighbourhood graph is there"];
   return ["good", "All on disk", "Every action is on the disk; nothing is lost when the page or the program ends"];

@@ -131,6 +131,7 @@ export interface Stats {
 }
 
 export interface Viewer {
+  /** Has data-picture, a number that counts up, while its picture is complete and nothing waits to be drawn. */
   readonly element: HTMLElement;
   readonly camera: Camera;
   readonly cloud: CloudLayer;

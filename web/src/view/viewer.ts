@@ -160,6 +160,7 @@ class SceneViewer implements Viewer {
 
   private ask(stale: Stale): void {
     if (stale === "all" || this.stale === "nothing") this.stale = stale;
+    delete this.element.dataset["picture"];
     if (this.asked || this.disposed) return;
     this.asked = true;
     requestAnimationFrame(() => this.frame());
@@ -182,7 +183,7 @@ class SceneViewer implements Viewer {
     this.stale = "nothing";
     const began = performance.now();
     const to = this.pacer.upTo(this.drawn, cloud.vertices, began - this.movedAt < kMoving_ms);
-    if (!anew && to === this.drawn) return;
+    if (!anew && to === this.drawn) return this.tell();
 
     if (anew) {
       this.began = began;
@@ -211,7 +212,13 @@ class SceneViewer implements Viewer {
       }
       if (this.stale !== "nothing") this.ask("nothing");
       else if (!complete && !this.disposed) this.step();
+      else if (!this.asked) this.tell();
     });
+  }
+
+  /** The picture is complete, and as everything was asked to be: its number is in the element until that changes. */
+  private tell(): void {
+    this.element.dataset["picture"] = String(this.stats.pictures);
   }
 
   private moved(): void {

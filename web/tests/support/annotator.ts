@@ -4,6 +4,7 @@ import { readFile } from "node:fs/promises";
 import { type Locator, type Page, expect } from "@playwright/test";
 import { type Box, type From, ScreenCamera } from "./camera";
 import { type Color, type MadeCloud, type Place, kTops } from "./clouds";
+import { complete } from "./picture";
 
 type ScreenPlace = readonly [number, number];
 
@@ -31,6 +32,7 @@ export class Annotator {
   }
 
   async written(): Promise<void> {
+    await expect(this.status).toHaveAttribute("data-pending", "0", { timeout: 30_000 });
     await expect(this.status).toHaveText("All on disk", { timeout: 30_000 });
   }
 
@@ -180,17 +182,10 @@ export class Annotator {
     });
   }
 
-  /** Waits until the picture is as it was at two looks. */
+  /** The number of the complete picture. */
   async settled(): Promise<number> {
-    let hash = await this.pictureHash();
-    await expect
-      .poll(async () => {
-        const before = hash;
-        hash = await this.pictureHash();
-        return hash === before;
-      })
-      .toBe(true);
-    return hash;
+    await complete(this.page);
+    return this.pictureHash();
   }
 
   /** Waits until these places have that colour. */

@@ -1,17 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // What every test has: a folder of its own, programs that end with it, and a page without errors.
-import { mkdirSync, mkdtempSync, rmSync } from "node:fs";
+import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
-import { fileURLToPath } from "node:url";
 import { type BrowserContext, type Page, test as base, expect } from "@playwright/test";
 import { Annotator } from "./annotator";
 import type { MadeCloud } from "./clouds";
+import { kRepository, keep } from "./picture";
 import { Program } from "./program";
 
-export { expect };
+export { expect, keep };
 
-const kRepository = fileURLToPath(new URL("../../../", import.meta.url));
 /** What browsers say where the connection ends, which tests let it. */
 const kLostConnection = /WebSocket connection to .* failed|ERR_CONNECTION_REFUSED|ERR_CONNECTION_RESET|ERR_EMPTY_RESPONSE|ERR_SOCKET_NOT_CONNECTED/;
 
@@ -63,13 +62,6 @@ export const test = base.extend<{ desk: Desk }>({
     expect(errors, "errors of the page").toEqual([]);
   },
 });
-
-/** A picture that is kept. */
-export async function keep(page: Page, name: string): Promise<void> {
-  const folder = join(kRepository, "out/test/screenshots");
-  mkdirSync(folder, { recursive: true });
-  await page.screenshot({ path: join(folder, `${name}.png`) });
-}
 
 /** A picture for README and docs, made where SACCADE_UPDATE_IMAGES=1. */
 export async function keepForDocs(page: Page, name: string): Promise<void> {
