@@ -93,7 +93,7 @@ export class Annotator {
   /** Points of a label, as its button says. */
   async pointsOf(number: number): Promise<number> {
     const name = (await this.label(number).getAttribute("aria-label")) ?? "";
-    return name.endsWith("empty") ? 0 : Number(/([\d,]+) points$/.exec(name)?.[1]?.replaceAll(",", "") ?? NaN);
+    return name.endsWith("empty") ? 0 : Number(/([\d\u202f]+) points?$/.exec(name)?.[1]?.replaceAll("\u202f", "") ?? NaN);
   }
 
   async colorOf(number: number): Promise<Color> {
