@@ -3,7 +3,8 @@
 import { join } from "node:path";
 import { type Annotator, around } from "./support/annotator";
 import { type Color, kBox, kCylinder, kFlatBox, kSphere, kTable, kTops, makeTable } from "./support/clouds";
-import { type Desk, expect, keep, keepForDocs, test } from "./support/desk";
+import { type Desk, expect, keep, test } from "./support/desk";
+import { keepForDocs } from "./support/picture";
 
 async function labelled(desk: Desk): Promise<Annotator> {
   const cloud = makeTable(join(desk.folder, "table.pcd"));

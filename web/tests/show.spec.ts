@@ -5,7 +5,7 @@ import { tmpdir } from "node:os";
 import { join } from "node:path";
 import { expect, type Page, test } from "@playwright/test";
 import { countPixels, settled } from "./pixels";
-import { keep } from "./support/picture";
+import { keep, keepForDocs } from "./support/picture";
 import { Program } from "./support/program";
 
 const gained = { low: [225, 120, 15], high: [255, 160, 60] } as const; // where rays end in the unknown of the region
@@ -75,7 +75,7 @@ test("a run: its steps, layers, pictures and camera", async ({ page }) => {
   await expect(page.getByRole("region", { name: "About" })).toContainText(`${(100 * result.final.coverage).toFixed(1)} %`);
   expect(await countPixels(page, table)).toBeGreaterThan(20_000);
   expect(await countPixels(page, gained)).toBeGreaterThan(300);
-  await keep(page, "show-run");
+  await keepForDocs(page, "viewer");
 
   await page.getByRole("button", { name: "Show Where rays end" }).click();
   await settled(page);

@@ -6,7 +6,7 @@ import { join } from "node:path";
 import { type BrowserContext, type Page, test as base, expect } from "@playwright/test";
 import { Annotator } from "./annotator";
 import type { MadeCloud } from "./clouds";
-import { kRepository, keep } from "./picture";
+import { keep } from "./picture";
 import { Program } from "./program";
 
 export { expect, keep };
@@ -62,11 +62,3 @@ export const test = base.extend<{ desk: Desk }>({
     expect(errors, "errors of the page").toEqual([]);
   },
 });
-
-/** A picture for README and docs, made where SACCADE_UPDATE_IMAGES=1. */
-export async function keepForDocs(page: Page, name: string): Promise<void> {
-  await keep(page, name);
-  if (process.env["SACCADE_UPDATE_IMAGES"] !== "1") return;
-  const picture = await page.screenshot({ path: join(kRepository, "docs/images", `${name}.png`) });
-  expect(picture.length, `bytes of ${name}.png`).toBeLessThanOrEqual(300_000);
-}

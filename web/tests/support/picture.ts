@@ -3,7 +3,7 @@
 import { mkdirSync } from "node:fs";
 import { join } from "node:path";
 import { fileURLToPath } from "node:url";
-import type { Page } from "@playwright/test";
+import { expect, type Page } from "@playwright/test";
 
 export const kRepository = fileURLToPath(new URL("../../../", import.meta.url));
 
@@ -28,4 +28,12 @@ export async function keep(page: Page, name: string): Promise<void> {
   const folder = join(kRepository, "out/test/screenshots");
   mkdirSync(folder, { recursive: true });
   await page.screenshot({ path: join(folder, `${name}.png`) });
+}
+
+/** A picture for README and docs, made where SACCADE_UPDATE_IMAGES=1. */
+export async function keepForDocs(page: Page, name: string): Promise<void> {
+  await keep(page, name);
+  if (process.env["SACCADE_UPDATE_IMAGES"] !== "1") return;
+  const picture = await page.screenshot({ path: join(kRepository, "docs/images", `${name}.png`) });
+  expect(picture.length, `bytes of ${name}.png`).toBeLessThanOrEqual(400_000);
 }
