@@ -319,6 +319,13 @@ def kill_section(folder, lines):
         lambda line: " processes killed: " in line)
 
 
+def page_section(folder, lines):
+    log_section(folder, lines, "browser_large", "The annotation page", [
+        "A cloud of ten million points in Chromium, drawn by software. The step fails unless the first picture is there 10 s",
+        "after the page is asked for, and fails where memory is not bounded as `web/tests/large.spec.ts` says."],
+        lambda line: " points: the program listens after " in line)
+
+
 def fuzz_section(folder, lines):
     logs = sorted(folder.glob("fuzz_*.log"))
     if not logs:
@@ -344,6 +351,7 @@ def main():
     planning_section(folder, lines)
     held = annotation_section(folder, lines) and held
     kill_section(folder, lines)
+    page_section(folder, lines)
     fuzz_section(folder, lines)
     document.write_text("\n".join(lines))
     if not held:
