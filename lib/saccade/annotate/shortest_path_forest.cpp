@@ -9,58 +9,58 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint32_t kNoPath{std::numeric_limits<std::uint32_t>::max()};
+constexpr unsigned kPathShift{32};
+constexpr std::uint64_t kNoPath{std::uint64_t{kPathUnits} << kPathShift};
 constexpr std::size_t kEdgesAtOnce{32};
+
+std::uint64_t reach_of(std::uint32_t path, std::uint32_t root) { return std::uint64_t{path} << kPathShift | root; }
+std::uint32_t path_of(std::uint64_t reach) { return static_cast<std::uint32_t>(reach >> kPathShift); }
+std::uint32_t root_of_reach(std::uint64_t reach) { return static_cast<std::uint32_t>(reach); }
 
 }  // namespace
 
 ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood)
     : neighbourhood_{std::move(neighbourhood)},
-      path_(neighbourhood_->size(), kNoPath),
-      root_(neighbourhood_->size(), 0),
+      reach_(neighbourhood_->size(), kNoPath),
       is_start_(neighbourhood_->size(), false),
       queue_{*neighbourhood_} {}
 
 /// Not inline, it took a tenth of the time.
-[[gnu::always_inline]] inline void ShortestPathForest::reach(std::uint32_t node, std::uint32_t path,
-                                                             std::uint32_t root) {
-  path_[node] = path;
-  root_[node] = root;
-  queue_.push(path, node);
+[[gnu::always_inline]] inline void ShortestPathForest::reach(std::uint32_t node, Reach reach) {
+  reach_[node] = reach;
+  queue_.push(path_of(reach), node);
 }
 
 /// Algorithm 8.
 void ShortestPathForest::spread() {
   queue_.drain([this](std::uint32_t path, std::uint32_t node) {
-    if (path_[node] != path) return;  // a shorter path came in between
+    if (path_of(reach_[node]) != path) return;  // a shorter path came in between
     touched_.push_back(node);
     spread_from(node);
   });
 }
 
 void ShortestPathForest::spread_from(std::uint32_t node) {
-  const std::uint32_t to_node = path_[node];
-  const std::uint32_t root = root_[node];
+  const Reach to_node = reach_[node];
   const std::span<const Neighbourhood::Edge> edges = neighbourhood_->edges(node);
   for (std::size_t first = 0; first < edges.size(); first += kEdgesAtOnce) {
     const std::size_t count = std::min(kEdgesAtOnce, edges.size() - first);
     std::uint32_t nearer{0};  // found without branches, as few are
     for (std::size_t e = 0; e < count; ++e) {
       const Neighbourhood::Edge& edge = edges[first + e];
-      const bool is_nearer = to_node + edge.cost <= std::min(path_[edge.node], kPathUnits - 1);
+      const bool is_nearer = to_node + reach_of(edge.cost, 0) < reach_[edge.node];
       nearer |= (is_nearer ? 1U : 0U) << e;
     }
     for (; nearer != 0; nearer &= nearer - 1) {
       const Neighbourhood::Edge& edge = edges[first + static_cast<std::size_t>(std::countr_zero(nearer))];
-      const std::uint32_t path = to_node + edge.cost;
-      if (path < path_[edge.node] || root < root_[edge.node]) reach(edge.node, path, root);
+      reach(edge.node, to_node + reach_of(edge.cost, 0));
     }
   }
 }
 
 void ShortestPathForest::rebuild(std::span<const Root> roots) {
   touched_.clear();
-  std::fill(path_.begin(), path_.end(), kNoPath);
+  std::fill(reach_.begin(), reach_.end(), kNoPath);
   std::fill(is_start_.begin(), is_start_.end(), false);
   starts_.clear();
   for (const Root& root : roots) start_at(root);
@@ -81,12 +81,12 @@ void ShortestPathForest::remove(std::uint32_t point) {
   is_start_[first] = false;
   starts_.erase(start_of(point));
   touched_.clear();
-  if (root_[first] != point || path_[first] == kNoPath) return;  // nothing was its own
+  if (!belongs_to(first, point)) return;  // nothing was its own
   // Algorithm 9: the tree is cleared. It is connected: what belongs to a root is reached along what belongs to it.
   // Where other trees enter, or start in what this one had covered, Algorithm 8 goes on.
   touched_.assign(1, first);
   entered_.clear();
-  path_[first] = kNoPath;
+  reach_[first] = kNoPath;
   bool is_cleared{false};
   for (std::size_t i = 0; i < touched_.size(); ++i) {
     if (!is_cleared && is_large(touched_.size())) {
@@ -97,7 +97,7 @@ void ShortestPathForest::remove(std::uint32_t point) {
     entered_.push_back(clear_beside(touched_[i], point));
   }
   for (std::size_t i = 0; i < entered_.size(); ++i) {
-    if (entered_[i].path < kPathUnits) reach(touched_[i], entered_[i].path, entered_[i].root);
+    if (entered_[i] < kNoPath) reach(touched_[i], entered_[i]);
   }
   const std::size_t cleared = touched_.size();
   spread();
@@ -105,32 +105,36 @@ void ShortestPathForest::remove(std::uint32_t point) {
   name_touched();
 }
 
+bool ShortestPathForest::belongs_to(std::uint32_t node, std::uint32_t root) const {
+  return root_of_reach(reach_[node]) == root && reach_[node] != kNoPath;
+}
+
 /// What is left of a tree, without looking for it along its edges.
 void ShortestPathForest::clear_all_of(std::uint32_t root) {
-  for (std::uint32_t node = 0; node < path_.size(); ++node) {
-    if (path_[node] == kNoPath || root_[node] != root) continue;
-    path_[node] = kNoPath;
+  for (std::uint32_t node = 0; node < reach_.size(); ++node) {
+    if (!belongs_to(node, root)) continue;
+    reach_[node] = kNoPath;
     touched_.push_back(node);
   }
 }
 
 /// Clears the neighbours that belong to the root, too.
 /// @return how a node that was cleared is entered from other trees, or starts one.
-ShortestPathForest::Entered ShortestPathForest::clear_beside(std::uint32_t node, std::uint32_t root) {
-  Entered best{kPathUnits, 0};
+ShortestPathForest::Reach ShortestPathForest::clear_beside(std::uint32_t node, std::uint32_t root) {
+  Reach best{kNoPath};
   if (is_start_[node]) {
     const Start& start = *start_of(neighbourhood_->point_of(node));
-    best = {start.path, start.point};
+    best = reach_of(start.path, start.point);
   }
   for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
-    std::uint32_t& beyond = path_[edge.node];
+    Reach& beyond = reach_[edge.node];
     if (beyond == kNoPath) continue;
-    if (root_[edge.node] == root) {
+    if (root_of_reach(beyond) == root) {
       beyond = kNoPath;
       touched_.push_back(edge.node);
       fetch_edges(*neighbourhood_, edge.node);
     } else {
-      best = std::min(best, Entered{beyond + edge.cost, root_[edge.node]});
+      best = std::min(best, beyond + reach_of(edge.cost, 0));
     }
   }
   return best;
@@ -144,23 +148,23 @@ std::vector<Root> ShortestPathForest::roots() const {
 }
 
 bool ShortestPathForest::is_root(std::uint32_t point) const {
-  return point < path_.size() && is_start_[neighbourhood_->node_of(point)];
+  return point < reach_.size() && is_start_[neighbourhood_->node_of(point)];
 }
 
 std::optional<std::uint32_t> ShortestPathForest::root_of(std::uint32_t point) const {
-  const std::uint32_t node = neighbourhood_->node_of(point);
-  if (path_[node] == kNoPath) return std::nullopt;
-  return root_[node];
+  const Reach reach = reach_[neighbourhood_->node_of(point)];
+  if (reach == kNoPath) return std::nullopt;
+  return root_of_reach(reach);
 }
 
 double ShortestPathForest::path_length(std::uint32_t point) const {
-  const std::uint32_t path = path_[neighbourhood_->node_of(point)];
-  if (path == kNoPath) return std::numeric_limits<double>::infinity();
-  return path * (neighbourhood_->config().max_path / kPathUnits);
+  const Reach reach = reach_[neighbourhood_->node_of(point)];
+  if (reach == kNoPath) return std::numeric_limits<double>::infinity();
+  return path_of(reach) * (neighbourhood_->config().max_path / kPathUnits);
 }
 
 std::uint32_t ShortestPathForest::path_units(std::uint32_t point) const {
-  return std::min(path_[neighbourhood_->node_of(point)], kPathUnits);
+  return path_of(reach_[neighbourhood_->node_of(point)]);
 }
 
 std::uint32_t ShortestPathForest::start_units(std::uint32_t point) const {
@@ -171,7 +175,7 @@ std::uint32_t ShortestPathForest::start_units(std::uint32_t point) const {
 /// Whether so many nodes are better gone through in their order in memory.
 bool ShortestPathForest::is_large(std::size_t nodes) const {
   constexpr std::size_t kShare{32};
-  return nodes > path_.size() / kShare;
+  return nodes > reach_.size() / kShare;
 }
 
 /// Nodes become points. Of many, each is named once, and near each other are those that are near in memory: what is
@@ -179,7 +183,7 @@ bool ShortestPathForest::is_large(std::size_t nodes) const {
 void ShortestPathForest::name_touched() {
   if (is_large(touched_.size())) {
     constexpr std::size_t kBits{64};
-    std::vector<std::uint64_t> marks(path_.size() / kBits + 1, 0);
+    std::vector<std::uint64_t> marks(reach_.size() / kBits + 1, 0);
     for (const std::uint32_t node : touched_) marks[node / kBits] |= std::uint64_t{1} << node % kBits;
     touched_.clear();
     for (std::size_t word = 0; word < marks.size(); ++word) {
@@ -199,15 +203,15 @@ std::vector<ShortestPathForest::Start>::const_iterator ShortestPathForest::start
 
 void ShortestPathForest::start_at(const Root& root) {
   const double max_path = neighbourhood_->config().max_path;
-  SACCADE_EXPECTS(root.point < path_.size() && !is_root(root.point));
+  SACCADE_EXPECTS(root.point < reach_.size() && !is_root(root.point));
   SACCADE_EXPECTS(root.start_cost >= 0.0 && root.start_cost < max_path);
   const auto units = static_cast<std::uint32_t>(root.start_cost / max_path * kPathUnits);
   const Start start{root.point, std::min(units, kPathUnits - 1)};
   const std::uint32_t node = neighbourhood_->node_of(root.point);
   is_start_[node] = true;
   starts_.insert(start_of(root.point), start);
-  const bool is_nearer = start.path < path_[node] || (start.path == path_[node] && root.point < root_[node]);
-  if (is_nearer) reach(node, start.path, root.point);
+  const Reach begun = reach_of(start.path, root.point);
+  if (begun < reach_[node]) reach(node, begun);
 }
 
 }  // namespace saccade

@@ -57,31 +57,27 @@ class ShortestPathForest {
     std::uint32_t point;
     std::uint32_t path;
   };
-  /// From another tree.
-  struct Entered {
-    std::uint32_t path;
-    std::uint32_t root;
-    [[nodiscard]] auto operator<=>(const Entered&) const = default;
-  };
+  /// Path in the upper half, the root's point in the lower: the less, the nearer.
+  using Reach = std::uint64_t;
 
   void start_at(const Root& root);
-  void reach(std::uint32_t node, std::uint32_t path, std::uint32_t root);
+  void reach(std::uint32_t node, Reach reach);
   void spread();
   void spread_from(std::uint32_t node);
-  [[nodiscard]] Entered clear_beside(std::uint32_t node, std::uint32_t root);
+  [[nodiscard]] Reach clear_beside(std::uint32_t node, std::uint32_t root);
+  [[nodiscard]] bool belongs_to(std::uint32_t node, std::uint32_t root) const;
   void clear_all_of(std::uint32_t root);
   [[nodiscard]] bool is_large(std::size_t nodes) const;
   void name_touched();
   [[nodiscard]] std::vector<Start>::const_iterator start_of(std::uint32_t point) const;
 
   std::shared_ptr<const Neighbourhood> neighbourhood_;
-  std::vector<std::uint32_t> path_;  ///< per node: ω in path units
-  std::vector<std::uint32_t> root_;  ///< per node that has a path: the root's point
-  std::vector<bool> is_start_;       ///< per node
-  std::vector<Start> starts_;        ///< roots, by ascending point
+  std::vector<Reach> reach_;    ///< per node
+  std::vector<bool> is_start_;  ///< per node
+  std::vector<Start> starts_;   ///< roots, by ascending point
   std::vector<std::uint32_t> touched_;
   PathBuckets queue_;
-  std::vector<Entered> entered_;
+  std::vector<Reach> entered_;
 };
 
 }  // namespace saccade
