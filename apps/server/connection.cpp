@@ -12,9 +12,15 @@ constexpr std::uint16_t kInternalError{1011};
 
 }  // namespace
 
-Connection::Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service,
+Connection::Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service, Seat seat,
                        std::function<void()> wake)
-    : id_{id}, config_{config}, thread_{thread}, service_{service}, wake_{std::move(wake)} {}
+    : id_{id},
+      config_{config},
+      thread_{thread},
+      service_{service},
+      seat_{std::move(seat)},
+      wake_{std::move(wake)},
+      account_{thread} {}
 
 void Connection::open() {
   thread_.post([self = shared_from_this()] {
@@ -116,7 +122,7 @@ void Connection::schedule() {
   const bool has_work = ended_ || (!asked_.empty() && !reads_slowly());
   if (!has_work) return;
   scheduled_ = true;
-  thread_.post([self = shared_from_this()] { self->serve_one(); });
+  thread_.post(account_, [self = shared_from_this()] { self->serve_one(); });
 }
 
 void Connection::wake() {

@@ -15,6 +15,9 @@
 
 namespace saccade::server {
 
+/// Counts while it is held: one of the WebSockets that may be there at once.
+using Seat = std::shared_ptr<const void>;
+
 /// Holds a connection to its limits. One that has asked too much is not read from; one that is told more than it reads
 /// gets its next answers when it has read those before; one that others tell too much is ended.
 class Connection : public std::enable_shared_from_this<Connection> {
@@ -31,7 +34,8 @@ class Connection : public std::enable_shared_from_this<Connection> {
   };
 
   /// `wake` lets the network's thread call woken(), next() and may_read(); any thread calls it.
-  Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service,
+  /// `seat` is held as long as the service has something to do for it.
+  Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service, Seat seat,
              std::function<void()> wake);
 
   [[nodiscard]] ConnectionId id() const { return id_; }
@@ -66,8 +70,10 @@ class Connection : public std::enable_shared_from_this<Connection> {
   const ServerConfig& config_;
   ServiceThread& thread_;
   Service& service_;
+  const Seat seat_;
   const std::function<void()> wake_;
 
+  ServiceThread::Account account_;
   std::mutex mutex_;
   std::deque<Message> asked_;
   std::size_t asked_bytes_{0};

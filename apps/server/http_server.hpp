@@ -20,7 +20,7 @@ struct ServerConfig {
   std::uint16_t port{0};                ///< 0: one that is free
   std::string token;                    ///< at least 16 letters, digits, - and _
   std::vector<std::string> host_names;  ///< that a Host header may name besides this machine
-  std::size_t max_connections{64};      ///< WebSockets; further ones are answered by 503
+  std::size_t max_connections{64};      ///< WebSockets, until they are served to their end; then 503
   std::size_t max_message_bytes{1U << 20U};
   std::size_t max_waiting_messages{32};  ///< of one connection, that the service has not seen; then it is not read from
   std::size_t max_waiting_bytes{64U << 20U};          ///< that a connection has not read; then it is ended
@@ -45,7 +45,8 @@ class HttpServer : public Clients {
 
   /// From here on requests are answered. `service` outlives the server. Called once.
   virtual void serve(Service& service) = 0;
-  /// Runs on the service's thread, after what waits there. `work` does not throw.
+  /// Runs on the service's thread, after what was posted before, and before what connections ask. `work` does not
+  /// throw.
   virtual void post(std::function<void()> work) = 0;
 
   [[nodiscard]] virtual std::uint16_t port() const = 0;

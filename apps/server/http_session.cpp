@@ -154,10 +154,9 @@ void HttpSession::open_socket() {
   if (!beast::websocket::is_upgrade(request_) || request_.method() != http::verb::get) {
     return refuse(status::upgrade_required, "This is the WebSocket's place.");
   }
-  if (state_.web_sockets >= state_.config.max_connections) {
-    return refuse(status::service_unavailable, "Too many pages are open.");
-  }
-  const auto socket = std::make_shared<SocketSession>(state_, std::move(stream_));
+  Seat seat = state_.take_seat();
+  if (!seat) return refuse(status::service_unavailable, "Too many pages are open.");
+  const auto socket = std::make_shared<SocketSession>(state_, std::move(stream_), std::move(seat));
   finished_ = true;  // the socket is another's now
   state_.sessions.erase(this);
   socket->run(std::move(request_));

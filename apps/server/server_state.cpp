@@ -34,15 +34,21 @@ ServerState::ServerState(ServerConfig server_config)
   }
 }
 
+Seat ServerState::take_seat() {
+  if (web_sockets >= config.max_connections) return nullptr;
+  ++web_sockets;
+  return {&web_sockets, [](std::atomic<std::size_t>* taken) { --*taken; }};
+}
+
 void ServerState::ask_data(std::function<void()> work) {
   if (std::exchange(data_asked, true)) return data_waiting.push_back(std::move(work));
-  service_thread.post(std::move(work));
+  service_thread.post(data_account, std::move(work));
 }
 
 void ServerState::data_answered() {
   data_asked = !data_waiting.empty();
   if (!data_asked) return;
-  service_thread.post(std::move(data_waiting.front()));
+  service_thread.post(data_account, std::move(data_waiting.front()));
   data_waiting.pop_front();
 }
 

@@ -65,8 +65,11 @@ struct ServerState {
   /// Whether a Host header means this server, at this address of this machine.
   [[nodiscard]] bool is_host(std::string_view header, const std::string& local_address) const;
 
-  /// Files are asked for one at a time, so that a question waits for one of them at most. Of the network's thread, as
-  /// is data_answered(), which is called after each.
+  /// Nothing where as many WebSockets are there as may be. Of the network's thread.
+  [[nodiscard]] Seat take_seat();
+
+  /// Files are asked for one at a time, and share one account. Of the network's thread, as is data_answered(), which is
+  /// called after each.
   void ask_data(std::function<void()> work);
   void data_answered();
 
@@ -75,12 +78,13 @@ struct ServerState {
   std::string cookie;                            ///< its name
   std::map<std::string_view, CachedFile> files;  ///< by path
   std::atomic<Service*> service{nullptr};        ///< null until it serves
+  std::atomic<std::size_t> web_sockets{0};       ///< with those that are gone and were not served to their end
   OpenConnections connections;
   ServiceThread service_thread;
+  ServiceThread::Account data_account{service_thread};
 
   // Of the network's thread.
   std::unordered_map<const Session*, std::shared_ptr<Session>> sessions;
-  std::size_t web_sockets{0};
   std::size_t data_requests{0};                    ///< under way, until they are written
   std::deque<std::function<void()>> data_waiting;  ///< to be asked
   bool data_asked{false};                          ///< one, by which the service's thread is busy

@@ -41,8 +41,8 @@ struct HttpRequest {
 };
 
 /// All of this is called on one thread, which is not that of the network, one call after the other: what a service
-/// keeps needs no locks. Questions of a connection come in their order. A connection has few messages waiting: whoever
-/// sends more is not read from meanwhile.
+/// keeps needs no locks. Questions of a connection come in their order; whose is next ServiceThread says. A connection
+/// has few messages waiting: whoever sends more is not read from meanwhile.
 class Service {
  public:
   virtual ~Service() = default;

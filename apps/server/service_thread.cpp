@@ -1,15 +1,36 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/service_thread.hpp"
 
+#include <algorithm>
 #include <utility>
 
 namespace saccade::server {
+namespace {
 
-void ServiceThread::post(std::function<void()> work) {
+using Clock = std::chrono::steady_clock;
+
+constexpr std::chrono::duration<double> kRemembered{0.5};
+
+}  // namespace
+
+ServiceThread::Account::Account(ServiceThread& thread) {
+  const std::lock_guard lock{thread.mutex_};
+  used_ = thread.most_;
+}
+
+void ServiceThread::post(std::function<void()> work) { wait_for({nullptr, std::move(work)}); }
+void ServiceThread::post(Account& account, std::function<void()> work) { wait_for({&account, std::move(work)}); }
+
+void ServiceThread::wait_for(Turn turn) {
   {
     const std::lock_guard lock{mutex_};
     if (finished_) return;
-    waiting_.push_back(std::move(work));
+    if (turn.account == nullptr) {
+      own_.push_back(std::move(turn));
+    } else {
+      turn.account->used_ = std::max(turn.account->used_, least_ - kRemembered);
+      waiting_.push_back(std::move(turn));
+    }
   }
   changed_.notify_one();
 }
@@ -23,18 +44,41 @@ void ServiceThread::finish() {
   if (thread_.joinable()) thread_.join();
 }
 
+ServiceThread::Turn ServiceThread::next() {
+  Turn turn;
+  if (!own_.empty()) {
+    turn = std::move(own_.front());
+    own_.pop_front();
+    return turn;
+  }
+  const auto least = std::min_element(waiting_.begin(), waiting_.end(), [](const Turn& a, const Turn& b) {
+    return a.account->used_ < b.account->used_;  // of several the first, which waits longest
+  });
+  turn = std::move(*least);
+  waiting_.erase(least);
+  least_ = std::max(least_, turn.account->used_);
+  return turn;
+}
+
+void ServiceThread::charge(Account& account, Used took) {
+  const std::lock_guard lock{mutex_};
+  account.used_ += std::min(took, kRemembered);
+  most_ = std::max(most_, account.used_);
+}
+
 void ServiceThread::run() {
   for (;;) {
-    std::function<void()> work;
+    Turn turn;
     {
       std::unique_lock lock{mutex_};
-      changed_.wait(lock, [this] { return finishing_ || !waiting_.empty(); });
-      finished_ = waiting_.empty();
+      changed_.wait(lock, [this] { return finishing_ || !own_.empty() || !waiting_.empty(); });
+      finished_ = own_.empty() && waiting_.empty();
       if (finished_) return;
-      work = std::move(waiting_.front());
-      waiting_.pop_front();
+      turn = next();
     }
-    work();
+    const Clock::time_point begin = Clock::now();
+    turn.work();
+    if (turn.account != nullptr) charge(*turn.account, Clock::now() - begin);
   }
 }
 

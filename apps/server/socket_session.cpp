@@ -16,15 +16,12 @@ constexpr std::chrono::milliseconds kGraceAtEnd{200};  // of the program, whose 
 
 }  // namespace
 
-SocketSession::SocketSession(ServerState& state, boost::beast::tcp_stream stream)
+SocketSession::SocketSession(ServerState& state, boost::beast::tcp_stream stream, Seat seat)
     : state_{state},
+      seat_{std::move(seat)},
       stream_{std::move(stream)},
       grace_{stream_.get_executor()},
-      buffer_{state.config.max_message_bytes} {
-  ++state_.web_sockets;
-}
-
-SocketSession::~SocketSession() { --state_.web_sockets; }
+      buffer_{state.config.max_message_bytes} {}
 
 void SocketSession::run(boost::beast::http::request<boost::beast::http::empty_body> request) {
   state_.sessions.emplace(this, shared_from_this());
@@ -52,7 +49,7 @@ void SocketSession::on_accept(ErrorCode error) {
     });
   };
   connection_ = std::make_shared<Connection>(++state_.last_id, state_.config, state_.service_thread,
-                                             *state_.service.load(), std::move(wake));
+                                             *state_.service.load(), seat_, std::move(wake));
   state_.connections.add(connection_);
   connection_->open();
   read();

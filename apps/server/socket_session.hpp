@@ -19,8 +19,7 @@ namespace saccade::server {
 
 class SocketSession : public Session, public std::enable_shared_from_this<SocketSession> {
  public:
-  SocketSession(ServerState& state, boost::beast::tcp_stream stream);
-  ~SocketSession() override;
+  SocketSession(ServerState& state, boost::beast::tcp_stream stream, Seat seat);
   void run(boost::beast::http::request<boost::beast::http::empty_body> request);
   void stop() override;
 
@@ -38,6 +37,7 @@ class SocketSession : public Session, public std::enable_shared_from_this<Socket
   void begin(boost::beast::http::request<boost::beast::http::empty_body> request);
 
   ServerState& state_;
+  const Seat seat_;
   boost::beast::websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> stream_;
   boost::asio::steady_timer grace_;
   boost::beast::flat_buffer buffer_;

@@ -34,8 +34,8 @@ struct AnnotationServiceConfig {
 /// the disk before it is answered. Questions that are wrong are refused; nothing that a page says ends the program.
 class AnnotationService final : public Service {
  public:
-  /// Runs work on the thread of the service, after what waits there. Any thread may call it, as long as the service
-  /// lives.
+  /// Runs work on the thread of the service, after what was posted before. Any thread may call it, as long as the
+  /// service lives.
   using Post = std::function<void(std::function<void()>)>;
 
   AnnotationService(AnnotationServiceConfig config, Clients& clients, Post post);
