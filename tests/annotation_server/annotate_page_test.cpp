@@ -1,10 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade annotate with its page: the program is started, spoken to over its socket, killed and started again.
-#include <cstring>
-#include <optional>
-
+#include "annotation_server/served_annotation.hpp"
 #include "cli/annotated_boxes.hpp"
-#include "server/raw_client.hpp"
 
 namespace saccade {
 namespace {
@@ -12,72 +9,8 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 using test::Arguments;
-using test::Opcode;
 using test::operator+;
-using test::RawClient;
-
-/// A started program, and a page in it.
-class ServedAnnotation {
- public:
-  explicit ServedAnnotation(const Arguments& arguments) : program_{arguments} {
-    for (int i = 0; i < 24000 && program_.out().find("Ctrl-C ends it.") == std::string::npos; ++i) {
-      std::this_thread::sleep_for(std::chrono::milliseconds{5});
-    }
-    const std::string url = program_.out();
-    const std::size_t port_at = url.find("http://localhost:");
-    const std::size_t token_at = url.find("/?token=");
-    if (port_at == std::string::npos || token_at == std::string::npos) return;
-    port_ = static_cast<std::uint16_t>(std::stoi(url.substr(port_at + 17)));
-    token_ = url.substr(token_at + 8, url.find('\n', token_at) - token_at - 8);
-  }
-  [[nodiscard]] bool is_served() const { return port_ != 0; }
-  [[nodiscard]] test::RunningProgram& program() { return program_; }
-
-  /// Over a new socket.
-  void connect() {
-    client_.emplace(port_);
-    const auto answer = client_->ask(
-        client_->upgrade_request("Host: " + client_->host() + "\r\n" + RawClient::cookie_of(port_, token_)));
-    ASSERT_EQ(answer.status, 101);
-    EXPECT_TRUE(ask({{"type", "hello"}, {"protocol", 1}, {"client", 77}}).at("ok"));
-  }
-  json ask(json question) {
-    question["request"] = ++request_;
-    client_->send_message(framed(question.dump()));
-    while (const auto message = client_->read_message()) {
-      if (message->opcode != Opcode::binary || message->payload.size() < 4) break;
-      std::uint32_t length{0};
-      std::memcpy(&length, message->payload.data(), 4);
-      json head = json::parse(message->payload.substr(4, length), nullptr, false);
-      if (head.value("request", 0) == request_) return head;
-    }
-    ADD_FAILURE() << "no answer to " << question.dump();
-    return {};
-  }
-  json open(int cloud = 0) { return ask({{"type", "open"}, {"cloud", cloud}, {"budget", 100'000}}); }
-  json act(json action) { return ask({{"type", "action"}, {"action", std::move(action)}}); }
-  test::Answer get(const std::string& target) {
-    RawClient client{port_};
-    return client.ask("GET " + target + " HTTP/1.1\r\nHost: " + client.host() + "\r\n" +
-                      RawClient::cookie_of(port_, token_) + "\r\n");
-  }
-
- private:
-  static std::string framed(const std::string& head) {
-    const auto length = static_cast<std::uint32_t>(head.size());
-    std::string bytes(4, '\0');
-    std::memcpy(bytes.data(), &length, 4);
-    bytes += head;
-    bytes.resize((bytes.size() + 3) / 4 * 4);
-    return bytes;
-  }
-
-  test::RunningProgram program_;
-  std::uint16_t port_{0};
-  std::string token_;
-  std::optional<RawClient> client_;
-  int request_{0};
-};
+using test::ServedAnnotation;
 
 class AnnotatePageTest : public test::AnnotatedBoxes {
  protected:

@@ -191,11 +191,11 @@ class RawClient {
     return read;
   }
   /// The next message, its fragments joined; the payload of what closes with its code in front. Pings are answered.
-  std::optional<Frame> read_message() {
+  std::optional<Frame> read_message(std::chrono::milliseconds patience = std::chrono::seconds{5}) {
     Frame whole;
     bool begun{false};
     for (;;) {
-      auto next = read_frame();
+      auto next = read_frame(patience);
       if (!next || next->opcode == Opcode::close) return next;
       if (next->opcode == Opcode::ping) send(frame(Opcode::pong, next->payload));
       if (next->opcode == Opcode::ping || next->opcode == Opcode::pong) continue;
