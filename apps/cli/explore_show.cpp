@@ -29,7 +29,7 @@ Result<std::unique_ptr<ExploreShow>> ExploreShow::start(const ServeOptions& opti
   std::unique_ptr<ExploreShow> show{new ExploreShow{std::move(server), first_document(scene), folder}};
   show->quiet_ = global.quiet;
   show->server_->serve(*show->service_);
-  announce(options, global, *show->server_);
+  show->page_ = announce(options, global, *show->server_);
   return show;
 }
 

@@ -5,6 +5,7 @@
 #include <condition_variable>
 #include <memory>
 #include <mutex>
+#include <optional>
 #include <thread>
 
 #include "explore_devices.hpp"
@@ -36,6 +37,7 @@ class ExploreShow {
   void wake(Wanted wanted);
   void read_and_show();
 
+  std::optional<BrowserPage> page_;
   std::unique_ptr<server::HttpServer> server_;
   std::unique_ptr<server::ViewerService> service_;
   server::RunReader reader_;

@@ -3,10 +3,7 @@
 
 #include <fcntl.h>
 #include <pwd.h>
-#include <signal.h>
-#include <spawn.h>
 #include <sys/stat.h>
-#include <sys/wait.h>
 #include <unistd.h>
 
 #include <CLI/CLI.hpp>
@@ -108,31 +105,6 @@ Result<std::string> token_of(const std::filesystem::path& file) {
   return read_token(file);
 }
 
-/// Its own words go nowhere; whether it could is the user's to see. It outlives the program: Ctrl-C is not for it, and
-/// the signals that the program ignores it does not.
-void open_browser(const std::string& url) {
-  posix_spawnattr_t attributes;
-  if (::posix_spawnattr_init(&attributes) != 0) return;
-  sigset_t as_usual;
-  sigemptyset(&as_usual);
-  for (const int signal : {SIGPIPE, SIGXFSZ}) sigaddset(&as_usual, signal);
-  ::posix_spawnattr_setsigdefault(&attributes, &as_usual);
-  ::posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETSID | POSIX_SPAWN_SETSIGDEF);
-  posix_spawn_file_actions_t actions;
-  ::posix_spawn_file_actions_init(&actions);
-  for (const int stream : {STDIN_FILENO, STDOUT_FILENO, STDERR_FILENO}) {
-    ::posix_spawn_file_actions_addopen(&actions, stream, "/dev/null", O_RDWR, 0);
-  }
-  std::string program{"xdg-open"};
-  std::string address = url;
-  const std::array<char*, 3> arguments{program.data(), address.data(), nullptr};
-  pid_t child{0};
-  const bool begun = ::posix_spawnp(&child, program.c_str(), &actions, &attributes, arguments.data(), environ) == 0;
-  ::posix_spawn_file_actions_destroy(&actions);
-  ::posix_spawnattr_destroy(&attributes);
-  if (begun) std::thread{[child] { ::waitpid(child, nullptr, 0); }}.detach();
-}
-
 }  // namespace
 
 void add_serve_options(CLI::App& command, ServeOptions& options) {
@@ -183,7 +155,8 @@ Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options) 
   return server::HttpServer::listen(config);
 }
 
-void announce(const ServeOptions& options, const GlobalOptions& global, const server::HttpServer& server) {
+std::optional<BrowserPage> announce(const ServeOptions& options, const GlobalOptions& global,
+                                    const server::HttpServer& server) {
   std::ostream& out = global.json_to_stdout() ? std::cerr : std::cout;
   const std::string port = std::to_string(server.port());
   const std::string url = server.url();
@@ -195,13 +168,18 @@ void announce(const ServeOptions& options, const GlobalOptions& global, const se
   }
   if (!is_local) out << "Whoever reaches this address and knows the token may use it; nothing is encrypted.\n";
   out << "Ctrl-C ends it." << std::endl;
-  if (!options.no_browser && has_display()) open_browser(url);
+  if (options.no_browser || !has_display()) return std::nullopt;
+  auto page = BrowserPage::open(url);
+  if (page) return std::move(*page);
+  std::cerr << "the browser was not opened (" << page.error().to_string() << "); the address above leads there"
+            << std::endl;
+  return std::nullopt;
 }
 
 int serve(const ServeOptions& options, const GlobalOptions& global, server::HttpServer& server,
           server::Service& service) {
   server.serve(service);
-  announce(options, global, server);
+  const auto page = announce(options, global, server);
   while (!interrupted()) std::this_thread::sleep_for(kLookEvery);
   return static_cast<int>(ExitStatus::done);
 }

@@ -5,9 +5,11 @@
 #include <cstdint>
 #include <filesystem>
 #include <memory>
+#include <optional>
 #include <string>
 #include <vector>
 
+#include "browser_page.hpp"
 #include "command.hpp"
 #include "server/http_server.hpp"
 
@@ -30,8 +32,9 @@ void add_serve_options(CLI::App& command, ServeOptions& options);
 [[nodiscard]] Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options);
 
 /// Says the URL (on standard output; on standard error with --json -), how to reach it from elsewhere where there is no
-/// display or it is that of SSH, and opens the browser elsewhere.
-void announce(const ServeOptions& options, const GlobalOptions& global, const server::HttpServer& server);
+/// display or it is that of SSH, and opens the browser elsewhere; or says why it could not.
+[[nodiscard]] std::optional<BrowserPage> announce(const ServeOptions& options, const GlobalOptions& global,
+                                                  const server::HttpServer& server);
 
 /// HttpServer::serve, announce, then waits for Ctrl-C or SIGTERM.
 /// @return the exit status: done, as what interrupts serving interrupts no work. The caller ends the server before the

@@ -20,7 +20,7 @@ namespace {
 using nlohmann::json;
 using thesis::AnnotationTimes;
 
-constexpr std::size_t kRuns{5};
+constexpr std::size_t kTimedRuns{5};
 constexpr std::size_t kChanges{200};
 
 /// The cloud of about as many points as the thesis'.
@@ -65,7 +65,7 @@ Result<AnnotationTimes> measure(const LabelledCloud& cloud, const NeighbourhoodC
                                 const Executor& executor) {
   std::vector<double> graph_ms, annotation_ms, addition_ms, deletion_ms;
   std::shared_ptr<const Neighbourhood> graph;
-  for (std::size_t run = 0; run <= kRuns; ++run) {  // the first, with cold caches, does not count
+  for (std::size_t run = 0; run <= kTimedRuns; ++run) {  // the first, with cold caches, does not count
     const Stopwatch clock;
     SACCADE_TRY(Neighbourhood built, Neighbourhood::build(cloud.points, config, executor));
     if (run > 0) graph_ms.push_back(clock.elapsed_ms());
@@ -74,7 +74,7 @@ Result<AnnotationTimes> measure(const LabelledCloud& cloud, const NeighbourhoodC
   const std::vector<Root> all = random_roots(cloud.points, thesis::kTable4_8ControlPoints + kChanges, seed);
   const std::span<const Root> there{all.data(), std::min(thesis::kTable4_8ControlPoints, all.size())};
   ShortestPathForest forest{graph};
-  for (std::size_t run = 0; run <= kRuns; ++run) {
+  for (std::size_t run = 0; run <= kTimedRuns; ++run) {
     const double ms = timed_ms([&] { forest.rebuild(there); });
     if (run > 0) annotation_ms.push_back(ms);
   }
@@ -120,7 +120,7 @@ Result<ReproducedTable> reproduce_table_4_8(const ReproduceOptions& options, con
                      std::to_string(executor.threads()) +
                      " threads for the graph, one for the rest. There: a Core i7-4770.",
                  "The graph here holds estimating normals, which the thesis' reconstruction gave. Medians of " +
-                     std::to_string(kRuns) + " graphs and annotations and of " + std::to_string(kChanges) +
+                     std::to_string(kTimedRuns) + " graphs and annotations and of " + std::to_string(kChanges) +
                      " control points, random as the 90 are. With the weights of Table 4.4 paths are short and reach "
                      "fewer points.",
                  "Pictures and pages take what they take besides: these are the algorithms alone, as in the thesis."};
