@@ -20,7 +20,7 @@ constexpr int kLeastRows{32};  // of a task: each fits 2R rows more, which its n
 
 template <class T>
 hwy::AlignedFreeUniquePtr<T[]> zeros(std::size_t count) {
-  auto made = hwy::AllocateAligned<T>(count);
+  auto made = hwy::AllocateAligned<T>(std::max<std::size_t>(count, 1));
   if (made == nullptr) throw std::bad_alloc{};
   std::fill_n(made.get(), count, T{0});
   return made;

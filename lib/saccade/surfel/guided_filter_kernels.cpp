@@ -2,8 +2,8 @@
 #include "saccade/surfel/guided_filter_kernels.hpp"
 
 #include <algorithm>
-#include <cmath>
 #include <cstdlib>
+#include <type_traits>
 #include <utility>
 
 #undef HWY_TARGET_INCLUDE
@@ -16,9 +16,9 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A sum is that of its columns from left to right, and a column's from the middle outwards, whatever the width of a
-// vector: every instruction set gives the same bits. Products of moments are exact in double precision, for they are of
-// floats: there a fused multiply-add rounds no other way than product and sum. Elsewhere the two stay apart.
+// A sum is that of its columns, and a column's from the middle outwards, in the same order for every width of a vector:
+// every instruction set gives the same bits. Products of channels are exact in double precision, for these are floats:
+// there a fused multiply-add rounds no other way than product and sum. Elsewhere the two stay apart.
 using Doubles = hn::CappedTag<double, kBlock>;
 using Floats = hn::Rebind<float, Doubles>;
 using V = hn::Vec<Doubles>;
@@ -44,46 +44,64 @@ constexpr MomentChannels kMomentChannels = [] {
   return channels;
 }();
 
-/// Half of the moments at a time: their sums stay in the registers of AVX2.
-constexpr int kHalf{kMoments / 2};
+/// Sums of so many moments at a time stay in registers: AVX-512 has 32 of them.
+constexpr int kGroup{HWY_MAX_BYTES == 64 ? kMoments : kMoments / 2};
 
-template <int kFirst, std::size_t... kMoment>
-HWY_INLINE void add_products(const V (&channel)[kChannels], V (&sum)[kHalf], std::index_sequence<kMoment...> /*all*/) {
-  ((sum[kMoment] = hn::MulAdd(channel[kMomentChannels.first[kFirst + kMoment]],
-                              channel[kMomentChannels.second[kFirst + kMoment]], sum[kMoment])),
-   ...);
+template <std::size_t kCount, std::size_t... kSum>
+HWY_INLINE void set_zero(V (&sum)[kCount], std::index_sequence<kSum...> /*all*/) {
+  ((sum[kSum] = hn::Zero(Doubles{})), ...);
 }
 
-template <int kCount, std::size_t... kSum>
+template <std::size_t kCount, std::size_t... kSum>
 HWY_INLINE void add_loaded(const double* from, std::size_t stride, V (&sum)[kCount],
                            std::index_sequence<kSum...> /*all*/) {
   ((sum[kSum] = hn::Add(sum[kSum], hn::LoadU(Doubles{}, from + kSum * stride))), ...);
 }
 
+template <std::size_t kCount, std::size_t... kSum>
+HWY_INLINE void store(const V (&sum)[kCount], double* to, std::size_t stride, std::index_sequence<kSum...> /*all*/) {
+  (hn::StoreU(sum[kSum], Doubles{}, to + kSum * stride), ...);
+}
+
+/// Adds moments kFirst and on of one vector of pixels, whose mask is at `pixels`.
+template <std::size_t kFirst, std::size_t kCount, std::size_t... kSum>
+HWY_INLINE void add_products(const float* pixels, std::size_t stride, V (&sum)[kCount],
+                             std::index_sequence<kSum...> /*all*/) {
+  V channel[kChannels];
+  for (std::size_t c = 0; c < kChannels; ++c) channel[c] = load_floats(pixels + c * stride);
+  ((sum[kSum] = hn::MulAdd(channel[kMomentChannels.first[kFirst + kSum]],
+                           channel[kMomentChannels.second[kFirst + kSum]], sum[kSum])),
+   ...);
+}
+
 /// The sums of all levels of the columns of one vector. `sums` is where the first sum of level 0 goes; the sums of a
 /// level are kSumColumns apart and `per_level` in number. add_row(row, sum) adds those of a row of the window.
-template <int kCount, class AddRow>
+template <std::size_t kCount, class AddRow>
 HWY_INLINE void sum_columns(const Disc& disc, int per_level, double* sums, const AddRow& add_row) {
+  constexpr std::make_index_sequence<kCount> kAll;
   V sum[kCount];
-  for (V& s : sum) s = hn::Zero(Doubles{});
-  for (int height = 0; height <= disc.radius_px; ++height) {
+  set_zero(sum, kAll);
+  add_row(disc.radius_px, sum);
+  for (int height = 1; height <= disc.radius_px; ++height) {
     add_row(disc.radius_px - height, sum);
-    if (height > 0) add_row(disc.radius_px + height, sum);
+    add_row(disc.radius_px + height, sum);
     const int level = disc.level_of_height[static_cast<std::size_t>(height)];
-    if (level < 0) continue;
-    double* to = sums + static_cast<std::ptrdiff_t>(level) * per_level * kSumColumns;
-    for (int i = 0; i < kCount; ++i) hn::StoreU(sum[i], Doubles{}, to + i * kSumColumns);
+    if (level >= 0) store(sum, sums + static_cast<std::ptrdiff_t>(level) * per_level * kSumColumns, kSumColumns, kAll);
   }
 }
 
-/// The sums over the window of one vector of pixels, from those of columns around them.
-template <int kCount>
-HWY_INLINE void sum_window(const Disc& disc, int per_level, const double* sums, V (&sum)[kCount]) {
-  for (V& s : sum) s = hn::Zero(Doubles{});
-  for (int column = -disc.radius_px; column <= disc.radius_px; ++column) {
+/// The sums over the window of one vector of pixels, from those of columns around them. Its first and its last column
+/// are single pixels: add_pixels(column, sum) adds those.
+template <std::size_t kCount, class AddPixels>
+HWY_INLINE void sum_window(const Disc& disc, int per_level, const double* sums, V (&sum)[kCount],
+                           const AddPixels& add_pixels) {
+  constexpr std::make_index_sequence<kCount> kAll;
+  set_zero(sum, kAll);
+  add_pixels(-disc.radius_px, sum);
+  if (disc.radius_px > 0) add_pixels(disc.radius_px, sum);
+  for (int column = 1 - disc.radius_px; column < disc.radius_px; ++column) {
     const int level = disc.level_of_column[static_cast<std::size_t>(std::abs(column))];
-    add_loaded<kCount>(sums + static_cast<std::ptrdiff_t>(level) * per_level * kSumColumns + column, kSumColumns, sum,
-                       std::make_index_sequence<kCount>{});
+    add_loaded(sums + static_cast<std::ptrdiff_t>(level) * per_level * kSumColumns + column, kSumColumns, sum, kAll);
   }
 }
 
@@ -91,30 +109,31 @@ HWY_INLINE void sum_window(const Disc& disc, int per_level, const double* sums, 
 HWY_INLINE V less(V from, V a, V b) { return hn::Sub(from, hn::Mul(a, b)); }
 
 /// Lines 1 to 8 of Algorithm 7, from the moments of one vector of pixels. Σ + Σ_E = L D Lᵀ; c_ij is L_ij D_j.
-HWY_INLINE void fit(const V (&first)[kHalf], const V (&second)[kHalf], const Variances& variances, V (&fits)[kFits]) {
+HWY_INLINE void fit(const V (&moments)[kMoments / kGroup][kGroup], const Variances& variances, V (&fits)[kFits]) {
+  const auto moment = [&](int i) HWY_ATTR { return moments[i / kGroup][i % kGroup]; };
   const V one = set(1.0);
-  const V share = hn::Div(one, first[0]);
-  const auto mean = [&](V sum) HWY_ATTR { return hn::Mul(sum, share); };
-  const V mr = mean(first[1]);
-  const V mg = mean(first[2]);
-  const V mb = mean(first[3]);
-  const V md = mean(first[4]);
-  const V delta = mean(first[5]);
+  const V share = hn::Div(one, moment(0));
+  const auto mean = [&](int i) HWY_ATTR { return hn::Mul(moment(i), share); };
+  const V mr = mean(1);
+  const V mg = mean(2);
+  const V mb = mean(3);
+  const V md = mean(4);
+  const V delta = mean(5);
   const V color = set(variances.color);
-  const V d0 = hn::Add(less(mean(first[6]), mr, mr), color);
-  const V c10 = less(mean(first[7]), mr, mg);
-  const V c20 = less(mean(first[8]), mr, mb);
-  const V c30 = less(mean(first[9]), mr, md);
-  const V k0 = less(mean(second[0]), mr, delta);
-  const V s11 = hn::Add(less(mean(second[1]), mg, mg), color);
-  const V s21 = less(mean(second[2]), mg, mb);
-  const V s31 = less(mean(second[3]), mg, md);
-  const V k1 = less(mean(second[4]), mg, delta);
-  const V s22 = hn::Add(less(mean(second[5]), mb, mb), color);
-  const V s32 = less(mean(second[6]), mb, md);
-  const V k2 = less(mean(second[7]), mb, delta);
-  const V s33 = hn::Add(less(mean(second[8]), md, md), set(variances.depth_m2));
-  const V k3 = less(mean(second[9]), md, delta);
+  const V d0 = hn::Add(less(mean(6), mr, mr), color);
+  const V c10 = less(mean(7), mr, mg);
+  const V c20 = less(mean(8), mr, mb);
+  const V c30 = less(mean(9), mr, md);
+  const V k0 = less(mean(10), mr, delta);
+  const V s11 = hn::Add(less(mean(11), mg, mg), color);
+  const V s21 = less(mean(12), mg, mb);
+  const V s31 = less(mean(13), mg, md);
+  const V k1 = less(mean(14), mg, delta);
+  const V s22 = hn::Add(less(mean(15), mb, mb), color);
+  const V s32 = less(mean(16), mb, md);
+  const V k2 = less(mean(17), mb, delta);
+  const V s33 = hn::Add(less(mean(18), md, md), set(variances.depth_m2));
+  const V k3 = less(mean(19), md, delta);
 
   const V r0 = hn::Div(one, d0);
   const V l10 = hn::Mul(c10, r0);
@@ -145,50 +164,54 @@ HWY_INLINE void fit(const V (&first)[kHalf], const V (&second)[kHalf], const Var
   fits[5] = share;
 }
 
-template <int kFirst>
-HWY_INLINE void sum_products_of_columns(const RowShape& shape, const Disc& disc, const float* const* rows, int column,
-                                        double* sums) {
-  const std::size_t at = static_cast<std::size_t>(kMargin + column);
-  sum_columns<kHalf>(disc, kMoments, sums + kFirst * kSumColumns, [&](int row, V(&sum)[kHalf]) HWY_ATTR {
-    V channel[kChannels];
-    for (std::size_t c = 0; c < kChannels; ++c) channel[c] = load_floats(rows[row] + c * shape.stride + at);
-    add_products<kFirst>(channel, sum, std::make_index_sequence<kHalf>{});
-  });
-}
-
 /// Whether columns [first, end) of a loaded row have a pixel that is used.
 HWY_INLINE bool any_used(const float* row, int first, int end) {
   const float* used = row + kMargin;
-  return std::any_of(used + first, used + end, [](float one) { return one != 0.0F; });
+  V any = hn::Zero(Doubles{});
+  for (int u = first; u < end; u += lanes()) any = hn::Or(any, load_floats(used + u));
+  return !hn::AllTrue(Doubles{}, hn::Eq(any, hn::Zero(Doubles{})));
 }
 
 /// Columns on either side of a strip that its windows reach, in whole vectors.
-HWY_INLINE int reach_of(const Disc& disc) { return (disc.radius_px + kBlock - 1) / kBlock * kBlock; }
+HWY_INLINE int reach_of(const Disc& disc) { return (disc.radius_px + kBlock - 2) / kBlock * kBlock; }
+
+/// Calls group(first) with the first moment of each group, as a constant.
+template <class Group>
+HWY_INLINE void for_groups(const Group& group) {
+  group(std::integral_constant<std::size_t, 0>{});
+  if constexpr (kGroup < kMoments) group(std::integral_constant<std::size_t, kGroup>{});
+}
 
 void fit_row_kernel(const RowShape& shape, const Disc& disc, const Variances& variances, const float* const* rows,
                     double* sums, double* fits) {
   const Doubles d;
+  constexpr std::make_index_sequence<kGroup> kAll;
   const float* middle = rows[disc.radius_px];
   const int reach = reach_of(disc);
   for (int strip = 0; strip < shape.padded_width; strip += kStrip) {
     const int end = std::min(strip + kStrip, shape.padded_width);
     const bool used = any_used(middle, strip, end);
     for (int u = strip - reach; used && u < end + reach; u += lanes()) {
-      double* at = sums + (kMargin + u - strip);
-      sum_products_of_columns<0>(shape, disc, rows, u, at);
-      sum_products_of_columns<kHalf>(shape, disc, rows, u, at);
+      for_groups([&](auto first) HWY_ATTR {
+        double* to = sums + first * kSumColumns + (kMargin + u - strip);
+        sum_columns<kGroup>(disc, kMoments, to, [&](int row, V(&sum)[kGroup]) HWY_ATTR {
+          add_products<first>(rows[row] + kMargin + u, shape.stride, sum, kAll);
+        });
+      });
     }
     for (int u = strip; u < end; u += lanes()) {
       const auto is_used = hn::Ne(load_floats(middle + kMargin + u), hn::Zero(d));
       V fitted[kFits];
-      for (V& f : fitted) f = hn::Zero(d);
+      set_zero(fitted, std::make_index_sequence<kFits>{});
       if (!hn::AllFalse(d, is_used)) {
-        const double* at = sums + (kMargin + u - strip);
-        V first[kHalf];
-        V second[kHalf];
-        sum_window<kHalf>(disc, kMoments, at, first);
-        sum_window<kHalf>(disc, kMoments, at + kHalf * kSumColumns, second);
-        fit(first, second, variances, fitted);
+        V moments[kMoments / kGroup][kGroup];
+        for_groups([&](auto first) HWY_ATTR {
+          const double* from = sums + first * kSumColumns + (kMargin + u - strip);
+          sum_window(disc, kMoments, from, moments[first / kGroup], [&](int column, V(&all)[kGroup]) HWY_ATTR {
+            add_products<first>(middle + kMargin + u + column, shape.stride, all, kAll);
+          });
+        });
+        fit(moments, variances, fitted);
       }
       for (std::size_t f = 0; f < kFits; ++f) {
         hn::StoreU(hn::IfThenElseZero(is_used, fitted[f]), d, fits + f * shape.stride + kMargin + u);
@@ -200,25 +223,28 @@ void fit_row_kernel(const RowShape& shape, const Disc& disc, const Variances& va
 void enhance_row_kernel(const RowShape& shape, const Disc& disc, const float* row, const double* const* fits,
                         double* sums, float* enhanced_m) {
   constexpr int kSummed{kFits - 1};
-  const double* share = fits[disc.radius_px] + kSummed * shape.stride + kMargin;
+  constexpr std::make_index_sequence<kSummed> kAll;
+  const double* middle = fits[disc.radius_px] + kMargin;
   const int reach = reach_of(disc);
   for (int strip = 0; strip < shape.padded_width; strip += kStrip) {
     const int end = std::min(strip + kStrip, shape.padded_width);
     if (!any_used(row, strip, end)) continue;
     for (int u = strip - reach; u < end + reach; u += lanes()) {
       sum_columns<kSummed>(disc, kSummed, sums + (kMargin + u - strip), [&](int r, V(&sum)[kSummed]) HWY_ATTR {
-        add_loaded<kSummed>(fits[r] + kMargin + u, shape.stride, sum, std::make_index_sequence<kSummed>{});
+        add_loaded(fits[r] + kMargin + u, shape.stride, sum, kAll);
       });
     }
     for (int u = strip; u < end; u += lanes()) {
       V sum[kSummed];
-      sum_window<kSummed>(disc, kSummed, sums + (kMargin + u - strip), sum);
+      sum_window(disc, kSummed, sums + (kMargin + u - strip), sum, [&](int column, V(&all)[kSummed]) HWY_ATTR {
+        add_loaded(middle + u + column, shape.stride, all, kAll);
+      });
       const float* guidance = row + shape.stride + kMargin + u;
       V total = sum[kSummed - 1];
       for (std::size_t c = 0; c + 1 < kSummed; ++c) {
         total = hn::Add(total, hn::Mul(sum[c], load_floats(guidance + c * shape.stride)));
       }
-      const V depth = hn::Mul(total, hn::LoadU(Doubles{}, share + u));
+      const V depth = hn::Mul(total, hn::LoadU(Doubles{}, middle + kSummed * shape.stride + u));
       hn::StoreU(hn::DemoteTo(Floats{}, depth), Floats{}, enhanced_m + u);
     }
   }
@@ -275,7 +301,7 @@ HWY_EXPORT(enhance_row_kernel);
 Disc make_disc(int radius_px) {
   Disc disc{.radius_px = radius_px};
   disc.level_of_height.fill(-1);
-  for (int column = 0; column <= radius_px; ++column) {
+  for (int column = 0; column < radius_px; ++column) {
     int height{0};
     while (column * column + (height + 1) * (height + 1) <= radius_px * radius_px) ++height;
     int& level = disc.level_of_height[static_cast<std::size_t>(height)];

@@ -18,7 +18,8 @@ constexpr int kMoments{20};  ///< products of two channels, (d′, d′) left ou
 constexpr int kFits{6};      ///< of a fitted row: a_r, a_g, a_b, a_d, b, 1 / pixels in the window; 0 where not used
 constexpr int kSumColumns{kStrip + 2 * kMargin};
 
-/// The window: column δu has rows −h … h. Columns of the same height share one sum, a level.
+/// The window: column δu has rows −h … h. Columns of the same height share one sum, a level; those of height 0, the
+/// first and the last, need none.
 struct Disc {
   int radius_px{0};
   int levels{0};
