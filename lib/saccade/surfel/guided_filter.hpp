@@ -44,9 +44,10 @@ class GuidedFilter {
   ///                    anything, and its output is its input. Who calls says so: depths of 0 count as depths here, and
   ///                    a NaN that is used spoils the pixels within twice the radius.
   /// @param enhanced_m  d′_e; shares no memory with the inputs.
-  /// Sums are of double precision and their terms exact, so nothing is lost to cancellation: for depths up to 100 m,
-  /// the output is within one unit in the last place of a float from the exact result. Threads and instruction sets
-  /// never change a bit. O(pixels · radius); rows in parallel.
+  /// Sums are of double precision and their terms exact, so that differences of them lose nothing that counts: for
+  /// depths up to 100 m the output is within one unit in the last place of a float of the exact result. Threads and
+  /// instruction sets never change a bit.
+  /// O(pixels · radius); rows in parallel.
   void apply(int width, int height, std::span<const float> depth_m, std::span<const Eigen::Vector4f> guidance,
              std::span<const std::uint8_t> used, const Executor& executor, std::span<float> enhanced_m);
 
