@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade annotate with a page: a person labels the cloud, or the clouds of a folder, in the browser.
+#include <chrono>
+#include <cstdlib>
 #include <future>
 #include <iostream>
 #include <mutex>
 
 #include "annotate.hpp"
 #include "exit_status.hpp"
+#include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/label_presets.hpp"
@@ -93,11 +96,19 @@ Result<server::AnnotationServiceConfig> service_config(const AnnotateOptions& op
   return config;
 }
 
-/// Of one cloud what is wrong with it or its session is said before there is a page.
+/// Of one cloud what is wrong with it or its session is said before there is a page. Whoever ends the program meanwhile
+/// does not wait for a large cloud to be read: what is not read has nothing to keep, and a session is whole at any
+/// time.
 Status prepare(server::AnnotationService& service, server::HttpServer& server) {
+  constexpr std::chrono::milliseconds kLookEvery{50};
   auto prepared = std::make_shared<std::promise<Status>>();
   std::future<Status> done = prepared->get_future();
   server.post([&service, prepared] { prepared->set_value(service.prepare(0)); });
+  while (done.wait_for(kLookEvery) != std::future_status::ready) {
+    if (!interrupted()) continue;
+    std::cerr << "saccade annotate: interrupted" << std::endl;
+    std::_Exit(interrupt_status());
+  }
   return done.get();
 }
 

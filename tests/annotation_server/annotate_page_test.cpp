@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade annotate with its page: the program is started, spoken to over its socket, killed and started again.
+#include <sys/stat.h>
+
 #include "annotation_server/served_annotation.hpp"
 #include "cli/annotated_boxes.hpp"
+#include "saccade/core/clock.hpp"
 
 namespace saccade {
 namespace {
@@ -95,6 +98,21 @@ TEST_F(AnnotatePageTest, SaysWhatIsWrongBeforeThereIsAPage) {
   EXPECT_TRUE(ServedAnnotation{serve({"--out", path("mine.npy")})}.is_served());
   write("bad.pcd", "no cloud");
   expect_refused({"annotate", path("bad.pcd")}, "bad.pcd", 3);
+}
+
+TEST_F(AnnotatePageTest, CtrlCDoesNotWaitForACloudThatIsRead) {
+  const std::string endless = path("endless.xyz");
+  ASSERT_EQ(::mkfifo(endless.c_str(), 0600), 0);  // nobody ever writes to it
+  for (const int signal : {SIGINT, SIGTERM}) {
+    test::RunningProgram program{serve({}, "endless.xyz")};
+    std::this_thread::sleep_for(std::chrono::milliseconds{500});
+    const Stopwatch stopwatch;
+    program.send(signal);
+    const test::Outcome outcome = program.finish();
+    EXPECT_LT(stopwatch.elapsed_ms(), 2'000.0);
+    EXPECT_EQ(outcome.status, 128 + signal);
+    EXPECT_EQ(outcome.err, "saccade annotate: interrupted\n");
+  }
 }
 
 TEST_F(AnnotatePageTest, GoesOnWithASessionOfAScript) {

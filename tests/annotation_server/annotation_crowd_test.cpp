@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// All connections but one mean no good, and ask what takes longest: how long the good one waits. Printed, and held to a
-// generous bound, as other work may be on the machine.
+// Connections that mean no good, as many as there may be, or as quick as they can. What comes of it is printed, and
+// held to generous bounds, as other work may be on the machine.
 #include <algorithm>
 #include <atomic>
+#include <cstdlib>
 #include <deque>
+#include <fstream>
 #include <iostream>
 
 #include "annotation_server/served_annotation.hpp"
@@ -72,7 +74,7 @@ class AnnotationCrowdTest : public ::testing::Test {
 
 TEST_F(AnnotationCrowdTest, AGoodPageAmong63HostileOnes) {
   constexpr int kActions{10};
-  constexpr double kMost_ms{test::kSanitized ? 60'000.0 : 3'000.0};
+  constexpr double kMost_ms{test::kSanitized ? 60'000.0 : 5'000.0};
   ServedAnnotation served{{"annotate", (folder_ / "many.bin").string(), "--no-browser"}};
   ASSERT_TRUE(served.is_served()) << served.program().err();
   PageSocket good = served.page(1000);
@@ -112,6 +114,83 @@ TEST_F(AnnotationCrowdTest, AGoodPageAmong63HostileOnes) {
   EXPECT_GE(answered, 2 * kOthers);
   EXPECT_GT(meanwhile, kActions / 2) << "they are served, too";
   EXPECT_LT(ms.back(), kMost_ms);
+}
+
+/// More under SACCADE_TEST_ACTIONS, say a million.
+int flood_size() {
+  const char* const given = std::getenv("SACCADE_TEST_ACTIONS");
+  return given == nullptr ? 2000 : std::atoi(given);
+}
+
+/// Largest, MiB; 0 where it is not told.
+double most_memory_mib(pid_t program) {
+  std::ifstream status{"/proc/" + std::to_string(program) + "/status"};
+  for (std::string line; std::getline(status, line);) {
+    if (line.starts_with("VmHWM:")) return std::stod(line.substr(6)) / 1024.0;
+  }
+  return 0.0;
+}
+
+/// Eight pages send all they can for a minute, whether it is read or not; then the program is killed.
+TEST_F(AnnotationCrowdTest, AMinuteOfActionsWithoutWaiting) {
+  constexpr int kPages{8};
+  constexpr double kMost_ms{60'000.0};
+  constexpr std::uint64_t kFirst{1};
+  const int each = flood_size() / kPages;
+  folder_.write("few.xyz", "0 0 0\n0.1 0 0\n0 0.1 0\n0.1 0.1 0\n");
+  const test::Arguments serve{"annotate", (folder_ / "few.xyz").string(), "--no-browser"};
+  std::vector<int> acknowledged(kPages, 0);
+  std::atomic<int> sent{0};
+  {
+    ServedAnnotation served{serve};
+    ASSERT_TRUE(served.is_served()) << served.program().err();
+    std::deque<PageSocket> pages;
+    for (int i = 0; i < kPages; ++i) {
+      ASSERT_EQ(pages.emplace_back(served.page(kFirst + static_cast<std::uint64_t>(i))).open(0, 1).at("ok"), true);
+    }
+    std::vector<std::thread> threads;
+    std::atomic<int> all{0};
+    for (std::size_t i = 0; i < kPages; ++i) {
+      threads.emplace_back([&page = pages[i], &sent, each] {
+        for (int k = 0; k < each; ++k, ++sent) {
+          const json action{{"do", "set"}, {"label", 1 + k % 7}, {"points", {k % 4}}};
+          if (!page.send({{"type", "action"}, {"action", action}})) return;
+        }
+      });
+      threads.emplace_back([&page = pages[i], &count = acknowledged[i], &all] {
+        while (const auto message = page.receive()) {
+          if (message->value("type", "") != "answer") continue;
+          EXPECT_TRUE(message->value("ok", false)) << message->dump();
+          ++count;
+          ++all;
+        }
+      });
+    }
+    const Stopwatch stopwatch;
+    while (all < kPages * each && stopwatch.elapsed_ms() < kMost_ms) {
+      std::this_thread::sleep_for(std::chrono::milliseconds{10});
+    }
+    const double took_ms = stopwatch.elapsed_ms();
+    const double memory_mib = most_memory_mib(served.program().id());
+    served.program().send(SIGKILL);
+    for (std::thread& thread : threads) thread.join();
+    std::cout << "of " << kPages * each << " actions " << sent << " were sent and " << all << " acknowledged in "
+              << took_ms / 1000.0 << " s; at most " << memory_mib << " MiB\n";
+    EXPECT_GT(all, 0);
+    if (!test::kSanitized) {
+      EXPECT_LT(memory_mib, 300.0);
+    }
+  }
+  ServedAnnotation served{serve};
+  ASSERT_TRUE(served.is_served()) << served.program().err();
+  for (std::size_t i = 0; i < kPages; ++i) {
+    PageSocket page = served.page(kFirst + i);
+    const json opened = page.open();
+    EXPECT_TRUE(opened.at("read_only").is_null());
+    EXPECT_GE(opened.at("client_actions"), acknowledged[i]);
+    EXPECT_LE(opened.at("client_actions"), each);
+    EXPECT_TRUE(page.act({{"do", "set"}, {"label", 9}, {"points", {3}}}).value("ok", false));
+  }
 }
 
 }  // namespace

@@ -74,6 +74,7 @@ class RunningProgram {
   [[nodiscard]] std::string out() const { return text_of(folder_ / "out"); }
   [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
   void send(int signal) const { ::kill(pid_, signal); }
+  [[nodiscard]] pid_t id() const { return pid_; }
   /// Whether the text shows up on standard error within 120 s.
   [[nodiscard]] bool wait_for(const std::string& text) const {
     for (int i = 0; i < 24000; ++i) {
