@@ -88,6 +88,7 @@ class Fair : public ServedPage {};
 TEST_F(Fair, WhoAsksLittleWaitsForAboutOneQuestion) {
   constexpr int kCrowd{40};
   static constexpr milliseconds kSlow{10};
+  constexpr std::chrono::seconds kPatience{30};
   std::atomic<int> slow{0};
   service_->on_message = [server = server_.get(), &slow](ConnectionId from, const std::string& text) {
     if (text == "slow") std::this_thread::sleep_for(kSlow);
@@ -104,23 +105,26 @@ TEST_F(Fair, WhoAsksLittleWaitsForAboutOneQuestion) {
       while (!over && floods.read_message()) floods.send_message("slow");
     });
   }
-  EXPECT_TRUE(eventually([&slow] { return slow >= 2 * kCrowd; })) << "each has had its turn";
+  EXPECT_TRUE(eventually([&slow] { return slow >= 2 * kCrowd; }, kPatience)) << "each has had its turn";
   const int before = slow;
   std::vector<int> waited;  // for so many questions of others
-  for (int i = 0; i < 60; ++i) {
+  // On a busy machine the others ask again late: we go on until they were served as well.
+  const auto both_served = [&] {
     const int begin = slow;
     good.send_message("quick");
-    ASSERT_TRUE(good.read_message());
+    if (!good.read_message()) throw std::runtime_error{"no answer"};
     waited.push_back(slow - begin);
-  }
-  EXPECT_GT(slow - before, 20) << "the others were served meanwhile";
+    return waited.size() >= 60 && slow - before > 20;
+  };
+  EXPECT_TRUE(eventually(both_served, kPatience)) << slow - before << " of the others', ours " << waited.size();
   over = true;
   for (std::thread& one : crowd) one.join();
   server_.reset();  // which still does what they asked
+  ASSERT_FALSE(waited.empty());
   std::sort(waited.begin(), waited.end());
-  std::cout << "a quick question among " << kCrowd << " connections with slow ones: waits for " << waited[30]
-            << " of them (median), " << waited.back() << " at most\n";
-  EXPECT_LE(waited[30], 2);
+  std::cout << "a quick question among " << kCrowd << " connections with slow ones: waits for "
+            << waited[waited.size() / 2] << " of them (median), " << waited.back() << " at most\n";
+  EXPECT_LE(waited[waited.size() / 2], 2);
   EXPECT_LE(waited.back(), 6);
 }
 
