@@ -61,14 +61,15 @@ class OpenAnnotation {
 /// For what is to be done: without actions as it was saved.
 Result<OpenAnnotation> open_annotation(const CloudJob& job, bool changes, const LoadedCloud& cloud,
                                        const std::optional<SavedSession>& saved,
-                                       const std::shared_ptr<const Neighbourhood>& graph) {
+                                       const std::shared_ptr<const Neighbourhood>& graph, const Executor& executor) {
   if (job.session.empty() || !changes) {
-    Annotation annotation{graph};
+    Annotation annotation{graph, executor};
     if (saved) annotation.restore(saved->actions);
     return OpenAnnotation{std::move(annotation)};
   }
-  SACCADE_TRY(AnnotationSession session, AnnotationSession::open_or_create(job.session, cloud.path.filename().string(),
-                                                                           hash_positions(cloud.points), graph));
+  SACCADE_TRY(AnnotationSession session,
+              AnnotationSession::open_or_create(job.session, cloud.path.filename().string(),
+                                                hash_positions(cloud.points), graph, executor));
   if (session.read_only()) return *session.read_only();
   return OpenAnnotation{std::move(session)};
 }
@@ -198,7 +199,7 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
   }
   if (!before) seeds.reset();  // a folder's seeds begin what is not begun
   const bool changes = !actions.empty() || seeds;
-  SACCADE_TRY(OpenAnnotation annotation, open_annotation(job, changes, cloud, saved, graph));
+  SACCADE_TRY(OpenAnnotation annotation, open_annotation(job, changes, cloud, saved, graph, executor));
   if (seeds) SACCADE_CHECK(plant_seeds(*seeds, *before, options.client, annotation, made));
   SACCADE_CHECK(define_presets(actions.presets, options.client, annotation));
   SACCADE_CHECK(replay(options, actions.script, cloud, annotation, made, executor, progress));

@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <iterator>
 #include <optional>
 #include <string>
 #include <unordered_map>
@@ -26,20 +27,26 @@ Rgba rgba_of(const Eigen::Vector3f& color) {
 /// Gathers points by their label.
 class Grouping {
  public:
-  void add(std::uint32_t point, std::uint32_t label) {
-    if (groups_.empty() || label != last_label_) {
-      last_label_ = label;
-      const auto [found, is_new] = place_of_.emplace(label, groups_.size());
-      if (is_new) groups_.push_back({label, {}});
-      last_ = found->second;
+  explicit Grouping(std::span<const std::uint32_t> labels) : labels_{labels} {}
+
+  /// Those that follow each other and have one label at once, as most do.
+  void add(std::span<const std::uint32_t> points) {
+    for (std::size_t end{0}; !points.empty(); points = points.subspan(end)) {
+      const std::uint32_t label = labels_[points.front()];
+      for (end = 1; end < points.size() && labels_[points[end]] == label;) ++end;
+      std::vector<std::uint32_t>& group = points_of(label);
+      group.insert(group.end(), points.begin(), points.begin() + static_cast<std::ptrdiff_t>(end));
     }
-    groups_[last_].points.push_back(point);
   }
-  [[nodiscard]] LabelGroups finish() const {
+  [[nodiscard]] LabelGroups finish() && {
     LabelGroups made;
-    for (const Group& group : groups_) {
+    for (Group& group : groups_) {
       made.list.push_back({group.label, group.points.size()});
-      made.points.insert(made.points.end(), group.points.begin(), group.points.end());
+      if (made.points.empty()) {
+        made.points = std::move(group.points);
+      } else {
+        made.points.insert(made.points.end(), group.points.begin(), group.points.end());
+      }
     }
     return made;
   }
@@ -49,10 +56,15 @@ class Grouping {
     std::uint32_t label;
     std::vector<std::uint32_t> points;
   };
+  std::vector<std::uint32_t>& points_of(std::uint32_t label) {
+    const auto [found, is_new] = place_of_.emplace(label, groups_.size());
+    if (is_new) groups_.push_back({label, {}});
+    return groups_[found->second].points;
+  }
+
+  std::span<const std::uint32_t> labels_;  ///< of the cloud
   std::vector<Group> groups_;
   std::unordered_map<std::uint32_t, std::size_t> place_of_;
-  std::uint32_t last_label_{0};
-  std::size_t last_{0};
 };
 
 json graph_json(const NeighbourhoodConfig& graph) {
@@ -120,21 +132,27 @@ std::vector<ControlPointRow> control_points_now(std::span<const std::uint32_t> p
 }
 
 LabelGroups groups_of(std::span<const std::uint32_t> points, const OpenCloud& cloud, std::size_t shown) {
-  const std::span<const std::uint32_t> labels = cloud.annotation().labels();
-  Grouping grouping;
-  for (const std::uint32_t point : points) {
-    if (cloud.order().is_among(point, shown)) grouping.add(point, labels[point]);
+  Grouping grouping{cloud.annotation().labels()};
+  if (shown == cloud.order().size()) {  // none that is not finite has ever had a label
+    grouping.add(points);
+  } else {
+    std::vector<std::uint32_t> there;
+    std::copy_if(points.begin(), points.end(), std::back_inserter(there),
+                 [&](std::uint32_t point) { return cloud.order().is_among(point, shown); });
+    grouping.add(there);
   }
-  return grouping.finish();
+  return std::move(grouping).finish();
 }
 
 LabelGroups labelled_groups(const OpenCloud& cloud, std::size_t shown) {
   const std::span<const std::uint32_t> labels = cloud.annotation().labels();
-  Grouping grouping;
-  for (const std::uint32_t point : cloud.order().points(0, shown)) {
-    if (labels[point] != kNoLabel) grouping.add(point, labels[point]);
-  }
-  return grouping.finish();
+  std::vector<std::uint32_t> labelled;
+  const std::span<const std::uint32_t> among = cloud.order().points(0, shown);
+  std::copy_if(among.begin(), among.end(), std::back_inserter(labelled),
+               [&](std::uint32_t point) { return labels[point] != kNoLabel; });
+  Grouping grouping{labels};
+  grouping.add(labelled);
+  return std::move(grouping).finish();
 }
 
 void add_state(json& head, const OpenCloud& cloud, std::uint64_t client) {

@@ -29,7 +29,8 @@ CloudFacts facts_of(std::span<const Eigen::Vector3f> positions_m, const DisplayO
 }  // namespace
 
 OpenCloud::OpenCloud(LoadedCloud cloud, const Executor& executor)
-    : cloud_{std::move(cloud)},
+    : executor_{executor},
+      cloud_{std::move(cloud)},
       order_{cloud_.points.positions_m},
       facts_{facts_of(cloud_.points.positions_m, order_, executor)} {}
 
@@ -94,7 +95,7 @@ void OpenCloud::begin(const Built& built) {
   SACCADE_EXPECTS(opened_ && !session_);
   graph_ = built.graph;
   const std::vector<AnnotationAction> before = opened_->saved.actions;
-  session_ = AnnotationSession::restore(std::move(*opened_), graph_);
+  session_ = AnnotationSession::restore(std::move(*opened_), graph_, executor_);
   opened_.reset();
   census_.emplace(annotation());
   begin_as_far_as_can_be(built.seeds, before);
@@ -122,8 +123,8 @@ Status OpenCloud::begin_with(const std::optional<LabelSeeds>& seeds, std::span<c
 Result<std::filesystem::path> OpenCloud::begin_anew() {
   SACCADE_EXPECTS(ready());
   SACCADE_TRY(const std::filesystem::path kept, keep_aside(served_.session));
-  auto session =
-      AnnotationSession::open_or_create(served_.session, subject_.cloud_name, subject_.positions_hash, graph_);
+  auto session = AnnotationSession::open_or_create(served_.session, subject_.cloud_name, subject_.positions_hash,
+                                                   graph_, executor_);
   if (!session) {
     std::error_code ignored;  // the earlier one is at least there, under its new name
     std::filesystem::rename(kept, served_.session, ignored);

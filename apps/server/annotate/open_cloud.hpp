@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "saccade/core/executor.hpp"
 #include "saccade/core/progress.hpp"
 #include "server/annotate/annotated_cloud.hpp"
 #include "server/annotate/display_order.hpp"
@@ -114,6 +115,7 @@ class OpenCloud {
   void begin_as_far_as_can_be(const std::optional<LabelSeeds>& seeds, std::span<const AnnotationAction> before);
   void count(std::span<const AnnotationAction> actions);
 
+  Executor executor_;
   ServedCloud served_;
   SessionStart start_;
   LoadedCloud cloud_;

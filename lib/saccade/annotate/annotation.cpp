@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <numeric>
 #include <string>
+#include <utility>
 
 namespace saccade {
 namespace {
 
 /// Fewer changes of control points than this are made one by one.
 constexpr std::size_t kLeastRebuild{8};
+constexpr std::size_t kSuspectsAtOnce{16384};
 
 Error cannot(std::string why) { return {Errc::invalid_argument, std::move(why), "action"}; }
 
@@ -22,8 +24,11 @@ std::vector<std::uint32_t> in_order(std::span<const std::uint32_t> numbers) {
 
 }  // namespace
 
-Annotation::Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood)
-    : forest_{neighbourhood}, history_{neighbourhood->size()}, labels_(neighbourhood->size(), kNoLabel) {}
+Annotation::Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood, const Executor& executor)
+    : executor_{executor},
+      forest_{neighbourhood, executor},
+      history_{neighbourhood->size()},
+      labels_(neighbourhood->size(), kNoLabel) {}
 
 Status Annotation::validate(const AnnotationAction& action) const {
   const Neighbourhood& graph = forest_.neighbourhood();
@@ -141,24 +146,29 @@ void Annotation::change_forest(const std::vector<ControlPoint>& placed, const st
 }
 
 void Annotation::relabel() {
-  std::optional<ControlPoint> last;  // points one after the other mostly have the same one
-  Moved moved;
-  for (const std::uint32_t point : suspects_) {
-    std::uint32_t now = painted(point);
-    if (now == kNoLabel) {
-      const std::optional<std::uint32_t> root = forest_.root_of(point);
-      if (root && (!last || last->point != *root)) last = control_.at(*root);
-      if (root) now = last->label;
+  labels_now_.resize(suspects_.size());
+  executor_.parallel_for(suspects_.size(), kSuspectsAtOnce, [this](std::size_t begin, std::size_t end) {
+    std::optional<ControlPoint> last;  // points one after the other mostly have the same one
+    for (std::size_t i = begin; i < end; ++i) {
+      labels_now_[i] = painted(suspects_[i]);
+      if (labels_now_[i] != kNoLabel) continue;
+      const std::optional<std::uint32_t> root = forest_.root_of(suspects_[i]);
+      if (!root) continue;
+      if (!last || last->point != *root) last = control_.at(*root);
+      labels_now_[i] = last->label;
     }
-    const std::uint32_t before = labels_[point];
-    if (now == before) continue;
-    if (before != moved.from || now != moved.to) {
+  });
+  changed_points_.reserve(suspects_.size());
+  Moved moved;
+  for (std::size_t i = 0; i < suspects_.size(); ++i) {
+    const std::uint32_t before = std::exchange(labels_[suspects_[i]], labels_now_[i]);
+    if (labels_now_[i] == before) continue;
+    if (before != moved.from || labels_now_[i] != moved.to) {
       count(moved);
-      moved = {before, now, 0};
+      moved = {before, labels_now_[i], 0};
     }
     ++moved.points;
-    labels_[point] = now;
-    changed_points_.push_back(point);
+    changed_points_.push_back(suspects_[i]);
   }
   count(moved);
 }

@@ -32,7 +32,8 @@ struct Applied {
 /// (ActionHistory). The state depends on the actions alone. One writer; about 40 bytes per point.
 class Annotation {
  public:
-  explicit Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood);
+  /// What changes many points uses the executor's threads; the state is the same for any number of them.
+  explicit Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood, const Executor& executor = {});
 
   /// invalid_argument as check_action; for control points and paint on points without neighbours, as those that are not
   /// finite; for removing where no control point is, and moving from where none is.
@@ -74,6 +75,7 @@ class Annotation {
   void relabel();
   void count(const Moved& moved);
 
+  Executor executor_;
   ShortestPathForest forest_;
   ActionHistory history_;
   LabelTable table_;
@@ -81,7 +83,8 @@ class Annotation {
   std::vector<std::uint32_t> painted_;  ///< empty before the first paint
   std::vector<std::uint32_t> labels_;
   std::map<std::uint32_t, std::size_t> counts_;
-  std::vector<std::uint32_t> suspects_;  ///< points whose label may change by this action, some twice
+  std::vector<std::uint32_t> suspects_;    ///< points whose label may change by this action, some twice
+  std::vector<std::uint32_t> labels_now_;  ///< of the suspects
   std::vector<std::uint32_t> changed_points_;
   std::vector<std::uint32_t> changed_control_points_;
   std::vector<std::uint32_t> changed_labels_;

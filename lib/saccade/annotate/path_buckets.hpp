@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <bit>
 #include <cstdint>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -25,6 +26,11 @@ namespace saccade {
 /// nearer after all is looked at again. Empty between searches; one per search at a time.
 class PathBuckets {
  public:
+  struct Reached {
+    std::uint32_t path;  ///< in path units
+    std::uint32_t node;
+  };
+
   /// The neighbourhood stays where it is.
   explicit PathBuckets(const Neighbourhood& neighbourhood)
       : neighbourhood_{&neighbourhood},
@@ -41,30 +47,63 @@ class PathBuckets {
     fetch_edges(*neighbourhood_, node);
   }
 
-  /// Calls visit(path, node), the shorter paths first, until there is none; visit may push what is not shorter.
-  template <class Visit>
-  void drain(const Visit& visit) {
-    for (std::size_t b = first_; b <= last_; ++b) {
-      std::vector<Reached>& bucket = buckets_[b];
-      for (std::size_t i = 0; i < bucket.size(); ++i) {
-        if (i + kAhead < bucket.size()) fetch_edges(*neighbourhood_, bucket[i + kAhead].node);
-        const Reached reached = bucket[i];
+  /// Calls visit(path, node), the shorter paths first, until there is none or goes_on(), asked before each bucket, is
+  /// false; visit may push what is not shorter.
+  template <class Visit, class GoesOn>
+  void drain(const Visit& visit, const GoesOn& goes_on) {
+    while (std::vector<Reached>* bucket = nearest()) {
+      if (!goes_on()) return;
+      for (std::size_t i = 0; i < bucket->size(); ++i) {
+        if (i + kAhead < bucket->size()) fetch_edges(*neighbourhood_, (*bucket)[i + kAhead].node);
+        const Reached reached = (*bucket)[i];
         visit(reached.path, reached.node);
       }
-      bucket.clear();
+      bucket->clear();
     }
-    first_ = buckets_.size();
-    last_ = 0;
+  }
+
+  template <class Visit>
+  void drain(const Visit& visit) {
+    drain(visit, [] { return true; });
+  }
+
+  /// The number of the bucket of the shortest paths.
+  [[nodiscard]] std::optional<std::size_t> nearest_length() {
+    if (nearest() == nullptr) return std::nullopt;
+    return first_;
+  }
+  [[nodiscard]] std::size_t count() const {
+    std::size_t count{0};
+    for (std::size_t b = first_; b <= last_; ++b) count += buckets_[b].size();
+    return count;
+  }
+  /// Moves to the end of `taken` up to `most` of those with about the shortest paths, who came first; or half of them.
+  void take(std::size_t most, std::vector<Reached>& taken) {
+    if (std::vector<Reached>* bucket = nearest()) move_first(*bucket, std::min(most, bucket->size()), taken);
+  }
+  void take_half(std::vector<Reached>& taken) {
+    if (std::vector<Reached>* bucket = nearest()) move_first(*bucket, (bucket->size() + 1) / 2, taken);
   }
 
  private:
-  struct Reached {
-    std::uint32_t path;  ///< in path units
-    std::uint32_t node;
-  };
-
-  static constexpr int kMostBucketsLog2{15};
+  static constexpr int kMostBucketsLog2{14};
   static constexpr std::size_t kAhead{6};  ///< nodes of a bucket
+
+  /// The first bucket that is not empty; none where all are.
+  [[nodiscard]] std::vector<Reached>* nearest() {
+    for (; first_ <= last_; ++first_) {
+      if (!buckets_[first_].empty()) return &buckets_[first_];
+    }
+    first_ = buckets_.size();
+    last_ = 0;
+    return nullptr;
+  }
+
+  static void move_first(std::vector<Reached>& bucket, std::size_t count, std::vector<Reached>& taken) {
+    const auto end = bucket.begin() + static_cast<std::ptrdiff_t>(count);
+    taken.insert(taken.end(), bucket.begin(), end);
+    bucket.erase(bucket.begin(), end);
+  }
 
   /// Of equal length, half of the edges are not shorter: few nodes are looked at twice.
   static unsigned bucket_shift(const Neighbourhood& neighbourhood) {

@@ -6,56 +6,42 @@
 #include <cmath>
 #include <limits>
 
+#include "saccade/annotate/parallel_spread.hpp"
+
 namespace saccade {
 namespace {
 
-constexpr unsigned kPathShift{32};
-constexpr std::uint64_t kNoPath{std::uint64_t{kPathUnits} << kPathShift};
-constexpr std::size_t kEdgesAtOnce{32};
-
-std::uint64_t reach_of(std::uint32_t path, std::uint32_t root) { return std::uint64_t{path} << kPathShift | root; }
-std::uint32_t path_of(std::uint64_t reach) { return static_cast<std::uint32_t>(reach >> kPathShift); }
-std::uint32_t root_of_reach(std::uint64_t reach) { return static_cast<std::uint32_t>(reach); }
+/// A search that has gone through so many is shared among threads: these take as long as to wake another.
+constexpr std::size_t kNodesOfOneThread{4096};
 
 }  // namespace
 
-ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood)
+ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood, const Executor& executor)
     : neighbourhood_{std::move(neighbourhood)},
       reach_(neighbourhood_->size(), kNoPath),
       is_start_(neighbourhood_->size(), false),
-      queue_{*neighbourhood_} {}
+      queue_{*neighbourhood_},
+      executor_{executor} {}
 
 /// Not inline, it took a tenth of the time.
-[[gnu::always_inline]] inline void ShortestPathForest::reach(std::uint32_t node, Reach reach) {
+[[gnu::always_inline]] inline void ShortestPathForest::reach(std::uint32_t node, PathReach reach) {
   reach_[node] = reach;
   queue_.push(path_of(reach), node);
 }
 
 /// Algorithm 8.
 void ShortestPathForest::spread() {
-  queue_.drain([this](std::uint32_t path, std::uint32_t node) {
-    if (path_of(reach_[node]) != path) return;  // a shorter path came in between
+  const std::size_t most = touched_.size() + kNodesOfOneThread;
+  const bool has_help = executor_.threads() > 1;
+  const auto visit = [this](std::uint32_t path, std::uint32_t node) {
+    const PathReach to_node = reach_[node];
+    if (path_of(to_node) != path) return;  // a shorter path came in between
     touched_.push_back(node);
-    spread_from(node);
-  });
-}
-
-void ShortestPathForest::spread_from(std::uint32_t node) {
-  const Reach to_node = reach_[node];
-  const std::span<const Neighbourhood::Edge> edges = neighbourhood_->edges(node);
-  for (std::size_t first = 0; first < edges.size(); first += kEdgesAtOnce) {
-    const std::size_t count = std::min(kEdgesAtOnce, edges.size() - first);
-    std::uint32_t nearer{0};  // found without branches, as few are
-    for (std::size_t e = 0; e < count; ++e) {
-      const Neighbourhood::Edge& edge = edges[first + e];
-      const bool is_nearer = to_node + reach_of(edge.cost, 0) < reach_[edge.node];
-      nearer |= (is_nearer ? 1U : 0U) << e;
-    }
-    for (; nearer != 0; nearer &= nearer - 1) {
-      const Neighbourhood::Edge& edge = edges[first + static_cast<std::size_t>(std::countr_zero(nearer))];
-      reach(edge.node, to_node + reach_of(edge.cost, 0));
-    }
-  }
+    for_nearer_neighbours(*neighbourhood_, reach_.data(), node, to_node,
+                          [this](std::uint32_t next, PathReach along) { reach(next, along); });
+  };
+  queue_.drain(visit, [&] { return !has_help || touched_.size() < most; });
+  if (queue_.count() > 0) spread_in_parallel(*neighbourhood_, reach_, queue_, executor_, touched_);
 }
 
 void ShortestPathForest::rebuild(std::span<const Root> roots) {
@@ -120,14 +106,14 @@ void ShortestPathForest::clear_all_of(std::uint32_t root) {
 
 /// Clears the neighbours that belong to the root, too.
 /// @return how a node that was cleared is entered from other trees, or starts one.
-ShortestPathForest::Reach ShortestPathForest::clear_beside(std::uint32_t node, std::uint32_t root) {
-  Reach best{kNoPath};
+PathReach ShortestPathForest::clear_beside(std::uint32_t node, std::uint32_t root) {
+  PathReach best{kNoPath};
   if (is_start_[node]) {
     const Start& start = *start_of(neighbourhood_->point_of(node));
     best = reach_of(start.path, start.point);
   }
   for (const Neighbourhood::Edge& edge : neighbourhood_->edges(node)) {
-    Reach& beyond = reach_[edge.node];
+    PathReach& beyond = reach_[edge.node];
     if (beyond == kNoPath) continue;
     if (root_of_reach(beyond) == root) {
       beyond = kNoPath;
@@ -152,13 +138,13 @@ bool ShortestPathForest::is_root(std::uint32_t point) const {
 }
 
 std::optional<std::uint32_t> ShortestPathForest::root_of(std::uint32_t point) const {
-  const Reach reach = reach_[neighbourhood_->node_of(point)];
+  const PathReach reach = reach_[neighbourhood_->node_of(point)];
   if (reach == kNoPath) return std::nullopt;
   return root_of_reach(reach);
 }
 
 double ShortestPathForest::path_length(std::uint32_t point) const {
-  const Reach reach = reach_[neighbourhood_->node_of(point)];
+  const PathReach reach = reach_[neighbourhood_->node_of(point)];
   if (reach == kNoPath) return std::numeric_limits<double>::infinity();
   return path_of(reach) * (neighbourhood_->config().max_path / kPathUnits);
 }
@@ -178,10 +164,10 @@ bool ShortestPathForest::is_large(std::size_t nodes) const {
   return nodes > reach_.size() / kShare;
 }
 
-/// Nodes become points. Of many, each is named once, and near each other are those that are near in memory: what is
-/// done with them waits for memory else.
+/// Nodes become points. Of many, each is named once, in the order in memory: what is done with them waits for memory
+/// else, and the order is the same for any number of threads.
 void ShortestPathForest::name_touched() {
-  if (is_large(touched_.size())) {
+  if (touched_.size() >= kNodesOfOneThread || is_large(touched_.size())) {
     constexpr std::size_t kBits{64};
     std::vector<std::uint64_t> marks(reach_.size() / kBits + 1, 0);
     for (const std::uint32_t node : touched_) marks[node / kBits] |= std::uint64_t{1} << node % kBits;
@@ -210,7 +196,7 @@ void ShortestPathForest::start_at(const Root& root) {
   const std::uint32_t node = neighbourhood_->node_of(root.point);
   is_start_[node] = true;
   starts_.insert(start_of(root.point), start);
-  const Reach begun = reach_of(start.path, root.point);
+  const PathReach begun = reach_of(start.path, root.point);
   if (begun < reach_[node]) reach(node, begun);
 }
 

@@ -10,6 +10,8 @@
 
 #include "saccade/annotate/neighbourhood.hpp"
 #include "saccade/annotate/path_buckets.hpp"
+#include "saccade/annotate/path_reach.hpp"
+#include "saccade/core/executor.hpp"
 
 namespace saccade {
 
@@ -25,7 +27,8 @@ struct Root {
 /// add and remove leaves exactly what rebuild gives with the roots that are left. One writer.
 class ShortestPathForest {
  public:
-  explicit ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood);
+  /// A search that goes far uses the executor's threads.
+  explicit ShortestPathForest(std::shared_ptr<const Neighbourhood> neighbourhood, const Executor& executor = {});
 
   [[nodiscard]] const Neighbourhood& neighbourhood() const { return *neighbourhood_; }
 
@@ -57,14 +60,10 @@ class ShortestPathForest {
     std::uint32_t point;
     std::uint32_t path;
   };
-  /// Path in the upper half, the root's point in the lower: the less, the nearer.
-  using Reach = std::uint64_t;
-
   void start_at(const Root& root);
-  void reach(std::uint32_t node, Reach reach);
+  void reach(std::uint32_t node, PathReach reach);
   void spread();
-  void spread_from(std::uint32_t node);
-  [[nodiscard]] Reach clear_beside(std::uint32_t node, std::uint32_t root);
+  [[nodiscard]] PathReach clear_beside(std::uint32_t node, std::uint32_t root);
   [[nodiscard]] bool belongs_to(std::uint32_t node, std::uint32_t root) const;
   void clear_all_of(std::uint32_t root);
   [[nodiscard]] bool is_large(std::size_t nodes) const;
@@ -72,12 +71,13 @@ class ShortestPathForest {
   [[nodiscard]] std::vector<Start>::const_iterator start_of(std::uint32_t point) const;
 
   std::shared_ptr<const Neighbourhood> neighbourhood_;
-  std::vector<Reach> reach_;    ///< per node
-  std::vector<bool> is_start_;  ///< per node
-  std::vector<Start> starts_;   ///< roots, by ascending point
+  std::vector<PathReach> reach_;  ///< per node
+  std::vector<bool> is_start_;    ///< per node
+  std::vector<Start> starts_;     ///< roots, by ascending point
   std::vector<std::uint32_t> touched_;
   PathBuckets queue_;
-  std::vector<Reach> entered_;
+  std::vector<PathReach> entered_;
+  Executor executor_;
 };
 
 }  // namespace saccade

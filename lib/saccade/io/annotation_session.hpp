@@ -31,12 +31,13 @@ class AnnotationSession {
   /// @return errors of AnnotationJournal::open_or_create. 10⁴ actions: milliseconds, and one build of the forest.
   [[nodiscard]] static Result<AnnotationSession> open_or_create(
       const std::filesystem::path& path, std::string cloud_name, std::uint64_t positions_hash,
-      const std::shared_ptr<const Neighbourhood>& neighbourhood);
+      const std::shared_ptr<const Neighbourhood>& neighbourhood, const Executor& executor = {});
 
   /// The same in two steps: the journal is locked and read before there is a graph. Expects one that fits the subject
   /// with which the journal was opened.
   [[nodiscard]] static AnnotationSession restore(AnnotationJournal::Opened opened,
-                                                 const std::shared_ptr<const Neighbourhood>& neighbourhood);
+                                                 const std::shared_ptr<const Neighbourhood>& neighbourhood,
+                                                 const Executor& executor = {});
 
   /// Errors of Annotation::validate; io_failure when the action could not be written: it was not done, and the session
   /// is read-only from then on. Undo and redo with nothing to do are no errors (Applied::done) and are not written.
