@@ -44,7 +44,11 @@ class FactList {
   }
   template <class Words>
   void number_of(const char* key, const char* name, const Words& words) {
-    if (const auto value = number(from_, key)) facts_.emplace_back(name, words(*value));
+    number_in(from_, key, name, words);
+  }
+  template <class Words>
+  void number_in(const json& part, const char* key, const char* name, const Words& words) {
+    if (const auto value = number(part, key)) facts_.emplace_back(name, words(*value));
   }
   void add(const char* name, std::string words) { facts_.emplace_back(name, std::move(words)); }
   [[nodiscard]] Facts take() { return std::move(facts_); }
@@ -54,8 +58,11 @@ class FactList {
   Facts facts_;
 };
 
-std::string voxels(double count) { return grouped(static_cast<std::size_t>(std::max(count, 0.0))) + " voxels"; }
-std::string whole(double count) { return grouped(static_cast<std::size_t>(std::max(count, 0.0))); }
+std::string whole(double count) {
+  constexpr double kMost{1e15};
+  return grouped(static_cast<std::size_t>(std::clamp(count, 0.0, kMost)));
+}
+std::string voxels(double count) { return whole(count) + " voxels"; }
 std::string gain_words(double gain) { return gain == std::floor(gain) ? whole(gain) : decimals(gain, 2); }
 
 std::string why_refused(const std::string& reason) {
@@ -110,10 +117,10 @@ Facts facts_of_run(const json& result) {
   const auto before = number(part(result, "initial"), "coverage");
   const auto after = number(final, "coverage");
   if (after) facts.add("coverage", (before ? percent(*before) + " → " : "") + percent(*after));
-  if (const auto left = number(final, "unknown_left")) facts.add("unknown left", voxels(*left));
-  if (const auto accuracy = number(final, "accuracy_m")) facts.add("accuracy", millimetres(*accuracy));
-  if (const auto chamfer = number(final, "chamfer_m")) facts.add("Chamfer distance", millimetres(*chamfer));
-  if (const auto score = number(final, "f_score")) facts.add("F-score at 5 mm", decimals(*score, 3));
+  facts.number_in(final, "unknown_left", "unknown left", voxels);
+  facts.number_in(final, "accuracy_m", "accuracy", millimetres);
+  facts.number_in(final, "chamfer_m", "Chamfer distance", millimetres);
+  facts.number_in(final, "f_score", "F-score at 5 mm", [](double score) { return decimals(score, 3); });
   facts.number_of("voxel_size_m", "voxel size", millimetres);
   facts.number_of("frames", "frames", whole);
   facts.text_of("tracking", "tracking");
@@ -147,7 +154,7 @@ Facts facts_of_view(const json& view) {
   facts.number_of("coverage", "coverage", percent);
   facts.number_of("unknown_left", "unknown left", voxels);
   const json attention = part(view, "attention");
-  if (const auto saliency = number(attention, "saliency")) facts.add("saliency", decimals(*saliency, 2));
+  facts.number_in(attention, "saliency", "saliency", [](double saliency) { return decimals(saliency, 2); });
   if (const auto why = text(attention, "why")) facts.add("attention", *why);
   facts.number_of("frames", "frames", whole);
   facts.number_of("motion_s", "motion", [](double s) { return decimals(s, 1) + " s"; });
