@@ -6,6 +6,7 @@
 #include <limits>
 
 #include "saccade/scene/embree_handles.hpp"
+#include "saccade/scene/paint.hpp"
 
 namespace saccade {
 namespace {
@@ -58,7 +59,8 @@ Rgb8 RayScene::Impl::color_at(const TriangleHit& hit, const Vector3d& p_world) c
   const TriangleMesh& mesh = meshes[hit.object].mesh;
   Vector3d color;
   if (mesh.colors.empty()) {
-    const Rgb8 plain = surface_color(object, object.T_world_object.inverse() * p_world);
+    const Vector3d p_object = object.T_world_object.inverse() * p_world;
+    const Rgb8 plain = paint_at(object, p_object, object.T_world_object.linear().transpose() * hit.normal_world).color;
     color = Vector3d{double(plain[0]), double(plain[1]), double(plain[2])};
   } else {
     const auto& [a, b, c] = mesh.triangles[hit.triangle];

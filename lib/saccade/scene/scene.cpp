@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "saccade/scene/paint.hpp"
+
 namespace saccade {
 namespace {
 
@@ -28,6 +30,9 @@ Status check_object(const SceneObject& object) {
   }
   if (!(std::isfinite(object.texture.size_m) && object.texture.size_m > 0.0)) {
     return bad("the size of a texture must be positive", where);
+  }
+  for (const Patch& patch : object.patches) {
+    if (const Status good = validate(patch); !good.ok()) return bad(good.error().message, where);
   }
   if (!(object.texture.darkening >= 0.0 && object.texture.darkening <= 1.0)) {
     return bad("the darkening of a texture is a share, within 0 and 1", where);

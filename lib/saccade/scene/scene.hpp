@@ -19,14 +19,32 @@ struct Texture {
   double darkening{0.55};  ///< brightness of the darker parts, relative to the colour
 };
 
+/// Something painted on the faces of a body that look along one axis of its frame; it has no thickness. Later ones
+/// cover earlier ones. Seen from outside, the faces ±x and ±y have z upwards and ±z has y upwards (−z: −y).
+struct Patch {
+  enum class Face { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
+  /// `glyph` is a letter or a digit of 3×5 cells; `print` is lines of small print, of the segment that it is on.
+  enum class Kind { rectangle, ellipse, glyph, print };
+  Face face{Face::plus_z};
+  Kind kind{Kind::rectangle};
+  Eigen::Vector2d center_m{Eigen::Vector2d::Zero()};  ///< to the right and upwards, from the frame's origin
+  Eigen::Vector2d size_m{0.1, 0.1};
+  Rgb8 color{40, 40, 40};
+  char glyph{'A'};       ///< A to Z, 0 to 9
+  double line_m{0.004};  ///< from line to line of print
+  std::string segment;   ///< what an annotator would call it; not used by print
+};
+
 struct SceneObject {
   std::string name;
   Shape shape;
   Pose T_world_object{Pose::Identity()};
   Rgb8 color{200, 200, 200};
   Texture texture{};
-  bool support{false};  ///< what objects stand on or lean at, such as a table or a wall; no object of interest
-  bool fixture{false};  ///< known beforehand: what moves the camera keeps clear of it
+  std::string segment{};         ///< the true segment of its unpainted surface; empty: its name
+  std::vector<Patch> patches{};  ///< what is painted on it
+  bool support{false};           ///< what objects stand on or lean at, such as a table or a wall; no object of interest
+  bool fixture{false};           ///< known beforehand: what moves the camera keeps clear of it
 };
 
 /// Lengths in metres, world frame with z up.
