@@ -1,0 +1,101 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/scene/color_camera.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saccade {
+namespace {
+
+/// Counter-based generator, as that of the depth noise.
+std::uint64_t scrambled(std::uint64_t x) {
+  x += 0x9E3779B97F4A7C15ULL;
+  x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
+  x = (x ^ (x >> 27U)) * 0x94D049BB133111EBULL;
+  return x ^ (x >> 31U);
+}
+
+/// Mean 0 and variance 1 from four uniform numbers of 16 bits; cut off at 3.5 by its nature.
+double nearly_normal(std::uint64_t key) {
+  const std::uint64_t bits = scrambled(key);
+  double sum = 0.0;
+  for (unsigned shift = 0; shift < 64; shift += 16) sum += static_cast<double>((bits >> shift) & 0xFFFFU) + 0.5;
+  return (sum / 65536.0 - 2.0) * 1.7320508075688772;  // √(12/4)
+}
+
+}  // namespace
+
+Status ColorCameraConfig::validate() const {
+  for (const double value : {electrons_at_white, target_light, time_constant_frames}) {
+    if (std::isfinite(value) && value > 0.0) continue;
+    return Error{Errc::invalid_argument, "electrons, target and time constant must be positive", "colour camera"};
+  }
+  if (!(std::isfinite(read_noise_electrons) && read_noise_electrons >= 0.0)) {
+    return Error{Errc::invalid_argument, "the read noise must not be negative", "colour camera"};
+  }
+  if (!(std::isfinite(max_gain) && max_gain >= 1.0)) {
+    return Error{Errc::invalid_argument, "the largest gain must be 1 at least", "colour camera"};
+  }
+  return {};
+}
+
+double linear_of_srgb(double encoded) {
+  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
+}
+
+double srgb_of_linear(double linear) {
+  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
+}
+
+double vignetting_at(const PinholeCamera& camera, double u, double v) {
+  const double cosine_squared = 1.0 / camera.ray(u, v).squaredNorm();
+  return cosine_squared * cosine_squared;
+}
+
+double next_gain(const ColorCameraConfig& config, double gain, double mean_light) {
+  if (!config.automatic_gain) return 1.0;
+  if (!(mean_light > 0.0)) return gain;
+  const double wanted = std::clamp(config.target_light / mean_light, 1.0 / config.max_gain, config.max_gain);
+  return gain * std::pow(wanted / gain, 1.0 - std::exp(-1.0 / config.time_constant_frames));
+}
+
+double mean_light(const LightImage& light, const PinholeCamera& camera, const ColorCameraConfig& config) {
+  SACCADE_EXPECTS(light.width() == camera.width && light.height() == camera.height && !light.empty());
+  double sum = 0.0;
+  for (int v = 0; v < light.height(); ++v) {
+    for (int u = 0; u < light.width(); ++u) {
+      const double share = config.vignetting == Vignetting::off ? 1.0 : vignetting_at(camera, u, v);
+      for (const float channel : light(u, v)) sum += share * channel;
+    }
+  }
+  return sum / (3.0 * static_cast<double>(light.size()));
+}
+
+ColorImage expose(const LightImage& light, const PinholeCamera& camera, const ColorCameraConfig& config, double gain,
+                  std::uint64_t frame) {
+  SACCADE_EXPECTS(config.validate().ok());
+  SACCADE_EXPECTS(light.width() == camera.width && light.height() == camera.height);
+  ColorImage image{light.width(), light.height()};
+  const std::uint64_t frame_key = scrambled(scrambled(config.seed ^ 0xC0104ULL) ^ frame);
+  const double read_variance = config.read_noise_electrons * config.read_noise_electrons;
+  for (int v = 0; v < light.height(); ++v) {
+    for (int u = 0; u < light.width(); ++u) {
+      const double share = config.vignetting == Vignetting::off ? 1.0 : vignetting_at(camera, u, v);
+      const auto pixel =
+          static_cast<std::uint64_t>(v) * static_cast<std::uint64_t>(light.width()) + static_cast<std::uint64_t>(u);
+      for (std::size_t k = 0; k < 3; ++k) {
+        double value = share * light(u, v)[k];
+        if (config.noise) {
+          const double sigma = std::sqrt(value * config.electrons_at_white + read_variance) / config.electrons_at_white;
+          value += sigma * nearly_normal(frame_key + 3U * pixel + k);
+        }
+        value = std::clamp(value * gain, 0.0, 1.0);  // the sensor saturates before anything is corrected
+        if (config.vignetting == Vignetting::corrected) value = std::min(1.0, value / share);
+        image(u, v)[k] = static_cast<std::uint8_t>(std::lround(255.0 * srgb_of_linear(value)));
+      }
+    }
+  }
+  return image;
+}
+
+}  // namespace saccade
