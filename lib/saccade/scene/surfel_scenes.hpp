@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// surfel_scene: scenes with small painted parts, made after the five of the thesis (§4.1.3, Fig. 4.4), with a path; not frozen yet.
+
+#include <array>
+#include <string_view>
+
+#include "saccade/scene/rendered_sequence.hpp"
+
+namespace saccade {
+
+constexpr std::array<std::string_view, 4> kSurfelScenes{"workshop-1", "workshop-2", "magazines-1", "magazines-2"};
+
+struct SurfelScene {
+  Scene scene;
+  HandHeldPath path;
+  std::size_t frames{0};  ///< as many as the thesis' scene has (Table 4.1)
+};
+
+/// not_found with the known names.
+[[nodiscard]] Result<SurfelScene> surfel_scene(std::string_view name);
+
+}  // namespace saccade
