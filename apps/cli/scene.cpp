@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade scene list|render|export: the scenes there are, a picture of one, and its truth for others to check against.
+// saccade scene list|render|export, and sequence: the scenes there are, a picture of one, and its truth for others to
+// check against.
 #include <CLI/CLI.hpp>
 #include <array>
 #include <iomanip>
@@ -21,6 +22,8 @@
 #include "saccade/io/scene_yaml.hpp"
 #include "saccade/report/viewpoint.hpp"
 #include "saccade/scene/surface_samples.hpp"
+#include "saccade/scene/surfel_scenes.hpp"
+#include "scene_sequence.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -135,6 +138,14 @@ Result<int> run_list(const GlobalOptions& global) {
       std::cout << std::left << std::setw(16) << builtin.name << scene.objects.size() << " objects\n";
     }
   }
+  for (const std::string_view name : kSurfelScenes) {
+    SACCADE_TRY(const SurfelScene made, surfel_scene(name));
+    const std::size_t segments = SegmentTable{made.scene}.names().size() - 1;
+    scenes.push_back({{"name", name}, {"objects", made.scene.objects.size()}, {"regions", 0}, {"segments", segments}});
+    if (!global.json_to_stdout()) {
+      std::cout << std::left << std::setw(16) << name << segments << " segments, for surfels\n";
+    }
+  }
   if (!global.json_to_stdout())
     std::cout << "clutter:SEED    eight random objects\nFILE            a scene of your own\n";
   SACCADE_CHECK(finish(global, global.executor(), stopwatch, {{"scenes", std::move(scenes)}}));
@@ -212,6 +223,8 @@ void add_scene(CLI::App& program, const GlobalOptions& global, Action& action) {
     }
     action = [options, &global] { return run_render(*options, global); };
   });
+
+  add_scene_sequence(*command, global, action);
 
   CLI::App* truth = command->add_subcommand("export", "the true mesh, labels and observable surface, as PLY");
   add_common(truth, "folder for the results; made if it is not there", "DIR");

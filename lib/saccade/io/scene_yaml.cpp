@@ -12,6 +12,7 @@
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/yaml_map.hpp"
 #include "saccade/scene/random_clutter.hpp"
+#include "saccade/scene/surfel_scenes.hpp"
 
 namespace saccade {
 namespace {
@@ -244,6 +245,12 @@ Result<Scene> find_scene(const std::string& name_or_path) {
   for (const BuiltinScene& builtin : builtin_scenes()) {
     if (builtin.name == name_or_path) return parse_scene(builtin.yaml);
     known += std::string{builtin.name} + ", ";
+  }
+  for (const std::string_view name : kSurfelScenes) {
+    known += std::string{name} + ", ";
+    if (name != name_or_path) continue;
+    SACCADE_TRY(SurfelScene made, surfel_scene(name));
+    return std::move(made.scene);
   }
   if (name_or_path.starts_with(kClutterPrefix)) {
     const std::string digits = name_or_path.substr(kClutterPrefix.size());

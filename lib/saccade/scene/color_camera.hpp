@@ -24,7 +24,7 @@ struct ColorCameraConfig {
   /// Poissonian and Gaussian noise (Foi et al., IEEE TIP 2008) of so many electrons at white, and to read out.
   bool noise{true};
   double electrons_at_white{4000.0};
-  double read_noise_electrons{15.0};
+  double read_noise_electrons{10.0};
   /// The gain follows the image's mean light: it moves towards the target with a time constant, within its limits.
   bool automatic_gain{false};
   double target_light{0.25};

@@ -13,7 +13,8 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kRowsPerChunk{8};
 constexpr int kRaysAcrossPixel{4};
-constexpr double kDiffuse{0.45};  // of one light; the rest comes from everywhere
+constexpr double kLampShare{0.45};  // of the light at the middle of the scene; the rest comes from everywhere
+constexpr double kLampDistance_m{2.5};
 
 /// std::mt19937_64 is the same everywhere; the distributions of the standard library are not.
 class NormalDice {
@@ -61,7 +62,8 @@ Pose moved(const Pose& T, const Vector3d& by_m, const Vector3d& by_rad) {
 }
 
 Sample sample_at(const RayScene& scene, const std::vector<Pose>& T_object_world, const SegmentTable& segments,
-                 const PinholeCamera& camera, const Pose& T_world_camera, double u, double v) {
+                 const PinholeCamera& camera, const Vector3d& lamp_world, const Pose& T_world_camera, double u,
+                 double v) {
   const Vector3d direction = T_world_camera.linear() * camera.ray(u, v);
   const auto hit = scene.cast(T_world_camera.translation(), direction);
   if (!hit) return {};
@@ -69,8 +71,10 @@ Sample sample_at(const RayScene& scene, const std::vector<Pose>& T_object_world,
   const Pose& T = T_object_world[hit->object];
   const Vector3d p_world = T_world_camera.translation() + hit->t * direction;
   const Paint paint = paint_at(object, T * p_world, T.linear() * hit->normal_world);
-  static const Vector3d to_light = Vector3d{0.3, -0.5, 0.8}.normalized();
-  const double lit = (1.0 - kDiffuse) + kDiffuse * std::max(0.0, hit->normal_world.dot(to_light));
+  const Vector3d to_lamp = lamp_world - p_world;
+  const double nearness = kLampDistance_m / to_lamp.norm();
+  const double facing = std::max(0.0, hit->normal_world.dot(to_lamp.normalized()));
+  const double lit = (1.0 - kLampShare) + kLampShare * facing * std::min(4.0, nearness * nearness);
   Sample sample;
   for (std::size_t k = 0; k < 3; ++k) {
     sample.light[static_cast<Eigen::Index>(k)] = static_cast<float>(lit * linear_table()[paint.color[k]]);
@@ -182,8 +186,11 @@ Result<RenderedSequence> RenderedSequence::create(RayScene scene, std::vector<Po
 LightImage RenderedSequence::render_light(const Pose& T_world_camera) {
   const int width = config_.camera.width;
   const int height = config_.camera.height;
+  const Box& workspace = scene_.scene().workspace;
+  const Vector3d lamp_world =
+      0.5 * (workspace.min + workspace.max) + kLampDistance_m * Vector3d{0.3, -0.5, 0.8}.normalized();
   const auto at = [&](double u, double v) {
-    return sample_at(scene_, T_object_world_, segments_, config_.camera, T_world_camera, u, v);
+    return sample_at(scene_, T_object_world_, segments_, config_.camera, lamp_world, T_world_camera, u, v);
   };
   const auto each_row = [&](const auto& work) {
     executor_.parallel_for(static_cast<std::size_t>(height), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
@@ -227,15 +234,19 @@ DepthImage RenderedSequence::measured(const Pose& T_world_camera) const {
   if (!config_.depth_noise) return truth_.depth;
   DepthImage shifted = truth_.depth;
   if (config_.lateral_noise_px > 0.0) {
-    NormalDice dice{config_.depth_noise->seed + 0xD1B54A32D192ED03ULL * (next_ + 1)};
-    for (int v = 0; v < shifted.height(); ++v) {
-      for (int u = 0; u < shifted.width(); ++u) {
-        const auto du = static_cast<int>(std::lround(config_.lateral_noise_px * dice.normal()));
-        const auto dv = static_cast<int>(std::lround(config_.lateral_noise_px * dice.normal()));
-        shifted(u, v) =
-            truth_.depth(std::clamp(u + du, 0, shifted.width() - 1), std::clamp(v + dv, 0, shifted.height() - 1));
+    const int width = shifted.width();
+    const int height = shifted.height();
+    const std::uint64_t frame_key = config_.depth_noise->seed * 0xD1B54A32D192ED03ULL + next_ * 0x9E3779B97F4A7C15ULL;
+    executor_.parallel_for(static_cast<std::size_t>(height), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
+      for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+        NormalDice dice{frame_key ^ static_cast<std::uint64_t>(v)};
+        for (int u = 0; u < width; ++u) {
+          const auto du = static_cast<int>(std::lround(config_.lateral_noise_px * dice.normal()));
+          const auto dv = static_cast<int>(std::lround(config_.lateral_noise_px * dice.normal()));
+          shifted(u, v) = truth_.depth(std::clamp(u + du, 0, width - 1), std::clamp(v + dv, 0, height - 1));
+        }
       }
-    }
+    });
   }
   return with_noise(shifted, *config_.depth_noise, next_);
 }

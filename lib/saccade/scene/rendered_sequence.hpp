@@ -60,7 +60,8 @@ struct SequenceTruth {
 
 /// One caller at a time. The n-th frame is the same on every machine and for every thread count. Depth is that of one
 /// ray per pixel; colour is the mean light of 4×4 rays where the pixel's neighbours are of another segment or body, or
-/// it lies in print, and of one ray elsewhere. Nothing throws a shadow, and nothing is blurred by motion.
+/// it lies in print, and of one ray elsewhere. A lamp shines from 2.5 m over the middle of the workspace, besides light
+/// from everywhere. Nothing throws a shadow, and nothing is blurred by motion.
 class RenderedSequence final : public CameraSource {
  public:
   /// invalid_argument as the parts of the configuration, or without poses.

@@ -23,7 +23,7 @@ struct Texture {
 /// cover earlier ones. Seen from outside, the faces ±x and ±y have z upwards and ±z has y upwards (−z: −y).
 struct Patch {
   enum class Face { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
-  /// `glyph` is a letter or a digit of 3×5 cells; `print` is lines of small print, of the segment that it is on.
+  /// `glyph` is a letter or a digit of 5×7 cells; `print` is lines of small print, of the segment that it is on.
   enum class Kind { rectangle, ellipse, glyph, print };
   Face face{Face::plus_z};
   Kind kind{Kind::rectangle};

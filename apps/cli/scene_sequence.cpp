@@ -1,0 +1,258 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade scene sequence: a hand-held camera before a scene for surfels, as a folder of frames with their truth.
+#include "scene_sequence.hpp"
+
+#include <CLI/CLI.hpp>
+#include <algorithm>
+#include <array>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "options.hpp"
+#include "progress_bar.hpp"
+#include "run_folder.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/camera_io.hpp"
+#include "saccade/io/depth_encoding.hpp"
+#include "saccade/io/image_io.hpp"
+#include "saccade/io/json_io.hpp"
+#include "saccade/io/trajectory_io.hpp"
+#include "saccade/scene/surfel_scenes.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+constexpr const char* kDocument{"sequence.json"};
+constexpr const char* kCamera{"camera.json"};
+constexpr const char* kTruePoses{"true-poses.txt"};
+/// The depth is written last: what reads the folder knows a frame by it.
+constexpr std::array<std::string_view, 4> kFrameFiles{".color.png", ".label.png", ".pose.txt", ".depth.png"};
+constexpr int kSmallestEdge_px{16};
+constexpr int kLargestEdge_px{2048};
+
+struct SequenceOptions {
+  std::string scene;
+  std::filesystem::path out;
+  std::optional<std::size_t> frames;
+  std::string sensor;
+  std::optional<std::pair<int, int>> image_size;
+  std::string depth_noise{"on"};
+  std::string pose_noise{"on"};
+  std::string color_noise{"on"};
+  std::string vignetting;
+  std::string automatic_gain;
+  bool force{false};
+};
+
+std::string frame_name(std::size_t index) {
+  std::ostringstream name;
+  name << "frame-" << std::setw(6) << std::setfill('0') << index;
+  return name.str();
+}
+
+/// What the scene and the options say together.
+struct Sequence {
+  SurfelScene scene;
+  std::size_t frames{0};
+  RenderedSequenceConfig config;
+  json switches;
+};
+
+Result<Sequence> sequence_of(const SequenceOptions& options, std::uint64_t seed) {
+  SACCADE_TRY(SurfelScene scene, surfel_scene(options.scene));
+  const std::string sensor{options.sensor.empty() ? std::string{scene.sensor} : options.sensor};
+  SACCADE_TRY(RenderedSequenceConfig config, surfel_sensor(sensor));
+  config.camera = CameraOptions{{}, {}, options.image_size, {}, {}}.camera(config.camera);
+  SACCADE_CHECK(config.camera.validate());
+  config.color = scene.color;
+  config.color.noise = options.color_noise == "on";
+  if (!options.automatic_gain.empty()) config.color.automatic_gain = options.automatic_gain == "on";
+  if (!options.vignetting.empty()) {
+    config.color.vignetting = options.vignetting == "on"    ? Vignetting::on
+                              : options.vignetting == "off" ? Vignetting::off
+                                                            : Vignetting::corrected;
+  }
+  if (options.depth_noise == "off") {
+    config.depth_noise.reset();
+    config.time_of_flight.reset();
+  }
+  if (options.pose_noise == "off") config.pose_noise.reset();
+  config.color.seed = seed;
+  if (config.pose_noise) config.pose_noise->seed = seed;
+  if (config.depth_noise) config.depth_noise->seed = seed;
+  if (config.time_of_flight) config.time_of_flight->noise.seed = seed;
+  constexpr std::array<const char*, 3> kVignetting{"off", "on", "corrected"};
+  json switches{{"sensor", sensor},
+                {"depth_noise", options.depth_noise},
+                {"pose_noise", options.pose_noise},
+                {"color_noise", options.color_noise},
+                {"vignetting", kVignetting[static_cast<std::size_t>(config.color.vignetting)]},
+                {"auto_gain", config.color.automatic_gain ? "on" : "off"}};
+  const std::size_t frames = options.frames.value_or(scene.frames);
+  return Sequence{std::move(scene), frames, config, std::move(switches)};
+}
+
+/// An earlier sequence must not end where this one does, with other frames behind it.
+Status remove_earlier(const RunFolder& out) {
+  std::error_code code;
+  if (!std::filesystem::is_regular_file(out / kDocument, code)) return {};
+  SACCADE_TRY(const json earlier, read_json(out / kDocument));
+  if (!earlier.is_object() || !earlier.contains("frames") || !earlier.at("frames").is_number_unsigned()) {
+    return Error{Errc::corrupt_data, "is no document of a sequence; remove it, or choose another folder",
+                 (out / kDocument).string()};
+  }
+  // The planned frames, since one that was killed wrote no other number.
+  const auto frames = std::min<std::size_t>(earlier.at("frames").get<std::size_t>(), 1000000);
+  for (std::size_t i = 0; i < frames; ++i) {
+    for (auto end = kFrameFiles.rbegin(); end != kFrameFiles.rend(); ++end) {
+      const std::string name = frame_name(i) + std::string{*end};
+      SACCADE_CHECK(out.remove(std::array<std::string_view, 1>{name}));
+    }
+  }
+  return out.remove(std::array<std::string_view, 2>{kTruePoses, kDocument});
+}
+
+Status write_frame(const RunFolder& out, const Frame& frame, const SequenceTruth& truth, const Executor& executor) {
+  const std::string name = frame_name(frame.index);
+  const auto path = [&](std::size_t k) { return out / (name + std::string{kFrameFiles[k]}); };
+  std::array<Status, 3> written;
+  executor.parallel_for(3, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t k = begin; k < end; ++k) {
+      if (k == 0) written[k] = write_png(path(0), *frame.color);
+      if (k == 1) written[k] = write_png16(path(1), truth.label);
+      if (k == 2) written[k] = write_matrices(path(2), std::array{*frame.T_world_camera});
+    }
+  });
+  for (const Status& status : written) SACCADE_CHECK(status);
+  return write_png16(path(3), encode_depth(frame.depth, DepthEncoding{}));
+}
+
+json document(const Sequence& sequence, const GlobalOptions& global, const std::vector<std::string>& segments) {
+  json names = json::object();
+  for (std::size_t label = 1; label < segments.size(); ++label) names[std::to_string(label)] = segments[label];
+  return {
+      {"scene", sequence.scene.scene.name}, {"frames", sequence.frames},   {"complete", false}, {"seed", global.seed},
+      {"switches", sequence.switches},      {"segments", std::move(names)}};
+}
+
+Result<int> run_sequence(const SequenceOptions& options, const GlobalOptions& global) {
+  const Stopwatch stopwatch;
+  const Executor executor = global.executor();
+  SACCADE_CHECK(check_json_output(global));
+  SACCADE_TRY(Sequence sequence, sequence_of(options, global.seed));
+  SACCADE_TRY(const RayScene rays, RayScene::build(sequence.scene.scene));
+  SACCADE_TRY(RenderedSequence camera,
+              RenderedSequence::create(rays, hand_held_poses(sequence.scene.path, sequence.frames, global.seed),
+                                       sequence.config, executor));
+  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, kDocument, options.force));
+  SACCADE_CHECK(remove_earlier(out));
+  json written = document(sequence, global, camera.segments().names());
+  SACCADE_CHECK(write_json(out / kDocument, written));
+  SACCADE_CHECK(write_json(out / kCamera, camera_to_json(sequence.config.camera)));
+  ProgressBar bar{global.quiet};
+  std::vector<double> render_ms;
+  std::vector<double> write_ms;
+  std::vector<double> gains;
+  std::vector<Pose> true_poses;
+  while (true_poses.size() < sequence.frames && !interrupted()) {
+    bar.update("rendering", true_poses.size(), sequence.frames);
+    const Stopwatch rendering;
+    SACCADE_TRY(const std::optional<Frame> frame, camera.next());
+    render_ms.push_back(rendering.elapsed_ms());
+    const Stopwatch writing;
+    SACCADE_CHECK(write_frame(out, *frame, camera.truth(), executor));
+    write_ms.push_back(writing.elapsed_ms());
+    true_poses.push_back(camera.truth().T_world_camera);
+    gains.push_back(camera.truth().gain);
+  }
+  bar.finish();
+  if (!true_poses.empty()) SACCADE_CHECK(write_matrices(out / kTruePoses, true_poses));
+  written["frames"] = true_poses.size();
+  written["complete"] = true_poses.size() == sequence.frames;
+  if (sequence.config.color.automatic_gain) written["gains"] = gains;
+  SACCADE_CHECK(write_json(out / kDocument, written));
+  const json result{
+      {"out", options.out.string()},
+      {"scene", sequence.scene.scene.name},
+      {"switches", sequence.switches},
+      {"frames", true_poses.size()},
+      {"segments", camera.segments().names().size() - 1},
+      {"interrupted", interrupted()},
+      {"ms_per_frame", {{"render", {{"median", median_of(render_ms)}}}, {"write", {{"median", median_of(write_ms)}}}}}};
+  SACCADE_CHECK(
+      write_json_output(global, json_envelope("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, result)));
+  if (!global.json_to_stdout()) {
+    std::cout << true_poses.size() << " frames with " << result["segments"] << " true segments in "
+              << options.out.string() << '\n';
+  }
+  return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
+}
+
+std::string joined(std::span<const std::string_view> words, const char* between) {
+  std::string text;
+  for (const std::string_view word : words) text += (text.empty() ? "" : between) + std::string{word};
+  return text;
+}
+
+void add_words(CLI::App& command, const std::string& option, std::string& target,
+               const std::vector<std::string_view>& words, const std::string& description) {
+  const std::string type = joined(words, "|");
+  command
+      .add_option_function<std::string>(
+          option,
+          [option, &target, words, type](const std::string& text) {
+            if (std::find(words.begin(), words.end(), text) == words.end()) {
+              usage_error(option, "must be one of " + type + ", not '" + text + "'");
+            }
+            target = text;
+          },
+          description)
+      ->type_name(type);
+}
+
+}  // namespace
+
+void add_scene_sequence(CLI::App& scene_command, const GlobalOptions& global, Action& action) {
+  CLI::App* command = scene_command.add_subcommand(
+      "sequence", "frames of a hand-held camera before a scene, with the truth of every pixel");
+  auto options = std::make_shared<SequenceOptions>();
+  command->add_option("scene", options->scene, joined(kSurfelScenes, ", "))->required()->type_name("SCENE");
+  command->add_option("--out", options->out, "folder for the frames; made if it is not there")
+      ->required()
+      ->type_name("DIR");
+  command->add_option("--frames", options->frames, "number of frames; without it, as many as the thesis' scene has")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
+      ->type_name("N");
+  add_words(*command, "--camera", options->sensor, {kSurfelSensors.begin(), kSurfelSensors.end()},
+            "sensor and its noise; without it, that of the thesis' scene");
+  command->add_option("--image-size", options->image_size, "width and height, pixels; the lens stays the same")
+      ->delimiter(',')
+      ->type_name("W,H");
+  const std::vector<std::string_view> on_off{"on", "off"};
+  add_words(*command, "--depth-noise", options->depth_noise, on_off, "noise and flaws of the sensor's depth (on)");
+  add_words(*command, "--pose-noise", options->pose_noise, on_off, "drift and jitter of the written poses (on)");
+  add_words(*command, "--color-noise", options->color_noise, on_off, "noise of colours (on)");
+  add_words(*command, "--vignetting", options->vignetting, {"on", "off", "corrected"},
+            "darker corners; without it, as in the thesis' scene");
+  add_words(*command, "--auto-gain", options->automatic_gain, on_off,
+            "the gain follows the image's light; without it, as in the thesis' scene");
+  command->add_flag("--force", options->force, "write into a folder that holds other files");
+  command->callback([options, &global, &action] {
+    if (options->image_size) {
+      const auto [width, height] = *options->image_size;
+      if (std::min(width, height) < kSmallestEdge_px || std::max(width, height) > kLargestEdge_px) {
+        usage_error("--image-size", "sizes are within 16 and 2048 pixels");
+      }
+    }
+    action = [options, &global] { return run_sequence(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli
