@@ -119,19 +119,29 @@ Status remove_earlier(const RunFolder& out) {
   return out.remove(std::array<std::string_view, 2>{kTruePoses, kDocument});
 }
 
-Status write_frame(const RunFolder& out, const Frame& frame, const SequenceTruth& truth, const Executor& executor) {
-  const std::string name = frame_name(frame.index);
+/// A frame and what is true of it.
+struct Shot {
+  Frame frame;
+  Image<std::uint16_t> label;
+};
+
+Status write_shot(const RunFolder& out, const Shot& shot) {
+  const std::string name = frame_name(shot.frame.index);
   const auto path = [&](std::size_t k) { return out / (name + std::string{kFrameFiles[k]}); };
-  std::array<Status, 3> written;
-  executor.parallel_for(3, 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t k = begin; k < end; ++k) {
-      if (k == 0) written[k] = write_png(path(0), *frame.color);
-      if (k == 1) written[k] = write_png16(path(1), truth.label);
-      if (k == 2) written[k] = write_matrices(path(2), std::array{*frame.T_world_camera});
-    }
+  SACCADE_CHECK(write_png(path(0), *shot.frame.color));
+  SACCADE_CHECK(write_png16(path(1), shot.label));
+  SACCADE_CHECK(write_matrices(path(2), std::array{*shot.frame.T_world_camera}));
+  return write_png16(path(3), encode_depth(shot.frame.depth, DepthEncoding{}));
+}
+
+/// One frame per thread: most of the time goes into packing colours.
+Status write_shots(const RunFolder& out, std::span<const Shot> shots, const Executor& executor) {
+  std::vector<Status> written(shots.size());
+  executor.parallel_for(shots.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) written[i] = write_shot(out, shots[i]);
   });
   for (const Status& status : written) SACCADE_CHECK(status);
-  return write_png16(path(3), encode_depth(frame.depth, DepthEncoding{}));
+  return {};
 }
 
 json document(const Sequence& sequence, const GlobalOptions& global, const std::vector<std::string>& segments) {
@@ -161,16 +171,22 @@ Result<int> run_sequence(const SequenceOptions& options, const GlobalOptions& gl
   std::vector<double> write_ms;
   std::vector<double> gains;
   std::vector<Pose> true_poses;
+  const std::size_t at_once = std::max<std::size_t>(1, executor.threads());
   while (true_poses.size() < sequence.frames && !interrupted()) {
-    bar.update("rendering", true_poses.size(), sequence.frames);
-    const Stopwatch rendering;
-    SACCADE_TRY(const std::optional<Frame> frame, camera.next());
-    render_ms.push_back(rendering.elapsed_ms());
+    std::vector<Shot> shots;
+    const std::size_t wanted = std::min(at_once, sequence.frames - true_poses.size());
+    while (shots.size() < wanted && !interrupted()) {
+      bar.update("rendering", true_poses.size(), sequence.frames);
+      const Stopwatch rendering;
+      SACCADE_TRY(std::optional<Frame> frame, camera.next());
+      render_ms.push_back(rendering.elapsed_ms());
+      shots.push_back({std::move(*frame), camera.truth().label});
+      true_poses.push_back(camera.truth().T_world_camera);
+      gains.push_back(camera.truth().gain);
+    }
     const Stopwatch writing;
-    SACCADE_CHECK(write_frame(out, *frame, camera.truth(), executor));
-    write_ms.push_back(writing.elapsed_ms());
-    true_poses.push_back(camera.truth().T_world_camera);
-    gains.push_back(camera.truth().gain);
+    SACCADE_CHECK(write_shots(out, shots, executor));
+    write_ms.push_back(writing.elapsed_ms() / static_cast<double>(std::max<std::size_t>(1, shots.size())));
   }
   bar.finish();
   if (!true_poses.empty()) SACCADE_CHECK(write_matrices(out / kTruePoses, true_poses));

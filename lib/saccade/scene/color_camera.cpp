@@ -2,10 +2,13 @@
 #include "saccade/scene/color_camera.hpp"
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace saccade {
 namespace {
+
+constexpr std::size_t kRowsPerChunk{8};
 
 /// Counter-based generator, as that of the depth noise.
 std::uint64_t scrambled(std::uint64_t x) {
@@ -22,6 +25,32 @@ double nearly_normal(std::uint64_t key) {
   for (unsigned shift = 0; shift < 64; shift += 16) sum += static_cast<double>((bits >> shift) & 0xFFFFU) + 0.5;
   return (sum / 65536.0 - 2.0) * 1.7320508075688772;  // √(12/4)
 }
+
+/// The nearest of the 256 codes to a linear value within 0 and 1, found from where its neighbourhood begins.
+class SrgbCodes {
+ public:
+  SrgbCodes() {
+    for (std::size_t code = 0; code < 256; ++code) {
+      from_[code] = code == 0 ? 0.0 : linear_of_srgb((static_cast<double>(code) - 0.5) / 255.0);
+    }
+    from_[256] = 2.0;
+    std::size_t code = 0;
+    for (std::size_t i = 0; i < start_.size(); ++i) {
+      while (from_[code + 1] <= static_cast<double>(i) / kCells) ++code;
+      start_[i] = static_cast<std::uint8_t>(code);
+    }
+  }
+  [[nodiscard]] std::uint8_t of(double linear) const {
+    std::size_t code = start_[static_cast<std::size_t>(linear * kCells)];
+    while (from_[code + 1] <= linear) ++code;
+    return static_cast<std::uint8_t>(code);
+  }
+
+ private:
+  static constexpr double kCells{1024.0};
+  std::array<double, 257> from_{};
+  std::array<std::uint8_t, 1025> start_{};
+};
 
 }  // namespace
 
@@ -72,29 +101,34 @@ double mean_light(const LightImage& light, const PinholeCamera& camera, const Co
 }
 
 ColorImage expose(const LightImage& light, const PinholeCamera& camera, const ColorCameraConfig& config, double gain,
-                  std::uint64_t frame) {
+                  std::uint64_t frame, const Executor& executor) {
   SACCADE_EXPECTS(config.validate().ok());
   SACCADE_EXPECTS(light.width() == camera.width && light.height() == camera.height);
+  static const SrgbCodes codes;
   ColorImage image{light.width(), light.height()};
   const std::uint64_t frame_key = scrambled(scrambled(config.seed ^ 0xC0104ULL) ^ frame);
   const double read_variance = config.read_noise_electrons * config.read_noise_electrons;
-  for (int v = 0; v < light.height(); ++v) {
-    for (int u = 0; u < light.width(); ++u) {
-      const double share = config.vignetting == Vignetting::off ? 1.0 : vignetting_at(camera, u, v);
-      const auto pixel =
-          static_cast<std::uint64_t>(v) * static_cast<std::uint64_t>(light.width()) + static_cast<std::uint64_t>(u);
-      for (std::size_t k = 0; k < 3; ++k) {
-        double value = share * light(u, v)[k];
-        if (config.noise) {
-          const double sigma = std::sqrt(value * config.electrons_at_white + read_variance) / config.electrons_at_white;
-          value += sigma * nearly_normal(frame_key + 3U * pixel + k);
-        }
-        value = std::clamp(value * gain, 0.0, 1.0);  // the sensor saturates before anything is corrected
-        if (config.vignetting == Vignetting::corrected) value = std::min(1.0, value / share);
-        image(u, v)[k] = static_cast<std::uint8_t>(std::lround(255.0 * srgb_of_linear(value)));
+  const auto pixel = [&](int u, int v) {
+    const double share = config.vignetting == Vignetting::off ? 1.0 : vignetting_at(camera, u, v);
+    const auto index =
+        static_cast<std::uint64_t>(v) * static_cast<std::uint64_t>(light.width()) + static_cast<std::uint64_t>(u);
+    for (std::size_t k = 0; k < 3; ++k) {
+      double value = share * light(u, v)[k];
+      if (config.noise) {
+        const double sigma = std::sqrt(value * config.electrons_at_white + read_variance) / config.electrons_at_white;
+        value += sigma * nearly_normal(frame_key + 3U * index + k);
       }
+      value = std::clamp(value * gain, 0.0, 1.0);  // the sensor saturates before anything is corrected
+      if (config.vignetting == Vignetting::corrected) value = std::min(1.0, value / share);
+      image(u, v)[k] = codes.of(value);
     }
-  }
+  };
+  executor.parallel_for(static_cast<std::size_t>(light.height()), kRowsPerChunk,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+                            for (int u = 0; u < light.width(); ++u) pixel(u, v);
+                          }
+                        });
   return image;
 }
 

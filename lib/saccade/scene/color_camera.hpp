@@ -6,6 +6,7 @@
 #include <array>
 #include <cstdint>
 
+#include "saccade/core/executor.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
 
@@ -47,7 +48,7 @@ struct ColorCameraConfig {
 /// 8-bit sRGB. Noise depends on seed, frame and pixel alone. Expects a valid configuration and an image of the camera's
 /// size. O(pixels).
 [[nodiscard]] ColorImage expose(const LightImage& light, const PinholeCamera& camera, const ColorCameraConfig& config,
-                                double gain, std::uint64_t frame);
+                                double gain, std::uint64_t frame, const Executor& executor = {});
 
 /// sRGB (IEC 61966-2-1), 0 to 1.
 [[nodiscard]] double linear_of_srgb(double encoded);

@@ -216,7 +216,8 @@ void add_small_things(SceneMaker& maker) {
 
 SurfelScene desk_scene(std::string_view name, std::size_t frames, std::uint64_t seed) {
   SceneMaker maker{name, seed};
-  maker.box("wall", {6.0, 0.1, 4.0}, {0.0, kWall_m + 0.05, -1.5}, {212, 212, 206});
+  maker.box("wall", {30.0, 0.1, 4.0}, {0.0, kWall_m + 0.05, -0.75}, {212, 212, 206});
+  maker.box("floor", {30.0, 30.0, 0.1}, {0.0, kWall_m - 15.0, -0.85}, {112, 104, 96});
   maker.box("desk", {1.6, 0.82, 0.035}, {0.0, 0.0, -0.035}, {176, 152, 120});
   add_pinboard(maker);
   add_books(maker);

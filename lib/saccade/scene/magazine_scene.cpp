@@ -76,8 +76,8 @@ void chart(SceneMaker& maker, Painter& page, const Vector2d& center, const Vecto
   }
 }
 
-void picture(SceneMaker& maker, Painter& page, const Vector2d& center, const Vector2d& size) {
-  switch (maker.below(4)) {
+void picture(SceneMaker& maker, Painter& page, std::size_t motif, const Vector2d& center, const Vector2d& size) {
+  switch (motif % 4) {
     case 0: return portrait(maker, page, center, size);
     case 1: return dish(maker, page, center, size);
     case 2: return chart(maker, page, center, size);
@@ -90,8 +90,8 @@ double letter_height_m(std::string_view title) {
 }
 
 /// A masthead over a picture that fills the page, lines beside it.
-void cover(SceneMaker& maker, Painter& page, std::string_view title) {
-  picture(maker, page, {0.0, -0.035}, {0.2, 0.2});
+void cover(SceneMaker& maker, Painter& page, std::size_t motif, std::string_view title) {
+  picture(maker, page, motif, {0.0, -0.035}, {0.2, 0.2});
   const Rgb8 band = maker.one_of(kPrints);
   page.rectangle("masthead", {0, 0.105}, {0.2, 0.06}, band);
   page.text("title", title, {0, 0.105}, letter_height_m(title), kWhite);
@@ -100,10 +100,10 @@ void cover(SceneMaker& maker, Painter& page, std::string_view title) {
 }
 
 /// A heading, a picture, columns of print, and a box.
-void article(SceneMaker& maker, Painter& page, std::string_view title) {
+void article(SceneMaker& maker, Painter& page, std::size_t motif, std::string_view title) {
   page.text("heading", title, {0, 0.115}, 0.75 * letter_height_m(title), maker.one_of(kPrints));
   page.rectangle("rule", {0, 0.088}, {0.18, 0.005}, kInk);
-  picture(maker, page, {-0.045, 0.035}, {0.1, 0.085});
+  picture(maker, page, motif, {-0.045, 0.035}, {0.1, 0.085});
   page.print({0.055, 0.035}, {0.08, 0.085}, kInk);
   page.print({-0.048, -0.075}, {0.085, 0.11}, kInk);
   const Rgb8 tint = maker.shade(Rgb8{206, 212, 214}, 0.1);
@@ -139,9 +139,10 @@ void add_things(SceneMaker& maker, const Vector2d& half_m) {
 SurfelScene magazine_scene(std::string_view name, int columns, int rows, std::size_t frames, std::uint64_t seed) {
   SceneMaker maker{name, seed};
   const Vector2d half_m{0.14 * columns + 0.05, 0.18 * rows + 0.08};
-  maker.box("floor", {6.0, 6.0, 0.1}, {0.0, 0.0, -0.85}, {124, 116, 104});
+  maker.box("floor", {30.0, 30.0, 0.1}, {0.0, 0.0, -0.85}, {124, 116, 104});
   maker.box("table", {2.0 * half_m.x(), 2.0 * half_m.y(), 0.04}, {0.0, 0.0, -0.04}, {158, 159, 160});
   const std::size_t first = maker.below(kTitles.size());
+  std::size_t pictures = maker.below(4);
   for (int i = 0; i < columns * rows; ++i) {
     const int row = i / columns;
     const double turn_rad = maker.within(-0.22, 0.22);
@@ -152,16 +153,19 @@ SurfelScene magazine_scene(std::string_view name, int columns, int rows, std::si
                   maker.one_of(kPapers), turn_rad);
     Painter page{body, Patch::Face::plus_z};
     const std::string_view title = kTitles[(first + static_cast<std::size_t>(i)) % kTitles.size()];
+    // Covers and articles take turns: every fourth picture, they change motifs.
+    const std::size_t motif = pictures + pictures / 4;
+    pictures += i % 3 == 2 ? 0 : 1;
     switch (i % 3) {
-      case 0: cover(maker, page, title); break;
-      case 1: article(maker, page, title); break;
+      case 0: cover(maker, page, motif, title); break;
+      case 1: article(maker, page, motif, title); break;
       default: advertisement(maker, page, title); break;
     }
   }
   add_things(maker, half_m);
   SurfelScene made{std::move(maker.scene()), {}, frames, {}, {}};
   made.scene.workspace = Box{{-half_m.x(), -half_m.y(), -0.05}, {half_m.x(), half_m.y(), 0.3}};
-  made.path.targets = Box{{-0.8 * half_m.x(), -0.6 * half_m.y(), 0.0}, {0.8 * half_m.x(), 0.6 * half_m.y(), 0.0}};
+  made.path.targets = Box{{-0.7 * half_m.x(), -0.5 * half_m.y(), 0.0}, {0.7 * half_m.x(), 0.5 * half_m.y(), 0.0}};
   made.path.azimuth_from_rad = -2.6;
   made.path.azimuth_to_rad = -0.5;
   made.path.elevation_from_rad = 0.7;

@@ -38,26 +38,26 @@ constexpr std::array<std::string_view, 36> kCells{
     "..##. .#... #.... ####. #...# #...# .###.", "##### ....# ...#. ...#. ..#.. ..#.. ..#..",
     ".###. #...# #...# .###. #...# #...# .###.", ".###. #...# #...# .#### ....# ...#. .##.."};
 
-struct Axes {
-  Vector3d right;
-  Vector3d up;
-  Vector3d out;
+/// One axis of the body's frame, one way or the other.
+struct Axis {
+  Eigen::Index index;
+  double sign;
+  [[nodiscard]] double of(const Vector3d& v) const { return sign * v[index]; }
 };
 
-Axes axes_of(Patch::Face face) {
-  const Vector3d x = Vector3d::UnitX();
-  const Vector3d y = Vector3d::UnitY();
-  const Vector3d z = Vector3d::UnitZ();
-  switch (face) {
-    case Patch::Face::plus_x: return {y, z, x};
-    case Patch::Face::minus_x: return {-y, z, -x};
-    case Patch::Face::plus_y: return {-x, z, y};
-    case Patch::Face::minus_y: return {x, z, -y};
-    case Patch::Face::plus_z: return {x, y, z};
-    case Patch::Face::minus_z: return {x, -y, -z};
-  }
-  return {x, y, z};
-}
+struct Axes {
+  Axis right;
+  Axis up;
+  Axis out;
+};
+
+/// By Patch::Face.
+constexpr std::array<Axes, 6> kAxes{{{{1, 1.0}, {2, 1.0}, {0, 1.0}},
+                                     {{1, -1.0}, {2, 1.0}, {0, -1.0}},
+                                     {{0, -1.0}, {2, 1.0}, {1, 1.0}},
+                                     {{0, 1.0}, {2, 1.0}, {1, -1.0}},
+                                     {{0, 1.0}, {1, 1.0}, {2, 1.0}},
+                                     {{0, 1.0}, {1, -1.0}, {2, -1.0}}}};
 
 bool glyph_has(char glyph, double x, double y) {
   const std::string_view cells = kCells[kLetters.find(glyph)];
@@ -106,9 +106,9 @@ Paint paint_at(const SceneObject& object, const Vector3d& p_object, const Vector
   const Patch* print = nullptr;
   for (std::size_t i = object.patches.size(); i-- > 0;) {
     const Patch& patch = object.patches[i];
-    const Axes axes = axes_of(patch.face);
-    if (normal_object.dot(axes.out) < kFacing) continue;
-    const Vector2d at_m = Vector2d{p_object.dot(axes.right), p_object.dot(axes.up)} - patch.center_m;
+    const Axes& axes = kAxes[static_cast<std::size_t>(patch.face)];
+    if (axes.out.of(normal_object) < kFacing) continue;
+    const Vector2d at_m = Vector2d{axes.right.of(p_object), axes.up.of(p_object)} - patch.center_m;
     if (!covers(patch, at_m)) continue;
     if (patch.kind == Patch::Kind::print) {
       paint.fine = true;

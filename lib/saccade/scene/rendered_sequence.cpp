@@ -268,7 +268,7 @@ Result<std::optional<Frame>> RenderedSequence::next() {
   frame.name = "frame " + std::to_string(next_);
   frame.T_world_camera = poses_[next_];
   frame.depth = measured(T_world_camera);
-  frame.color = expose(light, config_.camera, config_.color, gain_, next_);
+  frame.color = expose(light, config_.camera, config_.color, gain_, next_, executor_);
   gain_ = next_gain(config_.color, gain_, mean);
   ++next_;
   return std::optional{std::move(frame)};

@@ -44,7 +44,7 @@ Result<RenderedSequenceConfig> surfel_sensor(std::string_view name) {
 Result<SurfelScene> surfel_scene(std::string_view name) {
   // Frames, sensor and correction of scenarios 1 to 5 (Table 4.1, §4.1.3).
   if (name == "workshop-1") {
-    const WorkshopPlan plan{2, 5, 0.7, true, {{{196, 160, 112}, {186, 150, 104}}}};
+    const WorkshopPlan plan{2, 6, 0.7, true, {{{196, 160, 112}, {186, 150, 104}}}};
     return taken_with(workshop_scene(name, plan, 1737, 1), "xtion", Vignetting::corrected, false);
   }
   if (name == "workshop-2") {

@@ -159,7 +159,7 @@ SurfelScene workshop_scene(std::string_view name, const WorkshopPlan& plan, std:
   SceneMaker maker{name, seed};
   const auto panels = static_cast<int>(plan.boards.size());
   const double half_m = 0.5 * panels * (kPanelWidth_m + kGap_m);
-  maker.box("wall", {6.0, 0.1, 4.0}, {0.0, 0.14, -1.5}, {218, 217, 210});
+  maker.box("wall", {30.0, 0.1, 6.0}, {0.0, 0.14, -2.5}, {218, 217, 210});
   for (int k = 0; k < panels; ++k) {
     const std::string panel = "panel-" + std::to_string(k + 1);
     const Rgb8 board_color = plan.boards[static_cast<std::size_t>(k)];
@@ -188,7 +188,7 @@ SurfelScene workshop_scene(std::string_view name, const WorkshopPlan& plan, std:
   const double low_m = plan.bench ? -0.12 : 0.0;
   made.scene.workspace = Box{{-half_m - 0.05, -0.45, low_m - 0.1}, {half_m + 0.05, 0.1, plan.height_m + 0.1}};
   made.path.targets =
-      Box{{-0.8 * half_m, 0.0, low_m + 0.15 * plan.height_m}, {0.8 * half_m, 0.0, 0.85 * plan.height_m}};
+      Box{{-0.75 * half_m, 0.0, low_m + 0.2 * plan.height_m}, {0.75 * half_m, 0.0, 0.75 * plan.height_m}};
   made.path.azimuth_from_rad = -0.5 * std::numbers::pi - 0.5;
   made.path.azimuth_to_rad = -0.5 * std::numbers::pi + 0.5;
   made.path.elevation_from_rad = -0.2;
