@@ -15,11 +15,11 @@ namespace {
 TEST(SceneCommand, ListsTheBuiltInScenes) {
   const Outcome people = run_program({"scene", "list"});
   EXPECT_EQ(people.status, 0);
-  for (const char* name : {"bottle", "jug", "tabletop-1", "tabletop-4", "clutter:SEED"}) {
+  for (const char* name : {"bottle", "jug", "tabletop-1", "tabletop-4", "desk", "clutter:SEED"}) {
     EXPECT_NE(people.out.find(name), std::string::npos) << name;
   }
   const Outcome machine = run_program({"scene", "list", "--json", "-"});
-  EXPECT_EQ(machine.json().at("result").at("scenes").size(), 8U) << machine.out;
+  EXPECT_EQ(machine.json().at("result").at("scenes").size(), 13U) << machine.out;
 }
 
 TEST(SceneCommand, DrawsAScene) {

@@ -117,8 +117,70 @@ TEST(RenderedSequence, ColourNoiseHasItsSigma) {
       ++count;
     }
   }
-  const double sigma = std::sqrt(light * 4000.0 + 225.0) / 4000.0;
+  const double sigma = std::sqrt(light * 4000.0 + 100.0) / 4000.0;
   EXPECT_NEAR(std::sqrt(squares / static_cast<double>(count)) / sigma, 1.0, 0.06);
+}
+
+double mean_light_of(const Frame& frame) {
+  double sum = 0.0;
+  for (const Rgb8& color : frame.color->pixels()) {
+    for (const std::uint8_t channel : color) sum += linear_of_srgb(channel / 255.0);
+  }
+  return sum / (3.0 * static_cast<double>(frame.color->size()));
+}
+
+TEST(RenderedSequence, AutomaticGainEvensOutHowLightThingsAre) {
+  RenderedSequenceConfig config = quiet();
+  const double dark = mean_light_of(frames_of(config, 1, 110).front());
+  const double light = mean_light_of(frames_of(config, 1, 170).front());
+  EXPECT_GT(light, 2.0 * dark);
+  config.color.automatic_gain = true;
+  EXPECT_NEAR(mean_light_of(frames_of(config, 1, 110).front()), config.color.target_light, 0.005);
+  EXPECT_NEAR(mean_light_of(frames_of(config, 1, 170).front()), config.color.target_light, 0.005);
+}
+
+TEST(RenderedSequence, DepthNoiseHasItsSigma) {
+  RenderedSequenceConfig config = quiet();
+  config.depth_noise = DepthNoise{};
+  const auto deviation = [&] {
+    const Frame frame = frames_of(config, 1).front();
+    double squares = 0.0;
+    for (const float depth : frame.depth.pixels()) squares += (depth - 1.0) * (depth - 1.0);
+    return std::sqrt(squares / static_cast<double>(frame.depth.size()));
+  };
+  EXPECT_NEAR(deviation() / config.depth_noise->sigma_m(1.0), 1.0, 0.03);
+  config.lateral_noise_px = 0.8;  // on a plate before the camera, nothing changes
+  EXPECT_NEAR(deviation() / config.depth_noise->sigma_m(1.0), 1.0, 0.03);
+  config.depth_noise.reset();
+  config.time_of_flight = TimeOfFlightConfig{};
+  EXPECT_NEAR(deviation() / config.time_of_flight->noise.sigma_m(1.0), 1.0, 0.03);
+  config.time_of_flight.reset();
+  EXPECT_LT(deviation(), 1e-6);
+}
+
+TEST(RenderedSequence, LateralNoiseFraysEdges) {
+  Scene scene = plate(150).scene();
+  SceneObject post;
+  post.name = "post";
+  post.shape = BoxShape{{0.1, 0.1, 0.3}};
+  scene.objects.push_back(post);
+  const RayScene rays = RayScene::build(scene).value();
+  RenderedSequenceConfig config = quiet();
+  config.depth_noise = DepthNoise{0.0, 0.0, 0.0};
+  const auto changed = [&](double lateral_noise_px) {
+    config.lateral_noise_px = lateral_noise_px;
+    auto sequence = RenderedSequence::create(rays, above(1), config).value();
+    const Frame frame = sequence.next().value().value();
+    std::size_t count{0};
+    for (std::size_t i = 0; i < frame.depth.size(); ++i) {
+      count += std::abs(frame.depth.data()[i] - sequence.truth().depth.data()[i]) > 0.1 ? 1 : 0;
+    }
+    return count;
+  };
+  EXPECT_EQ(changed(0.0), 0U);
+  const std::size_t outline_px{4 * 17};  // 0.1 m at 0.8 m
+  EXPECT_GT(changed(0.8), outline_px / 4);
+  EXPECT_LT(changed(0.8), 2 * outline_px);
 }
 
 TEST(RenderedSequence, AutomaticGainMovesTheMeanToItsTarget) {

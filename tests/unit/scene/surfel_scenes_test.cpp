@@ -3,23 +3,33 @@
 
 #include <gtest/gtest.h>
 
-#include <cmath>
 #include <cstdio>
 #include <set>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/scene/truth_labels.hpp"
 
 namespace saccade {
 namespace {
+
+using Eigen::Vector3d;
+
+constexpr PinholeCamera kSmall{320, 240, 285.0, 285.0, 159.5, 119.5, 0.4, 3.5};
+
+RenderedSequenceConfig exact() {
+  RenderedSequenceConfig config;
+  config.camera = kSmall;
+  config.color.noise = false;
+  config.pose_noise.reset();
+  return config;
+}
 
 TEST(SurfelScenes, HaveManySegmentsThatTheCameraSees) {
   std::size_t scenes{0};
   for (const std::string_view name : kSurfelScenes) {
     const SurfelScene made = surfel_scene(name).value();
-    RenderedSequenceConfig config;
-    config.camera = PinholeCamera{320, 240, 285.0, 285.0, 159.5, 119.5, 0.4, 3.5};
     auto sequence = RenderedSequence::create(RayScene::build(made.scene).value(), hand_held_poses(made.path, 40),
-                                             config, Executor::with_threads(2))
+                                             exact(), Executor::with_threads(2))
                         .value();
     std::set<std::uint16_t> seen;
     const Stopwatch stopwatch;
@@ -30,11 +40,72 @@ TEST(SurfelScenes, HaveManySegmentsThatTheCameraSees) {
                 sequence.segments().names().size() - 1, seen.size(), stopwatch.elapsed_ms() / 40.0);
     EXPECT_GE(sequence.segments().names().size(), 87U) << name;
     EXPECT_LE(sequence.segments().names().size(), 210U) << name;
-    EXPECT_GE(10 * seen.size(), 9 * sequence.segments().names().size()) << name;
+    EXPECT_GE(100 * seen.size(), 95 * sequence.segments().names().size()) << name;
+    EXPECT_GE(made.frames, 1000U) << name;
+    EXPECT_TRUE(surfel_sensor(made.sensor)) << name;
     ++scenes;
   }
-  EXPECT_EQ(scenes, kSurfelScenes.size());
-  EXPECT_FALSE(surfel_scene("atrium"));
+  EXPECT_EQ(scenes, 5U);
+}
+
+/// What is measured with the scenes means nothing once they have changed: docs/surfel-scenes.md says when that may be.
+TEST(SurfelScenes, AreFrozen) {
+  struct Counts {
+    std::size_t objects{0};
+    std::size_t patches{0};
+    std::size_t segments{0};
+    std::size_t light{0};  ///< sum of all channels
+    bool operator==(const Counts&) const = default;
+  };
+  const auto counts_of = [](const Scene& scene) {
+    Counts counts{scene.objects.size(), 0, SegmentTable{scene}.names().size() - 1, 0};
+    const auto add = [&](const Rgb8& color) {
+      for (const std::uint8_t channel : color) counts.light += channel;
+    };
+    for (const SceneObject& object : scene.objects) {
+      add(object.color);
+      counts.patches += object.patches.size();
+      for (const Patch& patch : object.patches) add(patch.color);
+    }
+    std::printf("%s: {%zu, %zu, %zu, %zu}\n", scene.name.c_str(), counts.objects, counts.patches, counts.segments,
+                counts.light);
+    return counts;
+  };
+  constexpr std::array<Counts, 5> kFrozen{};
+  for (std::size_t i = 0; i < kFrozen.size(); ++i) {
+    EXPECT_EQ(counts_of(surfel_scene(kSurfelScenes[i]).value().scene), kFrozen[i]) << kSurfelScenes[i];
+  }
+}
+
+TEST(SurfelScenes, PixelsAndTheNearestSurfaceHaveTheSameLabels) {
+  for (const std::string_view name : kSurfelScenes) {
+    const SurfelScene made = surfel_scene(name).value();
+    const RayScene rays = RayScene::build(made.scene).value();
+    const TruthLabels truth = TruthLabels::build(rays).value();
+    auto sequence = RenderedSequence::create(rays, hand_held_poses(made.path, 5), exact()).value();
+    EXPECT_EQ(sequence.segments().names(), truth.names());
+    std::size_t compared{0};
+    std::size_t same{0};
+    while (sequence.next().value()) {
+      const SequenceTruth& seen = sequence.truth();
+      for (int v = 0; v < kSmall.height; v += 3) {
+        for (int u = 0; u < kSmall.width; u += 3) {
+          if (!(seen.depth(u, v) > 0.0F)) continue;
+          const Vector3d p_camera = kSmall.ray(u, v) * static_cast<double>(seen.depth(u, v));
+          same += truth.label(seen.T_world_camera * p_camera) == seen.label(u, v) ? 1 : 0;
+          ++compared;
+        }
+      }
+    }
+    EXPECT_GT(compared, 20000U) << name;
+    EXPECT_GT(static_cast<double>(same), 0.998 * static_cast<double>(compared)) << name;
+  }
+}
+
+TEST(SurfelScenes, SaysWhatItKnows) {
+  EXPECT_EQ(surfel_scene("atrium").error().message,
+            "no such scene for surfels; there are workshop-1, workshop-2, desk, magazines-1, magazines-2");
+  EXPECT_EQ(surfel_sensor("lidar").error().message, "no such sensor; there are xtion, kinect-v2");
 }
 
 }  // namespace
