@@ -169,9 +169,9 @@ SurfelScene workshop_scene(std::string_view name, const WorkshopPlan& plan, std:
     front.rectangle("sign", {0.0, plan.height_m - 0.035}, {0.3, 0.05}, kPaper);
     front.text("sign", k == 0 ? "A1" : "A2", {0.0, plan.height_m - 0.035}, 0.036, kInk);
     const double pitch_m = (plan.height_m - 0.1) / plan.rows;
+    // Every kind of tool comes once before any comes again.
+    std::size_t kind = maker.below(10);
     for (int row = 0; row < plan.rows; ++row) {
-      // Every kind of tool comes once before any comes again.
-      std::size_t kind = maker.below(10);
       for (int i = 0; i < plan.tools_per_row; ++i) {
         const double slot_x_m = x_m + kPanelWidth_m * ((i + 0.5) / plan.tools_per_row - 0.5);
         const double height_m = std::min(pitch_m - 0.07, maker.within(0.17, 0.24));
