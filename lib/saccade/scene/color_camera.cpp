@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kRowsPerChunk{8};
+constexpr std::size_t kRowsAtOnce{8};
 
 /// Counter-based generator, as that of the depth noise.
 std::uint64_t scrambled(std::uint64_t x) {
@@ -123,12 +123,11 @@ ColorImage expose(const LightImage& light, const PinholeCamera& camera, const Co
       image(u, v)[k] = codes.of(value);
     }
   };
-  executor.parallel_for(static_cast<std::size_t>(light.height()), kRowsPerChunk,
-                        [&](std::size_t begin, std::size_t end) {
-                          for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-                            for (int u = 0; u < light.width(); ++u) pixel(u, v);
-                          }
-                        });
+  executor.parallel_for(static_cast<std::size_t>(light.height()), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
+    for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
+      for (int u = 0; u < light.width(); ++u) pixel(u, v);
+    }
+  });
   return image;
 }
 

@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 using Face = Patch::Face;
 
 constexpr double kWall_m{0.42};  // y of its front
-constexpr Rgb8 kPaper{234, 232, 226};
-constexpr Rgb8 kInk{48, 48, 52};
+constexpr Rgb8 kDeskPaper{234, 232, 226};
+constexpr Rgb8 kDeskInk{48, 48, 52};
 constexpr std::array<Rgb8, 10> kCovers{{{128, 46, 44},
                                         {44, 66, 104},
                                         {58, 88, 66},
@@ -33,22 +33,23 @@ void add_pinboard(SceneMaker& maker) {
   Painter front{board, Face::minus_y};
   constexpr std::array<const char*, 7> kNames{"note-1", "note-2", "note-3", "note-4", "note-5", "note-6", "note-7"};
   for (std::size_t i = 0; i < kNames.size(); ++i) {
+    const std::size_t row = i / 4;
     const Vector2d at{-0.36 + 0.085 * static_cast<double>(i % 4) + maker.within(-0.006, 0.006),
-                      0.45 - 0.1 * static_cast<double>(i / 4) + maker.within(-0.01, 0.01)};
+                      0.45 - 0.1 * static_cast<double>(row) + maker.within(-0.01, 0.01)};
     front.rectangle(kNames[i], at, {0.072, 0.072}, maker.shade(maker.one_of(kNotes), 0.04));
     front.print(at, {0.055, 0.045}, {84, 86, 110}, 0.011);
   }
-  front.rectangle("sheet", {0.07, 0.38}, {0.15, 0.21}, kPaper);
-  front.print({0.07, 0.35}, {0.12, 0.13}, kInk, 0.006);
+  front.rectangle("sheet", {0.07, 0.38}, {0.15, 0.21}, kDeskPaper);
+  front.print({0.07, 0.35}, {0.12, 0.13}, kDeskInk, 0.006);
   front.rectangle("sheet-heading", {0.07, 0.455}, {0.11, 0.018}, {60, 86, 122});
   front.rectangle("photo-frame", {0.3, 0.4}, {0.2, 0.15}, {240, 238, 232});
   front.rectangle("photo-sky", {0.3, 0.425}, {0.18, 0.08}, {150, 178, 200});
   front.rectangle("photo-hill", {0.3, 0.365}, {0.18, 0.06}, {98, 116, 82});
   front.ellipse("photo-sun", {0.34, 0.44}, {0.03, 0.03}, {240, 224, 170});
-  front.rectangle("calendar", {0.32, 0.2}, {0.16, 0.17}, kPaper);
+  front.rectangle("calendar", {0.32, 0.2}, {0.16, 0.17}, kDeskPaper);
   front.rectangle("calendar-month", {0.32, 0.265}, {0.16, 0.04}, {158, 56, 52});
-  front.text("calendar-title", "MAY", {0.32, 0.265}, 0.028, kPaper);
-  front.print({0.32, 0.18}, {0.14, 0.11}, kInk, 0.014);
+  front.text("calendar-title", "MAY", {0.32, 0.265}, 0.028, kDeskPaper);
+  front.print({0.32, 0.18}, {0.14, 0.11}, kDeskInk, 0.014);
 }
 
 void add_books(SceneMaker& maker) {
@@ -75,7 +76,7 @@ void add_books(SceneMaker& maker) {
     if (i == 3) {
       Painter cover{book, Face::plus_z};
       cover.rectangle("field", {0, 0.02}, {0.13, 0.07}, maker.one_of(kCovers));
-      cover.text("name", "ROBOT", {0, 0.02}, 0.022, kPaper);
+      cover.text("name", "ROBOT", {0, 0.02}, 0.022, kDeskPaper);
       cover.ellipse("seal", {0, -0.05}, {0.05, 0.05}, maker.one_of(kCovers));
     }
     z_m += height_m;
@@ -85,8 +86,8 @@ void add_books(SceneMaker& maker) {
 void add_boxes(SceneMaker& maker) {
   SceneObject& carton = maker.box("carton", {0.24, 0.18, 0.15}, {0.42, 0.27, 0}, {178, 142, 102}, 0.12);
   Painter front{carton, Face::minus_y};
-  front.rectangle("label", {0.03, 0.08}, {0.1, 0.07}, kPaper);
-  front.print({0.03, 0.07}, {0.085, 0.04}, kInk, 0.006);
+  front.rectangle("label", {0.03, 0.08}, {0.1, 0.07}, kDeskPaper);
+  front.print({0.03, 0.07}, {0.085, 0.04}, kDeskInk, 0.006);
   front.rectangle("stripe", {-0.08, 0.075}, {0.03, 0.15}, {150, 60, 50});
   Painter{carton, Face::plus_z}.rectangle("tape", {0, 0}, {0.24, 0.05}, {200, 176, 132});
   SceneObject& tea = maker.box("tea", {0.13, 0.07, 0.075}, {0.39, 0.25, 0.15}, {70, 102, 74}, -0.2);
@@ -171,10 +172,10 @@ void add_vessels(SceneMaker& maker) {
 }
 
 void add_small_things(SceneMaker& maker) {
-  SceneObject& sheet = maker.box("sheet", {0.21, 0.29, 0.002}, {-0.4, -0.02, 0}, kPaper, 0.25);
+  SceneObject& sheet = maker.box("sheet", {0.21, 0.29, 0.002}, {-0.4, -0.02, 0}, kDeskPaper, 0.25);
   Painter paper{sheet, Face::plus_z};
   paper.text("heading", "PLAN", {-0.03, 0.11}, 0.026, {58, 76, 116});
-  paper.print({0, 0.03}, {0.16, 0.09}, kInk, 0.006);
+  paper.print({0, 0.03}, {0.16, 0.09}, kDeskInk, 0.006);
   paper.rectangle("sketch", {0.0, -0.08}, {0.14, 0.08}, {202, 210, 214});
   paper.ellipse("sketch-disc", {-0.03, -0.08}, {0.05, 0.05}, {166, 84, 70});
   paper.ellipse("sketch-ring", {0.035, -0.08}, {0.04, 0.04}, {112, 142, 160});
@@ -188,7 +189,8 @@ void add_small_things(SceneMaker& maker) {
   constexpr std::array<const char*, 9> kKeys{"key-1", "key-2", "key-3", "key-4", "key-5",
                                              "key-6", "key-7", "key-8", "key-9"};
   for (std::size_t i = 0; i < kKeys.size(); ++i) {
-    keys.rectangle(kKeys[i], {-0.024 + 0.024 * static_cast<double>(i % 3), 0.012 - 0.026 * static_cast<double>(i / 3)},
+    const std::size_t row = i / 3;
+    keys.rectangle(kKeys[i], {-0.024 + 0.024 * static_cast<double>(i % 3), 0.012 - 0.026 * static_cast<double>(row)},
                    {0.018, 0.018}, i == 8 ? Rgb8{178, 92, 56} : Rgb8{206, 206, 200});
   }
   SceneObject& cube = maker.box("cube", {0.057, 0.057, 0.057}, {0.04, -0.04, 0}, {36, 36, 38}, 0.6);
@@ -198,7 +200,8 @@ void add_small_things(SceneMaker& maker) {
        {std::pair{Face::plus_z, "top-"}, std::pair{Face::minus_y, "front-"}, std::pair{Face::minus_x, "side-"}}) {
     Painter stickers{cube, face};
     for (int i = 0; i < 9; ++i) {
-      const double up_m = 0.019 * (i / 3 - 1) + (face == Face::plus_z ? 0.0 : 0.0285);
+      const int row = i / 3 - 1;
+      const double up_m = 0.019 * row + (face == Face::plus_z ? 0.0 : 0.0285);
       stickers.rectangle((side + std::to_string(i + 1)).c_str(), {0.019 * (i % 3 - 1), up_m}, {0.0165, 0.0165},
                          maker.one_of(kStickers));
     }

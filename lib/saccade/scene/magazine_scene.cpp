@@ -13,8 +13,8 @@ using Eigen::Vector3d;
 
 constexpr double kPageWidth_m{0.21};
 constexpr double kPageHeight_m{0.28};
-constexpr Rgb8 kInk{46, 46, 50};
-constexpr Rgb8 kWhite{240, 239, 235};
+constexpr Rgb8 kPrintInk{46, 46, 50};
+constexpr Rgb8 kPrintWhite{240, 239, 235};
 
 /// Muted, as printed colours are; some are close to each other.
 constexpr std::array<Rgb8, 12> kPrints{{{172, 48, 44},
@@ -94,22 +94,22 @@ void cover(SceneMaker& maker, Painter& page, std::size_t motif, std::string_view
   picture(maker, page, motif, {0.0, -0.035}, {0.2, 0.2});
   const Rgb8 band = maker.one_of(kPrints);
   page.rectangle("masthead", {0, 0.105}, {0.2, 0.06}, band);
-  page.text("title", title, {0, 0.105}, letter_height_m(title), kWhite);
-  page.rectangle("price", {0.075, -0.118}, {0.036, 0.022}, kWhite);
-  page.print({0.075, -0.118}, {0.03, 0.018}, kInk, 0.006);
+  page.text("title", title, {0, 0.105}, letter_height_m(title), kPrintWhite);
+  page.rectangle("price", {0.075, -0.118}, {0.036, 0.022}, kPrintWhite);
+  page.print({0.075, -0.118}, {0.03, 0.018}, kPrintInk, 0.006);
 }
 
 /// A heading, a picture, columns of print, and a box.
 void article(SceneMaker& maker, Painter& page, std::size_t motif, std::string_view title) {
   page.text("heading", title, {0, 0.115}, 0.75 * letter_height_m(title), maker.one_of(kPrints));
-  page.rectangle("rule", {0, 0.088}, {0.18, 0.005}, kInk);
+  page.rectangle("rule", {0, 0.088}, {0.18, 0.005}, kPrintInk);
   picture(maker, page, motif, {-0.045, 0.035}, {0.1, 0.085});
-  page.print({0.055, 0.035}, {0.08, 0.085}, kInk);
-  page.print({-0.048, -0.075}, {0.085, 0.11}, kInk);
+  page.print({0.055, 0.035}, {0.08, 0.085}, kPrintInk);
+  page.print({-0.048, -0.075}, {0.085, 0.11}, kPrintInk);
   const Rgb8 tint = maker.shade(Rgb8{206, 212, 214}, 0.1);
   page.rectangle("box", {0.052, -0.085}, {0.085, 0.085}, tint);
   page.rectangle("box-heading", {0.052, -0.055}, {0.07, 0.014}, maker.one_of(kPrints));
-  page.print({0.052, -0.095}, {0.07, 0.05}, kInk);
+  page.print({0.052, -0.095}, {0.07, 0.05}, kPrintInk);
 }
 
 /// A coloured page with one thing and a name.
@@ -119,8 +119,8 @@ void advertisement(SceneMaker& maker, Painter& page, std::string_view title) {
   page.ellipse("halo", {0, 0.03}, {0.16, 0.16}, maker.shade(ground, 0.25));
   page.rectangle("bottle", {0, 0.01}, {0.048, 0.1}, maker.one_of(kPrints));
   page.rectangle("neck", {0, 0.08}, {0.02, 0.045}, maker.one_of(kPrints));
-  page.rectangle("label", {0, 0.0}, {0.048, 0.04}, kWhite);
-  page.rectangle("band", {0, -0.1}, {0.2, 0.05}, kWhite);
+  page.rectangle("label", {0, 0.0}, {0.048, 0.04}, kPrintWhite);
+  page.rectangle("band", {0, -0.1}, {0.2, 0.05}, kPrintWhite);
   page.text("name", title, {0, -0.1}, 0.7 * letter_height_m(title), maker.one_of(kPrints));
 }
 

@@ -58,10 +58,10 @@ void SceneMaker::cable(const std::string& name, std::span<const Vector3d> points
   std::size_t rods = 0;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
     // Catmull and Rom's cubic, which passes through the points.
-    const Vector3d a = points[i > 0 ? i - 1 : i];
-    const Vector3d b = points[i];
-    const Vector3d c = points[i + 1];
-    const Vector3d d = points[std::min(i + 2, points.size() - 1)];
+    const Vector3d& a = points[i > 0 ? i - 1 : i];
+    const Vector3d& b = points[i];
+    const Vector3d& c = points[i + 1];
+    const Vector3d& d = points[std::min(i + 2, points.size() - 1)];
     for (int k = 1; k <= kRodsPerStretch; ++k) {
       const double s = static_cast<double>(k) / kRodsPerStretch;
       const Vector3d to = b + 0.5 * s * (c - a + s * (2.0 * a - 5.0 * b + 4.0 * c - d + s * (3.0 * (b - c) + d - a)));

@@ -28,8 +28,8 @@ constexpr std::array<Rgb8, 4> kWoods{{{188, 144, 96}, {170, 122, 76}, {206, 170,
 constexpr std::array<Rgb8, 4> kMetals{{{160, 162, 164}, {136, 138, 142}, {110, 112, 116}, {176, 178, 178}}};
 constexpr Rgb8 kBrass{168, 142, 86};
 constexpr Rgb8 kRubber{48, 48, 50};
-constexpr Rgb8 kPaper{232, 228, 214};
-constexpr Rgb8 kInk{44, 44, 48};
+constexpr Rgb8 kLabelPaper{232, 228, 214};
+constexpr Rgb8 kLabelInk{44, 44, 48};
 
 /// Where a tool hangs: `at` is the lowest point of its slot on the panel's front, whose outside is −y.
 struct Slot {
@@ -107,8 +107,8 @@ void hang_level(SceneMaker& maker, const Slot& slot) {
       maker.box(slot.name + "/body", {0.045, 0.022, slot.height_m}, slot.point(0, 0.012, 0), maker.one_of(kGrips));
   Painter face{body, Patch::Face::minus_y};
   face.rectangle("vial", {0, 0.72 * slot.height_m}, {0.02, 0.05}, {186, 206, 92});
-  face.rectangle("label", {0, 0.34 * slot.height_m}, {0.034, 0.07}, maker.shade(kPaper, 0.05));
-  face.print({0, 0.34 * slot.height_m}, {0.028, 0.06}, kInk, 0.008);
+  face.rectangle("label", {0, 0.34 * slot.height_m}, {0.034, 0.07}, maker.shade(kLabelPaper, 0.05));
+  face.print({0, 0.34 * slot.height_m}, {0.028, 0.06}, kLabelInk, 0.008);
 }
 
 void hang_can(SceneMaker& maker, const Slot& slot) {
@@ -148,8 +148,8 @@ void add_bins(SceneMaker& maker, double half_m) {
     SceneObject& bin = maker.box("bin-" + std::to_string(i + 1), {0.16, 0.12, 0.085}, {x_m, -0.22, -0.12},
                                  maker.shade(maker.one_of(kBins)), maker.within(-0.15, 0.15));
     Painter front{bin, Patch::Face::minus_y};
-    front.rectangle("label", {0, 0.045}, {0.085, 0.038}, maker.shade(kPaper, 0.04));
-    front.print({0, 0.045}, {0.075, 0.03}, kInk, 0.009);
+    front.rectangle("label", {0, 0.045}, {0.085, 0.038}, maker.shade(kLabelPaper, 0.04));
+    front.print({0, 0.045}, {0.075, 0.03}, kLabelInk, 0.009);
   }
 }
 
@@ -166,8 +166,8 @@ SurfelScene workshop_scene(std::string_view name, const WorkshopPlan& plan, std:
     const double x_m = (k - 0.5 * (panels - 1)) * (kPanelWidth_m + kGap_m);
     SceneObject& board = maker.box(panel, {kPanelWidth_m, kThickness_m, plan.height_m}, {x_m, 0.0, 0.0}, board_color);
     Painter front{board, Patch::Face::minus_y};
-    front.rectangle("sign", {0.0, plan.height_m - 0.035}, {0.3, 0.05}, kPaper);
-    front.text("sign", k == 0 ? "A1" : "A2", {0.0, plan.height_m - 0.035}, 0.036, kInk);
+    front.rectangle("sign", {0.0, plan.height_m - 0.035}, {0.3, 0.05}, kLabelPaper);
+    front.text("sign", k == 0 ? "A1" : "A2", {0.0, plan.height_m - 0.035}, 0.036, kLabelInk);
     const double pitch_m = (plan.height_m - 0.1) / plan.rows;
     // Every kind of tool comes once before any comes again.
     std::size_t kind = maker.below(10);
