@@ -235,6 +235,8 @@ SurfelScene desk_scene(std::string_view name, std::size_t frames, std::uint64_t 
   made.path.azimuth_to_rad = -0.5 * std::numbers::pi + 0.7;
   made.path.elevation_from_rad = 0.25;
   made.path.elevation_to_rad = 0.95;
+  made.path.distance_from_m = 1.05;  // so that what stands in front is not too near for an Xtion
+  made.path.distance_to_m = 1.55;
   return made;
 }
 

@@ -79,6 +79,20 @@ TEST(SurfelScenes, AreFrozen) {
   }
 }
 
+TEST(SurfelScenes, TheirPathsAreFrozen) {
+  const std::array<Vector3d, 5> third_of_the_way{{{0.0828990763, -0.861418781, 0.415225695},
+                                                  {0.0828990763, -0.861418781, 0.810705765},
+                                                  {-0.235659451, -0.831578563, 0.824323888},
+                                                  {-0.0707826378, -0.3894561, 0.60753541},
+                                                  {-0.144016937, -0.389696319, 0.609190905}}};
+  for (std::size_t i = 0; i < third_of_the_way.size(); ++i) {
+    const SurfelScene made = surfel_scene(kSurfelScenes[i]).value();
+    const Pose T_world_camera = hand_held_poses(made.path, made.frames)[made.frames / 3];
+    EXPECT_LT((T_world_camera.translation() - third_of_the_way[i]).norm(), 1e-6)
+        << kSurfelScenes[i] << ": " << T_world_camera.translation().transpose().format(Eigen::IOFormat{9});
+  }
+}
+
 TEST(SurfelScenes, TheirNoiseIsFrozen) {
   const RenderedSequenceConfig xtion = surfel_sensor("xtion").value();
   ASSERT_TRUE(xtion.depth_noise && xtion.pose_noise);
