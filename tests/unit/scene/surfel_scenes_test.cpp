@@ -9,6 +9,8 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/scene/truth_labels.hpp"
 
+#include "support/effort.hpp"
+
 namespace saccade {
 namespace {
 
@@ -25,6 +27,7 @@ RenderedSequenceConfig exact() {
 }
 
 TEST(SurfelScenes, HaveManySegmentsThatTheCameraSees) {
+  if (test::kSanitized) GTEST_SKIP() << "200 frames take long under sanitizers; the next tests cover the code";
   std::size_t scenes{0};
   for (const std::string_view name : kSurfelScenes) {
     const SurfelScene made = surfel_scene(name).value();
