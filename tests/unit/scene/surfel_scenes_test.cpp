@@ -8,7 +8,6 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/scene/truth_labels.hpp"
-
 #include "support/effort.hpp"
 
 namespace saccade {
