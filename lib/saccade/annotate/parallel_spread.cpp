@@ -11,21 +11,22 @@
 namespace saccade {
 namespace {
 
-using Nodes = std::vector<PathBuckets::Reached>;
+using ReachedNodes = std::vector<PathBuckets::Reached>;
 
 constexpr std::size_t kNodesAtOnce{64};
 constexpr std::size_t kNodesAhead{6};
 constexpr std::size_t kLengthsApart{2};  ///< buckets
-constexpr std::size_t kNone{std::numeric_limits<std::size_t>::max()};
+constexpr std::size_t kEmptyQueue{std::numeric_limits<std::size_t>::max()};
 
 /// A thread's own.
 struct Seat {
-  explicit Seat(PathBuckets buckets) : queue{std::move(buckets)}, nearest{queue.nearest_length().value_or(kNone)} {}
+  explicit Seat(PathBuckets buckets)
+      : queue{std::move(buckets)}, nearest{queue.nearest_length().value_or(kEmptyQueue)} {}
   std::mutex mutex;  ///< of the queue
   PathBuckets queue;
   std::atomic<std::size_t> nearest;  ///< length in the queue
-  Nodes work;
-  Nodes found;
+  ReachedNodes work;
+  ReachedNodes found;
   std::vector<std::uint32_t> touched;
 };
 
@@ -67,7 +68,7 @@ class ParallelSpread {
     const std::lock_guard lock{seat.mutex};
     for (const PathBuckets::Reached& found : seat.found) seat.queue.push(found.path, found.node);
     seat.found.clear();
-    seat.nearest = seat.queue.nearest_length().value_or(kNone);
+    seat.nearest = seat.queue.nearest_length().value_or(kEmptyQueue);
   }
 
   /// From another's queue where that is behind, as when its thread has no core to run on, and half of what is nearest
@@ -79,12 +80,12 @@ class ParallelSpread {
         from = seat.get();
     }
     const std::lock_guard lock{from->mutex};
-    if (own.nearest == kNone) {
+    if (own.nearest == kEmptyQueue) {
       from->queue.take_half(own.work);
     } else {
       from->queue.take(kNodesAtOnce, own.work);
     }
-    from->nearest = from->queue.nearest_length().value_or(kNone);
+    from->nearest = from->queue.nearest_length().value_or(kEmptyQueue);
   }
 
   void go_through(Seat& seat) {

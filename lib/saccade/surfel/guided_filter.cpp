@@ -36,6 +36,10 @@ struct Images {
   float* enhanced_m{nullptr};
 };
 
+}  // namespace
+
+namespace guided {
+
 /// Runs the filter down some rows of an image: loads each row, fits the one R above it, and enhances the one R above
 /// that. The last 2R + 1 loaded rows and rows of fits are kept.
 class RowFilter {
@@ -105,6 +109,10 @@ class RowFilter {
   std::vector<const double*> fit_window_;
 };
 
+}  // namespace guided
+
+namespace {
+
 guided::RowShape shape_of(int width) {
   const int padded = (width + guided::kBlock - 1) / guided::kBlock * guided::kBlock;
   return {width, padded, static_cast<std::size_t>(padded + 2 * guided::kMargin)};
@@ -117,9 +125,9 @@ struct GuidedFilter::Memory {
   guided::Disc disc;
   guided::RowShape shape;
   std::mutex mutex;
-  std::vector<std::unique_ptr<RowFilter>> idle;
+  std::vector<std::unique_ptr<guided::RowFilter>> idle;
 
-  std::unique_ptr<RowFilter> take() {
+  std::unique_ptr<guided::RowFilter> take() {
     {
       const std::lock_guard lock{mutex};
       if (!idle.empty()) {
@@ -128,10 +136,10 @@ struct GuidedFilter::Memory {
         return taken;
       }
     }
-    return std::make_unique<RowFilter>(shape, disc);
+    return std::make_unique<guided::RowFilter>(shape, disc);
   }
 
-  void give_back(std::unique_ptr<RowFilter> filter) {
+  void give_back(std::unique_ptr<guided::RowFilter> filter) {
     const std::lock_guard lock{mutex};
     idle.push_back(std::move(filter));
   }
@@ -175,7 +183,7 @@ void GuidedFilter::apply(int width, int height, std::span<const float> depth_m,
   const std::size_t tasks = executor.threads() == 1 ? 1 : 4 * executor.threads();
   const std::size_t grain = std::max<std::size_t>(kLeastRows, (rows + tasks - 1) / tasks);
   executor.parallel_for(rows, grain, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<RowFilter> filter = memory_->take();
+    std::unique_ptr<guided::RowFilter> filter = memory_->take();
     filter->run(images, variances, static_cast<int>(begin), static_cast<int>(end));
     memory_->give_back(std::move(filter));
   });

@@ -24,16 +24,16 @@ Mask512 stops_of(const StopGrid& grid, const Index3& brick) {
 
 /// The voxels whose neighbour one step back along an axis does not stop rays.
 Mask512 open_behind(const Mask512& stop, const Mask512& beside, std::size_t axis, bool forward) {
-  constexpr std::uint64_t kFirstColumn{0x0101010101010101ULL};
-  constexpr std::uint64_t kLastColumn{kFirstColumn << 7};
+  constexpr std::uint64_t kColumn0{0x0101010101010101ULL};
+  constexpr std::uint64_t kColumn7{kColumn0 << 7};
   Mask512 behind;  // of each voxel, whether the neighbour stops
   for (std::size_t z = 0; z < kBrickEdge; ++z) {
     const std::uint64_t here = stop.words[z];
     const std::uint64_t other = beside.words[z];
     std::uint64_t& word = behind.words[z];
     if (axis == 0) {
-      word = forward ? (here & ~kLastColumn) << 1 | (other & kLastColumn) >> 7
-                     : (here & ~kFirstColumn) >> 1 | (other & kFirstColumn) << 7;
+      word = forward ? (here & ~kColumn7) << 1 | (other & kColumn7) >> 7
+                     : (here & ~kColumn0) >> 1 | (other & kColumn0) << 7;
     } else if (axis == 1) {
       word = forward ? here << 8 | other >> 56 : here >> 8 | other << 56;
     } else if (forward) {
