@@ -13,6 +13,7 @@
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/reconstruction.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/map/view_points.hpp"
 
 namespace {
 

@@ -10,6 +10,7 @@
 #include "saccade/map/ray_walk.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/surface_tiles.hpp"
+#include "saccade/map/view_points.hpp"
 #include "saccade/view/gain_problem.hpp"
 #include "table_map.hpp"
 

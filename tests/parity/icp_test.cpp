@@ -10,6 +10,7 @@
 #include "saccade/core/simd.hpp"
 #include "saccade/map/icp.hpp"
 #include "saccade/map/icp_kernels.hpp"
+#include "saccade/map/view_points.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "support/effort.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/pose.hpp"
-#include "saccade/map/point_image.hpp"
+#include "saccade/sensor/point_image.hpp"
 
 namespace saccade {
 

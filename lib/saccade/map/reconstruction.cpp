@@ -2,6 +2,7 @@
 #include "saccade/map/reconstruction.hpp"
 
 #include "saccade/core/clock.hpp"
+#include "saccade/map/view_points.hpp"
 
 namespace saccade {
 

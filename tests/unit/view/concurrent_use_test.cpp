@@ -13,6 +13,7 @@
 #include "saccade/map/icp.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/map/view_points.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/view/best_views.hpp"
 #include "saccade/view/view_gain.hpp"

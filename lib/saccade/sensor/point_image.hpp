@@ -3,7 +3,6 @@
 // PointImage: a depth image with normals, in planes that vectors of pixels load and gather from.
 
 #include "saccade/core/executor.hpp"
-#include "saccade/map/raycast.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
 
@@ -20,8 +19,5 @@ struct PointImage {
 /// Points and normals (from differences across a few pixels, none across depth steps) of a depth image. Returns
 /// outside the camera's range are dropped. O(pixels). Neither threads nor simd_target() change a bit of the result.
 [[nodiscard]] PointImage to_points(const DepthImage& depth, const PinholeCamera& camera, const Executor& executor);
-
-/// A view of the mapped surface in planes, as it is. O(pixels).
-[[nodiscard]] PointImage to_points(const SurfaceView& view, const Executor& executor);
 
 }  // namespace saccade

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/map/point_image.hpp"
+#include "saccade/sensor/point_image.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,7 +7,7 @@
 #include <vector>
 
 #undef HWY_TARGET_INCLUDE
-#define HWY_TARGET_INCLUDE "saccade/map/point_image.cpp"
+#define HWY_TARGET_INCLUDE "saccade/sensor/point_image.cpp"
 #include "saccade/core/simd_kernels.hpp"
 
 #ifndef SACCADE_POINT_IMAGE_ROWS
@@ -123,26 +123,6 @@ void normal_row(const NormalRow& row) {
   }
 }
 
-void split_normals(const float* xyz, std::size_t count, float* nx, float* ny, float* nz) {
-  const Tag d;
-  const std::size_t lanes = hn::Lanes(d);
-  std::size_t i{0};
-  for (; i + lanes <= count; i += lanes) {
-    V x;
-    V y;
-    V z;
-    hn::LoadInterleaved3(d, xyz + 3 * i, x, y, z);
-    hn::StoreU(x, d, nx + i);
-    hn::StoreU(y, d, ny + i);
-    hn::StoreU(z, d, nz + i);
-  }
-  for (; i < count; ++i) {
-    nx[i] = xyz[3 * i];
-    ny[i] = xyz[3 * i + 1];
-    nz[i] = xyz[3 * i + 2];
-  }
-}
-
 }  // namespace
 }  // namespace saccade::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -153,7 +133,6 @@ namespace {
 
 HWY_EXPORT(keep_range);
 HWY_EXPORT(normal_row);
-HWY_EXPORT(split_normals);
 
 constexpr std::size_t kRowsPerChunk{16};
 
@@ -231,21 +210,6 @@ PointImage to_points(const DepthImage& depth, const PinholeCamera& camera, const
   executor.parallel_for(static_cast<std::size_t>(camera.height), kRowsPerChunk,
                         [&](std::size_t begin, std::size_t end) {
                           add_rows(depth, camera, static_cast<int>(begin), static_cast<int>(end), image);
-                        });
-  return image;
-}
-
-PointImage to_points(const SurfaceView& view, const Executor& executor) {
-  SACCADE_EXPECTS(view.normals.width() == view.depth.width() && view.normals.height() == view.depth.height());
-  const int width = view.depth.width();
-  PointImage image = planes(width, view.depth.height());
-  executor.parallel_for(static_cast<std::size_t>(view.depth.height()), kRowsPerChunk,
-                        [&](std::size_t begin, std::size_t end) {
-                          const int v = static_cast<int>(begin);
-                          const std::size_t count = (end - begin) * static_cast<std::size_t>(width);
-                          std::copy_n(view.depth.row(v), count, image.z.row(v));
-                          HWY_DYNAMIC_DISPATCH(split_normals)
-                          (view.normals.row(v)->data(), count, image.nx.row(v), image.ny.row(v), image.nz.row(v));
                         });
   return image;
 }

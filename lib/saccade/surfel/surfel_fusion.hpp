@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SurfelFusion: RGB-D frames with poses in, a map of surfels out, frame by frame.  Thesis §4.1.1, eq. 4.1, 4.2.
+
+#include <atomic>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/point_image.hpp"
+#include "saccade/surfel/surfel_association.hpp"
+#include "saccade/surfel/surfel_map.hpp"
+
+namespace saccade {
+
+/// Parameters of SurfelFusion. A measurement belongs to a surfel when their depths differ by no more than
+/// depth_tolerance_m + depth_tolerance_growth_per_m · z², and their normals by no more than max_normal_angle_rad.
+struct SurfelFusionConfig {
+  double image_sigma{0.3};  ///< σ_img of eq. 4.2
+  double depth_tolerance_m{0.02};
+  double depth_tolerance_growth_per_m{0.005};  ///< a structured-light camera's noise grows with z²
+  double max_normal_angle_rad{0.8};
+  double max_view_angle_rad{1.4};  ///< between normal and view: what is seen flatter makes no surfel
+  double max_radius_m{0.05};
+
+  /// invalid_argument for values that are not finite or not positive, or angles of 90° and more.
+  [[nodiscard]] Status validate() const;
+};
+
+/// What became of one frame.
+struct SurfelFusionReport {
+  bool has_color{false};        ///< false: colours stay as they were
+  std::size_t points{0};        ///< pixels with depth within range and a normal
+  std::size_t associated{0};    ///< of these, to surfels that were there
+  std::size_t created{0};       ///< new surfels
+  std::size_t contradicted{0};  ///< a surfel lies there, but its normal differs: nothing is done
+  double points_ms{0.0};
+  double index_ms{0.0};
+  double associate_ms{0.0};
+  double integrate_ms{0.0};
+};
+
+/// Fuses frames. The method is the published one (Keller et al., 3DV 2013; Whelan et al., RSS 2015), with an index
+/// image at the camera's resolution. Of the surfels that project into a pixel's cell, the one whose depth is nearest to
+/// the measured depth fills it (without a measurement: the nearest), so that two surfaces that are seen there by turns
+/// keep a surfel each. A pixel takes the surfel of its own cell; else, among the cells around, the one nearest to its
+/// ray of those whose discs cover it: so there are no holes while the camera comes nearer, up to about half the
+/// distance. Beyond that new, smaller surfels fill them. Where a surfel lies at the measured depth no other is made,
+/// whatever its normal, so that a camera at rest adds none.
+/// One caller at a time. Neither threads nor simd_target() change a bit of the result.
+class SurfelFusion {
+ public:
+  [[nodiscard]] static Result<SurfelFusion> create(const SurfelFusionConfig& config = {});
+
+  /// Fuses one frame. O(surfels + pixels).
+  /// @return errors leave the map as it was: invalid_argument for a bad camera, or a pose that is missing or not
+  ///         finite; size_mismatch if depth or colour differ from the camera's size.
+  [[nodiscard]] Result<SurfelFusionReport> add_frame(const Frame& frame, const PinholeCamera& camera,
+                                                     const Executor& executor);
+
+  [[nodiscard]] const SurfelFusionConfig& config() const { return config_; }
+  [[nodiscard]] const SurfelMap& map() const { return map_; }
+  /// Of the last frame.
+  [[nodiscard]] const SurfelAssociation& association() const { return association_; }
+
+ private:
+  explicit SurfelFusion(const SurfelFusionConfig& config) : config_{config} {}
+  void prepare(const PinholeCamera& camera, const Pose& T_world_camera);
+  void project(const PointImage& points, const Executor& executor);
+  void associate(const PointImage& points, const Executor& executor, SurfelFusionReport& report);
+  void integrate(const Frame& frame, const PointImage& points, const Executor& executor);
+
+  SurfelFusionConfig config_;
+  SurfelMap map_;
+  SurfelAssociation association_;
+  std::vector<std::uint64_t> cells_;  ///< (bits of the depth's difference, id): the least one fills the cell
+};
+
+}  // namespace saccade
