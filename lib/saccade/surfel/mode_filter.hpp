@@ -1,0 +1,78 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ModeFilter: several colours and positions per surfel, of which the most frequent wins.  Thesis §4.1.1, Algorithm 6.
+
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/sensor/camera_source.hpp"
+#include "saccade/surfel/guided_filter.hpp"
+#include "saccade/surfel/mode_store.hpp"
+#include "saccade/surfel/surfel_association.hpp"
+
+namespace saccade {
+
+/// Parameters of ModeFilter: Table 4.2. (σ_img is SurfelFusionConfig::image_sigma: both weigh pixels alike.)
+struct ModeFilterConfig {
+  GuidedFilterConfig guided{};  ///< R_m, σ_c and σ_d; σ_c is that of the modes too
+  double color_sigmas{5.0};     ///< K: a colour farther from all modes is a new one; infinity: one mode for all
+  int max_modes{10};            ///< M_max
+  bool enhance_depth{true};     ///< lines 16–19; without: d′_e = d′
+
+  /// invalid_argument for a bad guided filter, K that is not positive, or M_max outside 1 to 32.
+  [[nodiscard]] Status validate() const;
+};
+
+/// What became of one frame.
+struct ModeFilterReport {
+  bool has_color{false};  ///< false: nothing was done
+  std::size_t pixels{0};  ///< associated ones
+  std::size_t guided{0};  ///< of these, with a mode at the frame's beginning: their depths were enhanced
+  std::size_t new_modes{0};
+  std::size_t merged_modes{0};   ///< by compression
+  std::size_t evicted_modes{0};  ///< for want of room, line 10
+  double evicted_weight{0.0};
+  double associate_ms{0.0};
+  double guided_filter_ms{0.0};
+  double integrate_ms{0.0};
+};
+
+/// Runs beside SurfelFusion, frame by frame. Guidance comes from the modes at the frame's beginning; then each pixel
+/// goes through Algorithm 6 with its depth and enhanced depth, several pixels of one surfel in row-major order.
+/// A pixel without guidance keeps its depth. The average without enhancement (eq. 4.12) is the colour and position of
+/// the SurfelMap itself, as long as all frames have colour.
+/// One caller at a time. Neither threads nor simd_target() change a bit of the result.
+class ModeFilter {
+ public:
+  [[nodiscard]] static Result<ModeFilter> create(const ModeFilterConfig& config = {});
+
+  /// The frame that SurfelFusion took last, and what it made of it. O(pixels · modes).
+  /// @return size_mismatch if frame and association differ in size.
+  [[nodiscard]] Result<ModeFilterReport> add_frame(const Frame& frame, const SurfelAssociation& seen,
+                                                   const Executor& executor);
+
+  /// Line by line, one surfel's modes; in the order in which they came.
+  [[nodiscard]] std::vector<SurfelMode> modes(SurfelId id) const;
+  /// Eq. 4.11 per surfel: the mode of the largest weight, the first of equal ones; weight 0 where there is none.
+  [[nodiscard]] std::vector<SurfelMode> winners(const Executor& executor) const;
+  [[nodiscard]] std::size_t size() const { return store_.size(); }
+  [[nodiscard]] std::size_t memory_bytes() const { return store_.memory_bytes(); }
+  [[nodiscard]] const ModeFilterConfig& config() const { return config_; }
+
+ private:
+  explicit ModeFilter(const ModeFilterConfig& config) : config_{config}, guided_{config.guided} {}
+  void guide(const Frame& frame, const SurfelAssociation& seen, const Executor& executor, ModeFilterReport& report);
+  void integrate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor, ModeFilterReport& report);
+
+  ModeFilterConfig config_;
+  GuidedFilter guided_;
+  ModeStore store_;
+  std::vector<Eigen::Vector4f> guidance_;
+  std::vector<std::uint8_t> used_;
+  std::vector<float> enhanced_m_;
+};
+
+}  // namespace saccade

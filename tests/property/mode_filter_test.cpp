@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mode filter against Algorithm 6 as it is printed, on random frames: equal modes in the same order.
+
+#include <gtest/gtest.h>
+
+#include <cmath>
+#include <cstdio>
+#include <map>
+#include <random>
+
+#include "saccade/surfel/mode_filter.hpp"
+#include "saccade/surfel/surfel_fusion.hpp"
+#include "support/effort.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr std::uint64_t kModeSeed{29};
+constexpr PinholeCamera kNaiveCamera{32, 24, 26.25, 26.25, 15.5, 11.5, 0.3, 6.0};
+
+struct NaiveMode {
+  Eigen::Vector3f c;
+  float w;
+  Eigen::Vector3f p;
+};
+
+NaiveMode merged(const NaiveMode& a, const NaiveMode& b) {
+  return {(a.c * a.w + b.c * b.w) / (a.w + b.w), a.w + b.w, (a.p * a.w + b.p * b.w) / (a.w + b.w)};
+}
+
+double density(const Eigen::Vector3f& c, const Eigen::Vector3f& mean, double sigma) {
+  return std::exp(-static_cast<double>((c - mean).squaredNorm()) / (2.0 * sigma * sigma));
+}
+
+/// Lines 1–26, with the enhanced depth given.
+void algorithm_6(std::vector<NaiveMode>& M, const NaiveMode& measured, const Eigen::Vector3f& p_enhanced,
+                 const ModeFilterConfig& config) {
+  if (M.empty()) {
+    M.push_back(measured);
+    return;
+  }
+  const double sigma = config.guided.color_sigma;
+  std::size_t n{0};
+  for (std::size_t i = 1; i < M.size(); ++i) {
+    if ((M[i].c - measured.c).norm() < (M[n].c - measured.c).norm()) n = i;
+  }
+  if (static_cast<double>((M[n].c - measured.c).norm()) > config.color_sigmas * sigma) {
+    if (static_cast<int>(M.size()) > config.max_modes - 1) {
+      std::size_t r{0};
+      for (std::size_t i = 1; i < M.size(); ++i) {
+        if (M[i].w < M[r].w) r = i;
+      }
+      M.erase(M.begin() + static_cast<std::ptrdiff_t>(r));
+    }
+    M.push_back(measured);
+    return;
+  }
+  M[n] = merged(M[n], {measured.c, measured.w, p_enhanced});
+  std::vector<bool> gone(M.size());
+  for (std::size_t i = 0; i < M.size(); ++i) {
+    if (i == n) continue;
+    if (density(M[i].c, M[n].c, sigma) * static_cast<double>(M[n].w) >
+        density(M[i].c, M[i].c, sigma) * static_cast<double>(M[i].w)) {
+      M[n] = merged(M[n], M[i]);
+      gone[i] = true;
+    }
+  }
+  std::vector<NaiveMode> kept;
+  for (std::size_t i = 0; i < M.size(); ++i) {
+    if (!gone[i]) kept.push_back(M[i]);
+  }
+  M = kept;
+}
+
+/// One frame: guidance from the modes at its beginning, then pixel by pixel in row-major order.
+void naive_frame(std::map<SurfelId, std::vector<NaiveMode>>& modes, const Frame& frame, const SurfelAssociation& seen,
+                 const ModeFilterConfig& config) {
+  const std::size_t pixels = frame.depth.size();
+  std::vector<Eigen::Vector4f> guidance(pixels, Eigen::Vector4f::Zero());
+  std::vector<std::uint8_t> used(pixels);
+  std::vector<float> enhanced(frame.depth.pixels());
+  for (std::size_t i = 0; i < pixels; ++i) {
+    const SurfelId id = seen.of_pixel.data()[i];
+    if (id == kNoSurfel || modes[id].empty()) continue;
+    const Eigen::Vector3f c = unit_color(frame.color->data()[i]);
+    const NaiveMode* nearest = &modes[id].front();
+    for (const NaiveMode& mode : modes[id]) {
+      if ((mode.c - c).norm() < (nearest->c - c).norm()) nearest = &mode;
+    }
+    if (static_cast<double>((nearest->c - c).norm()) > config.color_sigmas * config.guided.color_sigma) continue;
+    guidance[i] << nearest->c, static_cast<float>((seen.T_world_camera.inverse() * nearest->p.cast<double>()).z());
+    used[i] = 1;
+  }
+  if (config.enhance_depth) {
+    GuidedFilter filter{config.guided};
+    filter.apply(frame.depth.width(), frame.depth.height(), frame.depth.pixels(), guidance, used, {}, enhanced);
+  }
+  for (int v = 0; v < frame.depth.height(); ++v) {
+    for (int u = 0; u < frame.depth.width(); ++u) {
+      const SurfelId id = seen.of_pixel(u, v);
+      if (id == kNoSurfel) continue;
+      const float d_e = enhanced[static_cast<std::size_t>(v * frame.depth.width() + u)];
+      algorithm_6(modes[id],
+                  {unit_color((*frame.color)(u, v)), seen.weight(u, v), seen.back_project(u, v, frame.depth(u, v))},
+                  seen.back_project(u, v, d_e), config);
+    }
+  }
+}
+
+TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
+  const int cases = test::scaled_cases(24);
+  std::printf("seed %llu, %d cases\n", static_cast<unsigned long long>(kModeSeed), cases);
+  std::mt19937_64 random{kModeSeed};
+  std::size_t compared{0};
+  std::size_t several{0};
+  for (int i = 0; i < cases; ++i) {
+    ModeFilterConfig config;
+    config.max_modes = 1 + static_cast<int>(random() % 10);
+    config.color_sigmas = 1.0 + static_cast<double>(random() % 6);
+    config.enhance_depth = random() % 4 != 0;
+    SurfelFusion fusion = SurfelFusion::create().value();
+    ModeFilter filter = ModeFilter::create(config).value();
+    std::map<SurfelId, std::vector<NaiveMode>> naive;
+    const Executor executor = Executor::with_threads(1 + random() % 3);
+    for (int f = 0; f < 12; ++f) {
+      Frame frame;
+      frame.depth = DepthImage{kNaiveCamera.width, kNaiveCamera.height, 0.8F};
+      frame.color = ColorImage{kNaiveCamera.width, kNaiveCamera.height};
+      for (std::size_t k = 0; k < frame.depth.size(); ++k) {
+        frame.depth.data()[k] += 0.006F * (static_cast<float>(random() % 1000) / 1000.0F);
+        if (random() % 50 == 0) frame.depth.data()[k] = 0.0F;
+        const auto base = static_cast<std::uint8_t>(random() % 3 * 60);
+        frame.color->data()[k] = {static_cast<std::uint8_t>(base + random() % 8), base, 90};
+      }
+      const double step = static_cast<double>(random() % 100) / 1000.0;
+      frame.T_world_camera = Pose{Eigen::Translation3d{step, 0.3 * step, 2.0 * step}};
+      ASSERT_TRUE(fusion.add_frame(frame, kNaiveCamera, executor));
+      ASSERT_TRUE(filter.add_frame(frame, fusion.association(), executor));
+      naive_frame(naive, frame, fusion.association(), config);
+    }
+    for (SurfelId id = 0; id < filter.size(); ++id) {
+      const std::vector<SurfelMode> ours = filter.modes(id);
+      const std::vector<NaiveMode>& theirs = naive[id];
+      ASSERT_EQ(ours.size(), theirs.size()) << "case " << i << ", surfel " << id;
+      several += ours.size() > 1 ? 1U : 0U;
+      for (std::size_t k = 0; k < ours.size(); ++k, ++compared) {
+        ASSERT_LE((ours[k].color - theirs[k].c).norm(), 1e-6F);
+        ASSERT_LE((ours[k].position_m - theirs[k].p).norm(), 1e-6F);
+        ASSERT_NEAR(ours[k].weight, theirs[k].w, 1e-5F);
+      }
+    }
+  }
+  EXPECT_GT(compared, static_cast<std::size_t>(cases) * 700U);
+  EXPECT_GT(several, static_cast<std::size_t>(cases) * 200U);
+}
+
+}  // namespace
+}  // namespace saccade

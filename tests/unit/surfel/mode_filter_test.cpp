@@ -1,0 +1,144 @@
+// SPDX-License-Identifier: Apache-2.0
+// The mode filter: equal to the average with K = ∞, weights kept, colours by turns, threads.
+#include "saccade/surfel/mode_filter.hpp"
+
+#include <gtest/gtest.h>
+
+#include <cstring>
+#include <limits>
+#include <numeric>
+#include <random>
+
+#include "saccade/surfel/surfel_fusion.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr PinholeCamera kModeCamera{64, 48, 52.5, 52.5, 31.5, 23.5, 0.3, 6.0};
+constexpr std::size_t kModePixels{64 * 48};
+
+/// A wall that is seen with noise from a camera that sways; each pixel has one of two colours at random.
+std::vector<Frame> wall_frames(int count, const std::vector<Rgb8>& colors, std::uint64_t seed) {
+  std::mt19937_64 random{seed};
+  std::vector<Frame> frames(static_cast<std::size_t>(count));
+  for (std::size_t i = 0; i < frames.size(); ++i) {
+    Frame& frame = frames[i];
+    frame.depth = DepthImage{kModeCamera.width, kModeCamera.height, 1.0F};
+    frame.color = ColorImage{kModeCamera.width, kModeCamera.height};
+    for (std::size_t k = 0; k < kModePixels; ++k) {
+      frame.depth.data()[k] += 0.004F * (static_cast<float>(random() % 1000) / 1000.0F);
+      frame.color->data()[k] = colors[random() % colors.size()];
+    }
+    frame.T_world_camera =
+        Pose{Eigen::Translation3d{0.013 * static_cast<double>(i % 5), 0.007 * static_cast<double>(i % 3), 0.0}};
+  }
+  return frames;
+}
+
+struct Filtered {
+  SurfelFusion fusion;
+  ModeFilter filter;
+  ModeFilterReport sum;
+};
+
+Filtered run(const std::vector<Frame>& frames, const ModeFilterConfig& config, std::size_t threads) {
+  Filtered result{SurfelFusion::create().value(), ModeFilter::create(config).value(), {}};
+  const Executor executor = Executor::with_threads(threads);
+  for (const Frame& frame : frames) {
+    EXPECT_TRUE(result.fusion.add_frame(frame, kModeCamera, executor));
+    const ModeFilterReport report = result.filter.add_frame(frame, result.fusion.association(), executor).value();
+    result.sum.pixels += report.pixels;
+    result.sum.guided += report.guided;
+    result.sum.new_modes += report.new_modes;
+    result.sum.merged_modes += report.merged_modes;
+    result.sum.evicted_modes += report.evicted_modes;
+    result.sum.evicted_weight += report.evicted_weight;
+  }
+  return result;
+}
+
+TEST(ModeFilter, WithOneModeAndNoEnhancementIsTheAverage) {
+  ModeFilterConfig config;
+  config.color_sigmas = std::numeric_limits<double>::infinity();
+  config.enhance_depth = false;
+  const Filtered result = run(wall_frames(12, {{10, 20, 30}, {200, 180, 20}, {90, 90, 250}}, 5), config, 2);
+  const std::vector<SurfelMode> winners = result.filter.winners({});
+  ASSERT_EQ(winners.size(), result.fusion.map().size());
+  ASSERT_GE(winners.size(), kModePixels);
+  for (SurfelId id = 0; id < winners.size(); ++id) {
+    const Surfel surfel = result.fusion.map().surfel(id);
+    ASSERT_EQ(winners[id].weight, surfel.weight) << id;  // the same sums: not even rounding differs
+    ASSERT_EQ(winners[id].color, surfel.color) << id;
+    ASSERT_EQ(winners[id].position_m, surfel.position_m) << id;
+  }
+}
+
+TEST(ModeFilter, ThreadsChangeNoBit) {
+  const std::vector<Frame> frames = wall_frames(6, {{10, 20, 30}, {200, 180, 20}, {12, 22, 28}}, 7);
+  const std::vector<SurfelMode> one = run(frames, {}, 1).filter.winners({});
+  ASSERT_GE(one.size(), kModePixels);
+  for (const std::size_t threads : {2U, 7U}) {
+    const std::vector<SurfelMode> other = run(frames, {}, threads).filter.winners({});
+    ASSERT_EQ(other.size(), one.size());
+    EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(SurfelMode)), 0) << threads;
+  }
+}
+
+TEST(ModeFilter, WeightsAreKeptButForEvictions) {
+  std::vector<Rgb8> colors;
+  for (int i = 0; i < 40; ++i) {  // a colour with its noise, and many far ones
+    colors.push_back({static_cast<std::uint8_t>(100 + i % 10), 100, static_cast<std::uint8_t>(50 + i / 10)});
+    if (i < 15) colors.push_back({static_cast<std::uint8_t>(15 * i), 200, 50});
+  }
+  ModeFilterConfig config;
+  config.max_modes = 5;
+  const Filtered result = run(wall_frames(30, colors, 11), config, 2);
+  EXPECT_GT(result.sum.guided, kModePixels);
+  EXPECT_GT(result.sum.merged_modes, 10U);
+  EXPECT_GT(result.sum.evicted_modes, 10U);
+  double seen{0.0};
+  double kept{0.0};
+  for (SurfelId id = 0; id < result.filter.size(); ++id) {
+    seen += static_cast<double>(result.fusion.map().weights[id]);
+    const std::vector<SurfelMode> modes = result.filter.modes(id);
+    ASSERT_LE(modes.size(), 5U);
+    for (const SurfelMode& mode : modes) {
+      ASSERT_GT(mode.weight, 0.0F);
+      kept += static_cast<double>(mode.weight);
+    }
+  }
+  EXPECT_NEAR(kept + result.sum.evicted_weight, seen, 1e-5 * seen);
+}
+
+TEST(ModeFilter, TheMoreFrequentColourWinsInAnyOrder) {
+  for (const bool rare_first : {false, true}) {
+    std::vector<Frame> frames = wall_frames(5, {{10, 20, 30}}, 3);
+    for (std::size_t i = 0; i < frames.size(); ++i) {
+      frames[i].T_world_camera = Pose::Identity();
+      const bool rare = rare_first ? i < 2 : i >= 3;
+      if (rare) frames[i].color = ColorImage{kModeCamera.width, kModeCamera.height, {200, 100, 30}};
+    }
+    const Filtered result = run(frames, {}, 1);
+    ASSERT_EQ(result.filter.size(), kModePixels);
+    for (const SurfelMode& winner : result.filter.winners({})) {
+      ASSERT_NEAR(winner.color.x(), 10.0F / 255.0F, 1e-6F);
+    }
+  }
+}
+
+TEST(ModeFilter, WithoutColourDoesNothingAndSaysSo) {
+  Frame frame = wall_frames(1, {{1, 2, 3}}, 1).front();
+  frame.color.reset();
+  const Filtered result = run({frame}, {}, 1);
+  EXPECT_EQ(result.sum.pixels, 0U);
+  EXPECT_EQ(result.filter.winners({}).front().weight, 0.0F);
+  ModeFilter filter = ModeFilter::create().value();
+  frame.color = ColorImage{3, 3};
+  EXPECT_EQ(filter.add_frame(frame, result.fusion.association(), {}).error().code, Errc::size_mismatch);
+  ModeFilterConfig config;
+  config.max_modes = 0;
+  EXPECT_FALSE(ModeFilter::create(config));
+}
+
+}  // namespace
+}  // namespace saccade
