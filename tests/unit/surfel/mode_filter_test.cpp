@@ -92,6 +92,7 @@ TEST(ModeFilter, WeightsAreKeptButForEvictions) {
   }
   ModeFilterConfig config;
   config.max_modes = 5;
+  config.color_sigmas = 1.0;  // modes so near each other that some grow together
   const Filtered result = run(wall_frames(30, colors, 11), config, 2);
   EXPECT_GT(result.sum.guided, kModePixels);
   EXPECT_GT(result.sum.merged_modes, 10U);
