@@ -18,33 +18,38 @@ namespace {
 constexpr std::uint64_t kModeSeed{29};
 constexpr PinholeCamera kNaiveCamera{32, 24, 26.25, 26.25, 15.5, 11.5, 0.3, 6.0};
 
+/// Colours in 8-bit levels, so that those that are equally far apart are so here too; weights as the filter adds them.
 struct NaiveMode {
-  Eigen::Vector3f c;
+  Eigen::Vector3d c;
   float w;
-  Eigen::Vector3f p;
+  Eigen::Vector3d p;
 };
 
 NaiveMode merged(const NaiveMode& a, const NaiveMode& b) {
-  return {(a.c * a.w + b.c * b.w) / (a.w + b.w), a.w + b.w, (a.p * a.w + b.p * b.w) / (a.w + b.w)};
+  const double wa = double{a.w};
+  const double wb = double{b.w};
+  return {(a.c * wa + b.c * wb) / (wa + wb), a.w + b.w, (a.p * wa + b.p * wb) / (wa + wb)};
 }
 
-double density(const Eigen::Vector3f& c, const Eigen::Vector3f& mean, double sigma) {
-  return std::exp(-static_cast<double>((c - mean).squaredNorm()) / (2.0 * sigma * sigma));
+double density(const Eigen::Vector3d& c, const Eigen::Vector3d& mean, double sigma) {
+  return std::exp(-(c - mean).squaredNorm() / (2.0 * sigma * sigma));
 }
+
+Eigen::Vector3d levels(const Rgb8& color) { return {double(color[0]), double(color[1]), double(color[2])}; }
 
 /// Lines 1–26, with the enhanced depth given.
-void algorithm_6(std::vector<NaiveMode>& M, const NaiveMode& measured, const Eigen::Vector3f& p_enhanced,
+void algorithm_6(std::vector<NaiveMode>& M, const NaiveMode& measured, const Eigen::Vector3d& p_enhanced,
                  const ModeFilterConfig& config) {
   if (M.empty()) {
     M.push_back(measured);
     return;
   }
-  const double sigma = config.guided.color_sigma;
+  const double sigma = config.guided.color_sigma * 255.0;
   std::size_t n{0};
   for (std::size_t i = 1; i < M.size(); ++i) {
     if ((M[i].c - measured.c).norm() < (M[n].c - measured.c).norm()) n = i;
   }
-  if (static_cast<double>((M[n].c - measured.c).norm()) > config.color_sigmas * sigma) {
+  if ((M[n].c - measured.c).norm() > config.color_sigmas * sigma) {
     if (static_cast<int>(M.size()) > config.max_modes - 1) {
       std::size_t r{0};
       for (std::size_t i = 1; i < M.size(); ++i) {
@@ -82,13 +87,14 @@ void naive_frame(std::map<SurfelId, std::vector<NaiveMode>>& modes, const Frame&
   for (std::size_t i = 0; i < pixels; ++i) {
     const SurfelId id = seen.of_pixel.data()[i];
     if (id == kNoSurfel || modes[id].empty()) continue;
-    const Eigen::Vector3f c = unit_color(frame.color->data()[i]);
+    const Eigen::Vector3d c = levels(frame.color->data()[i]);
     const NaiveMode* nearest = &modes[id].front();
     for (const NaiveMode& mode : modes[id]) {
       if ((mode.c - c).norm() < (nearest->c - c).norm()) nearest = &mode;
     }
-    if (static_cast<double>((nearest->c - c).norm()) > config.color_sigmas * config.guided.color_sigma) continue;
-    guidance[i] << nearest->c, static_cast<float>((seen.T_world_camera.inverse() * nearest->p.cast<double>()).z());
+    if ((nearest->c - c).norm() > config.color_sigmas * config.guided.color_sigma * 255.0) continue;
+    guidance[i] << (nearest->c / 255.0).cast<float>(),
+        static_cast<float>((seen.T_world_camera.inverse() * nearest->p).z());
     used[i] = 1;
   }
   if (config.enhance_depth) {
@@ -100,9 +106,11 @@ void naive_frame(std::map<SurfelId, std::vector<NaiveMode>>& modes, const Frame&
       const SurfelId id = seen.of_pixel(u, v);
       if (id == kNoSurfel) continue;
       const float d_e = enhanced[static_cast<std::size_t>(v * frame.depth.width() + u)];
-      algorithm_6(modes[id],
-                  {unit_color((*frame.color)(u, v)), seen.weight(u, v), seen.back_project(u, v, frame.depth(u, v))},
-                  seen.back_project(u, v, d_e), config);
+      const auto point = [&](float depth_m) -> Eigen::Vector3d {
+        return seen.T_world_camera * (seen.camera.ray(u, v) * double{depth_m});
+      };
+      algorithm_6(modes[id], {levels((*frame.color)(u, v)), seen.weight(u, v), point(frame.depth(u, v))}, point(d_e),
+                  config);
     }
   }
 }
@@ -144,9 +152,9 @@ TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
       ASSERT_EQ(ours.size(), theirs.size()) << "case " << i << ", surfel " << id;
       several += ours.size() > 1 ? 1U : 0U;
       for (std::size_t k = 0; k < ours.size(); ++k, ++compared) {
-        ASSERT_LE((ours[k].color - theirs[k].c).norm(), 1e-6F);
-        ASSERT_LE((ours[k].position_m - theirs[k].p).norm(), 1e-6F);
-        ASSERT_NEAR(ours[k].weight, theirs[k].w, 1e-5F);
+        ASSERT_LE((ours[k].color.cast<double>() - theirs[k].c / 255.0).norm(), 2e-6);
+        ASSERT_LE((ours[k].position_m.cast<double>() - theirs[k].p).norm(), 2e-6);
+        ASSERT_EQ(ours[k].weight, theirs[k].w);
       }
     }
   }

@@ -2,8 +2,11 @@
 #include "saccade/surfel/mode_filter.hpp"
 
 #include <algorithm>
+#include <array>
+#include <bit>
 #include <cmath>
-#include <utility>
+#include <numbers>
+#include <optional>
 
 #include "saccade/core/clock.hpp"
 
@@ -12,66 +15,126 @@ namespace {
 
 constexpr std::size_t kModeRowsPerTask{16};
 constexpr std::size_t kWinnersPerTask{4096};
+constexpr std::uint8_t kNoMode{255};
+constexpr int kMostModes{32};
 
-/// What a task of rows counted, and the surfels that need more or fewer blocks than they have.
-struct RowsDone {
-  ModeFilterReport counts;
-  std::vector<std::pair<SurfelId, SurfelModes>> refitted;
+/// Algorithm 6's parameters, in units of ColorUnits.
+struct ColorLimits {
+  ColorLimits(const ModeFilterConfig& config, float lightest_pixel)
+      : sigma{config.guided.color_sigma * 255.0 * ColorUnits::kPerLevel},
+        squared_new{whole(std::pow(config.color_sigmas * sigma, 2.0))},
+        squared_per_octave{static_cast<float>(2.0 * sigma * sigma * std::numbers::ln2 * 1.0001)},
+        lightest{lightest_pixel} {}
+
+  static std::int64_t whole(double squared) {
+    constexpr std::int64_t kFarthest{std::int64_t{1} << 46};  // no colours are so far apart
+    return squared < static_cast<double>(kFarthest) ? static_cast<std::int64_t>(squared) : kFarthest;
+  }
+
+  double sigma;
+  std::int64_t squared_new;  ///< (K · σ_c)²
+  float squared_per_octave;  ///< 2σ_c² ln 2: line 22 holds within 2σ_c² ln(w_n / w_i)
+  float lightest;            ///< no mode is lighter
 };
 
-void merge(SurfelMode& into, const SurfelMode& other) {
-  into.color = weighted_mean(into.color, into.weight, other.color, other.weight);
-  into.position_m = weighted_mean(into.position_m, into.weight, other.position_m, other.weight);
-  into.weight += other.weight;
-}
+struct Observation {
+  ColorUnits color;
+  Eigen::Vector3f position_m;
+  float weight;
+};
 
-std::size_t lightest(const SurfelModes& modes) {
-  std::size_t best{0};
-  for (std::size_t i = 1; i < modes.count; ++i) {
-    if (modes.modes[i].weight < modes.modes[best].weight) best = i;
-  }
-  return best;
+void merge(const StoredModes& modes, std::size_t n, const ColorUnits& color, const Eigen::Vector3f& position_m,
+           float weight) {
+  const float sum = modes.weights[n] + weight;
+  modes.colors[n] = mean_color(ColorUnits::unpacked(modes.colors[n]), color, weight / sum).packed();
+  modes.set_position(n, weighted_mean(modes.position_m(n), modes.weights[n], position_m, weight));
+  modes.weights[n] = sum;
 }
 
 /// Line 22: p_N(c_i, c_n, σ_c) · w_n > p_N(c_i, c_i, σ_c) · w_i; the common factor of the densities is left out.
-bool absorbs(const SurfelMode& n, const SurfelMode& i, double color_sigma) {
-  if (n.weight <= i.weight) return false;
-  const auto squared = static_cast<double>((i.color - n.color).squaredNorm());
-  return std::exp(-squared / (2.0 * color_sigma * color_sigma)) * static_cast<double>(n.weight) >
-         static_cast<double>(i.weight);
+bool absorbs(const StoredModes& modes, std::size_t n, std::size_t i, double sigma) {
+  const auto squared = static_cast<double>(
+      squared_distance(ColorUnits::unpacked(modes.colors[n]), ColorUnits::unpacked(modes.colors[i])));
+  return std::exp(-squared / (2.0 * sigma * sigma)) * double{modes.weights[n]} > double{modes.weights[i]};
 }
 
-/// Lines 1–26 for one pixel; `enhanced` is the observation with the position of d′_e.
-void observe(SurfelModes& modes, const SurfelMode& observed, const SurfelMode& enhanced, const ModeFilterConfig& config,
-             ModeFilterReport& counts) {
-  const double sigma = config.guided.color_sigma;
-  std::size_t n{0};
-  if (modes.count > 0) n = modes.nearest(observed.color);
-  const bool is_new = modes.count == 0 ||
-                      static_cast<double>((modes.modes[n].color - observed.color).norm()) > config.color_sigmas * sigma;
-  if (is_new) {
-    if (modes.count >= static_cast<std::size_t>(config.max_modes)) {
-      const std::size_t evicted = lightest(modes);
-      counts.evicted_weight += static_cast<double>(modes.modes[evicted].weight);
-      ++counts.evicted_modes;
-      modes.remove(evicted);
-    }
-    modes.add(observed);
-    ++counts.new_modes;
-    return;
+/// ⌊log₂ weight⌋ and a constant.
+float octave(float weight) { return static_cast<float>(std::bit_cast<std::int32_t>(weight) >> 23); }
+
+/// The modes of one surfel while a frame is taken in, and which of them its pixels went into.
+class ModesOfSurfel {
+ public:
+  ModesOfSurfel(const StoredModes& modes, const ModeFilterConfig& config, const ColorLimits& limits,
+                ModeFilterReport& counts)
+      : modes_{modes}, config_{config}, limits_{limits}, counts_{counts} {
+    mode_of_pixel_.fill(kNoMode);
   }
-  merge(modes.modes[n], enhanced);
-  for (std::size_t i = 0; i < modes.count;) {
-    if (i != n && absorbs(modes.modes[n], modes.modes[i], sigma)) {
-      merge(modes.modes[n], modes.modes[i]);
-      modes.remove(i);
+
+  [[nodiscard]] std::uint8_t mode_of_pixel(std::size_t k) const { return mode_of_pixel_[k]; }
+  /// Lines 6 and 8.
+  [[nodiscard]] std::optional<std::size_t> mode_for(const ColorUnits& color) const {
+    if (modes_.count() == 0) return std::nullopt;
+    const NearestColor nearest = nearest_color(modes_.colors, modes_.count(), color);
+    if (nearest.squared_units > limits_.squared_new) return std::nullopt;
+    return nearest.index;
+  }
+
+  /// Lines 1–26 for the k-th pixel with its measured point.
+  void observe(std::size_t k, const Observation& observed, std::optional<std::size_t> nearest) {
+    if (!nearest) {
+      if (modes_.count() >= static_cast<std::size_t>(config_.max_modes)) evict_lightest();
+      modes_.add(observed.color, observed.position_m, observed.weight);
+      ++counts_.new_modes;
+      return;
+    }
+    merge(modes_, *nearest, observed.color, observed.position_m, observed.weight);
+    mode_of_pixel_[k] = static_cast<std::uint8_t>(*nearest);
+    compress(*nearest);
+  }
+
+ private:
+  /// Lines 21–26.
+  void compress(std::size_t n) {
+    if (near_enough(n) == 0) return;
+    for (std::size_t i = 0; i < modes_.count();) {
+      if (i == n || !absorbs(modes_, n, i, limits_.sigma)) {
+        ++i;
+        continue;
+      }
+      merge(modes_, n, ColorUnits::unpacked(modes_.colors[i]), modes_.position_m(i), modes_.weights[i]);
+      ++counts_.merged_modes;
+      remove(i, static_cast<std::uint8_t>(n));
       if (i < n) --n;
-      ++counts.merged_modes;
-    } else {
-      ++i;
     }
   }
-}
+  /// Modes that n could absorb if they were as light as one pixel: almost always none.
+  [[nodiscard]] std::uint32_t near_enough(std::size_t n) const {
+    const float most_octaves = octave(modes_.weights[n]) - octave(limits_.lightest) + 1.0F;
+    const std::uint32_t all = colors_within(modes_.colors, modes_.count(), ColorUnits::unpacked(modes_.colors[n]),
+                                            static_cast<std::int64_t>(most_octaves * limits_.squared_per_octave) + 1);
+    return all & ~(1U << n);
+  }
+  void evict_lightest() {
+    const auto i =
+        static_cast<std::size_t>(std::min_element(modes_.weights, modes_.weights + modes_.count()) - modes_.weights);
+    counts_.evicted_weight += double{modes_.weights[i]};
+    ++counts_.evicted_modes;
+    remove(i, kNoMode);
+  }
+  void remove(std::size_t i, std::uint8_t heir) {
+    for (std::uint8_t& mode : mode_of_pixel_) {
+      if (mode == i) mode = heir;
+      if (mode != kNoMode && mode > i) --mode;
+    }
+    modes_.remove(i);
+  }
+
+  StoredModes modes_;
+  const ModeFilterConfig& config_;
+  const ColorLimits& limits_;
+  ModeFilterReport& counts_;
+  std::array<std::uint8_t, SurfelAssociation::kNewSurfel> mode_of_pixel_;
+};
 
 void add_counts(ModeFilterReport& sum, const ModeFilterReport& counts) {
   sum.pixels += counts.pixels;
@@ -87,7 +150,7 @@ void add_counts(ModeFilterReport& sum, const ModeFilterReport& counts) {
 Status ModeFilterConfig::validate() const {
   SACCADE_CHECK(guided.validate());
   if (!(color_sigmas > 0.0)) return Error{Errc::invalid_argument, "mode filter: K must be positive", {}};
-  if (max_modes < 1 || max_modes > static_cast<int>(kMostModes)) {
+  if (max_modes < 1 || max_modes > kMostModes) {
     return Error{Errc::invalid_argument, "mode filter: a surfel has 1 to 32 modes", {}};
   }
   return {};
@@ -98,64 +161,74 @@ Result<ModeFilter> ModeFilter::create(const ModeFilterConfig& config) {
   return ModeFilter{config};
 }
 
-void ModeFilter::guide(const Frame& frame, const SurfelAssociation& seen, const Executor& executor,
-                       ModeFilterReport& report) {
-  const std::size_t pixels = seen.of_pixel.size();
-  guidance_.resize(pixels);
-  used_.assign(pixels, 0);
-  const Eigen::Vector3f forward = seen.T_world_camera.linear().col(2).cast<float>();
-  const Eigen::Vector3f center = seen.T_world_camera.translation().cast<float>();
-  const std::size_t per_task = kModeRowsPerTask * static_cast<std::size_t>(seen.camera.width);
-  std::vector<std::size_t> guided((pixels + per_task - 1) / per_task);
-  const double limit = config_.color_sigmas * config_.guided.color_sigma;
-  executor.parallel_for(pixels, per_task, [&](std::size_t begin, std::size_t end) {
-    SurfelModes modes;
-    for (std::size_t i = begin; i < end; ++i) {
-      const SurfelId id = seen.of_pixel.data()[i];
-      if (id == kNoSurfel || store_.count(id) == 0) continue;
-      store_.load(id, modes);
-      const Eigen::Vector3f color = unit_color(frame.color->data()[i]);
-      const SurfelMode& mode = modes.modes[modes.nearest(color)];
-      if (static_cast<double>((mode.color - color).norm()) > limit) continue;
-      guidance_[i] << mode.color, forward.dot(mode.position_m - center);
-      used_[i] = 1;
-      ++guided[begin / per_task];
-    }
-  });
-  for (const std::size_t count : guided) report.guided += count;
-}
-
-void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor,
+void ModeFilter::associate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor,
                            ModeFilterReport& report) {
   const auto rows = static_cast<std::size_t>(seen.camera.height);
-  std::vector<RowsDone> done((rows + kModeRowsPerTask - 1) / kModeRowsPerTask);
+  const auto width = static_cast<std::size_t>(seen.camera.width);
+  lightest_ = std::min(lightest_, *std::min_element(seen.column_weights.begin(), seen.column_weights.end()) *
+                                      *std::min_element(seen.row_weights.begin(), seen.row_weights.end()));
+  const ColorLimits limits{config_, lightest_};
+  const BackProjection back_project{seen};
+  const Eigen::Vector3f forward = back_project.R_world_camera.col(2);
+  std::vector<ModeFilterReport> counts((rows + kModeRowsPerTask - 1) / kModeRowsPerTask);
   executor.parallel_for(rows, kModeRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    RowsDone& mine = done[begin / kModeRowsPerTask];
-    SurfelModes modes;
+    ModeFilterReport& count = counts[begin / kModeRowsPerTask];
     for_each_seen_surfel(
-        seen, static_cast<int>(begin), static_cast<int>(end), [&](SurfelId id, std::span<const SeenPixel> pixels) {
-          store_.load(id, modes);
-          for (const auto& [u, v] : pixels) {
-            const float depth_m = frame.depth(u, v);
-            float enhanced_m = depth_m;
-            if (config_.enhance_depth) {
-              const float out = enhanced_m_[static_cast<std::size_t>(v) * static_cast<std::size_t>(seen.camera.width) +
-                                            static_cast<std::size_t>(u)];
-              if (std::isfinite(out) && out > 0.0F) enhanced_m = out;
-            }
-            SurfelMode observed{unit_color((*frame.color)(u, v)), seen.back_project(u, v, depth_m), seen.weight(u, v)};
-            SurfelMode enhanced = observed;
-            if (enhanced_m != depth_m) enhanced.position_m = seen.back_project(u, v, enhanced_m);
-            observe(modes, observed, enhanced, config_, mine.counts);
-            ++mine.counts.pixels;
+        seen, static_cast<int>(begin), static_cast<int>(end), [&](SurfelId id, int, int) { store_.fetch(id); },
+        [&](SurfelId id, std::span<const SeenPixel> pixels) {
+          const StoredModes modes = store_.modes(id);
+          ModesOfSurfel surfel{modes, config_, limits, count};
+          std::array<std::optional<std::size_t>, SurfelAssociation::kNewSurfel> nearest;
+          for (std::size_t k = 0; k < pixels.size(); ++k) {
+            const auto [u, v] = pixels[k];
+            const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+            nearest[k] = surfel.mode_for(color_units(frame.color->data()[i]));
+            if (!nearest[k]) continue;
+            const Eigen::Vector3f color = unit_color(ColorUnits::unpacked(modes.colors[*nearest[k]]));
+            guidance_[i] = {color.x(), color.y(), color.z(),
+                            forward.dot(modes.position_m(*nearest[k]) - back_project.center_world)};
+            used_[i] = 1;
+            ++count.guided;
           }
-          if (!store_.store(id, modes)) mine.refitted.emplace_back(id, modes);
+          for (std::size_t k = 0; k < pixels.size(); ++k) {
+            const auto [u, v] = pixels[k];
+            const Observation observed{color_units((*frame.color)(u, v)), back_project(u, v, frame.depth(u, v)),
+                                       seen.weight(u, v)};
+            surfel.observe(k, observed, k == 0 ? nearest[0] : surfel.mode_for(observed.color));
+          }
+          for (std::size_t k = 0; k < pixels.size(); ++k) {
+            const auto [u, v] = pixels[k];
+            mode_of_pixel_[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] = surfel.mode_of_pixel(k);
+          }
+          count.pixels += pixels.size();
         });
   });
-  for (const RowsDone& part : done) {
-    add_counts(report, part.counts);
-    for (const auto& [id, modes] : part.refitted) store_.store_and_fit(id, modes);
-  }
+  for (const ModeFilterReport& count : counts) add_counts(report, count);
+}
+
+void ModeFilter::move_to_enhanced(const Frame& frame, const SurfelAssociation& seen, const Executor& executor) {
+  const auto rows = static_cast<std::size_t>(seen.camera.height);
+  const auto width = static_cast<std::size_t>(seen.camera.width);
+  const BackProjection back_project{seen};
+  executor.parallel_for(rows, kModeRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for_each_seen_surfel(
+        seen, static_cast<int>(begin), static_cast<int>(end), [&](SurfelId id, int, int) { store_.fetch(id); },
+        [&](SurfelId id, std::span<const SeenPixel> pixels) {
+          for (const auto& [u, v] : pixels) {
+            const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+            const float enhanced_m = enhanced_m_[i];
+            const float depth_m = frame.depth.data()[i];
+            if (used_[i] == 0 || mode_of_pixel_[i] == kNoMode || !(enhanced_m > 0.0F) || enhanced_m == depth_m ||
+                !std::isfinite(enhanced_m)) {
+              continue;
+            }
+            const StoredModes modes = store_.modes(id);
+            const std::size_t n = mode_of_pixel_[i];
+            const Eigen::Vector3f step = back_project(u, v, enhanced_m) - back_project(u, v, depth_m);
+            modes.set_position(n, modes.position_m(n) + step * (seen.weight(u, v) / modes.weights[n]));
+          }
+        });
+  });
 }
 
 Result<ModeFilterReport> ModeFilter::add_frame(const Frame& frame, const SurfelAssociation& seen,
@@ -171,33 +244,35 @@ Result<ModeFilterReport> ModeFilter::add_frame(const Frame& frame, const SurfelA
   report.has_color = frame.color.has_value();
   if (!report.has_color) return report;
   Stopwatch stopwatch;
-  if (config_.enhance_depth) {
-    guide(frame, seen, executor, report);
-    report.associate_ms = stopwatch.lap_ms();
-    enhanced_m_.resize(frame.depth.size());
-    guided_.apply(width, height, frame.depth.pixels(), guidance_, used_, executor, enhanced_m_);
-    report.guided_filter_ms = stopwatch.lap_ms();
-  }
-  integrate(frame, seen, executor, report);
+  guidance_.resize(frame.depth.size());
+  used_.assign(frame.depth.size(), 0);
+  mode_of_pixel_.resize(frame.depth.size());
+  associate(frame, seen, executor, report);
+  report.associate_ms = stopwatch.lap_ms();
+  if (!config_.enhance_depth) return report;
+  enhanced_m_.resize(frame.depth.size());
+  guided_.apply(width, height, frame.depth.pixels(), guidance_, used_, executor, enhanced_m_);
+  report.guided_filter_ms = stopwatch.lap_ms();
+  move_to_enhanced(frame, seen, executor);
   report.integrate_ms = stopwatch.lap_ms();
   return report;
 }
 
 std::vector<SurfelMode> ModeFilter::modes(SurfelId id) const {
-  SurfelModes loaded;
-  store_.load(id, loaded);
-  return {loaded.modes.begin(), loaded.modes.begin() + static_cast<std::ptrdiff_t>(loaded.count)};
+  std::vector<SurfelMode> all;
+  for (std::size_t i = 0; i < store_.count(id); ++i) all.push_back(store_.mode(id, i));
+  return all;
 }
 
 std::vector<SurfelMode> ModeFilter::winners(const Executor& executor) const {
   std::vector<SurfelMode> best(store_.size());
   executor.parallel_for(best.size(), kWinnersPerTask, [&](std::size_t begin, std::size_t end) {
-    SurfelModes loaded;
-    for (std::size_t i = begin; i < end; ++i) {
-      store_.load(static_cast<SurfelId>(i), loaded);
-      best[i] = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), 0.0F};
-      for (const SurfelMode& mode : loaded.span()) {
-        if (mode.weight > best[i].weight) best[i] = mode;
+    for (std::size_t k = begin; k < end; ++k) {
+      const auto id = static_cast<SurfelId>(k);
+      best[k] = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), 0.0F};
+      for (std::size_t i = 0; i < store_.count(id); ++i) {
+        const SurfelMode mode = store_.mode(id, i);
+        if (mode.weight > best[k].weight) best[k] = mode;
       }
     }
   });

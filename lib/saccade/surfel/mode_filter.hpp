@@ -35,13 +35,15 @@ struct ModeFilterReport {
   std::size_t merged_modes{0};   ///< by compression
   std::size_t evicted_modes{0};  ///< for want of room, line 10
   double evicted_weight{0.0};
-  double associate_ms{0.0};
-  double guided_filter_ms{0.0};
-  double integrate_ms{0.0};
+  double associate_ms{0.0};      ///< lines 1–15 and 20–26, with measured depths
+  double guided_filter_ms{0.0};  ///< lines 16–18
+  double integrate_ms{0.0};      ///< line 19: positions move to the enhanced depths
 };
 
 /// Runs beside SurfelFusion, frame by frame. Guidance comes from the modes at the frame's beginning; then each pixel
-/// goes through Algorithm 6 with its depth and enhanced depth, several pixels of one surfel in row-major order.
+/// goes through Algorithm 6, several pixels of one surfel in row-major order. No line of it asks for a position but
+/// the averages of eq. 4.6, which are linear: so modes take the measured points first, in one pass through memory, and
+/// where the filtered depths differ from the measured ones their share is added afterwards.
 /// A pixel without guidance keeps its depth. The average without enhancement (eq. 4.12) is the colour and position of
 /// the SurfelMap itself, as long as all frames have colour.
 /// One caller at a time. Neither threads nor simd_target() change a bit of the result.
@@ -54,24 +56,28 @@ class ModeFilter {
   [[nodiscard]] Result<ModeFilterReport> add_frame(const Frame& frame, const SurfelAssociation& seen,
                                                    const Executor& executor);
 
-  /// Line by line, one surfel's modes; in the order in which they came.
+  /// One surfel's modes, in the order in which they came.
   [[nodiscard]] std::vector<SurfelMode> modes(SurfelId id) const;
   /// Eq. 4.11 per surfel: the mode of the largest weight, the first of equal ones; weight 0 where there is none.
   [[nodiscard]] std::vector<SurfelMode> winners(const Executor& executor) const;
   [[nodiscard]] std::size_t size() const { return store_.size(); }
+  /// Of the modes.
   [[nodiscard]] std::size_t memory_bytes() const { return store_.memory_bytes(); }
   [[nodiscard]] const ModeFilterConfig& config() const { return config_; }
 
  private:
-  explicit ModeFilter(const ModeFilterConfig& config) : config_{config}, guided_{config.guided} {}
-  void guide(const Frame& frame, const SurfelAssociation& seen, const Executor& executor, ModeFilterReport& report);
-  void integrate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor, ModeFilterReport& report);
+  explicit ModeFilter(const ModeFilterConfig& config)
+      : config_{config}, guided_{config.guided}, store_{static_cast<std::size_t>(config.max_modes)} {}
+  void associate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor, ModeFilterReport& report);
+  void move_to_enhanced(const Frame& frame, const SurfelAssociation& seen, const Executor& executor);
 
   ModeFilterConfig config_;
   GuidedFilter guided_;
   ModeStore store_;
+  float lightest_{1.0F};  ///< weight of a pixel so far
   std::vector<Eigen::Vector4f> guidance_;
   std::vector<std::uint8_t> used_;
+  std::vector<std::uint8_t> mode_of_pixel_;  ///< the mode that a guided pixel went into, or kNoMode
   std::vector<float> enhanced_m_;
 };
 

@@ -3,13 +3,15 @@
 // SurfelMode: what a surfel may look like, and where; ModeStore: the modes of all surfels in little memory.
 
 #include <Eigen/Core>
-#include <array>
+#include <algorithm>
+#include <cmath>
 #include <cstddef>
 #include <cstdint>
-#include <limits>
-#include <span>
+#include <memory>
 #include <vector>
 
+#include "saccade/sensor/image.hpp"
+#include "saccade/surfel/mode_search.hpp"
 #include "saccade/surfel/surfel_map.hpp"
 
 namespace saccade {
@@ -21,55 +23,76 @@ struct SurfelMode {
   float weight{0.0F};
 };
 
-inline constexpr std::size_t kMostModes{32};
+inline ColorUnits color_units(const Rgb8& color) {
+  return {color[0] * ColorUnits::kPerLevel, color[1] * ColorUnits::kPerLevel, color[2] * ColorUnits::kPerLevel};
+}
 
-/// Modes of one surfel, in the order in which they came.
-struct SurfelModes {
-  std::array<SurfelMode, kMostModes> modes;
-  std::size_t count{0};
+/// In [0, 1].
+inline Eigen::Vector3f unit_color(const ColorUnits& units) {
+  constexpr float kUnit{1.0F / (255.0F * ColorUnits::kPerLevel)};
+  return {static_cast<float>(units.r) * kUnit, static_cast<float>(units.g) * kUnit,
+          static_cast<float>(units.b) * kUnit};
+}
 
-  [[nodiscard]] std::span<const SurfelMode> span() const { return {modes.data(), count}; }
-  void add(const SurfelMode& mode) { modes[count++] = mode; }
-  void remove(std::size_t i);
-  /// argmin_i ‖c_i − c‖, the first of those that are equal; needs one mode.
-  [[nodiscard]] std::size_t nearest(const Eigen::Vector3f& color) const;
+/// One surfel's modes in the memory of a ModeStore, in the order in which they came.
+struct StoredModes {
+  std::uint64_t* colors;  ///< ColorUnits::packed()
+  float* weights;
+  float* positions_m;  ///< x, y, z
+  std::uint8_t* count_here;
+
+  [[nodiscard]] std::size_t count() const { return *count_here; }
+  [[nodiscard]] Eigen::Vector3f position_m(std::size_t i) const {
+    return {positions_m[3 * i], positions_m[3 * i + 1], positions_m[3 * i + 2]};
+  }
+  void set_position(std::size_t i, const Eigen::Vector3f& p_m) const {
+    for (std::size_t k = 0; k < 3; ++k) positions_m[3 * i + k] = p_m[static_cast<Eigen::Index>(k)];
+  }
+  [[nodiscard]] SurfelMode mode(std::size_t i) const {
+    return {unit_color(ColorUnits::unpacked(colors[i])), position_m(i), weights[i]};
+  }
+  /// Needs room.
+  void add(const ColorUnits& color, const Eigen::Vector3f& p_m, float weight) const {
+    const std::size_t i = (*count_here)++;
+    colors[i] = color.packed();
+    weights[i] = weight;
+    set_position(i, p_m);
+  }
+  void remove(std::size_t i) const {
+    const std::size_t end = count();
+    std::copy(colors + i + 1, colors + end, colors + i);
+    std::copy(weights + i + 1, weights + end, weights + i);
+    std::copy(positions_m + 3 * i + 3, positions_m + 3 * end, positions_m + 3 * i);
+    --*count_here;
+  }
 };
 
-/// Modes by surfel: the first in an array, the others in chains of blocks of three. A surfel has 36 bytes, a block 88.
+/// Modes by surfel. Room for all of a surfel's modes, 24 bytes each, is there from the beginning: with real colours
+/// most surfels soon have many. Different surfels may be changed by different threads.
 class ModeStore {
  public:
-  [[nodiscard]] std::size_t size() const { return firsts_.size(); }
-  [[nodiscard]] std::size_t blocks_in_use() const { return blocks_.size() - free_blocks_; }
+  explicit ModeStore(std::size_t max_modes) : max_modes_{max_modes} {}
+
+  [[nodiscard]] std::size_t size() const { return counts_.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
-  [[nodiscard]] std::size_t count(SurfelId id) const { return heads_[id].count; }
   /// New surfels have no modes.
   void resize(std::size_t surfels);
-  void load(SurfelId id, SurfelModes& modes) const;
-  /// False, with nothing changed, unless the modes need as many blocks as the surfel has: then store_and_fit takes
-  /// them. Different surfels may be stored by different threads.
-  [[nodiscard]] bool store(SurfelId id, const SurfelModes& modes);
-  /// As store, and fits. One thread.
-  void store_and_fit(SurfelId id, const SurfelModes& modes);
+  [[nodiscard]] std::size_t count(SurfelId id) const { return counts_[id]; }
+  [[nodiscard]] StoredModes modes(SurfelId id);
+  [[nodiscard]] SurfelMode mode(SurfelId id, std::size_t i) const;
+  /// Asks memory for the modes.
+  void fetch(SurfelId id) const;
 
  private:
-  static constexpr std::size_t kPerBlock{3};
-  static constexpr std::uint32_t kNoBlock{std::numeric_limits<std::uint32_t>::max()};
-  struct Head {
-    std::uint32_t block{kNoBlock};
-    std::uint16_t count{0};
-    std::uint16_t blocks{0};
-  };
-  struct Block {
-    std::array<SurfelMode, kPerBlock> modes;
-    std::uint32_t next{kNoBlock};
-  };
-  static std::size_t blocks_for(std::size_t count) { return count <= 1 ? 0 : (count - 1 + kPerBlock - 1) / kPerBlock; }
+  static constexpr std::size_t kPerChunk{8192};
+  static constexpr std::size_t kBytesPerMode{sizeof(std::uint64_t) + 4 * sizeof(float)};
+  /// Searches look at up to seven modes more than there are: so far they stay among a surfel's own bytes.
+  [[nodiscard]] std::size_t stride() const { return std::max<std::size_t>(max_modes_, 4) * kBytesPerMode; }
+  [[nodiscard]] std::byte* room(SurfelId id) const { return chunks_[id / kPerChunk].get() + id % kPerChunk * stride(); }
 
-  std::vector<SurfelMode> firsts_;
-  std::vector<Head> heads_;
-  std::vector<Block> blocks_;
-  std::uint32_t free_{kNoBlock};
-  std::size_t free_blocks_{0};
+  std::size_t max_modes_;
+  std::vector<std::uint8_t> counts_;
+  std::vector<std::unique_ptr<std::byte[]>> chunks_;  // NOLINT(*-avoid-c-arrays)
 };
 
 }  // namespace saccade

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfelAssociation: which surfel each pixel of a frame saw; for_each_seen_surfel: the pixels that saw one surfel.
+// SurfelAssociation: which surfel each pixel of a frame saw; BackProjection; for_each_seen_surfel: the pixels that saw
+// one surfel.
 
-#include <algorithm>
 #include <array>
-#include <cmath>
+#include <bit>
 #include <cstddef>
+#include <cstdint>
 #include <span>
 #include <vector>
 
@@ -24,6 +25,9 @@ struct SurfelAssociation {
   Pose T_world_camera{Pose::Identity()};
   Image<SurfelId> of_pixel;  ///< the surfel that the pixel saw, or kNoSurfel
   Image<SurfelId> of_cell;   ///< the surfel that fills the cell of the index image, or kNoSurfel
+  /// Bit i: the i-th pixel around the cell, row by row, saw the cell's surfel. Bit kNewSurfel: the pixel made its own.
+  Image<std::uint16_t> seen_by;
+  static constexpr int kNewSurfel{9};
   std::size_t first_new{0};  ///< surfels from here on were made by this frame, each by its one pixel
   std::size_t surfels{0};    ///< ids are below
   std::vector<float> column_weights;
@@ -33,10 +37,27 @@ struct SurfelAssociation {
   [[nodiscard]] float weight(int u, int v) const {
     return column_weights[static_cast<std::size_t>(u)] * row_weights[static_cast<std::size_t>(v)];
   }
-  /// World point of a depth at pixel (u, v).
-  [[nodiscard]] Eigen::Vector3f back_project(int u, int v, float depth_m) const {
-    return (T_world_camera * (camera.ray(u, v) * static_cast<double>(depth_m))).cast<float>();
+};
+
+/// World points of depths, in single precision.
+struct BackProjection {
+  explicit BackProjection(const SurfelAssociation& seen)
+      : R_world_camera{seen.T_world_camera.linear().cast<float>()},
+        center_world{seen.T_world_camera.translation().cast<float>()},
+        inverse_fx{static_cast<float>(1.0 / seen.camera.fx)},
+        inverse_fy{static_cast<float>(1.0 / seen.camera.fy)},
+        cx{static_cast<float>(seen.camera.cx)},
+        cy{static_cast<float>(seen.camera.cy)} {}
+
+  [[nodiscard]] Eigen::Vector3f operator()(int u, int v, float depth_m) const {
+    const float x = (static_cast<float>(u) - cx) * inverse_fx;
+    const float y = (static_cast<float>(v) - cy) * inverse_fy;
+    return center_world + R_world_camera * Eigen::Vector3f{x * depth_m, y * depth_m, depth_m};
   }
+
+  Eigen::Matrix3f R_world_camera;
+  Eigen::Vector3f center_world;
+  float inverse_fx, inverse_fy, cx, cy;
 };
 
 struct SeenPixel {
@@ -45,29 +66,33 @@ struct SeenPixel {
 };
 
 /// Calls visit(surfel, pixels) for the surfels whose cells are in rows [begin, end), pixels in row-major order. Over
-/// all rows each surfel that was seen comes once, so that rows can be taken by several threads.
-template <class Visit>
-void for_each_seen_surfel(const SurfelAssociation& seen, int begin, int end, Visit&& visit) {
-  constexpr int kReach{SurfelAssociation::kReach_px};
-  std::array<SeenPixel, (2 * kReach + 1) * (2 * kReach + 1)> pixels;
+/// all rows each surfel that was seen comes once, so that rows can be taken by several threads. Calls fetch(surfel, u,
+/// v) some cells ahead: what lies side by side in the image is far apart in memory.
+template <class Fetch, class Visit>
+void for_each_seen_surfel(const SurfelAssociation& seen, int begin, int end, Fetch&& fetch, Visit&& visit) {
+  constexpr int kCellsAhead{16};
+  std::array<SeenPixel, SurfelAssociation::kNewSurfel> pixels;
   const int width = seen.of_pixel.width();
   for (int v = begin; v < end; ++v) {
-    const int last_row = std::min(v + kReach, seen.of_pixel.height() - 1);
+    const std::uint16_t* row = seen.seen_by.row(v);
+    const SurfelId* cells = seen.of_cell.row(v);
     for (int u = 0; u < width; ++u) {
-      const SurfelId own = seen.of_pixel(u, v);
-      if (own != kNoSurfel && own >= seen.first_new) {
+      if (u + kCellsAhead < width && cells[u + kCellsAhead] != kNoSurfel)
+        fetch(cells[u + kCellsAhead], u + kCellsAhead, v);
+      unsigned bits = row[u];
+      if (bits == 0) continue;
+      if ((bits >> SurfelAssociation::kNewSurfel) != 0) {
         pixels[0] = {u, v};
-        visit(own, std::span<const SeenPixel>{pixels.data(), 1});
+        visit(seen.of_pixel(u, v), std::span<const SeenPixel>{pixels.data(), 1});
+        bits &= (1U << SurfelAssociation::kNewSurfel) - 1U;
+        if (bits == 0) continue;
       }
-      const SurfelId surfel = seen.of_cell(u, v);
-      if (surfel == kNoSurfel) continue;
       std::size_t count{0};
-      for (int row = std::max(v - kReach, 0); row <= last_row; ++row) {
-        for (int column = std::max(u - kReach, 0); column <= std::min(u + kReach, width - 1); ++column) {
-          if (seen.of_pixel(column, row) == surfel) pixels[count++] = {column, row};
-        }
+      for (; bits != 0; bits &= bits - 1) {
+        const int i = std::countr_zero(bits);
+        pixels[count++] = {u + i % 3 - 1, v + i / 3 - 1};
       }
-      if (count > 0) visit(surfel, std::span<const SeenPixel>{pixels.data(), count});
+      visit(cells[u], std::span<const SeenPixel>{pixels.data(), count});
     }
   }
 }
@@ -75,7 +100,7 @@ void for_each_seen_surfel(const SurfelAssociation& seen, int begin, int end, Vis
 /// Weighted mean of eq. 4.1, 4.5 and 4.6.
 inline Eigen::Vector3f weighted_mean(const Eigen::Vector3f& a, float weight_a, const Eigen::Vector3f& b,
                                      float weight_b) {
-  return (a * weight_a + b * weight_b) / (weight_a + weight_b);
+  return a + (b - a) * (weight_b / (weight_a + weight_b));
 }
 
 /// An 8-bit colour in [0, 1].

@@ -5,6 +5,7 @@
 #include <bit>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "saccade/core/clock.hpp"
 
@@ -13,8 +14,8 @@ namespace {
 
 constexpr std::size_t kRowsPerTask{16};
 constexpr std::size_t kSurfelsPerTask{4096};
+constexpr std::size_t kCellsAhead{16};  ///< that memory is asked for what fills a cell
 constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};
-constexpr SurfelId kMakesSurfel{kNoSurfel - 1};
 /// A radius that is so much larger comes from too far away to say anything of this surfel's.
 constexpr float kComparableRadius{1.5F};
 
@@ -98,6 +99,8 @@ void SurfelFusion::prepare(const PinholeCamera& camera, const Pose& T_world_came
     seen.row_weights = axis_weights(camera.height, squared_diagonal, config_.image_sigma);
     seen.of_pixel = Image<SurfelId>{camera.width, camera.height, kNoSurfel};
     seen.of_cell = Image<SurfelId>{camera.width, camera.height, kNoSurfel};
+    seen.seen_by = Image<std::uint16_t>{camera.width, camera.height};
+    cell_discs_ = SurfelCells{camera.width, camera.height};
   }
   seen.camera = camera;
   seen.T_world_camera = T_world_camera;
@@ -113,16 +116,18 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
   const auto height = static_cast<float>(camera.height);
   executor.parallel_for(map_.size(), kSurfelsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t id = begin; id < end; ++id) {
-      const Eigen::Vector3f p = view.to_camera(map_.positions_m[id]);
-      if (!(p.z() > 0.0F)) continue;
-      const float u = p.x() / p.z() * view.fx + view.cx + 0.5F;
-      const float v = p.y() / p.z() * view.fy + view.cy + 0.5F;
+      const SurfelDisc& disc = map_.discs[id];
+      const Eigen::Vector3f p_from_camera = disc.position_m - view.center_world;
+      const float z = view.R_camera_world.row(2).dot(p_from_camera);
+      if (!(z > 0.0F)) continue;
+      const float u = view.R_camera_world.row(0).dot(p_from_camera) / z * view.fx + view.cx + 0.5F;
+      const float v = view.R_camera_world.row(1).dot(p_from_camera) / z * view.fy + view.cy + 0.5F;
       if (!(u >= 0.0F && u < width && v >= 0.0F && v < height)) continue;
-      if (map_.normals[id].dot(map_.positions_m[id] - view.center_world) >= 0.0F) continue;
+      if (disc.normal.dot(p_from_camera) >= 0.0F) continue;
       const std::size_t cell =
           static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(u);
       const float measured = points.z.data()[cell];
-      const float key = measured > 0.0F ? std::abs(p.z() - measured) : p.z();
+      const float key = measured > 0.0F ? std::abs(z - measured) : z;
       const std::uint64_t wanted = (std::uint64_t{std::bit_cast<std::uint32_t>(key)} << 32U) | id;
       const std::atomic_ref<std::uint64_t> place{cells_[cell]};
       std::uint64_t there = place.load(std::memory_order_relaxed);
@@ -130,157 +135,150 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
       }
     }
   });
+  fill_cells(executor);
+}
+
+/// Brings what fills the cells together: what lies side by side in the image is far apart in the map.
+void SurfelFusion::fill_cells(const Executor& executor) {
+  const FloatView view{association_};
+  const auto width = static_cast<std::size_t>(association_.camera.width);
   executor.parallel_for(
-      cells_.size(), kRowsPerTask * static_cast<std::size_t>(camera.width), [&](std::size_t begin, std::size_t end) {
-        for (std::size_t i = begin; i < end; ++i) {
-          association_.of_cell.data()[i] = cells_[i] == kEmptyCell ? kNoSurfel : static_cast<SurfelId>(cells_[i]);
+      static_cast<std::size_t>(association_.camera.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+        for (std::size_t v = begin; v < end; ++v) {
+          const std::uint64_t* keys = cells_.data() + v * width;
+          SurfelId* ids = association_.of_cell.row(static_cast<int>(v));
+          for (std::size_t u = 0; u < width; ++u) {
+            if (u + kCellsAhead < width && keys[u + kCellsAhead] != kEmptyCell) {
+              __builtin_prefetch(&map_.discs[static_cast<SurfelId>(keys[u + kCellsAhead])]);
+            }
+            if (keys[u] == kEmptyCell) {
+              ids[u] = kNoSurfel;
+              cell_discs_.set_empty(static_cast<int>(u), static_cast<int>(v));
+              continue;
+            }
+            ids[u] = static_cast<SurfelId>(keys[u]);
+            const SurfelDisc& disc = map_.discs[ids[u]];
+            cell_discs_.set(static_cast<int>(u), static_cast<int>(v), ids[u], view.to_camera(disc.position_m),
+                            disc.radius_m, view.R_camera_world * disc.normal);
+          }
         }
       });
 }
 
 void SurfelFusion::associate(const PointImage& points, const Executor& executor, SurfelFusionReport& report) {
-  SurfelAssociation& seen = association_;
-  const FloatView view{seen};
-  const auto tolerance = static_cast<float>(config_.depth_tolerance_m);
-  const auto growth = static_cast<float>(config_.depth_tolerance_growth_per_m);
-  const auto normal_cosine = static_cast<float>(std::cos(config_.max_normal_angle_rad));
-  const auto view_cosine = static_cast<float>(std::cos(config_.max_view_angle_rad));
-  const int width = seen.camera.width;
-  const int height = seen.camera.height;
-  struct Counts {
-    std::size_t points{0}, associated{0}, contradicted{0}, created{0};
-  };
-  const std::size_t rows = static_cast<std::size_t>(height);
-  std::vector<Counts> counts((rows + kRowsPerTask - 1) / kRowsPerTask);
-
-  // What pixel (u, v) with depth z, normal n (world) and ray r (camera) sees.
-  const auto surfel_of = [&](int u, int v, float z, const Eigen::Vector3f& n, float rx, float ry) -> SurfelId {
-    const float limit = tolerance + growth * z * z;
-    bool occupied{false};
-    const SurfelId own = seen.of_cell(u, v);
-    if (own != kNoSurfel) {
-      const auto key = static_cast<std::uint32_t>(
-          cells_[static_cast<std::size_t>(v) * static_cast<std::size_t>(width) + static_cast<std::size_t>(u)] >> 32U);
-      if (std::bit_cast<float>(key) <= limit) {
-        if (map_.normals[own].dot(n) >= normal_cosine) return own;
-        occupied = true;
-      }
-    }
-    SurfelId best{kNoSurfel};
-    float least = std::numeric_limits<float>::max();
-    constexpr int kReach{SurfelAssociation::kReach_px};
-    for (int row = std::max(v - kReach, 0); row <= std::min(v + kReach, height - 1); ++row) {
-      for (int column = std::max(u - kReach, 0); column <= std::min(u + kReach, width - 1); ++column) {
-        const SurfelId other = seen.of_cell(column, row);
-        if (other == kNoSurfel || other == own) continue;
-        const Eigen::Vector3f p = view.to_camera(map_.positions_m[other]);
-        if (std::abs(p.z() - z) > limit) continue;
-        const float dx = p.x() - rx * p.z();
-        const float dy = p.y() - ry * p.z();
-        const float squared = dx * dx + dy * dy;
-        if (squared > map_.radii_m[other] * map_.radii_m[other]) continue;
-        if (map_.normals[other].dot(n) < normal_cosine) {
-          occupied = true;
-        } else if (squared < least) {
-          least = squared;
-          best = other;
-        }
-      }
-    }
-    if (best != kNoSurfel) return best;
-    return occupied ? kNoSurfel : kMakesSurfel;
-  };
-
+  const FloatView view{association_};
+  AssociationLimits limits{view.fx, view.fy, view.cx, view.cy, 0.0F, 0.0F, 0.0F, 0.0F};
+  limits.tolerance_m = static_cast<float>(config_.depth_tolerance_m);
+  limits.growth_per_m = static_cast<float>(config_.depth_tolerance_growth_per_m);
+  limits.normal_cosine = static_cast<float>(std::cos(config_.max_normal_angle_rad));
+  limits.view_cosine = static_cast<float>(std::cos(config_.max_view_angle_rad));
+  const auto rows = static_cast<std::size_t>(association_.camera.height);
+  std::vector<RowCounts> counts((rows + kRowsPerTask - 1) / kRowsPerTask);
   executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    Counts& count = counts[begin / kRowsPerTask];
     for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      const float ry = (static_cast<float>(v) - view.cy) / view.fy;
-      for (int u = 0; u < width; ++u) {
-        SurfelId& id = seen.of_pixel(u, v);
-        id = kNoSurfel;
-        const float z = points.z(u, v);
-        const Eigen::Vector3f n = normal_at(points, u, v);
-        if (!(z > 0.0F) || n.isZero(0.0F)) continue;
-        ++count.points;
-        const float rx = (static_cast<float>(u) - view.cx) / view.fx;
-        id = surfel_of(u, v, z, view.R_camera_world.transpose() * n, rx, ry);
-        if (id == kMakesSurfel) {
-          const float toward = -(n.x() * rx + n.y() * ry + n.z());
-          if (toward >= view_cosine * std::sqrt(rx * rx + ry * ry + 1.0F)) {
-            ++count.created;
-          } else {
-            id = kNoSurfel;
-          }
-        } else if (id == kNoSurfel) {
-          ++count.contradicted;
-        } else {
-          ++count.associated;
-        }
-      }
+      associate_row(cell_discs_, points, limits, v, association_.of_pixel.row(v), counts[begin / kRowsPerTask]);
     }
   });
-
-  std::vector<std::size_t> first(counts.size());
-  std::size_t next = map_.size();
-  for (std::size_t i = 0; i < counts.size(); ++i) {
-    first[i] = next;
-    next += counts[i].created;
-    report.points += counts[i].points;
-    report.associated += counts[i].associated;
-    report.contradicted += counts[i].contradicted;
-    report.created += counts[i].created;
+  std::vector<std::size_t> created;
+  for (const RowCounts& count : counts) {
+    report.points += count.points;
+    report.associated += count.associated;
+    report.contradicted += count.contradicted;
+    report.created += count.created;
+    created.push_back(count.created);
   }
-  map_.resize(next);
-  seen.surfels = next;
+  number_new_surfels(created, executor);
+}
+
+/// Ids for the pixels that make surfels, in row-major order, and which pixels saw what. `created`: how many per task.
+void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, const Executor& executor) {
+  SurfelAssociation& seen = association_;
+  std::vector<std::size_t> first(created.size());
+  std::exclusive_scan(created.begin(), created.end(), first.begin(), map_.size());
+  map_.resize(std::reduce(created.begin(), created.end(), map_.size()));
+  seen.surfels = map_.size();
+  const auto rows = static_cast<std::size_t>(seen.camera.height);
+  const auto width = static_cast<std::size_t>(seen.camera.width);
   executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     auto id = static_cast<SurfelId>(first[begin / kRowsPerTask]);
     for (std::size_t v = begin; v < end; ++v) {
       SurfelId* row = seen.of_pixel.row(static_cast<int>(v));
-      for (int u = 0; u < width; ++u) {
+      for (std::size_t u = 0; u < width; ++u) {
         if (row[u] == kMakesSurfel) row[u] = id++;
       }
+    }
+  });
+  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<std::uint32_t> bits(width);
+    for (std::size_t v = begin; v < end; ++v) {
+      const SurfelId* cells = seen.of_cell.row(static_cast<int>(v));
+      const SurfelId* own = seen.of_pixel.row(static_cast<int>(v));
+      for (std::size_t u = 0; u < width; ++u) {
+        const bool is_new = own[u] != kNoSurfel && own[u] >= seen.first_new;
+        bits[u] = is_new ? 1U << SurfelAssociation::kNewSurfel : 0U;
+      }
+      for (std::size_t i = 0; i < 9; ++i) {
+        if (v + i / 3 < 1 || v + i / 3 > rows) continue;
+        const SurfelId* pixels = seen.of_pixel.row(static_cast<int>(v + i / 3 - 1));
+        const std::size_t shift = i % 3;  // pixel u + shift − 1
+        const std::size_t last = shift == 2 ? width - 1 : width;
+        for (std::size_t u = shift == 0 ? 1 : 0; u < last; ++u) {
+          const bool here = pixels[u + shift - 1] == cells[u] && cells[u] != kNoSurfel;
+          bits[u] |= here ? 1U << i : 0U;
+        }
+      }
+      std::uint16_t* to = seen.seen_by.row(static_cast<int>(v));
+      for (std::size_t u = 0; u < width; ++u) to[u] = static_cast<std::uint16_t>(bits[u]);
     }
   });
 }
 
 void SurfelFusion::integrate(const Frame& frame, const PointImage& points, const Executor& executor) {
   const SurfelAssociation& seen = association_;
-  const Eigen::Matrix3f R_world_camera = seen.T_world_camera.linear().cast<float>();
+  const BackProjection back_project{seen};
+  const Eigen::Matrix3f& R_world_camera = back_project.R_world_camera;
   const auto focal = static_cast<float>(std::sqrt(seen.camera.fx * seen.camera.fy));
   const auto max_radius = static_cast<float>(config_.max_radius_m);
   const auto fuse = [&](SurfelId id, std::span<const SeenPixel> pixels) {
-    Surfel surfel = id < seen.first_new ? map_.surfel(id) : Surfel{{}, {}, Eigen::Vector3f::Zero()};
+    SurfelDisc& disc = map_.discs[id];
+    SurfelColor& color = map_.colors[id];
+    if (id >= seen.first_new) {
+      disc.weight = 0.0F;
+      color = {Eigen::Vector3f::Zero(), 0.0F};
+    }
     for (const auto& [u, v] : pixels) {
       const float w = seen.weight(u, v);
       const float z = points.z(u, v);
       const Eigen::Vector3f n_camera = normal_at(points, u, v);
       const Eigen::Vector3f n = R_world_camera * n_camera;
-      const Eigen::Vector3f p = seen.back_project(u, v, z);
+      const Eigen::Vector3f p = back_project(u, v, z);
       const float slope = std::max(std::abs(n_camera.z()), 1e-3F);
       const float radius = std::min(std::numbers::sqrt2_v<float> * z / focal / slope, max_radius);
       if (frame.color) {
-        const Eigen::Vector3f c = unit_color((*frame.color)(u, v));
-        surfel.color = surfel.color_weight > 0.0F ? weighted_mean(surfel.color, surfel.color_weight, c, w) : c;
-        surfel.color_weight += w;
+        color.color = weighted_mean(color.color, color.weight, unit_color((*frame.color)(u, v)), w);
+        color.weight += w;
       }
-      if (surfel.weight > 0.0F) {
-        surfel.position_m = weighted_mean(surfel.position_m, surfel.weight, p, w);
-        surfel.normal = weighted_mean(surfel.normal, surfel.weight, n, w).normalized();
-        if (radius < kComparableRadius * surfel.radius_m) {
-          surfel.radius_m = (surfel.radius_m * surfel.weight + radius * w) / (surfel.weight + w);
+      if (disc.weight > 0.0F) {
+        disc.position_m = weighted_mean(disc.position_m, disc.weight, p, w);
+        disc.normal = weighted_mean(disc.normal, disc.weight, n, w).normalized();
+        if (radius < kComparableRadius * disc.radius_m) {
+          disc.radius_m += (radius - disc.radius_m) * (w / (disc.weight + w));
         }
       } else {
-        surfel.position_m = p;
-        surfel.normal = n;
-        surfel.radius_m = radius;
+        disc.position_m = p;
+        disc.normal = n;
+        disc.radius_m = radius;
       }
-      surfel.weight += w;
+      disc.weight += w;
     }
-    map_.set(id, surfel);
+  };
+  const auto fetch = [&](SurfelId id, int, int) {
+    __builtin_prefetch(&map_.discs[id], 1);
+    __builtin_prefetch(&map_.colors[id], 1);
   };
   executor.parallel_for(static_cast<std::size_t>(seen.camera.height), kRowsPerTask,
                         [&](std::size_t begin, std::size_t end) {
-                          for_each_seen_surfel(seen, static_cast<int>(begin), static_cast<int>(end), fuse);
+                          for_each_seen_surfel(seen, static_cast<int>(begin), static_cast<int>(end), fetch, fuse);
                         });
 }
 

@@ -12,6 +12,7 @@
 #include "saccade/sensor/camera_source.hpp"
 #include "saccade/sensor/point_image.hpp"
 #include "saccade/surfel/surfel_association.hpp"
+#include "saccade/surfel/surfel_cells.hpp"
 #include "saccade/surfel/surfel_map.hpp"
 
 namespace saccade {
@@ -70,13 +71,16 @@ class SurfelFusion {
   explicit SurfelFusion(const SurfelFusionConfig& config) : config_{config} {}
   void prepare(const PinholeCamera& camera, const Pose& T_world_camera);
   void project(const PointImage& points, const Executor& executor);
+  void fill_cells(const Executor& executor);
   void associate(const PointImage& points, const Executor& executor, SurfelFusionReport& report);
+  void number_new_surfels(const std::vector<std::size_t>& created, const Executor& executor);
   void integrate(const Frame& frame, const PointImage& points, const Executor& executor);
 
   SurfelFusionConfig config_;
   SurfelMap map_;
   SurfelAssociation association_;
   std::vector<std::uint64_t> cells_;  ///< (bits of the depth's difference, id): the least one fills the cell
+  SurfelCells cell_discs_;
 };
 
 }  // namespace saccade

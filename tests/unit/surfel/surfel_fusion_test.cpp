@@ -30,11 +30,11 @@ std::vector<Frame> table_frames(std::size_t count) {
 }
 
 bool same_bits(const SurfelMap& a, const SurfelMap& b) {
+  static_assert(sizeof(SurfelDisc) == 32 && sizeof(SurfelColor) == 16);  // no padding
   const auto same = [](const auto& x, const auto& y) {
     return x.size() == y.size() && std::memcmp(x.data(), y.data(), x.size() * sizeof(x[0])) == 0;
   };
-  return same(a.positions_m, b.positions_m) && same(a.normals, b.normals) && same(a.colors, b.colors) &&
-         same(a.radii_m, b.radii_m) && same(a.weights, b.weights) && same(a.color_weights, b.color_weights);
+  return same(a.discs, b.discs) && same(a.colors, b.colors);
 }
 
 TEST(SurfelFusion, SurfelsLieOnTheSurface) {
@@ -55,9 +55,9 @@ TEST(SurfelFusion, SurfelsLieOnTheSurface) {
   std::size_t near{0};
   for (SurfelId id = 0; id < fusion.map().size(); ++id) {
     const Surfel surfel = fusion.map().surfel(id);
-    EXPECT_NEAR(surfel.normal.norm(), 1.0F, 1e-5F);
-    EXPECT_GT(surfel.weight, 0.0F);
-    near += std::abs(scene.signed_distance_m(surfel.position_m.cast<double>())) < 0.003 ? 1U : 0U;
+    EXPECT_NEAR(surfel.disc.normal.norm(), 1.0F, 1e-5F);
+    EXPECT_GT(surfel.disc.weight, 0.0F);
+    near += std::abs(scene.signed_distance_m(surfel.disc.position_m.cast<double>())) < 0.003 ? 1U : 0U;
   }
   EXPECT_GT(near, fusion.map().size() * 95 / 100);
 }
@@ -108,7 +108,7 @@ TEST(SurfelFusion, FlickeringDepthsOnTheSameSpotStayBounded) {
   }
   EXPECT_LE(fusion.map().size(), 2U * 3072U);
   EXPECT_LE(fusion.map().size() - halfway, halfway / 100);
-  EXPECT_EQ(fusion.map().surfel(0).color_weight, 0.0F);
+  EXPECT_EQ(fusion.map().surfel(0).color.weight, 0.0F);
 }
 
 TEST(SurfelFusion, SaysWhyAFrameCannotBeFused) {

@@ -1,0 +1,94 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/surfel/mode_search.hpp"
+
+#include <limits>
+
+#undef HWY_TARGET_INCLUDE
+#define HWY_TARGET_INCLUDE "saccade/surfel/mode_search.cpp"
+#include "saccade/core/simd_kernels.hpp"
+
+HWY_BEFORE_NAMESPACE();
+namespace saccade::HWY_NAMESPACE {
+namespace {
+
+namespace hn = hwy::HWY_NAMESPACE;
+using Wide = hn::CappedTag<std::int64_t, 8>;
+using UnsignedWide = hn::RebindToUnsigned<Wide>;
+using W = hn::Vec<Wide>;
+
+HWY_INLINE W squared(W difference) {
+  const hn::RepartitionToNarrow<Wide> halves;
+  return hn::MulEven(hn::BitCast(halves, difference), hn::BitCast(halves, difference));
+}
+
+/// Of the colours that begin at `packed`, as many as there are lanes.
+HWY_INLINE W squared_distances(const std::uint64_t* packed, W r, W g, W b) {
+  const Wide d;
+  const auto colors = hn::LoadU(UnsignedWide{}, packed);
+  const auto channel = hn::Set(UnsignedWide{}, (std::uint64_t{1} << ColorUnits::kBits) - 1);
+  const W red = hn::BitCast(d, hn::And(colors, channel));
+  const W green = hn::BitCast(d, hn::And(hn::ShiftRight<ColorUnits::kBits>(colors), channel));
+  const W blue = hn::BitCast(d, hn::ShiftRight<2 * ColorUnits::kBits>(colors));
+  return hn::Add(hn::Add(squared(hn::Sub(red, r)), squared(hn::Sub(green, g))), squared(hn::Sub(blue, b)));
+}
+
+constexpr int kIndexBits{5};
+
+NearestColor nearest_kernel(const std::uint64_t* packed, std::size_t count, const ColorUnits& color) {
+  const Wide d;
+  const W r = hn::Set(d, color.r);
+  const W g = hn::Set(d, color.g);
+  const W b = hn::Set(d, color.b);
+  const W end = hn::Set(d, static_cast<std::int64_t>(count));
+  W index = hn::Iota(d, 0);
+  W least = hn::Set(d, std::numeric_limits<std::int64_t>::max());
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const W key = hn::Or(hn::ShiftLeft<kIndexBits>(squared_distances(packed + i, r, g, b)), index);
+    least = hn::IfThenElse(hn::And(hn::Lt(index, end), hn::Lt(key, least)), key, least);
+    index = hn::Add(index, hn::Set(d, static_cast<std::int64_t>(hn::Lanes(d))));
+  }
+  const std::int64_t key = hn::GetLane(hn::MinOfLanes(d, least));
+  return {static_cast<std::size_t>(key) & ((std::size_t{1} << kIndexBits) - 1), key >> kIndexBits};
+}
+
+std::uint32_t within_kernel(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
+                            std::int64_t squared_units) {
+  const Wide d;
+  const W r = hn::Set(d, color.r);
+  const W g = hn::Set(d, color.g);
+  const W b = hn::Set(d, color.b);
+  const W limit = hn::Set(d, squared_units + 1);
+  std::uint64_t bits{0};
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const auto inside = hn::Lt(squared_distances(packed + i, r, g, b), limit);
+    std::uint64_t here{0};
+    hn::StoreMaskBits(d, inside, reinterpret_cast<std::uint8_t*>(&here));  // NOLINT(*-reinterpret-cast)
+    bits |= here << i;
+  }
+  return static_cast<std::uint32_t>(bits & ((std::uint64_t{1} << count) - 1));
+}
+
+}  // namespace
+}  // namespace saccade::HWY_NAMESPACE
+HWY_AFTER_NAMESPACE();
+
+#if HWY_ONCE
+namespace saccade {
+namespace {
+
+HWY_EXPORT(nearest_kernel);
+HWY_EXPORT(within_kernel);
+
+}  // namespace
+
+NearestColor nearest_color(const std::uint64_t* packed, std::size_t count, const ColorUnits& color) {
+  return HWY_DYNAMIC_DISPATCH(nearest_kernel)(packed, count, color);
+}
+
+std::uint32_t colors_within(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
+                            std::int64_t squared_units) {
+  return HWY_DYNAMIC_DISPATCH(within_kernel)(packed, count, color, squared_units);
+}
+
+}  // namespace saccade
+#endif  // HWY_ONCE

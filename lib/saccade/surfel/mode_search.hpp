@@ -1,0 +1,54 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ColorUnits: a colour in whole numbers; nearest_color and colors_within: searches in the colours of a surfel's modes.
+
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+
+namespace saccade {
+
+/// A colour, a channel in 8192nds of an 8-bit level: fine enough for means of 10⁵ frames, and distances are exact.
+struct ColorUnits {
+  static constexpr int kPerLevel{8192};
+  static constexpr int kBits{21};
+
+  std::int32_t r, g, b;
+
+  [[nodiscard]] std::uint64_t packed() const {
+    return static_cast<std::uint64_t>(r) | (static_cast<std::uint64_t>(g) << kBits) |
+           (static_cast<std::uint64_t>(b) << 2 * kBits);
+  }
+  [[nodiscard]] static ColorUnits unpacked(std::uint64_t packed) {
+    constexpr std::uint64_t kChannel{(std::uint64_t{1} << kBits) - 1};
+    return {static_cast<std::int32_t>(packed & kChannel), static_cast<std::int32_t>((packed >> kBits) & kChannel),
+            static_cast<std::int32_t>(packed >> 2 * kBits)};
+  }
+};
+
+/// Weighted mean, in whole units: `share` of the way from a to b.
+inline ColorUnits mean_color(const ColorUnits& a, const ColorUnits& b, float share) {
+  const auto between = [share](std::int32_t from, std::int32_t to) {
+    return from + static_cast<std::int32_t>(std::nearbyintf(static_cast<float>(to - from) * share));
+  };
+  return {between(a.r, b.r), between(a.g, b.g), between(a.b, b.b)};
+}
+
+inline std::int64_t squared_distance(const ColorUnits& a, const ColorUnits& b) {
+  const auto squared = [](std::int64_t x) { return x * x; };
+  return squared(a.r - b.r) + squared(a.g - b.g) + squared(a.b - b.b);
+}
+
+struct NearestColor {
+  std::size_t index;
+  std::int64_t squared_units;
+};
+
+/// argmin_i ‖c_i − c‖ of 1 to 32 packed colours, the first of those that are equally near. Seven more than `count` must
+/// be readable, and are ignored. simd_target() changes nothing.
+[[nodiscard]] NearestColor nearest_color(const std::uint64_t* packed, std::size_t count, const ColorUnits& color);
+/// Bit i: ‖c_i − c‖² ≤ squared_units. As nearest_color.
+[[nodiscard]] std::uint32_t colors_within(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
+                                          std::int64_t squared_units);
+
+}  // namespace saccade
