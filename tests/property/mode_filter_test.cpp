@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstdio>
 #include <map>
@@ -121,6 +123,9 @@ TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
   std::mt19937_64 random{kModeSeed};
   std::size_t compared{0};
   std::size_t several{0};
+  std::size_t guided{0};
+  std::size_t merged_modes{0};
+  std::size_t evicted{0};
   for (int i = 0; i < cases; ++i) {
     ModeFilterConfig config;
     config.max_modes = 1 + static_cast<int>(random() % 10);
@@ -143,7 +148,11 @@ TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
       const double step = static_cast<double>(random() % 100) / 1000.0;
       frame.T_world_camera = Pose{Eigen::Translation3d{step, 0.3 * step, 2.0 * step}};
       ASSERT_TRUE(fusion.add_frame(frame, kNaiveCamera, executor));
-      ASSERT_TRUE(filter.add_frame(frame, fusion.association(), executor));
+      const auto report = filter.add_frame(frame, fusion.association(), executor);
+      ASSERT_TRUE(report);
+      guided += report->guided;
+      merged_modes += report->merged_modes;
+      evicted += report->evicted_modes;
       naive_frame(naive, frame, fusion.association(), config);
     }
     for (SurfelId id = 0; id < filter.size(); ++id) {
@@ -160,6 +169,47 @@ TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
   }
   EXPECT_GT(compared, static_cast<std::size_t>(cases) * 700U);
   EXPECT_GT(several, static_cast<std::size_t>(cases) * 200U);
+  EXPECT_GT(guided, static_cast<std::size_t>(cases) * 500U);
+  EXPECT_GT(merged_modes, static_cast<std::size_t>(cases));
+  EXPECT_GT(evicted, static_cast<std::size_t>(cases) * 100U);
+  std::printf("compared %zu modes; %zu pixels guided, %zu modes merged, %zu evicted\n", compared, guided, merged_modes,
+              evicted);
+}
+
+/// Two colours farther apart than Kσ_c, in any order: the heavier wins.
+TEST(ModeFilterProperty, TheOrderOfFarColoursDoesNotMatter) {
+  const int cases = test::scaled_cases(60);
+  std::mt19937_64 random{kModeSeed};
+  std::size_t decided{0};
+  for (int i = 0; i < cases; ++i) {
+    ModeFilterConfig config;
+    config.max_modes = 2 + static_cast<int>(random() % 9);
+    const std::array<Rgb8, 2> colors{Rgb8{std::uint8_t(random() % 100), 20, 30}, Rgb8{200, std::uint8_t(random()), 90}};
+    std::vector<std::size_t> order(3 + random() % 12);
+    for (std::size_t k = 0; k < order.size(); ++k) order[k] = random() % 2;
+    const std::array<long, 2> times{std::count(order.begin(), order.end(), 0U),
+                                    std::count(order.begin(), order.end(), 1U)};
+    if (times[0] == times[1]) continue;
+    const Rgb8& heavier = colors[times[1] > times[0] ? 1 : 0];
+    for (int again = 0; again < 3; ++again) {
+      std::shuffle(order.begin(), order.end(), random);
+      SurfelFusion fusion = SurfelFusion::create().value();
+      ModeFilter filter = ModeFilter::create(config).value();
+      for (const std::size_t which : order) {
+        Frame frame;
+        frame.depth = DepthImage{kNaiveCamera.width, kNaiveCamera.height, 0.8F};
+        frame.color = ColorImage{kNaiveCamera.width, kNaiveCamera.height, colors[which]};
+        frame.T_world_camera = Pose::Identity();
+        ASSERT_TRUE(fusion.add_frame(frame, kNaiveCamera, {}));
+        ASSERT_EQ(filter.add_frame(frame, fusion.association(), {}).value().evicted_modes, 0U);
+      }
+      for (const SurfelMode& winner : filter.winners({})) {
+        ASSERT_LE((winner.color - unit_color(heavier)).norm(), 1e-6F) << "case " << i;
+        ++decided;
+      }
+    }
+  }
+  EXPECT_GT(decided, static_cast<std::size_t>(cases) * 1000U);
 }
 
 }  // namespace

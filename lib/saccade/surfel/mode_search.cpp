@@ -62,7 +62,7 @@ std::uint32_t within_kernel(const std::uint64_t* packed, std::size_t count, cons
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
     const auto inside = hn::Lt(squared_distances(packed + i, r, g, b), limit);
     std::uint64_t here{0};
-    hn::StoreMaskBits(d, inside, reinterpret_cast<std::uint8_t*>(&here));  // NOLINT(*-reinterpret-cast)
+    hn::StoreMaskBits(d, inside, reinterpret_cast<std::uint8_t*>(&here));
     bits |= here << i;
   }
   return static_cast<std::uint32_t>(bits & ((std::uint64_t{1} << count) - 1));

@@ -9,11 +9,10 @@ void ModeStore::resize(std::size_t surfels) {
   if (surfels > counts_.capacity()) counts_.reserve(surfels + surfels / 8);
   counts_.resize(surfels);
   while (chunks_.size() * kPerChunk < surfels) {
-    chunks_.push_back(std::make_unique_for_overwrite<std::byte[]>(kPerChunk * stride()));  // NOLINT(*-avoid-c-arrays)
+    chunks_.push_back(std::make_unique_for_overwrite<std::byte[]>(kPerChunk * stride()));
   }
 }
 
-// NOLINTBEGIN(*-reinterpret-cast): plain memory, of which each part is always of one type
 StoredModes ModeStore::modes(SurfelId id) {
   std::byte* const colors = room(id);
   std::byte* const weights = colors + max_modes_ * sizeof(std::uint64_t);
@@ -30,7 +29,6 @@ SurfelMode ModeStore::mode(SurfelId id, std::size_t i) const {
           {position[0], position[1], position[2]},
           reinterpret_cast<const float*>(weights)[i]};
 }
-// NOLINTEND(*-reinterpret-cast)
 
 void ModeStore::fetch(SurfelId id) const {
   constexpr std::size_t kLine{64};

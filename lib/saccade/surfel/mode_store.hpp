@@ -92,7 +92,7 @@ class ModeStore {
 
   std::size_t max_modes_;
   std::vector<std::uint8_t> counts_;
-  std::vector<std::unique_ptr<std::byte[]>> chunks_;  // NOLINT(*-avoid-c-arrays)
+  std::vector<std::unique_ptr<std::byte[]>> chunks_;
 };
 
 }  // namespace saccade

@@ -8,7 +8,9 @@
 #include <limits>
 #include <numeric>
 #include <random>
+#include <string>
 
+#include "saccade/core/simd.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 
 namespace saccade {
@@ -83,6 +85,27 @@ TEST(ModeFilter, ThreadsChangeNoBit) {
     ASSERT_EQ(other.size(), one.size());
     EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(SurfelMode)), 0) << threads;
   }
+}
+
+struct FilterTargetGuard {
+  FilterTargetGuard() = default;
+  FilterTargetGuard(const FilterTargetGuard&) = delete;
+  FilterTargetGuard& operator=(const FilterTargetGuard&) = delete;
+  ~FilterTargetGuard() { static_cast<void>(use_simd_target("")); }
+};
+
+TEST(ModeFilter, InstructionSetsChangeNoBit) {
+  const FilterTargetGuard guard;
+  const std::vector<Frame> frames = wall_frames(6, {{10, 20, 30}, {200, 180, 20}, {12, 22, 28}}, 13);
+  std::vector<SurfelMode> first;
+  for (const std::string& target : simd_targets()) {
+    ASSERT_TRUE(use_simd_target(target).ok());
+    const std::vector<SurfelMode> winners = run(frames, {}, 1).filter.winners({});
+    if (first.empty()) first = winners;
+    ASSERT_EQ(winners.size(), first.size());
+    EXPECT_EQ(std::memcmp(first.data(), winners.data(), first.size() * sizeof(SurfelMode)), 0) << target;
+  }
+  EXPECT_GE(first.size(), kModePixels);
 }
 
 TEST(ModeFilter, WeightsAreKeptButForEvictions) {
