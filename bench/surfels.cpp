@@ -38,13 +38,12 @@ int main(int argc, char** argv) {
     const auto fused = fusion.add_frame(**frame, (*source)->camera(), executor);
     if (!fused) return std::puts(fused.error().to_string().c_str()), 1;
     const auto filtered = filter.add_frame(**frame, fusion.association(), executor);
-    const double ms[]{fused->points_ms,      fused->index_ms,        fused->associate_ms,
-                      fused->integrate_ms,   filtered->associate_ms, filtered->guided_filter_ms,
-                      filtered->integrate_ms};
+    const double ms[]{fused->points_ms,    fused->index_ms,        fused->associate_ms,
+                      fused->integrate_ms, filtered->integrate_ms, filtered->guided_filter_ms,
+                      filtered->move_ms};
     for (std::size_t i = 0; i < phases.size(); ++i) phases[i].push_back(ms[i]);
   }
-  const char* names[]{"points",           "index",         "associate",       "integrate",
-                      "filter.associate", "filter.guided", "filter.integrate"};
+  const char* names[]{"points", "index", "associate", "integrate", "filter.integrate", "filter.guided", "filter.move"};
   double fusion_ms{0.0};
   double all_ms{0.0};
   for (std::size_t i = 0; i < phases.size(); ++i) {

@@ -45,6 +45,7 @@ void add_score(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_segment(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_show(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_sample(CLI::App& program, const GlobalOptions& global, Action& action);
+void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action);
 void add_update(CLI::App& program, const GlobalOptions& global, Action& action);
 
 }  // namespace saccade::cli

@@ -1,7 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade fuse: RGB-D frames → map, mesh, trajectory, figures and pictures.
-#include <sys/resource.h>
-
 #include <CLI/CLI.hpp>
 #include <array>
 #include <iostream>
@@ -50,30 +48,13 @@ struct FuseRun {
   TimingsMs timings_ms;
 };
 
-/// The tracking mode that was asked for or that the folder allows.
-Result<TrackingMode> choose_tracking(const FuseOptions& options, const RgbdFolderInfo& info) {
-  if (!options.tracking) return info.has_poses ? TrackingMode::forced : TrackingMode::icp;
-  if (*options.tracking != TrackingMode::icp && !info.has_poses) {
-    return Error{Errc::not_found,
-                 "there are no camera poses for --tracking " + std::string{to_string(*options.tracking)} +
-                     "; pass --poses FILE, or use --tracking icp",
-                 options.frames.string()};
-  }
-  return *options.tracking;
-}
-
-/// ICP alone needs no poses: a bad one is then no reason to leave a frame out.
 Result<std::unique_ptr<RgbdFolderSource>> open_frames(FuseRun& run) {
-  run.folder = run.options.folder;
-  SACCADE_TRY(auto source, open_rgbd_folder(run.options.frames, run.folder));
-  SACCADE_TRY(run.tracking, choose_tracking(run.options, source->info()));
-  if (run.tracking == TrackingMode::icp) {
-    run.folder.require_poses = false;
-    SACCADE_TRY(source, open_rgbd_folder(run.options.frames, run.folder));
-  }
-  run.camera = source->camera();
-  run.info = source->info();
-  return source;
+  SACCADE_TRY(OpenFrames frames, open_frames(run.options));
+  run.folder = std::move(frames.folder);
+  run.tracking = frames.tracking;
+  run.camera = frames.source->camera();
+  run.info = frames.source->info();
+  return std::move(frames.source);
 }
 
 Result<Reconstruction> make_reconstruction(const FuseRun& run) {
@@ -81,34 +62,6 @@ Result<Reconstruction> make_reconstruction(const FuseRun& run) {
   SACCADE_TRY(TsdfSnapshot map, load_map(run.options.continue_map, run.executor));
   if (run.options.map.workspace) map.config.workspace = run.options.map.workspace;
   return Reconstruction::resume(std::move(map), IcpConfig{});
-}
-
-/// Status of a run without a single fused frame, or with none that shows anything.
-Result<int> nothing_fused(const FuseRun& run) {
-  if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
-  const FuseRecord& record = run.record;
-  if (!record.fused.empty()) {
-    print_error("fuse",
-                "no depth is within the camera's range: see --min-range, --max-range and --depth-scale; "
-                "nothing was written");
-    return static_cast<int>(ExitStatus::no_result);
-  }
-  if (record.lost.empty()) {
-    const LeftOutFrame& first = record.skipped.front();
-    return Error{Errc::corrupt_data,
-                 "not one of the " + std::to_string(record.skipped.size()) + " frames can be used; the first, " +
-                     first.name + ": " + first.reason,
-                 run.options.frames.string()};
-  }
-  print_error("fuse", "not one frame could be tracked; the first, " + record.lost.front().name + ": " +
-                          record.lost.front().reason + "; nothing was written");
-  return static_cast<int>(ExitStatus::no_result);
-}
-
-json left_out_json(const std::vector<LeftOutFrame>& frames) {
-  json list = json::array();
-  for (const LeftOutFrame& frame : frames) list.push_back({{"frame", frame.name}, {"reason", frame.reason}});
-  return list;
 }
 
 json map_json(const TsdfSnapshot& map) {
@@ -121,12 +74,6 @@ json map_json(const TsdfSnapshot& map) {
           {"dense_bricks", usage.dense_bricks},
           {"voxel_size_m", map.config.voxel_size_m},
           {"truncation_m", map.config.truncation_m()}};
-}
-
-std::size_t peak_rss_bytes() {
-  rusage usage{};
-  getrusage(RUSAGE_SELF, &usage);
-  return static_cast<std::size_t>(usage.ru_maxrss) * 1024U;
 }
 
 json result_json(const FuseRun& run, const TsdfSnapshot& map) {
@@ -244,7 +191,7 @@ Result<int> run_fuse(const FuseOptions& options, const GlobalOptions& global) {
   run.timings_ms["frames"] = stopwatch.lap_ms();
 
   const TsdfSnapshot& map = reconstruction.map().content();
-  if (run.record.fused.empty() || map.grid.empty()) return nothing_fused(run);
+  if (run.record.fused.empty() || map.grid.empty()) return nothing_fused("fuse", run.record, options.frames);
   if (run.tracking != TrackingMode::forced) run.trajectory = measure_trajectory(run.record);
   SACCADE_TRY(run.fit,
               measure_map(map, run.camera, options.frames, run.folder, run.record, run.executor, run.progress));

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuse_frames.hpp"
 
+#include "exit_status.hpp"
 #include "interrupt.hpp"
 
 namespace saccade::cli {
@@ -18,13 +19,14 @@ LeftOutFrame left_out(const Error& error) {
   return {std::string{context.substr(0, comma)}, reason};
 }
 
-void record_report(const Frame& frame, const FrameReport& report, FuseRecord& record, ProgressBar& progress) {
+void record_report(const Frame& frame, const std::optional<Pose>& T_world_true, const FrameReport& report,
+                   FuseRecord& record, ProgressBar& progress) {
   if (report.status == FrameReport::Status::lost) {
     progress.note(frame.name + ": lost: " + report.why);
     record.lost.push_back({frame.name, report.why});
     return;
   }
-  record.fused.push_back({frame.index, frame.name, frame.time_s, report.T_world_camera, frame.T_world_camera});
+  record.fused.push_back({frame.index, frame.name, frame.time_s, report.T_world_camera, T_world_true});
   record.integrate_ms.push_back(report.integrate_ms);
   if (report.track_ms > 0.0) {
     record.raycast_ms.push_back(report.raycast_ms);
@@ -34,17 +36,16 @@ void record_report(const Frame& frame, const FrameReport& report, FuseRecord& re
 
 }  // namespace
 
-FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
-                       const std::optional<GapFilling>& gaps, const Executor& executor, ProgressBar& progress) {
+FuseRecord process_frames(CameraSource& source, std::string_view stage, const std::optional<GapFilling>& gaps,
+                          ProgressBar& progress, const FrameProcess& process) {
   FuseRecord record;
   const auto skip = [&](const Error& error) {
     record.skipped.push_back(left_out(error));
     progress.note(record.skipped.back().name + ": skipped: " + record.skipped.back().reason);
   };
   std::optional<GapFilling> chosen = gaps;
-  bool resumed = reconstruction.map().content().grid.empty();
   for (std::size_t done = 0; !interrupted(); ++done) {
-    progress.update("fusing", done, source.size().value_or(0));
+    progress.update(stage, done, source.size().value_or(0));
     auto next = source.next();
     if (!next) {
       skip(next.error());
@@ -59,16 +60,51 @@ FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, Tra
     }
     record.gaps = *chosen;
     frame.depth = fill_gaps(frame.depth, *chosen);
-    if (!resumed && frame.T_world_camera) reconstruction.resume(*frame.T_world_camera);  // a saved map is gone on with
-    resumed = true;
-    const auto report = reconstruction.process(frame, source.camera(), mode, frame.T_world_camera, executor);
+    const std::optional<Pose> T_world_true = frame.T_world_camera;
+    const auto report = process(frame);
     if (report) {
-      record_report(frame, *report, record, progress);
+      record_report(frame, T_world_true, *report, record, progress);
     } else {
       skip(Error{report.error().code, report.error().message, "frame " + frame.name});
     }
   }
   return record;
+}
+
+FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
+                       const std::optional<GapFilling>& gaps, const Executor& executor, ProgressBar& progress) {
+  bool resumed = reconstruction.map().content().grid.empty();
+  return process_frames(source, "fusing", gaps, progress, [&](Frame& frame) {
+    if (!resumed && frame.T_world_camera) reconstruction.resume(*frame.T_world_camera);  // a saved map is gone on with
+    resumed = true;
+    return reconstruction.process(frame, source.camera(), mode, frame.T_world_camera, executor);
+  });
+}
+
+Result<int> nothing_fused(const std::string& command, const FuseRecord& record, const std::filesystem::path& frames) {
+  if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
+  if (!record.fused.empty()) {
+    print_error(command,
+                "no depth is within the camera's range: see --min-range, --max-range and --depth-scale; "
+                "nothing was written");
+    return static_cast<int>(ExitStatus::no_result);
+  }
+  if (record.lost.empty()) {
+    const LeftOutFrame& first = record.skipped.front();
+    return Error{Errc::corrupt_data,
+                 "not one of the " + std::to_string(record.skipped.size()) + " frames can be used; the first, " +
+                     first.name + ": " + first.reason,
+                 frames.string()};
+  }
+  print_error(command, "not one frame could be tracked; the first, " + record.lost.front().name + ": " +
+                           record.lost.front().reason + "; nothing was written");
+  return static_cast<int>(ExitStatus::no_result);
+}
+
+nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames) {
+  nlohmann::json list = nlohmann::json::array();
+  for (const LeftOutFrame& frame : frames) list.push_back({{"frame", frame.name}, {"reason", frame.reason}});
+  return list;
 }
 
 }  // namespace saccade::cli

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// fuse_frames: all frames of a source through a Reconstruction, and what became of each; FuseRecord.
+// process_frames: all frames of a source, and what became of each; fuse_frames: through a Reconstruction; FuseRecord.
 
+#include <filesystem>
 #include <functional>
+#include <nlohmann/json.hpp>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "progress_bar.hpp"
@@ -38,10 +41,25 @@ struct FuseRecord {
   GapFilling gaps;                   ///< what was filled
 };
 
-/// Gaps are filled in what is tracked and fused; without `gaps`, the first frame decides. Until the source ends or the
-/// program is interrupted.
+/// What is done with a frame; it may set the frame's pose.
+using FrameProcess = std::function<Result<FrameReport>(Frame&)>;
+
+/// Gaps are filled in what is processed; without `gaps`, the first frame decides. Until the source ends or the program
+/// is interrupted.
+[[nodiscard]] FuseRecord process_frames(CameraSource& source, std::string_view stage,
+                                        const std::optional<GapFilling>& gaps, ProgressBar& progress,
+                                        const FrameProcess& process);
+
+/// Gaps are filled in what is tracked and fused, as by process_frames.
 [[nodiscard]] FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, TrackingMode mode,
                                      const std::optional<GapFilling>& gaps, const Executor& executor,
                                      ProgressBar& progress);
+
+/// Status of a run without a single fused frame, or with none that shows anything.
+[[nodiscard]] Result<int> nothing_fused(const std::string& command, const FuseRecord& record,
+                                        const std::filesystem::path& frames);
+
+/// [{frame, reason}, …]
+[[nodiscard]] nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames);
 
 }  // namespace saccade::cli

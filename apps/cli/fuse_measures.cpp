@@ -3,6 +3,7 @@
 
 #include "interrupt.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/map/raycast.hpp"
 
 namespace saccade::cli {
 

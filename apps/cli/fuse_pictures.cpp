@@ -7,6 +7,7 @@
 
 #include "interrupt.hpp"
 #include "saccade/io/image_io.hpp"
+#include "saccade/map/raycast.hpp"
 #include "saccade/report/fusion_pictures.hpp"
 #include "saccade/report/ternary_picture.hpp"
 

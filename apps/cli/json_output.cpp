@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "json_output.hpp"
 
+#include <sys/resource.h>
+
 #include <algorithm>
 #include <fstream>
 #include <iostream>
@@ -20,6 +22,12 @@ nlohmann::json json_envelope(const std::string& command, const GlobalOptions& gl
           {"seed", global.seed},
           {"timings_ms", timings_ms},
           {"result", std::move(result)}};
+}
+
+std::size_t peak_rss_bytes() {
+  rusage usage{};
+  getrusage(RUSAGE_SELF, &usage);
+  return static_cast<std::size_t>(usage.ru_maxrss) * 1024U;
 }
 
 Status check_json_output(const GlobalOptions& global) {

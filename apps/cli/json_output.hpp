@@ -27,6 +27,9 @@ using TimingsMs = std::map<std::string, double>;
 /// Does what --json asks for; nothing without it.
 [[nodiscard]] Status write_json_output(const GlobalOptions& global, const nlohmann::json& document);
 
+/// The most memory that the program held so far.
+[[nodiscard]] std::size_t peak_rss_bytes();
+
 /// [x, y, z]
 [[nodiscard]] nlohmann::json point_json(const Eigen::Vector3d& p);
 

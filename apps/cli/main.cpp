@@ -76,6 +76,7 @@ int run(int argc, char** argv, CLI::App& program) {
   saccade::cli::add_segment(program, global, action);
   saccade::cli::add_show(program, global, action);
   saccade::cli::add_sample(program, global, action);
+  saccade::cli::add_surfels(program, global, action);
   saccade::cli::add_update(program, global, action);
   refuse_empty_values(program);
   try {
@@ -85,7 +86,7 @@ int run(int argc, char** argv, CLI::App& program) {
     return usage(program,
                  "name what to do: annotate, attend, compare, explore, filter, fuse, nbv, reproduce, robot, scene, "
                  "score, segment, "
-                 "show, info, sample or update");
+                 "show, info, sample, surfels or update");
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
     return usage(program, error.what());

@@ -161,7 +161,7 @@ Result<ModeFilter> ModeFilter::create(const ModeFilterConfig& config) {
   return ModeFilter{config};
 }
 
-void ModeFilter::associate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor,
+void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor,
                            ModeFilterReport& report) {
   const auto rows = static_cast<std::size_t>(seen.camera.height);
   const auto width = static_cast<std::size_t>(seen.camera.width);
@@ -247,14 +247,14 @@ Result<ModeFilterReport> ModeFilter::add_frame(const Frame& frame, const SurfelA
   guidance_.resize(frame.depth.size());
   used_.assign(frame.depth.size(), 0);
   mode_of_pixel_.resize(frame.depth.size());
-  associate(frame, seen, executor, report);
-  report.associate_ms = stopwatch.lap_ms();
+  integrate(frame, seen, executor, report);
+  report.integrate_ms = stopwatch.lap_ms();
   if (!config_.enhance_depth) return report;
   enhanced_m_.resize(frame.depth.size());
   guided_.apply(width, height, frame.depth.pixels(), guidance_, used_, executor, enhanced_m_);
   report.guided_filter_ms = stopwatch.lap_ms();
   move_to_enhanced(frame, seen, executor);
-  report.integrate_ms = stopwatch.lap_ms();
+  report.move_ms = stopwatch.lap_ms();
   return report;
 }
 

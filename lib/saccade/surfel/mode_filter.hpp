@@ -35,9 +35,9 @@ struct ModeFilterReport {
   std::size_t merged_modes{0};   ///< by compression
   std::size_t evicted_modes{0};  ///< for want of room, line 10
   double evicted_weight{0.0};
-  double associate_ms{0.0};      ///< lines 1–15 and 20–26, with measured depths
+  double integrate_ms{0.0};      ///< lines 1–15 and 20–26, with measured depths
   double guided_filter_ms{0.0};  ///< lines 16–18
-  double integrate_ms{0.0};      ///< line 19: positions move to the enhanced depths
+  double move_ms{0.0};           ///< line 19: positions move to the enhanced depths
 };
 
 /// Runs beside SurfelFusion, frame by frame. Guidance comes from the modes at the frame's beginning; then each pixel
@@ -68,7 +68,7 @@ class ModeFilter {
  private:
   explicit ModeFilter(const ModeFilterConfig& config)
       : config_{config}, guided_{config.guided}, store_{static_cast<std::size_t>(config.max_modes)} {}
-  void associate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor, ModeFilterReport& report);
+  void integrate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor, ModeFilterReport& report);
   void move_to_enhanced(const Frame& frame, const SurfelAssociation& seen, const Executor& executor);
 
   ModeFilterConfig config_;

@@ -1,0 +1,165 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "frame_options.hpp"
+
+#include <CLI/CLI.hpp>
+#include <cmath>
+#include <map>
+
+namespace saccade::cli {
+namespace {
+
+const std::map<std::string, TrackingMode>& tracking_modes() {
+  static const std::map<std::string, TrackingMode> modes{
+      {"icp", TrackingMode::icp}, {"hint", TrackingMode::hint}, {"forced", TrackingMode::forced}};
+  return modes;
+}
+
+const std::map<std::string, RgbdLayout>& layouts() {
+  static const std::map<std::string, RgbdLayout> names{{"auto", RgbdLayout::automatic},
+                                                       {"seven-scenes", RgbdLayout::seven_scenes},
+                                                       {"tum", RgbdLayout::tum},
+                                                       {"princeton", RgbdLayout::princeton},
+                                                       {"open3d", RgbdLayout::open3d}};
+  return names;
+}
+
+const std::map<std::string, DepthEncoding>& encodings() {
+  static const std::map<std::string, DepthEncoding> names{
+      {"mm", {1000.0, false}}, {"tum", {5000.0, false}}, {"bit-rotated", {10000.0, true}}};
+  return names;
+}
+
+/// An option that takes one of a few words.
+template <class T, class Target>
+void add_choice(CLI::App& command, const std::string& option, Target& target, const std::map<std::string, T>& choices,
+                const std::string& description) {
+  std::string words;
+  for (const auto& [word, value] : choices) words += (words.empty() ? "" : "|") + word;
+  command
+      .add_option_function<std::string>(
+          option,
+          [option, &target, &choices, words](const std::string& text) {
+            const auto found = choices.find(text);
+            if (found == choices.end()) usage_error(option, "must be one of " + words + ", not '" + text + "'");
+            target = found->second;
+          },
+          description)
+      ->type_name(words);
+}
+
+void add_reading_options(CLI::App& command, FrameOptions& options) {
+  add_camera_options(command, options.camera, false);
+  command
+      .add_option_function<std::string>(
+          "--distortion",
+          [&options](const std::string& text) {
+            const std::vector<double> n = parse_numbers("--distortion", text, 5);
+            options.folder.distortion = Distortion{n[0], n[1], n[2], n[3], n[4]};
+          },
+          "lens distortion (Brown-Conrady), undone on the way in")
+      ->type_name("K1,K2,P1,P2,K3");
+  add_choice(command, "--layout", options.folder.layout, layouts(), "how the files are named (default: recognised)");
+  add_choice(command, "--depth-encoding", options.folder.encoding, encodings(),
+             "what depth samples mean (default: the layout's): 1/1000 m, 1/5000 m, 1/10000 m rotated by three bits");
+  command.add_option("--depth-scale", options.depth_scale, "depth samples per metre, instead of the encoding's")
+      ->type_name("N");
+  command
+      .add_option("--poses", options.folder.poses_file, "camera poses, instead of the folder's (TUM, matrices, JSON)")
+      ->type_name("FILE");
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--mask",
+          [&options](const std::vector<std::string>& values) {
+            for (const std::string& text : values) {
+              if (auto polygon = parse_polygon("--mask", text)) {
+                options.folder.mask_polygons.push_back(std::move(*polygon));
+              } else if (options.folder.mask_file) {
+                usage_error("--mask", "takes one file and any number of polygons");
+              } else {
+                options.folder.mask_file = text;
+              }
+            }
+          },
+          "pixels to ignore, such as the camera's own robot: PNG (0 is ignored), JSON polygons, or U,V;U,V;U,V")
+      ->type_name("FILE|POLYGON")
+      ->allow_extra_args(false);
+  command
+      .add_option("--fill-gaps", options.fill_gaps_px,
+                  "close gaps of up to so many pixels between similar depths, as registered depth images have them "
+                  "(default: 2 where they are all over the first frame, else 0)")
+      ->type_name("PIXELS");
+  command.add_option("--first", options.folder.first, "leave out so many frames at the beginning")
+      ->check(check_whole_number)
+      ->type_name("N");
+  command.add_option("--count", options.folder.count, "use at most so many frames")
+      ->check(check_whole_number)
+      ->type_name("N");
+  command.add_option("--every", options.folder.every_nth, "use every n-th frame")
+      ->check(check_whole_number)
+      ->type_name("N");
+}
+
+/// The tracking mode that was asked for or that the folder allows.
+Result<TrackingMode> choose_tracking(const FrameOptions& options, const RgbdFolderInfo& info) {
+  if (!options.tracking) return info.has_poses ? TrackingMode::forced : TrackingMode::icp;
+  if (*options.tracking != TrackingMode::icp && !info.has_poses) {
+    return Error{Errc::not_found,
+                 "there are no camera poses for --tracking " + std::string{to_string(*options.tracking)} +
+                     "; pass --poses FILE, or use --tracking icp",
+                 options.frames.string()};
+  }
+  return *options.tracking;
+}
+
+}  // namespace
+
+std::string_view to_string(TrackingMode mode) {
+  for (const auto& [name, value] : tracking_modes()) {
+    if (value == mode) return name;
+  }
+  return "unknown";
+}
+
+void add_frame_options(CLI::App& command, FrameOptions& options) {
+  command.add_option("frames", options.frames, "folder of RGB-D frames")->required()->type_name("DIR");
+  add_choice(command, "--tracking", options.tracking, tracking_modes(),
+             "icp: by the depth images alone; hint: ICP from the given poses; forced: the given poses as they are "
+             "(default: forced where there are poses, else icp)");
+  add_reading_options(command, options);
+}
+
+void check_frame_options(FrameOptions& options) {
+  if (options.fill_gaps_px) require_ok(GapFilling{*options.fill_gaps_px}.validate(), "--fill-gaps");
+  if (options.depth_scale) {
+    require_positive(*options.depth_scale, "--depth-scale");
+    if (!options.folder.encoding) options.folder.encoding = DepthEncoding{};
+    options.folder.encoding->units_per_m = *options.depth_scale;
+  }
+  options.folder.intrinsics = options.camera.given_intrinsics();
+  options.folder.min_range_m = options.camera.min_range_m;
+  options.folder.max_range_m = options.camera.max_range_m;
+  const PinholeCamera camera = options.camera.camera(PinholeCamera{});
+  if (!(camera.min_range_m >= 0.0) || !std::isfinite(camera.min_range_m)) {
+    usage_error("--min-range", "must not be negative");
+  }
+  if (options.camera.max_range_m) require_positive(*options.camera.max_range_m, "--max-range");
+  if (options.camera.min_range_m && options.camera.max_range_m &&
+      *options.camera.min_range_m >= *options.camera.max_range_m) {
+    usage_error("--min-range", "must be below --max-range");
+  }
+  require_ok(options.folder.validate(), "--every, --count");
+}
+
+Result<OpenFrames> open_frames(const FrameOptions& options) {
+  OpenFrames frames;
+  frames.folder = options.folder;
+  SACCADE_TRY(frames.source, open_rgbd_folder(options.frames, frames.folder));
+  SACCADE_TRY(frames.tracking, choose_tracking(options, frames.source->info()));
+  if (frames.tracking == TrackingMode::icp) {
+    frames.folder.require_poses = false;
+    SACCADE_TRY(frames.source, open_rgbd_folder(options.frames, frames.folder));
+  }
+  return frames;
+}
+
+}  // namespace saccade::cli

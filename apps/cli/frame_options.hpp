@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// FrameOptions: which RGB-D frames a command reads, and where their poses come from; open_frames.
+
+#include <filesystem>
+#include <memory>
+#include <optional>
+#include <string_view>
+
+#include "options.hpp"
+#include "saccade/io/rgbd_folder.hpp"
+#include "saccade/map/reconstruction.hpp"
+#include "saccade/sensor/gap_filling.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace saccade::cli {
+
+struct FrameOptions {
+  std::filesystem::path frames;
+  std::optional<TrackingMode> tracking;  ///< default: forced where the folder has poses, else icp
+  CameraOptions camera;
+  RgbdFolderConfig folder;
+  std::optional<double> depth_scale;
+  std::optional<int> fill_gaps_px;  ///< default: as the first frame needs it
+};
+
+[[nodiscard]] std::string_view to_string(TrackingMode mode);
+
+/// Adds the options to the subcommand; `options` outlives the parsing.
+void add_frame_options(CLI::App& command, FrameOptions& options);
+/// What only shows when all options are known; throws usage errors. Completes options.folder.
+void check_frame_options(FrameOptions& options);
+
+struct OpenFrames {
+  std::unique_ptr<RgbdFolderSource> source;
+  RgbdFolderConfig folder;  ///< that the source was opened with
+  TrackingMode tracking{TrackingMode::icp};
+};
+
+/// ICP alone needs no poses: a bad one is then no reason to leave a frame out.
+[[nodiscard]] Result<OpenFrames> open_frames(const FrameOptions& options);
+
+}  // namespace saccade::cli

@@ -1,0 +1,237 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade surfels: RGB-D frames → surfel cloud, with or without the mode filter.
+#include <CLI/CLI.hpp>
+#include <iostream>
+#include <memory>
+
+#include "command.hpp"
+#include "exit_status.hpp"
+#include "frame_options.hpp"
+#include "fuse_frames.hpp"
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/surfel_cloud.hpp"
+#include "saccade/surfel/mode_filter.hpp"
+#include "saccade/surfel/surfel_fusion.hpp"
+#include "summary.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+struct SurfelsOptions : FrameOptions {
+  std::filesystem::path out;
+  std::string mode_filter{"on"};
+  SurfelFusionConfig fusion;
+  ModeFilterConfig filter;
+
+  [[nodiscard]] bool filtered() const { return mode_filter != "off"; }
+  /// Where the averages go: nowhere, to --out, or beside it.
+  [[nodiscard]] std::filesystem::path average_out() const {
+    if (mode_filter == "on") return {};
+    if (mode_filter == "off") return out;
+    std::filesystem::path beside = out;
+    return beside.replace_extension(".average" + out.extension().string());
+  }
+};
+
+/// Milliseconds of each frame.
+struct SurfelTimes {
+  std::vector<double> associate, guided_filter, integrate, total;
+};
+
+/// Everything between the command line and the summary.
+struct SurfelsRun {
+  const SurfelsOptions& options;
+  Executor executor;
+  ProgressBar progress;
+  OpenFrames frames;
+  SurfelFusion fusion;
+  ModeFilter filter;
+  FuseRecord record;
+  SurfelTimes times;
+  std::size_t without_color{0};
+  std::size_t evicted_modes{0};
+  TimingsMs timings_ms;
+};
+
+/// Fuses a frame whose pose is known.
+Status add_frame(SurfelsRun& run, const Frame& frame) {
+  SACCADE_TRY(const SurfelFusionReport fused, run.fusion.add_frame(frame, run.frames.source->camera(), run.executor));
+  ModeFilterReport filtered;
+  if (run.options.filtered()) {
+    SACCADE_TRY(filtered, run.filter.add_frame(frame, run.fusion.association(), run.executor));
+  }
+  if (!fused.has_color) ++run.without_color;
+  run.evicted_modes += filtered.evicted_modes;
+  const double associate_ms = fused.points_ms + fused.index_ms + fused.associate_ms;
+  const double integrate_ms = fused.integrate_ms + filtered.integrate_ms + filtered.move_ms;
+  run.times.associate.push_back(associate_ms);
+  run.times.guided_filter.push_back(filtered.guided_filter_ms);
+  run.times.integrate.push_back(integrate_ms);
+  run.times.total.push_back(associate_ms + filtered.guided_filter_ms + integrate_ms);
+  return {};
+}
+
+/// With poses that are given nothing is tracked; else a TSDF map of the same frames says where the camera is.
+Status fuse_surfels(SurfelsRun& run) {
+  SACCADE_TRY(Reconstruction reconstruction, Reconstruction::create({}));
+  const auto process = [&](Frame& frame) -> Result<FrameReport> {
+    FrameReport report;
+    if (run.frames.tracking != TrackingMode::forced) {
+      SACCADE_TRY(report, reconstruction.process(frame, run.frames.source->camera(), run.frames.tracking,
+                                                 frame.T_world_camera, run.executor));
+      if (report.status != FrameReport::Status::fused) return report;
+      frame.T_world_camera = report.T_world_camera;
+    }
+    SACCADE_CHECK(add_frame(run, frame));
+    report.T_world_camera = *frame.T_world_camera;
+    return report;
+  };
+  std::optional<GapFilling> gaps;
+  if (run.options.fill_gaps_px) gaps = GapFilling{*run.options.fill_gaps_px};
+  run.record = process_frames(*run.frames.source, "fusing surfels", gaps, run.progress, process);
+  return {};
+}
+
+Status check_color(const SurfelsRun& run) {
+  if (!run.options.filtered() || run.frames.source->info().has_color) return {};
+  return Error{Errc::not_found, "there are no colour images, which the mode filter needs; use --mode-filter off",
+               run.options.frames.string()};
+}
+
+Status write_clouds(SurfelsRun& run) {
+  run.progress.update("writing", 0, 0);
+  const SurfelMap& map = run.fusion.map();
+  if (run.options.filtered()) {
+    SACCADE_CHECK(write_surfel_cloud(run.options.out, map, run.filter.winners(run.executor)));
+  }
+  const std::filesystem::path average = run.options.average_out();
+  return average.empty() ? Status{} : write_surfel_cloud(average, map);
+}
+
+json result_json(const SurfelsRun& run) {
+  const auto median = [](const std::vector<double>& ms) -> json { return {{"median", median_of(ms)}}; };
+  const std::filesystem::path average = run.options.average_out();
+  return {{"folder", run.options.frames.string()},
+          {"out", run.options.out.string()},
+          {"average_out", average.empty() ? json(nullptr) : json(average.string())},
+          {"mode_filter", run.options.mode_filter},
+          {"tracking", to_string(run.frames.tracking)},
+          {"interrupted", interrupted()},
+          {"frames", run.record.fused.size()},
+          {"frames_without_color", run.without_color},
+          {"lost_frames", left_out_json(run.record.lost)},
+          {"skipped", left_out_json(run.record.skipped)},
+          {"surfels", run.fusion.map().size()},
+          {"evicted_modes", run.evicted_modes},
+          {"bytes_per_surfel",
+           {{"map", double(run.fusion.map().memory_bytes()) / double(run.fusion.map().size())},
+            {"modes", double(run.filter.memory_bytes()) / double(run.fusion.map().size())}}},
+          {"image_sigma", run.options.fusion.image_sigma},
+          {"ms_per_frame",
+           {{"associate", median(run.times.associate)},
+            {"guided_filter", median(run.times.guided_filter)},
+            {"integrate", median(run.times.integrate)},
+            {"total", median(run.times.total)}}},
+          {"peak_rss_bytes", peak_rss_bytes()}};
+}
+
+void print_summary(const SurfelsRun& run) {
+  const FuseRecord& record = run.record;
+  const Summary summary{std::cout};
+  summary.line("frames", std::to_string(record.fused.size()) + " fused, " + std::to_string(record.lost.size()) +
+                             " lost, " + std::to_string(record.skipped.size()) + " skipped");
+  summary.line("tracking", to_string(run.frames.tracking));
+  summary.line("surfels", std::to_string(run.fusion.map().size()));
+  summary.line("per frame", fixed(median_of(run.times.associate), 1) + " ms associate, " +
+                                fixed(median_of(run.times.guided_filter), 1) + " ms guided filter, " +
+                                fixed(median_of(run.times.integrate), 1) + " ms integrate (medians)");
+  summary.line("cloud", run.options.out.string());
+  if (run.options.mode_filter == "both") summary.line("average", run.options.average_out().string());
+}
+
+Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& global) {
+  const Stopwatch total;
+  Stopwatch stopwatch;
+  SACCADE_TRY(OpenFrames frames, open_frames(options));
+  SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(options.fusion));
+  SACCADE_TRY(ModeFilter filter, ModeFilter::create(options.filter));
+  SurfelsRun run{options,
+                 global.executor(),
+                 ProgressBar{global.quiet},
+                 std::move(frames),
+                 std::move(fusion),
+                 std::move(filter),
+                 {},
+                 {},
+                 0,
+                 0,
+                 {}};
+  SACCADE_CHECK(check_color(run));
+  const std::filesystem::path json_file = global.json_to_stdout() ? "" : global.json;
+  SACCADE_CHECK(check_output(options.out, "--json", {json_file}));
+  if (options.mode_filter == "both") SACCADE_CHECK(check_output(options.average_out(), "--json", {json_file}));
+  SACCADE_CHECK(check_json_output(global));
+  run.timings_ms["open"] = stopwatch.lap_ms();
+  SACCADE_CHECK(fuse_surfels(run));
+  run.timings_ms["frames"] = stopwatch.lap_ms();
+  if (run.fusion.map().size() == 0) return nothing_fused("surfels", run.record, options.frames);
+  SACCADE_CHECK(write_clouds(run));
+  run.timings_ms["write"] = stopwatch.lap_ms();
+  run.timings_ms["total"] = total.elapsed_ms();
+  run.progress.finish();
+  SACCADE_CHECK(
+      write_json_output(global, json_envelope("surfels", global, run.executor, run.timings_ms, result_json(run))));
+  if (!global.json_to_stdout()) print_summary(run);
+  if (!interrupted()) return static_cast<int>(ExitStatus::done);
+  print_error("surfels", "interrupted after " + std::to_string(run.record.fused.size()) +
+                             " frames; what they gave is in " + options.out.string());
+  return interrupt_status();
+}
+
+void check_surfels_options(SurfelsOptions& options) {
+  check_frame_options(options);
+  const std::string extension = options.out.extension().string();
+  if (extension != ".ply" && extension != ".pcd") usage_error("--out", "must end in .ply or .pcd");
+  if (options.mode_filter != "on" && options.mode_filter != "off" && options.mode_filter != "both") {
+    usage_error("--mode-filter", "must be one of on|off|both, not '" + options.mode_filter + "'");
+  }
+  require_ok(options.fusion.validate(), "--image-sigma");
+  require_ok(options.filter.validate(), "--max-modes");
+}
+
+}  // namespace
+
+void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command = program.add_subcommand("surfels", "RGB-D frames -> surfel cloud whose edges stay sharp");
+  auto options = std::make_shared<SurfelsOptions>();
+  add_frame_options(*command, *options);
+  command
+      ->add_option("--out", options->out,
+                   "surfels with normals, radius, colour and confidence: PLY, or PCD for a name that ends in .pcd")
+      ->required()
+      ->type_name("CLOUD");
+  command
+      ->add_option("--mode-filter", options->mode_filter,
+                   "on: of each surfel's colours the most frequent one, with depth guided by it; off: averages; both: "
+                   "averages, too, in NAME.average.EXT beside --out")
+      ->type_name("on|off|both")
+      ->capture_default_str();
+  command
+      ->add_option("--image-sigma", options->fusion.image_sigma,
+                   "how fast pixels lose weight away from the image's centre: smaller for strong vignetting")
+      ->type_name("SIGMA")
+      ->capture_default_str();
+  command->add_option("--max-modes", options->filter.max_modes, "colours that a surfel remembers, 1 to 32")
+      ->type_name("N")
+      ->capture_default_str();
+  command->callback([options, &global, &action] {
+    check_surfels_options(*options);
+    action = [options, &global] { return run_surfels(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli
