@@ -1,0 +1,169 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade surfels as a user runs it: clouds, JSON, tracking, threads, what goes wrong, interrupting.
+#include <gtest/gtest.h>
+
+#include <cmath>
+
+#include "cli/run_program.hpp"
+#include "saccade/io/cloud_io.hpp"
+
+namespace saccade::test {
+namespace {
+
+class Surfels : public ::testing::Test {
+ protected:
+  void SetUp() override { make_sample(frames(), 12); }
+  [[nodiscard]] fs::path frames() const { return folder_ / "frames"; }
+  [[nodiscard]] Arguments surfels(const std::string& out, const Arguments& more = {}) const {
+    return Arguments{"surfels", frames().string(), "--out", (folder_ / out).string(), "--quiet"} + more;
+  }
+  [[nodiscard]] nlohmann::json result(const std::string& out, const Arguments& more = {}) const {
+    const Outcome outcome = run_program(surfels(out, more + Arguments{"--json", "-"}));
+    EXPECT_EQ(outcome.status, 0) << outcome.err;
+    EXPECT_EQ(outcome.err, "");
+    expect_envelope(outcome.json(), "surfels");
+    return outcome.json().at("result");
+  }
+  [[nodiscard]] PointCloud cloud(const std::string& name) const {
+    const CloudFile file = read_cloud(folder_ / name).value();
+    for (const char* field : {"radius", "confidence"}) {
+      const Column* column = file.fields().find(field);
+      EXPECT_NE(column, nullptr) << field;
+      for (std::size_t i = 0; column != nullptr && i < file.fields().rows; ++i) EXPECT_GT(column->value(i), 0.0);
+    }
+    return cloud_from_fields(file.fields()).value();
+  }
+  TempFolder folder_;
+};
+
+TEST_F(Surfels, BothGivesTheModesAndTheAverages) {
+  const nlohmann::json both = result("cloud.ply", {"--mode-filter", "both"});
+  EXPECT_EQ(both.at("frames"), 12);
+  EXPECT_EQ(both.at("frames_without_color"), 0);
+  EXPECT_EQ(both.at("mode_filter"), "both");
+  EXPECT_EQ(both.at("tracking"), "forced");
+  EXPECT_EQ(both.at("interrupted"), false);
+  EXPECT_TRUE(both.at("skipped").empty());
+  const auto surfels = both.at("surfels").get<std::size_t>();
+  EXPECT_GT(surfels, 10000U);
+  const nlohmann::json& ms = both.at("ms_per_frame");
+  for (const char* phase : {"associate", "guided_filter", "integrate"}) {
+    EXPECT_GT(ms.at(phase).at("median").get<double>(), 0.0) << phase;
+    EXPECT_LT(ms.at(phase).at("median").get<double>(), ms.at("total").at("median").get<double>()) << phase;
+  }
+  EXPECT_GT(both.at("peak_rss_bytes").get<std::size_t>(), std::size_t{1} << 20U);
+  EXPECT_LT(both.at("bytes_per_surfel").at("map").get<double>(), 60.0);
+  EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"cloud.average.ply", "cloud.ply", "frames"}));
+  EXPECT_EQ(both.at("average_out"), (folder_ / "cloud.average.ply").string());
+
+  const PointCloud modes = cloud("cloud.ply");
+  const PointCloud averages = cloud("cloud.average.ply");
+  ASSERT_EQ(modes.positions_m.size(), surfels);
+  ASSERT_EQ(averages.positions_m.size(), surfels);
+  ASSERT_EQ(modes.normals.size(), surfels);
+  std::size_t other_color{0};
+  for (std::size_t i = 0; i < surfels; ++i) {
+    ASSERT_LT((modes.positions_m[i] - averages.positions_m[i]).norm(), 0.05F);
+    ASSERT_EQ(modes.normals[i], averages.normals[i]);
+    ASSERT_NEAR(modes.normals[i].norm(), 1.0F, 1e-4F);
+    other_color += modes.colors[i] != averages.colors[i] ? 1U : 0U;
+  }
+  EXPECT_GT(other_color, surfels / 50);
+
+  // One alone is what both give.
+  EXPECT_EQ(result("on.ply").at("surfels"), surfels);
+  EXPECT_TRUE(text_of(folder_ / "on.ply") == text_of(folder_ / "cloud.ply"));
+  EXPECT_EQ(result("off.ply", {"--mode-filter", "off"}).at("ms_per_frame").at("guided_filter").at("median"), 0.0);
+  EXPECT_TRUE(text_of(folder_ / "off.ply") == text_of(folder_ / "cloud.average.ply"));
+}
+
+TEST_F(Surfels, PcdHoldsTheSame) {
+  EXPECT_EQ(result("cloud.ply").at("frames"), 12);
+  EXPECT_EQ(result("cloud.pcd").at("frames"), 12);
+  const PointCloud ply = cloud("cloud.ply");
+  const PointCloud pcd = cloud("cloud.pcd");
+  ASSERT_GT(ply.positions_m.size(), 10000U);
+  EXPECT_EQ(ply.positions_m, pcd.positions_m);
+  EXPECT_EQ(ply.normals, pcd.normals);
+  EXPECT_EQ(ply.colors, pcd.colors);
+}
+
+TEST_F(Surfels, ThreadsDoNotChangeTheCloud) {
+  EXPECT_EQ(result("one.ply", {"--threads", "1"}).at("frames"), 12);
+  EXPECT_EQ(result("four.ply", {"--threads", "4"}).at("frames"), 12);
+  EXPECT_TRUE(text_of(folder_ / "one.ply") == text_of(folder_ / "four.ply"));
+}
+
+TEST_F(Surfels, TracksWhereThereAreNoPoses) {
+  for (const std::string& name : names_in(frames())) {
+    if (name.ends_with(".pose.txt")) fs::remove(frames() / name);
+  }
+  const nlohmann::json tracked = result("cloud.ply", {"--count", "5"});
+  EXPECT_EQ(tracked.at("tracking"), "icp");
+  EXPECT_EQ(tracked.at("frames"), 5);
+  EXPECT_GT(tracked.at("surfels").get<int>(), 10000);
+  expect_failure(run_program(surfels("cloud.ply", {"--tracking", "forced"})), 3, "surfels",
+                 {"no camera poses", "--poses", "icp"});
+}
+
+TEST_F(Surfels, TheImageSigmaReachesTheWeights) {
+  const auto confidence = [&](const char* sigma) {
+    EXPECT_EQ(result("cloud.ply", {"--image-sigma", sigma}).at("image_sigma"), std::stod(sigma));
+    const CloudFile file = read_cloud(folder_ / "cloud.ply").value();
+    double sum{0.0};
+    for (std::size_t i = 0; i < file.fields().rows; ++i) sum += file.fields().find("confidence")->value(i);
+    return sum;
+  };
+  EXPECT_LT(confidence("0.1"), 0.6 * confidence("0.3"));
+}
+
+TEST_F(Surfels, WithoutColourTheFilterSaysWhatItNeeds) {
+  for (const std::string& name : names_in(frames())) {
+    if (name.ends_with(".color.png")) fs::remove(frames() / name);
+  }
+  expect_failure(run_program(surfels("cloud.ply")), 3, "surfels", {"no colour images", "--mode-filter off"});
+  EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"frames"});
+  const nlohmann::json off = result("cloud.ply", {"--mode-filter", "off"});
+  EXPECT_EQ(off.at("frames_without_color"), 12);
+  EXPECT_TRUE(cloud("cloud.ply").colors.empty());
+}
+
+TEST_F(Surfels, WhatIsWrongIsSaidBeforeTheWork) {
+  expect_failure(run_program(surfels("cloud.txt")), 2, "surfels", {"--out", ".ply or .pcd"});
+  expect_failure(run_program(surfels("cloud.ply", {"--mode-filter", "some"})), 2, "surfels", {"on|off|both", "some"});
+  expect_failure(run_program(surfels("cloud.ply", {"--image-sigma", "0"})), 2, "surfels", {"--image-sigma"});
+  expect_failure(run_program(surfels("cloud.ply", {"--max-modes", "33"})), 2, "surfels", {"--max-modes", "1 to 32"});
+  expect_failure(run_program(surfels("nowhere/cloud.ply")), 3, "surfels", {"nowhere"});
+  expect_failure(run_program(surfels("cloud.ply", {"--max-range", "0.2", "--min-range", "0.1"})), 5, "surfels",
+                 {"--max-range", "nothing was written"});
+  EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"frames"});
+}
+
+TEST_F(Surfels, InterruptingKeepsWhatWasDone) {
+  const auto name = [](int i) { return "frame-" + std::to_string(1000000 + i).substr(1); };
+  for (int i = 12; i < 1200; ++i) {
+    for (const char* kind : {".depth.png", ".color.png", ".pose.txt"}) {
+      fs::create_symlink(frames() / (name(i % 12) + kind), frames() / (name(i) + kind));
+    }
+  }
+  fs::remove(frames() / (name(3) + ".depth.png"));
+  folder_.write("frames/" + name(3) + ".depth.png", "no image");
+  RunningProgram program{{"surfels", frames().string(), "--out", (folder_ / "cloud.ply").string(), "--json",
+                          (folder_ / "cloud.json").string()}};
+  ASSERT_TRUE(program.wait_for(name(3) + ": skipped")) << program.err();
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted after"), std::string::npos) << outcome.err;
+  const nlohmann::json document = nlohmann::json::parse(text_of(folder_ / "cloud.json"), nullptr, false);
+  expect_envelope(document, "surfels");
+  EXPECT_EQ(document.at("result").at("interrupted"), true);
+  EXPECT_GE(document.at("result").at("frames").get<int>(), 3);
+  EXPECT_LT(document.at("result").at("frames").get<int>(), 1199);
+  EXPECT_EQ(document.at("result").at("skipped").at(0).at("frame"), name(3));
+  EXPECT_EQ(cloud("cloud.ply").positions_m.size(), document.at("result").at("surfels").get<std::size_t>());
+  EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"cloud.json", "cloud.ply", "frames"}));
+}
+
+}  // namespace
+}  // namespace saccade::test
