@@ -223,7 +223,7 @@ std::vector<Frame> flickering_frames(const PinholeCamera& camera) {
 TEST(SurfelFusion, AHundredThousandFramesOfTheSameSpotDoNotGrow) {
   constexpr PinholeCamera kSmall{64, 48, 52.5, 52.5, 31.5, 23.5, 0.3, 6.0};
   constexpr std::size_t kPixels{64 * 48};
-  const auto frames = static_cast<std::size_t>(test::scaled_cases(100'000) / (test::kSanitized ? 20 : 1));
+  const auto frames = static_cast<std::size_t>(test::scaled_cases(100'000) / (test::kSanitized ? 100 : 1));
   const std::vector<Frame> wall = flickering_frames(kSmall);
   SurfelFusion fusion = SurfelFusion::create().value();
   ModeFilter filter = ModeFilter::create().value();
