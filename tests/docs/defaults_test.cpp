@@ -36,6 +36,8 @@
 #include "saccade/segment/live_segments.hpp"
 #include "saccade/segment/supervoxels.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
+#include "saccade/surfel/mode_filter.hpp"
+#include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/view/contour_views.hpp"
 #include "saccade/view/contours.hpp"
 #include "saccade/view/view_gain.hpp"
@@ -163,6 +165,22 @@ TEST(Defaults, OfSegmentationAreDocumented) {
   expect_documented("LccpConfig::concavity_tolerance_rad", {degrees(lccp.concavity_tolerance_rad)});
   expect_documented("LccpConfig::smoothness", {lccp.smoothness});
   expect_documented("LccpConfig::min_supervoxels", {static_cast<double>(lccp.min_supervoxels)});
+}
+
+TEST(Defaults, OfSurfelsAreDocumented) {
+  const SurfelFusionConfig fusion;
+  expect_documented("SurfelFusionConfig::image_sigma", {fusion.image_sigma});
+  expect_documented("SurfelFusionConfig::depth_tolerance_m",
+                    {fusion.depth_tolerance_m, fusion.depth_tolerance_growth_per_m});
+  expect_documented("SurfelFusionConfig::max_normal_angle_rad", {fusion.max_normal_angle_rad});
+  expect_documented("SurfelFusionConfig::max_view_angle_rad", {fusion.max_view_angle_rad});
+  expect_documented("SurfelFusionConfig::max_radius_m", {fusion.max_radius_m});
+  const ModeFilterConfig filter;
+  expect_documented("GuidedFilterConfig::radius_px", {static_cast<double>(filter.guided.radius_px)});
+  expect_documented("GuidedFilterConfig::color_sigma", {filter.guided.color_sigma});
+  expect_documented("GuidedFilterConfig::depth_sigma_m", {filter.guided.depth_sigma_m});
+  expect_documented("ModeFilterConfig::color_sigmas", {filter.color_sigmas});
+  expect_documented("ModeFilterConfig::max_modes", {static_cast<double>(filter.max_modes)});
 }
 
 TEST(Defaults, OfSaliencyAreDocumented) {

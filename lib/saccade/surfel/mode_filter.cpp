@@ -269,7 +269,6 @@ std::vector<SurfelMode> ModeFilter::winners(const Executor& executor) const {
   executor.parallel_for(best.size(), kWinnersPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       const auto id = static_cast<SurfelId>(k);
-      best[k] = {Eigen::Vector3f::Zero(), Eigen::Vector3f::Zero(), 0.0F};
       for (std::size_t i = 0; i < store_.count(id); ++i) {
         const SurfelMode mode = store_.mode(id, i);
         if (mode.weight > best[k].weight) best[k] = mode;

@@ -18,8 +18,8 @@ namespace saccade {
 
 /// A tuple m_i of eq. 4.3.
 struct SurfelMode {
-  Eigen::Vector3f color;
-  Eigen::Vector3f position_m;
+  Eigen::Vector3f color{Eigen::Vector3f::Zero()};  ///< red, green, blue in [0, 1]
+  Eigen::Vector3f position_m{Eigen::Vector3f::Zero()};
   float weight{0.0F};
 };
 
