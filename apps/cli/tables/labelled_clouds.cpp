@@ -11,7 +11,7 @@
 namespace saccade::cli {
 namespace {
 
-constexpr std::array<const char*, 4> kScenes{"tabletop-1", "tabletop-2", "tabletop-3", "tabletop-4"};
+constexpr std::array<const char*, 4> kLabelledScenes{"tabletop-1", "tabletop-2", "tabletop-3", "tabletop-4"};
 
 /// Before the long side of a table, its whole top in view.
 Pose before_table() { return look_at({0.0, -1.0, 0.75}, {0.0, 0.0, 0.05}); }
@@ -36,7 +36,7 @@ Result<LabelledClouds> LabelledClouds::open(const ReproduceOptions& options) {
   clouds.seed_ = options.seed;
   clouds.image_width_px_ = options.image_width_px;
   if (options.clouds.empty()) {
-    for (const char* scene : kScenes) clouds.jobs_.push_back({scene, {}, {}, {}, {}});
+    for (const char* scene : kLabelledScenes) clouds.jobs_.push_back({scene, {}, {}, {}, {}});
     return clouds;
   }
   clouds.files_.cloud = options.clouds;

@@ -34,7 +34,7 @@ using nlohmann::json;
 using Experiment = ExplorationExperiment;
 using Experiments = ExplorationExperiments;
 
-constexpr std::array<const char*, 4> kExploredScenes{"tabletop-1", "tabletop-2", "tabletop-3", "tabletop-4"};
+constexpr std::array<const char*, 4> kScenes{"tabletop-1", "tabletop-2", "tabletop-3", "tabletop-4"};
 constexpr int kViews{5};
 constexpr double kMost_m{2.0};  // beyond, depth is too coarse for things on a table
 constexpr int kUsualWidth_px{160};
@@ -93,9 +93,9 @@ Status carry_out_explorations(const ReproduceOptions& options, const Executor& e
   if (options.experiments) return {};
   auto all = std::make_shared<Experiments>();
   std::size_t done = 0;
-  for (const char* scene : kExploredScenes) {
+  for (const char* scene : kScenes) {
     for (const StrategyKind kind : {StrategyKind::attention, StrategyKind::standard}) {
-      progress.report("experiments", done++, 2 * kExploredScenes.size());
+      progress.report("experiments", done++, 2 * kScenes.size());
       SACCADE_TRY(Experiment experiment, carry_out(scene, kind, options, executor, {}));
       (kind == StrategyKind::attention ? all->attention : all->standard).push_back(std::move(experiment));
       if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", scene};
@@ -218,7 +218,7 @@ json experiments_json(const Experiments& all) {
                                         view.reachability_ms + view.evaluation_ms},
                          {"motion_s", view.motion_s}});
       }
-      rows.push_back({{"scene", kExploredScenes.at(i)},
+      rows.push_back({{"scene", kScenes.at(i)},
                       {"strategy", name},
                       {"unknown_near_objects", (*experiments)[i].run.initial.metrics.unknown_near_objects},
                       {"views", std::move(views)}});
@@ -265,13 +265,12 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
                                             const Progress& progress) {
   constexpr std::size_t kThird{2};
   progress.report("experiment 1", 0, 1);
-  SACCADE_TRY(Scene scene, find_scene(kExploredScenes[0]));
+  SACCADE_TRY(Scene scene, find_scene(kScenes[0]));
   SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
   SACCADE_TRY(const Truth truth, Truth::build(rays, kTruthSpacing_m, executor));
-  SACCADE_TRY(const Experiment experiment,
-              carry_out(kExploredScenes[0], StrategyKind::attention, options, executor, progress));
+  SACCADE_TRY(const Experiment experiment, carry_out(kScenes[0], StrategyKind::attention, options, executor, progress));
   if (experiment.proposals.size() <= kThird || !experiment.proposals[kThird].attention) {
-    return Error{Errc::unavailable, "the exploration ended before its third view", kExploredScenes[0]};
+    return Error{Errc::unavailable, "the exploration ended before its third view", kScenes[0]};
   }
   std::vector<MeshDistance> distances;
   for (const ObjectMesh& object : rays.meshes()) {
@@ -335,7 +334,7 @@ Result<ReproducedTable> reproduce_table_3_3(const ReproduceOptions& options, con
   for (const bool attention : {true, false}) {
     const std::vector<Experiment>& experiments = attention ? all.attention : all.standard;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
-      table.rows.push_back({attention ? "attention" : "standard", std::to_string(i + 1) + ", " + kExploredScenes.at(i),
+      table.rows.push_back({attention ? "attention" : "standard", std::to_string(i + 1) + ", " + kScenes.at(i),
                             kThesis.at(row++), marks(experiments[i], &MeasuredView::looks_at_object),
                             marks(experiments[i], nullptr)});
       for (const MeasuredView& view : experiments[i].run.views) {
@@ -365,13 +364,13 @@ Result<ReproducedTable> reproduce_figure_3_17(const ReproduceOptions& options, c
   ReproducedTable table;
   table.caption = "Fig. 3.17: unknown voxels near the objects after each of five views, attention / standard";
   table.columns = {"experiment", "scan", "1", "2", "3", "4", "5"};
-  for (std::size_t i = 0; i < kExploredScenes.size(); ++i) {
+  for (std::size_t i = 0; i < kScenes.size(); ++i) {
     Plot plot;
-    plot.title = std::string{"Unknown near the objects, "} + kExploredScenes.at(i) + " (thesis Fig. 3.17)";
+    plot.title = std::string{"Unknown near the objects, "} + kScenes.at(i) + " (thesis Fig. 3.17)";
     plot.x_label = "views after the initial scan";
     plot.y_label = "unknown voxels within 3 cm of objects";
     plot.min_x_step = 1.0;
-    std::vector<std::string> row{std::to_string(i + 1) + ", " + kExploredScenes.at(i)};
+    std::vector<std::string> row{std::to_string(i + 1) + ", " + kScenes.at(i)};
     row.resize(table.columns.size());
     for (const bool attention : {true, false}) {
       const SimulatedRun& run = (attention ? all.attention : all.standard)[i].run;
