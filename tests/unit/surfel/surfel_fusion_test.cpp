@@ -118,12 +118,16 @@ TEST(SurfelFusion, PixelsSeeWhatFillsTheirCellOrCoversTheirRay) {
   for (const Frame& frame : table_frames(5)) {
     ASSERT_TRUE(fusion.add_frame(frame, kSurfelCamera, {}));
     const SurfelAssociation& seen = fusion.association();
+    const PointImage points = to_points(frame.depth, kSurfelCamera, {});
     const Pose T_camera_world = frame.T_world_camera->inverse();
     for (int v = 0; v < kSurfelCamera.height; ++v) {
       for (int u = 0; u < kSurfelCamera.width; ++u) {
         const SurfelId id = seen.of_pixel(u, v);
         if (id == kNoSurfel || id >= seen.first_new) continue;
         const double z = static_cast<double>(frame.depth(u, v));
+        const Eigen::Vector3f n{points.nx(u, v), points.ny(u, v), points.nz(u, v)};
+        const Eigen::Vector3f n_world = frame.T_world_camera->linear().cast<float>() * n;
+        ASSERT_GE(n_world.dot(before.discs[id].normal), std::cos(0.8F) - 1e-5F);
         const Eigen::Vector3d p = T_camera_world * before.discs[id].position_m.cast<double>();
         ASSERT_LE(std::abs(p.z() - z), 0.02 + 0.005 * z * z + 1e-5);
         if (seen.of_cell(u, v) == id) {
@@ -139,6 +143,48 @@ TEST(SurfelFusion, PixelsSeeWhatFillsTheirCellOrCoversTheirRay) {
   }
   EXPECT_GT(own, 30000U);
   EXPECT_GT(around, 1000U);
+}
+
+TEST(SurfelFusion, PixelsWeighAsInEquation42) {
+  SurfelFusionConfig config;
+  config.image_sigma = 0.2;
+  SurfelFusion fusion = SurfelFusion::create(config).value();
+  ASSERT_TRUE(fusion.add_frame(table_frames(1).front(), kSurfelCamera, {}));
+  std::size_t compared{0};
+  for (const int u : {0, 17, 80, 159}) {
+    for (const int v : {0, 33, 60, 119}) {
+      const double delta = (std::pow(u - 79.5, 2.0) + std::pow(v - 59.5, 2.0)) / (160.0 * 160.0 + 120.0 * 120.0);
+      const double weight = std::exp(-delta / (2.0 * 0.2 * 0.2));
+      ASSERT_NEAR(fusion.association().weight(u, v), weight, 1e-6);
+      const SurfelId id = fusion.association().of_pixel(u, v);
+      if (id == kNoSurfel) continue;
+      ASSERT_NEAR(fusion.map().discs[id].weight, weight, 1e-6);
+      ++compared;
+    }
+  }
+  EXPECT_GT(compared, 4U);
+}
+
+/// What lies at a surfel's depth, but turned, is another surface: nothing is averaged, and nothing made.
+TEST(SurfelFusion, AnotherNormalAtTheSameDepthChangesNothing) {
+  SurfelFusion fusion = SurfelFusion::create().value();
+  Frame frame;
+  frame.depth = DepthImage{kSurfelCamera.width, kSurfelCamera.height, 1.0F};
+  frame.T_world_camera = Pose::Identity();
+  ASSERT_GT(fusion.add_frame(frame, kSurfelCamera, {}).value().created, 19000U);
+  for (int v = 0; v < kSurfelCamera.height; ++v) {
+    for (int u = 0; u < kSurfelCamera.width; ++u) {  // a wall at more than 50° through the middle column
+      frame.depth(u, v) = 1.0F / (1.0F - 1.2F * static_cast<float>((u - 79.5) / 131.25));
+    }
+  }
+  const SurfelMap before = fusion.map();
+  const SurfelFusionReport report = fusion.add_frame(frame, kSurfelCamera, {}).value();
+  EXPECT_GT(report.contradicted, 200U);
+  const SurfelId middle = fusion.association().of_cell(80, 60);
+  ASSERT_NE(middle, kNoSurfel);
+  EXPECT_EQ(fusion.association().of_pixel(80, 60), kNoSurfel);
+  EXPECT_EQ(fusion.map().discs[middle].weight, before.discs[middle].weight);
+  EXPECT_EQ(report.associated, 0U);
 }
 
 TEST(SurfelFusion, EachPixelIsVisitedOnceWithItsSurfel) {
