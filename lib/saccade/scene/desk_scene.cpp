@@ -70,8 +70,9 @@ void add_books(SceneMaker& maker) {
   double z_m = 0.0;
   for (int i = 0; i < 4; ++i) {
     const double height_m = maker.within(0.02, 0.04);
+    const double turn_rad = maker.within(-0.2, 0.2);
     SceneObject& book = maker.box("lying-" + std::to_string(i + 1), {0.17, 0.24 - 0.02 * i, height_m}, {0.62, 0.1, z_m},
-                                  maker.shade(maker.one_of(kCovers)), maker.within(-0.2, 0.2));
+                                  maker.shade(maker.one_of(kCovers)), turn_rad);
     Painter{book, Face::minus_y}.rectangle("title", {0, 0.5 * height_m}, {0.1, 0.5 * height_m}, maker.one_of(kCovers));
     if (i == 3) {
       Painter cover{book, Face::plus_z};

@@ -12,6 +12,8 @@
 
 namespace saccade {
 
+/// Whoever calls more than one member that draws does so in separate statements: the order of a call's arguments is the
+/// compiler's.
 class SceneMaker {
  public:
   SceneMaker(std::string_view name, std::uint64_t seed) : engine_{seed} { scene_.name = name; }

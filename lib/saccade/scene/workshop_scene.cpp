@@ -145,8 +145,9 @@ void add_bins(SceneMaker& maker, double half_m) {
   constexpr int kCount{4};
   for (int i = 0; i < kCount; ++i) {
     const double x_m = 2.0 * half_m * ((i + 0.5) / kCount - 0.5) + maker.within(-0.05, 0.05);
+    const double turn_rad = maker.within(-0.15, 0.15);
     SceneObject& bin = maker.box("bin-" + std::to_string(i + 1), {0.16, 0.12, 0.085}, {x_m, -0.22, -0.12},
-                                 maker.shade(maker.one_of(kBins)), maker.within(-0.15, 0.15));
+                                 maker.shade(maker.one_of(kBins)), turn_rad);
     Painter front{bin, Patch::Face::minus_y};
     front.rectangle("label", {0, 0.045}, {0.085, 0.038}, maker.shade(kLabelPaper, 0.04));
     front.print({0, 0.045}, {0.075, 0.03}, kLabelInk, 0.009);
