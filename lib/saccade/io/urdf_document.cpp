@@ -150,7 +150,10 @@ bool is_package(const fs::path& folder, const std::string& name) {
 
 }  // namespace
 
-Result<UrdfDocument> parse_urdf_document(const std::string& urdf) {
+Result<UrdfDocument> parse_urdf_document(const std::string& text) {
+  // TinyXML steps over as many bytes as a character of UTF-8 begins to have, also beyond the end.
+  constexpr std::size_t kLongestCharacter{4};
+  const std::string urdf = text + std::string(kLongestCharacter, '\0');
   if (nesting_of(urdf) > kMostNested) return corrupt("no URDF: its elements are nested too deeply");
   TiXmlDocument xml;
   xml.Parse(urdf.c_str());

@@ -20,7 +20,7 @@ struct UrdfDocument {
 };
 
 /// corrupt_data with the reason in one line.
-[[nodiscard]] Result<UrdfDocument> parse_urdf_document(const std::string& urdf);
+[[nodiscard]] Result<UrdfDocument> parse_urdf_document(const std::string& text);
 
 /// invalid_argument for what is not finite, with `where`.
 [[nodiscard]] Result<Pose> pose_of(const urdf::Pose& pose, const std::string& where);

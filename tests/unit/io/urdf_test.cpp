@@ -286,5 +286,14 @@ TEST(Urdf, ReadsTheRecordedArms) {
   EXPECT_EQ(cases[3].read->arm.joint(0).limits.acceleration, 8.57);  // drake:acceleration
 }
 
+/// TinyXML by itself reads beyond the end of it, as a sanitizer sees.
+TEST(Urdf, ACharacterThatIsCutAtTheEndIsNoXml) {
+  for (const char* text : {"<robot><\xF0", "<robot name=\"\xE2", "<robot>\xC3", "\xF0"}) {
+    const auto read = parse_urdf(text);
+    ASSERT_FALSE(read) << text;
+    EXPECT_EQ(read.error().code, Errc::corrupt_data) << text;
+  }
+}
+
 }  // namespace
 }  // namespace saccade
