@@ -37,12 +37,6 @@ struct ColorLimits {
   float lightest;            ///< no mode is lighter
 };
 
-struct Observation {
-  ColorUnits color;
-  Eigen::Vector3f position_m;
-  float weight;
-};
-
 void merge(const StoredModes& modes, std::size_t n, const ColorUnits& color, const Eigen::Vector3f& position_m,
            float weight) {
   const float sum = modes.weights[n] + weight;
@@ -64,30 +58,34 @@ float octave(float weight) { return static_cast<float>(std::bit_cast<std::int32_
 /// The modes of one surfel while a frame is taken in, and which of them its pixels went into.
 class ModesOfSurfel {
  public:
-  ModesOfSurfel(const StoredModes& modes, const ModeFilterConfig& config, const ColorLimits& limits,
+  ModesOfSurfel(const StoredModes& modes, const ModeFilterConfig& config, const ColorLimits& limits, std::size_t pixels,
                 ModeFilterReport& counts)
-      : modes_{modes}, config_{config}, limits_{limits}, counts_{counts} {
-    mode_of_pixel_.fill(kNoMode);
+      : modes_{modes}, config_{config}, limits_{limits}, counts_{counts}, pixels_{pixels} {
+    std::fill_n(mode_of_pixel_.begin(), pixels, kNoMode);
   }
 
   [[nodiscard]] std::uint8_t mode_of_pixel(std::size_t k) const { return mode_of_pixel_[k]; }
   /// Lines 6 and 8.
+  [[nodiscard]] std::optional<std::size_t> mode_for(const ColorQuery& answered) const {
+    if (answered.count == 0 || answered.nearest.squared_units > limits_.squared_new) return std::nullopt;
+    return answered.nearest.index;
+  }
   [[nodiscard]] std::optional<std::size_t> mode_for(const ColorUnits& color) const {
-    if (modes_.count() == 0) return std::nullopt;
-    const NearestColor nearest = nearest_color(modes_.colors, modes_.count(), color);
-    if (nearest.squared_units > limits_.squared_new) return std::nullopt;
-    return nearest.index;
+    ColorQuery query{modes_.colors, modes_.count(), color, {}};
+    find_nearest({&query, 1}, query.count);
+    return mode_for(query);
   }
 
   /// Lines 1–26 for the k-th pixel with its measured point.
-  void observe(std::size_t k, const Observation& observed, std::optional<std::size_t> nearest) {
+  void observe(std::size_t k, const ColorUnits& color, const Eigen::Vector3f& position_m, float weight,
+               std::optional<std::size_t> nearest) {
     if (!nearest) {
       if (modes_.count() >= static_cast<std::size_t>(config_.max_modes)) evict_lightest();
-      modes_.add(observed.color, observed.position_m, observed.weight);
+      modes_.add(color, position_m, weight);
       ++counts_.new_modes;
       return;
     }
-    merge(modes_, *nearest, observed.color, observed.position_m, observed.weight);
+    merge(modes_, *nearest, color, position_m, weight);
     mode_of_pixel_[k] = static_cast<std::uint8_t>(*nearest);
     compress(*nearest);
   }
@@ -122,7 +120,8 @@ class ModesOfSurfel {
     remove(i, kNoMode);
   }
   void remove(std::size_t i, std::uint8_t heir) {
-    for (std::uint8_t& mode : mode_of_pixel_) {
+    for (std::size_t k = 0; k < pixels_; ++k) {
+      std::uint8_t& mode = mode_of_pixel_[k];
       if (mode == i) mode = heir;
       if (mode != kNoMode && mode > i) --mode;
     }
@@ -133,6 +132,7 @@ class ModesOfSurfel {
   const ModeFilterConfig& config_;
   const ColorLimits& limits_;
   ModeFilterReport& counts_;
+  std::size_t pixels_;
   std::array<std::uint8_t, SurfelAssociation::kNewSurfel> mode_of_pixel_;
 };
 
@@ -173,35 +173,52 @@ void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, co
   std::vector<ModeFilterReport> counts((rows + kModeRowsPerTask - 1) / kModeRowsPerTask);
   executor.parallel_for(rows, kModeRowsPerTask, [&](std::size_t begin, std::size_t end) {
     ModeFilterReport& count = counts[begin / kModeRowsPerTask];
-    for_each_seen_surfel(
-        seen, static_cast<int>(begin), static_cast<int>(end), [&](SurfelId id, int, int) { store_.fetch(id); },
-        [&](SurfelId id, std::span<const SeenPixel> pixels) {
-          const StoredModes modes = store_.modes(id);
-          ModesOfSurfel surfel{modes, config_, limits, count};
-          std::array<std::optional<std::size_t>, SurfelAssociation::kNewSurfel> nearest;
-          for (std::size_t k = 0; k < pixels.size(); ++k) {
-            const auto [u, v] = pixels[k];
-            const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
-            nearest[k] = surfel.mode_for(color_units(frame.color->data()[i]));
-            if (!nearest[k]) continue;
-            const Eigen::Vector3f color = unit_color(ColorUnits::unpacked(modes.colors[*nearest[k]]));
-            guidance_[i] = {color.x(), color.y(), color.z(),
-                            forward.dot(modes.position_m(*nearest[k]) - back_project.center_world)};
-            used_[i] = 1;
-            ++count.guided;
-          }
-          for (std::size_t k = 0; k < pixels.size(); ++k) {
-            const auto [u, v] = pixels[k];
-            const Observation observed{color_units((*frame.color)(u, v)), back_project(u, v, frame.depth(u, v)),
-                                       seen.weight(u, v)};
-            surfel.observe(k, observed, k == 0 ? nearest[0] : surfel.mode_for(observed.color));
-          }
-          for (std::size_t k = 0; k < pixels.size(); ++k) {
-            const auto [u, v] = pixels[k];
-            mode_of_pixel_[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] = surfel.mode_of_pixel(k);
-          }
-          count.pixels += pixels.size();
-        });
+    std::vector<ColorQuery> queries;
+    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
+      // First the nearest modes of all pixels of a row's surfels, at the frame's beginning.
+      queries.clear();
+      const auto ask = [&](SurfelId id, std::span<const SeenPixel> pixels) {
+        const StoredModes modes = store_.modes(id);
+        for (const auto& [u, v] : pixels) {
+          ColorQuery& query = queries.emplace_back();  // member by member: what is stored in parts is slow to copy
+          query.packed = modes.colors;
+          query.count = modes.count();
+          query.color = color_units((*frame.color)(u, v));
+        }
+      };
+      for_each_seen_surfel(
+          seen, row, row + 1, [&](SurfelId id, int, int) { store_.fetch(id); }, ask);
+      find_nearest(queries, static_cast<std::size_t>(config_.max_modes));
+      auto answered = queries.cbegin();
+      for_each_seen_surfel(
+          seen, row, row + 1, [](SurfelId, int, int) {},
+          [&](SurfelId id, std::span<const SeenPixel> pixels) {
+            const StoredModes modes = store_.modes(id);
+            ModesOfSurfel surfel{modes, config_, limits, pixels.size(), count};
+            for (std::size_t k = 0; k < pixels.size(); ++k) {
+              const std::optional<std::size_t> nearest = surfel.mode_for(answered[static_cast<std::ptrdiff_t>(k)]);
+              if (!nearest) continue;
+              const auto& [u, v] = pixels[k];
+              const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
+              const Eigen::Vector3f color = unit_color(ColorUnits::unpacked(modes.colors[*nearest]));
+              guidance_[i] = {color.x(), color.y(), color.z(),
+                              forward.dot(modes.position_m(*nearest) - back_project.center_world)};
+              used_[i] = 1;
+              ++count.guided;
+            }
+            for (std::size_t k = 0; k < pixels.size(); ++k, ++answered) {
+              const auto& [u, v] = pixels[k];
+              surfel.observe(k, answered->color, back_project(u, v, frame.depth(u, v)), seen.weight(u, v),
+                             k == 0 ? surfel.mode_for(*answered) : surfel.mode_for(answered->color));
+            }
+            for (std::size_t k = 0; k < pixels.size(); ++k) {
+              const auto& [u, v] = pixels[k];
+              mode_of_pixel_[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] =
+                  surfel.mode_of_pixel(k);
+            }
+            count.pixels += pixels.size();
+          });
+    }
   });
   for (const ModeFilterReport& count : counts) add_counts(report, count);
 }

@@ -34,21 +34,23 @@ HWY_INLINE W squared_distances(const std::uint64_t* packed, W r, W g, W b) {
 
 constexpr int kIndexBits{5};
 
-NearestColor nearest_kernel(const std::uint64_t* packed, std::size_t count, const ColorUnits& color) {
+void nearest_kernel(std::span<ColorQuery> queries, std::size_t room) {
   const Wide d;
-  const W r = hn::Set(d, color.r);
-  const W g = hn::Set(d, color.g);
-  const W b = hn::Set(d, color.b);
-  const W end = hn::Set(d, static_cast<std::int64_t>(count));
-  W index = hn::Iota(d, 0);
-  W least = hn::Set(d, std::numeric_limits<std::int64_t>::max());
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const W key = hn::Or(hn::ShiftLeft<kIndexBits>(squared_distances(packed + i, r, g, b)), index);
-    least = hn::IfThenElse(hn::And(hn::Lt(index, end), hn::Lt(key, least)), key, least);
-    index = hn::Add(index, hn::Set(d, static_cast<std::int64_t>(hn::Lanes(d))));
+  for (ColorQuery& query : queries) {
+    const W r = hn::Set(d, query.color.r);
+    const W g = hn::Set(d, query.color.g);
+    const W b = hn::Set(d, query.color.b);
+    const W end = hn::Set(d, static_cast<std::int64_t>(query.count));
+    W index = hn::Iota(d, 0);
+    W least = hn::Set(d, std::numeric_limits<std::int64_t>::max());
+    for (std::size_t i = 0; i < room; i += hn::Lanes(d)) {  // always as often: nothing to guess
+      const W key = hn::Or(hn::ShiftLeft<kIndexBits>(squared_distances(query.packed + i, r, g, b)), index);
+      least = hn::IfThenElse(hn::And(hn::Lt(index, end), hn::Lt(key, least)), key, least);
+      index = hn::Add(index, hn::Set(d, static_cast<std::int64_t>(hn::Lanes(d))));
+    }
+    const std::int64_t key = hn::GetLane(hn::MinOfLanes(d, least));
+    query.nearest = {static_cast<std::size_t>(key) & ((std::size_t{1} << kIndexBits) - 1), key >> kIndexBits};
   }
-  const std::int64_t key = hn::GetLane(hn::MinOfLanes(d, least));
-  return {static_cast<std::size_t>(key) & ((std::size_t{1} << kIndexBits) - 1), key >> kIndexBits};
 }
 
 std::uint32_t within_kernel(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
@@ -81,8 +83,8 @@ HWY_EXPORT(within_kernel);
 
 }  // namespace
 
-NearestColor nearest_color(const std::uint64_t* packed, std::size_t count, const ColorUnits& color) {
-  return HWY_DYNAMIC_DISPATCH(nearest_kernel)(packed, count, color);
+void find_nearest(std::span<ColorQuery> queries, std::size_t room) {
+  HWY_DYNAMIC_DISPATCH(nearest_kernel)(queries, room);
 }
 
 std::uint32_t colors_within(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,

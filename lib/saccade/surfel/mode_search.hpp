@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ColorUnits: a colour in whole numbers; nearest_color and colors_within: searches in the colours of a surfel's modes.
+// ColorUnits: a colour in whole numbers; find_nearest and colors_within: searches in the colours of a surfel's modes.
 
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <span>
 
 namespace saccade {
 
@@ -44,10 +45,18 @@ struct NearestColor {
   std::int64_t squared_units;
 };
 
-/// argmin_i ‖c_i − c‖ of 1 to 32 packed colours, the first of those that are equally near. Seven more than `count` must
-/// be readable, and are ignored. simd_target() changes nothing.
-[[nodiscard]] NearestColor nearest_color(const std::uint64_t* packed, std::size_t count, const ColorUnits& color);
-/// Bit i: ‖c_i − c‖² ≤ squared_units. As nearest_color.
+/// Among which colours a colour's nearest is wanted, and the answer.
+struct ColorQuery {
+  const std::uint64_t* packed;
+  std::size_t count;  ///< 0 to 32
+  ColorUnits color;
+  NearestColor nearest;  ///< argmin_i ‖c_i − c‖, the first of those that are equally near; unset for no colours
+};
+
+/// Answers queries. Of each query's packed colours `room`, and seven more, must be readable; those from its count on
+/// are ignored. One after the other is much quicker than one alone: searches overlap. simd_target() changes nothing.
+void find_nearest(std::span<ColorQuery> queries, std::size_t room);
+/// Bit i: ‖c_i − c‖² ≤ squared_units, for 1 to 32 packed colours; seven more must be readable. As find_nearest.
 [[nodiscard]] std::uint32_t colors_within(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
                                           std::int64_t squared_units);
 

@@ -13,14 +13,6 @@ void ModeStore::resize(std::size_t surfels) {
   }
 }
 
-StoredModes ModeStore::modes(SurfelId id) {
-  std::byte* const colors = room(id);
-  std::byte* const weights = colors + max_modes_ * sizeof(std::uint64_t);
-  std::byte* const positions = weights + max_modes_ * sizeof(float);
-  return {reinterpret_cast<std::uint64_t*>(colors), reinterpret_cast<float*>(weights),
-          reinterpret_cast<float*>(positions), &counts_[id]};
-}
-
 SurfelMode ModeStore::mode(SurfelId id, std::size_t i) const {
   const std::byte* const colors = room(id);
   const std::byte* const weights = colors + max_modes_ * sizeof(std::uint64_t);

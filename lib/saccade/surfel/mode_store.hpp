@@ -78,7 +78,13 @@ class ModeStore {
   /// New surfels have no modes.
   void resize(std::size_t surfels);
   [[nodiscard]] std::size_t count(SurfelId id) const { return counts_[id]; }
-  [[nodiscard]] StoredModes modes(SurfelId id);
+  [[nodiscard]] StoredModes modes(SurfelId id) {
+    std::byte* const colors = room(id);  // plain memory, of which each part is always of one type
+    std::byte* const weights = colors + max_modes_ * sizeof(std::uint64_t);
+    std::byte* const positions = weights + max_modes_ * sizeof(float);
+    return {reinterpret_cast<std::uint64_t*>(colors), reinterpret_cast<float*>(weights),
+            reinterpret_cast<float*>(positions), &counts_[id]};
+  }
   [[nodiscard]] SurfelMode mode(SurfelId id, std::size_t i) const;
   /// Asks memory for the modes.
   void fetch(SurfelId id) const;

@@ -71,6 +71,8 @@ struct SeenPixel {
 template <class Fetch, class Visit>
 void for_each_seen_surfel(const SurfelAssociation& seen, int begin, int end, Fetch&& fetch, Visit&& visit) {
   constexpr int kCellsAhead{16};
+  constexpr std::array<int, SurfelAssociation::kNewSurfel> kColumns{-1, 0, 1, -1, 0, 1, -1, 0, 1};
+  constexpr std::array<int, SurfelAssociation::kNewSurfel> kRows{-1, -1, -1, 0, 0, 0, 1, 1, 1};
   std::array<SeenPixel, SurfelAssociation::kNewSurfel> pixels;
   const int width = seen.of_pixel.width();
   for (int v = begin; v < end; ++v) {
@@ -89,8 +91,9 @@ void for_each_seen_surfel(const SurfelAssociation& seen, int begin, int end, Fet
       }
       std::size_t count{0};
       for (; bits != 0; bits &= bits - 1) {
-        const int i = std::countr_zero(bits);
-        pixels[count++] = {u + i % 3 - 1, v + i / 3 - 1};
+        const auto i = static_cast<std::size_t>(std::countr_zero(bits));
+        pixels[count].u = u + kColumns[i];
+        pixels[count++].v = v + kRows[i];
       }
       visit(cells[u], std::span<const SeenPixel>{pixels.data(), count});
     }

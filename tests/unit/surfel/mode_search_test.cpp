@@ -47,9 +47,14 @@ TEST(ModeSearch, EqualsPlainLoopsOnEveryInstructionSet) {
           if (squared(k) < squared(nearest)) nearest = k;
           if (squared(k) == squared(nearest) && k != nearest) ++ties;
         }
-        const NearestColor found = nearest_color(packed.data(), count, wanted);
-        ASSERT_EQ(found.index, nearest) << target << ", " << count << " colours";
-        ASSERT_EQ(found.squared_units, squared(nearest));
+        const std::size_t room = count + rng() % (33 - count);
+        std::array<ColorQuery, 2> queries{ColorQuery{packed.data(), count, wanted, {}},
+                                          ColorQuery{packed.data(), 1, wanted, {}}};
+        find_nearest(queries, room);
+        ASSERT_EQ(queries[0].nearest.index, nearest) << target << ", " << count << " colours";
+        ASSERT_EQ(queries[0].nearest.squared_units, squared(nearest));
+        ASSERT_EQ(queries[1].nearest.index, 0U);
+        ASSERT_EQ(queries[1].nearest.squared_units, squared(0));
         const std::int64_t limit = squared(rng() % count);
         std::uint32_t within{0};
         for (std::size_t k = 0; k < count; ++k) within |= squared(k) <= limit ? 1U << k : 0U;
