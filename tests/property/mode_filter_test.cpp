@@ -5,117 +5,19 @@
 
 #include <algorithm>
 #include <array>
-#include <cmath>
 #include <cstdio>
-#include <map>
 #include <random>
 
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "support/effort.hpp"
+#include "support/naive_mode_filter.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr std::uint64_t kModeSeed{29};
 constexpr PinholeCamera kNaiveCamera{32, 24, 26.25, 26.25, 15.5, 11.5, 0.3, 6.0};
-
-/// Colours in 8-bit levels, so that those that are equally far apart are so here too; weights as the filter adds them.
-struct NaiveMode {
-  Eigen::Vector3d c;
-  float w;
-  Eigen::Vector3d p;
-};
-
-NaiveMode merged(const NaiveMode& a, const NaiveMode& b) {
-  const double wa = double{a.w};
-  const double wb = double{b.w};
-  return {(a.c * wa + b.c * wb) / (wa + wb), a.w + b.w, (a.p * wa + b.p * wb) / (wa + wb)};
-}
-
-double density(const Eigen::Vector3d& c, const Eigen::Vector3d& mean, double sigma) {
-  return std::exp(-(c - mean).squaredNorm() / (2.0 * sigma * sigma));
-}
-
-Eigen::Vector3d levels(const Rgb8& color) { return {double(color[0]), double(color[1]), double(color[2])}; }
-
-/// Lines 1–26, with the enhanced depth given.
-void algorithm_6(std::vector<NaiveMode>& M, const NaiveMode& measured, const Eigen::Vector3d& p_enhanced,
-                 const ModeFilterConfig& config) {
-  if (M.empty()) {
-    M.push_back(measured);
-    return;
-  }
-  const double sigma = config.guided.color_sigma * 255.0;
-  std::size_t n{0};
-  for (std::size_t i = 1; i < M.size(); ++i) {
-    if ((M[i].c - measured.c).norm() < (M[n].c - measured.c).norm()) n = i;
-  }
-  if ((M[n].c - measured.c).norm() > config.color_sigmas * sigma) {
-    if (static_cast<int>(M.size()) > config.max_modes - 1) {
-      std::size_t r{0};
-      for (std::size_t i = 1; i < M.size(); ++i) {
-        if (M[i].w < M[r].w) r = i;
-      }
-      M.erase(M.begin() + static_cast<std::ptrdiff_t>(r));
-    }
-    M.push_back(measured);
-    return;
-  }
-  M[n] = merged(M[n], {measured.c, measured.w, p_enhanced});
-  std::vector<bool> gone(M.size());
-  for (std::size_t i = 0; i < M.size(); ++i) {
-    if (i == n) continue;
-    if (density(M[i].c, M[n].c, sigma) * static_cast<double>(M[n].w) >
-        density(M[i].c, M[i].c, sigma) * static_cast<double>(M[i].w)) {
-      M[n] = merged(M[n], M[i]);
-      gone[i] = true;
-    }
-  }
-  std::vector<NaiveMode> kept;
-  for (std::size_t i = 0; i < M.size(); ++i) {
-    if (!gone[i]) kept.push_back(M[i]);
-  }
-  M = kept;
-}
-
-/// One frame: guidance from the modes at its beginning, then pixel by pixel in row-major order.
-void naive_frame(std::map<SurfelId, std::vector<NaiveMode>>& modes, const Frame& frame, const SurfelAssociation& seen,
-                 const ModeFilterConfig& config) {
-  const std::size_t pixels = frame.depth.size();
-  std::vector<Eigen::Vector4f> guidance(pixels, Eigen::Vector4f::Zero());
-  std::vector<std::uint8_t> used(pixels);
-  std::vector<float> enhanced(frame.depth.pixels());
-  for (std::size_t i = 0; i < pixels; ++i) {
-    const SurfelId id = seen.of_pixel.data()[i];
-    if (id == kNoSurfel || modes[id].empty()) continue;
-    const Eigen::Vector3d c = levels(frame.color->data()[i]);
-    const NaiveMode* nearest = &modes[id].front();
-    for (const NaiveMode& mode : modes[id]) {
-      if ((mode.c - c).norm() < (nearest->c - c).norm()) nearest = &mode;
-    }
-    if ((nearest->c - c).norm() > config.color_sigmas * config.guided.color_sigma * 255.0) continue;
-    guidance[i] << (nearest->c / 255.0).cast<float>(),
-        static_cast<float>((seen.T_world_camera.inverse() * nearest->p).z());
-    used[i] = 1;
-  }
-  if (config.enhance_depth) {
-    GuidedFilter filter{config.guided};
-    filter.apply(frame.depth.width(), frame.depth.height(), frame.depth.pixels(), guidance, used, {}, enhanced);
-  }
-  for (int v = 0; v < frame.depth.height(); ++v) {
-    for (int u = 0; u < frame.depth.width(); ++u) {
-      const SurfelId id = seen.of_pixel(u, v);
-      if (id == kNoSurfel) continue;
-      const float d_e = enhanced[static_cast<std::size_t>(v * frame.depth.width() + u)];
-      const auto point = [&](float depth_m) -> Eigen::Vector3d {
-        return seen.T_world_camera * (seen.camera.ray(u, v) * double{depth_m});
-      };
-      algorithm_6(modes[id], {levels((*frame.color)(u, v)), seen.weight(u, v), point(frame.depth(u, v))}, point(d_e),
-                  config);
-    }
-  }
-}
 
 TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
   const int cases = test::scaled_cases(24);
@@ -133,7 +35,7 @@ TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
     config.enhance_depth = random() % 4 != 0;
     SurfelFusion fusion = SurfelFusion::create().value();
     ModeFilter filter = ModeFilter::create(config).value();
-    std::map<SurfelId, std::vector<NaiveMode>> naive;
+    test::NaiveModes naive;
     const Executor executor = Executor::with_threads(1 + random() % 3);
     for (int f = 0; f < 12; ++f) {
       Frame frame;
@@ -155,11 +57,11 @@ TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
       guided += report->guided;
       merged_modes += report->merged_modes;
       evicted += report->evicted_modes;
-      naive_frame(naive, frame, fusion.association(), config);
+      test::naive_mode_filter(naive, frame, fusion.association(), config);
     }
     for (SurfelId id = 0; id < filter.size(); ++id) {
       const std::vector<SurfelMode> ours = filter.modes(id);
-      const std::vector<NaiveMode>& theirs = naive[id];
+      const std::vector<test::NaiveMode>& theirs = naive[id];
       ASSERT_EQ(ours.size(), theirs.size()) << "case " << i << ", surfel " << id;
       several += ours.size() > 1 ? 1U : 0U;
       for (std::size_t k = 0; k < ours.size(); ++k, ++compared) {
