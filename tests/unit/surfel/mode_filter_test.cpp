@@ -151,6 +151,15 @@ TEST(ModeFilter, TheMoreFrequentColourWinsInAnyOrder) {
   }
 }
 
+TEST(ModeFilter, OfEqualWeightsTheFirstWins) {
+  std::vector<Frame> frames = wall_frames(2, {{200, 20, 30}}, 3);
+  frames[1].color = ColorImage{kModeCamera.width, kModeCamera.height, {10, 100, 30}};
+  for (Frame& frame : frames) frame.T_world_camera = Pose::Identity();
+  const Filtered result = run(frames, {}, 1);
+  ASSERT_EQ(result.filter.modes(7).size(), 2U);
+  for (const SurfelMode& winner : result.filter.winners({})) ASSERT_GT(winner.color.x(), 0.7F);
+}
+
 TEST(ModeFilter, WithoutColourDoesNothingAndSaysSo) {
   Frame frame = wall_frames(1, {{1, 2, 3}}, 1).front();
   frame.color.reset();

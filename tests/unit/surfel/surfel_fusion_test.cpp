@@ -220,6 +220,40 @@ TEST(SurfelFusion, ACameraAtRestAddsNothing) {
   }
 }
 
+TEST(SurfelFusion, TwoSurfacesThatAreSeenByTurnsKeepASurfelEach) {
+  SurfelFusion fusion = SurfelFusion::create().value();
+  const auto seen = [&](float depth_m) {
+    Frame frame;
+    frame.depth = DepthImage{kSurfelCamera.width, kSurfelCamera.height, depth_m};
+    frame.T_world_camera = Pose::Identity();
+    return fusion.add_frame(frame, kSurfelCamera, {}).value();
+  };
+  constexpr std::size_t kPixels{160 * 120};
+  EXPECT_EQ(seen(1.0F).created, kPixels);
+  EXPECT_EQ(seen(2.0F).created, kPixels);
+  for (const float depth_m : {1.0F, 2.0F, 2.0F, 1.0F}) EXPECT_EQ(seen(depth_m).associated, kPixels);
+  EXPECT_EQ(fusion.map().size(), 2 * kPixels);
+}
+
+TEST(SurfelFusion, FromFarAwaySurfelsGrowNoLarger) {
+  SurfelFusion fusion = SurfelFusion::create().value();
+  const auto look = [&](float depth_m) {
+    Frame frame;
+    frame.depth = DepthImage{kSurfelCamera.width, kSurfelCamera.height, depth_m};
+    frame.T_world_camera = Pose{Eigen::Translation3d{0.0, 0.0, 1.0 - static_cast<double>(depth_m)}};
+    return fusion.add_frame(frame, kSurfelCamera, {}).value();
+  };
+  EXPECT_GT(look(1.0F).created, 19000U);
+  const SurfelMap near = fusion.map();
+  EXPECT_GT(look(2.5F).associated, 1000U);
+  std::size_t seen_again{0};
+  for (SurfelId id = 0; id < near.size(); ++id) {
+    seen_again += fusion.map().discs[id].weight > near.discs[id].weight ? 1U : 0U;
+    ASSERT_EQ(fusion.map().discs[id].radius_m, near.discs[id].radius_m);
+  }
+  EXPECT_GT(seen_again, 1000U);
+}
+
 TEST(SurfelFusion, FramesWithoutColourLeaveColoursAsTheyAre) {
   std::vector<Frame> frames = table_frames(2);
   frames.push_back(frames[1]);
