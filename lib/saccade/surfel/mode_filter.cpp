@@ -58,12 +58,13 @@ float octave(float weight) { return static_cast<float>(std::bit_cast<std::int32_
 /// The modes of one surfel while a frame is taken in, and which of them its pixels went into.
 class ModesOfSurfel {
  public:
-  ModesOfSurfel(const StoredModes& modes, const ModeFilterConfig& config, const ColorLimits& limits, std::size_t pixels,
-                ModeFilterReport& counts)
-      : modes_{modes}, config_{config}, limits_{limits}, counts_{counts}, pixels_{pixels} {
+  ModesOfSurfel(ModeStore& store, SurfelId id, const ModeFilterConfig& config, const ColorLimits& limits,
+                std::size_t pixels, ModeFilterReport& counts)
+      : modes_{store.modes(id)}, config_{config}, limits_{limits}, counts_{counts}, pixels_{pixels} {
     std::fill_n(mode_of_pixel_.begin(), pixels, kNoMode);
   }
 
+  [[nodiscard]] const StoredModes& modes() const { return modes_; }
   [[nodiscard]] std::uint8_t mode_of_pixel(std::size_t k) const { return mode_of_pixel_[k]; }
   /// Lines 6 and 8.
   [[nodiscard]] std::optional<std::size_t> mode_for(const ColorQuery& answered) const {
@@ -193,8 +194,8 @@ void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, co
       for_each_seen_surfel(
           seen, row, row + 1, [](SurfelId, int, int) {},
           [&](SurfelId id, std::span<const SeenPixel> pixels) {
-            const StoredModes modes = store_.modes(id);
-            ModesOfSurfel surfel{modes, config_, limits, pixels.size(), count};
+            ModesOfSurfel surfel{store_, id, config_, limits, pixels.size(), count};
+            const StoredModes& modes = surfel.modes();
             for (std::size_t k = 0; k < pixels.size(); ++k) {
               const std::optional<std::size_t> nearest = surfel.mode_for(answered[static_cast<std::ptrdiff_t>(k)]);
               if (!nearest) continue;
