@@ -101,11 +101,11 @@ void SurfelFusion::prepare(const PinholeCamera& camera, const Pose& T_world_came
     seen.of_cell = Image<SurfelId>{camera.width, camera.height, kNoSurfel};
     seen.seen_by = Image<std::uint16_t>{camera.width, camera.height};
     cell_discs_ = SurfelCells{camera.width, camera.height};
+    cells_.assign(seen.of_pixel.size(), kEmptyCell);
   }
   seen.camera = camera;
   seen.T_world_camera = T_world_camera;
   seen.first_new = map_.size();
-  cells_.assign(seen.of_pixel.size(), kEmptyCell);
 }
 
 /// The index image: every surfel that faces the camera, in the cell that its centre projects into.
@@ -120,8 +120,9 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
       const Eigen::Vector3f p_from_camera = disc.position_m - view.center_world;
       const float z = view.R_camera_world.row(2).dot(p_from_camera);
       if (!(z > 0.0F)) continue;
-      const float u = view.R_camera_world.row(0).dot(p_from_camera) / z * view.fx + view.cx + 0.5F;
-      const float v = view.R_camera_world.row(1).dot(p_from_camera) / z * view.fy + view.cy + 0.5F;
+      const float inverse_z = 1.0F / z;
+      const float u = view.R_camera_world.row(0).dot(p_from_camera) * inverse_z * view.fx + view.cx + 0.5F;
+      const float v = view.R_camera_world.row(1).dot(p_from_camera) * inverse_z * view.fy + view.cy + 0.5F;
       if (!(u >= 0.0F && u < width && v >= 0.0F && v < height)) continue;
       if (disc.normal.dot(p_from_camera) >= 0.0F) continue;
       const std::size_t cell =
@@ -145,7 +146,7 @@ void SurfelFusion::fill_cells(const Executor& executor) {
   executor.parallel_for(
       static_cast<std::size_t>(association_.camera.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
         for (std::size_t v = begin; v < end; ++v) {
-          const std::uint64_t* keys = cells_.data() + v * width;
+          std::uint64_t* keys = cells_.data() + v * width;
           SurfelId* ids = association_.of_cell.row(static_cast<int>(v));
           for (std::size_t u = 0; u < width; ++u) {
             if (u + kCellsAhead < width && keys[u + kCellsAhead] != kEmptyCell) {
@@ -157,6 +158,7 @@ void SurfelFusion::fill_cells(const Executor& executor) {
               continue;
             }
             ids[u] = static_cast<SurfelId>(keys[u]);
+            keys[u] = kEmptyCell;  // for the next frame
             const SurfelDisc& disc = map_.discs[ids[u]];
             cell_discs_.set(static_cast<int>(u), static_cast<int>(v), ids[u], view.to_camera(disc.position_m),
                             disc.radius_m, view.R_camera_world * disc.normal);
