@@ -2,6 +2,7 @@
 #include "saccade/surfel/surfel_fusion.hpp"
 
 #include <algorithm>
+#include <array>
 #include <bit>
 #include <cmath>
 #include <numbers>
@@ -14,6 +15,7 @@ namespace {
 
 constexpr std::size_t kRowsPerTask{16};
 constexpr std::size_t kSurfelsPerTask{4096};
+constexpr std::size_t kLandings{64};
 constexpr std::size_t kCellsAhead{16};  ///< that memory is asked for what fills a cell
 constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};
 /// A radius that is so much larger comes from too far away to say anything of this surfel's.
@@ -114,7 +116,24 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
   const PinholeCamera& camera = association_.camera;
   const auto width = static_cast<float>(camera.width);
   const auto height = static_cast<float>(camera.height);
+  struct Landing {
+    std::size_t cell;
+    float z;
+    SurfelId id;
+  };
+  const auto enter = [&](const Landing& landing) {
+    const float measured = points.z.data()[landing.cell];
+    const float key = measured > 0.0F ? std::abs(landing.z - measured) : landing.z;
+    const std::uint64_t wanted = (std::uint64_t{std::bit_cast<std::uint32_t>(key)} << 32U) | landing.id;
+    const std::atomic_ref<std::uint64_t> place{cells_[landing.cell]};
+    std::uint64_t there = place.load(std::memory_order_relaxed);
+    while (wanted < there && !place.compare_exchange_weak(there, wanted, std::memory_order_relaxed)) {
+    }
+  };
   executor.parallel_for(map_.size(), kSurfelsPerTask, [&](std::size_t begin, std::size_t end) {
+    // Some at a time: an exchange waits for its cell, and lets nothing pass.
+    std::array<Landing, kLandings> landings;
+    std::size_t count{0};
     for (std::size_t id = begin; id < end; ++id) {
       const SurfelDisc& disc = map_.discs[id];
       const Eigen::Vector3f p_from_camera = disc.position_m - view.center_world;
@@ -127,14 +146,17 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
       if (disc.normal.dot(p_from_camera) >= 0.0F) continue;
       const std::size_t cell =
           static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(u);
-      const float measured = points.z.data()[cell];
-      const float key = measured > 0.0F ? std::abs(z - measured) : z;
-      const std::uint64_t wanted = (std::uint64_t{std::bit_cast<std::uint32_t>(key)} << 32U) | id;
-      const std::atomic_ref<std::uint64_t> place{cells_[cell]};
-      std::uint64_t there = place.load(std::memory_order_relaxed);
-      while (wanted < there && !place.compare_exchange_weak(there, wanted, std::memory_order_relaxed)) {
+      __builtin_prefetch(&cells_[cell], 1);
+      __builtin_prefetch(points.z.data() + cell);
+      landings[count].cell = cell;
+      landings[count].z = z;
+      landings[count].id = static_cast<SurfelId>(id);
+      if (++count == kLandings) {
+        for (const Landing& landing : landings) enter(landing);
+        count = 0;
       }
     }
+    for (std::size_t i = 0; i < count; ++i) enter(landings[i]);
   });
   fill_cells(executor);
 }
