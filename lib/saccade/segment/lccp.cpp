@@ -5,7 +5,10 @@
 #include <algorithm>
 #include <cmath>
 #include <set>
+#include <tuple>
 #include <utility>
+
+#include "saccade/segment/disjoint_sets.hpp"
 
 namespace saccade {
 
@@ -21,26 +24,6 @@ double least_sane_angle_rad(double angle_rad) {
   constexpr double kSlope_per_deg{0.25};
   return kMost_rad / (1.0 + std::exp(-kSlope_per_deg * (angle_rad / kDegree - kMiddle_deg)));
 }
-
-/// Disjoint sets; a set is called by its least member.
-class Sets {
- public:
-  explicit Sets(std::size_t count) : parents_(count) {
-    for (std::size_t i = 0; i < count; ++i) parents_[i] = static_cast<std::uint32_t>(i);
-  }
-  std::uint32_t root(std::uint32_t i) {
-    while (parents_[i] != i) i = parents_[i] = parents_[parents_[i]];
-    return i;
-  }
-  void join(std::uint32_t a, std::uint32_t b) {
-    a = root(a);
-    b = root(b);
-    parents_[std::max(a, b)] = std::min(a, b);
-  }
-
- private:
-  std::vector<std::uint32_t> parents_;
-};
 
 /// Of those edges, the ones whose ends have a common neighbour by others of them.
 std::vector<bool> with_common_neighbour(const SupervoxelResult& from, const std::vector<bool>& convex) {
@@ -66,7 +49,7 @@ std::vector<bool> with_common_neighbour(const SupervoxelResult& from, const std:
 }
 
 /// The least segment that is too small joins the largest one next to it, until there is none.
-void join_small(const SupervoxelResult& from, std::size_t min_supervoxels, Sets& sets) {
+void join_small(const SupervoxelResult& from, std::size_t min_supervoxels, DisjointSets& sets) {
   const std::size_t count = from.supervoxels.size();
   std::vector<std::size_t> sizes(count, 0);                // of a set, at its root
   std::vector<std::vector<std::uint32_t>> next_to(count);  // supervoxels next to a set, and some of its own
@@ -146,24 +129,26 @@ LccpResult join_convex(const SupervoxelResult& supervoxels, std::vector<bool> co
   result.convex = std::move(convex);
   if (config.extended_convexity) result.convex = with_common_neighbour(supervoxels, result.convex);
 
-  Sets sets{supervoxels.supervoxels.size()};
+  DisjointSets sets{supervoxels.supervoxels.size()};
   for (std::size_t e = 0; e < supervoxels.edges.size(); ++e) {
     if (result.convex[e]) sets.join(supervoxels.edges[e].first, supervoxels.edges[e].second);
   }
   if (config.min_supervoxels > 1) join_small(supervoxels, config.min_supervoxels, sets);
 
-  std::uint32_t next{0};
-  result.segment_of.resize(supervoxels.supervoxels.size());
-  for (std::uint32_t s = 0; s < result.segment_of.size(); ++s) {
-    const std::uint32_t root = sets.root(s);
-    result.segment_of[s] = root == s ? next++ : result.segment_of[root];
-  }
-  result.segments = next;
+  std::tie(result.segment_of, result.segments) = sets.numbered();
   result.labels = supervoxels.labels;
   for (std::uint32_t& label : result.labels) {
     if (label != kUnlabelled) label = result.segment_of[label];
   }
   return result;
+}
+
+void prune_by_color(SupervoxelResult& supervoxels, double max_difference) {
+  std::erase_if(supervoxels.edges, [&](const auto& edge) {
+    const Eigen::Vector3f& a = supervoxels.supervoxels[edge.first].color;
+    const Eigen::Vector3f& b = supervoxels.supervoxels[edge.second].color;
+    return (a - b).cast<double>().norm() > max_difference;
+  });
 }
 
 Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels, const LccpConfig& config) {

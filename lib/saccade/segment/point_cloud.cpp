@@ -16,6 +16,10 @@ Status PointCloud::validate() const {
     return Error{Errc::size_mismatch,
                  std::to_string(colors.size()) + " colours for " + std::to_string(points) + " points", "point cloud"};
   }
+  if (!fits(radii_m.size())) {
+    return Error{Errc::size_mismatch,
+                 std::to_string(radii_m.size()) + " radii for " + std::to_string(points) + " points", "point cloud"};
+  }
   if (points >= kUnlabelled) return Error{Errc::invalid_argument, "more points than labels", "point cloud"};
   for (std::size_t i = 0; i < colors.size(); ++i) {
     if (!colors[i].allFinite()) {
