@@ -143,14 +143,6 @@ LccpResult join_convex(const SupervoxelResult& supervoxels, std::vector<bool> co
   return result;
 }
 
-void prune_by_color(SupervoxelResult& supervoxels, double max_difference) {
-  std::erase_if(supervoxels.edges, [&](const auto& edge) {
-    const Eigen::Vector3f& a = supervoxels.supervoxels[edge.first].color;
-    const Eigen::Vector3f& b = supervoxels.supervoxels[edge.second].color;
-    return (a - b).cast<double>().norm() > max_difference;
-  });
-}
-
 Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels, const LccpConfig& config) {
   SACCADE_CHECK(config.validate());
   std::vector<bool> convex(supervoxels.edges.size());

@@ -44,10 +44,6 @@ struct LccpResult {
 [[nodiscard]] LccpResult join_convex(const SupervoxelResult& supervoxels, std::vector<bool> convex,
                                      const LccpConfig& config);
 
-/// Takes away the edges between supervoxels whose colours in [0, 1] are farther apart: thesis eq. (4.15), T_lccp. Where
-/// the cloud has no colours none is.
-void prune_by_color(SupervoxelResult& supervoxels, double max_difference);
-
 /// Locally convex connected patches (Stein et al., CVPR 2014): edges between supervoxels are convex or concave by their
 /// centroids and normals, and what convex edges connect is a segment.
 /// @return invalid_argument for a bad config.

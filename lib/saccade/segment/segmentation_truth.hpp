@@ -1,0 +1,73 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SegmentationTruth: what a surfel cloud should be divided into, and how well segmentations do; curves over thresholds.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/segment/boundary.hpp"
+#include "saccade/segment/boundary_matching.hpp"
+#include "saccade/segment/consistency_error.hpp"
+#include "saccade/segment/point_cloud.hpp"
+
+namespace saccade {
+
+/// Parameters of SegmentationTruth.
+struct SegmentationTruthConfig {
+  BoundaryMatchingConfig matching;  ///< T_eval is that of the boundaries as well
+  bool split{true};                 ///< true labels whose surfels do not touch become several; needs radii
+};
+
+/// Of one segmentation. Thesis §4.1.2.
+struct SegmentationScore {
+  std::size_t boundary{0};       ///< surfels of its boundary
+  std::size_t true_boundary{0};  ///< of the truth's
+  std::size_t matched{0};        ///< pairs of them: true positives
+  double distance_m{0.0};        ///< mean over the pairs
+  double bce{0.0};
+
+  /// Share of its boundary that is matched; none without a boundary.
+  [[nodiscard]] std::optional<double> precision() const;
+  /// Share of the truth's boundary that is matched; none where the truth has no boundary.
+  [[nodiscard]] std::optional<double> recall() const;
+  /// Harmonic mean of both: 2 · matched / (boundary + true boundary); none where neither has a boundary.
+  [[nodiscard]] std::optional<double> f() const;
+};
+
+class SegmentationTruth {
+ public:
+  /// @param cloud   places; and radii, where truth is to be split.
+  /// @param labels  one per point; points without one, or without a finite place, are left out of everything.
+  /// @return an error of the cloud or the config; size_mismatch unless there is one label per point.
+  [[nodiscard]] static Result<SegmentationTruth> create(const PointCloud& cloud, std::span<const std::uint32_t> labels,
+                                                        const SegmentationTruthConfig& config,
+                                                        const Executor& executor);
+
+  /// Points that count.
+  [[nodiscard]] std::size_t points() const { return points_; }
+  /// Of the truth, after it was split.
+  [[nodiscard]] std::size_t segments() const { return segments_; }
+  [[nodiscard]] std::span<const std::uint32_t> boundary() const { return boundary_; }
+
+  /// @param labels  as many as the truth's; points without one are one segment together.
+  /// @return size_mismatch for another number of labels. The thread count never changes a bit of the result.
+  [[nodiscard]] Result<SegmentationScore> score(std::span<const std::uint32_t> labels, const Executor& executor) const;
+
+ private:
+  explicit SegmentationTruth(BoundaryFinder finder) : finder_{std::move(finder)} {}
+
+  SegmentationTruthConfig config_;
+  std::vector<Eigen::Vector3f> positions_m_;
+  std::vector<std::uint32_t> labels_;
+  std::size_t points_{0};
+  std::size_t segments_{0};
+  BoundaryFinder finder_;
+  std::vector<std::uint32_t> boundary_;
+};
+
+}  // namespace saccade
