@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade score: how well the labels of clouds match true ones, by overlap of segments and objects.
+// saccade score: how well the labels of clouds match true ones, by overlap of segments and objects, by boundaries, and
+// by BCE.
 #include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iostream>
@@ -16,7 +17,9 @@
 #include "saccade/io/cloud_io.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/segment/overlap.hpp"
+#include "score_json.hpp"
 #include "summary.hpp"
+#include "surfel_input.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -32,6 +35,7 @@ struct ScoreOptions {
   std::vector<fs::path> paths;  ///< predicted, true, predicted, true…: clouds, or folders of them
   std::optional<std::uint32_t> objects_from;
   bool merge_tens{false};
+  TruthOptions truth;
 
   /// The least of the labels in the files that are objects.
   [[nodiscard]] std::uint32_t first_object() const {
@@ -48,6 +52,9 @@ struct ScoredPair {
   CloudPair files;
   SegmentOverlap all;
   SegmentOverlap objects;
+  std::optional<SegmentationScore> surfels;  ///< where the truth has places
+  std::optional<double> bce;                 ///< where it has labels
+  std::size_t true_segments{0};              ///< after they were split, if they were
 };
 
 /// The clouds of a folder, by their names without extension.
@@ -103,19 +110,52 @@ Result<std::vector<CloudPair>> pairs_of(const ScoreOptions& options) {
   return pairs;
 }
 
-Result<std::vector<std::uint32_t>> read_labels(const fs::path& path) {
-  SACCADE_TRY(const CloudFile cloud, read_cloud(path));
+struct LabelledFile {
+  CloudFile cloud;
+  std::vector<std::uint32_t> labels;
+};
+
+Result<LabelledFile> read_labelled(const fs::path& path) {
+  SACCADE_TRY(CloudFile cloud, read_cloud(path));
   auto labels = labels_from_fields(cloud.fields());
   if (!labels) return in_file(labels.error(), path);
-  return std::move(*labels);
+  return LabelledFile{std::move(cloud), std::move(*labels)};
+}
+
+bool has_places(const ColumnTable& fields) {
+  return fields.find("x") != nullptr && fields.find("y") != nullptr && fields.find("z") != nullptr;
+}
+
+/// Boundaries and BCE. Without places, or where these are too far apart, there is only BCE, of the truth as it is.
+Status score_surfels(const ColumnTable& fields, std::span<const std::uint32_t> predicted,
+                     std::span<const std::uint32_t> truth, const TruthOptions& options, const Executor& executor,
+                     ProgressBar& bar, ScoredPair& scored) {
+  SACCADE_TRY(const ConsistencyError error, consistency_error(predicted, truth));
+  if (error.points == 0) return {};
+  scored.bce = error.bidirectional;
+  scored.true_segments = scored.all.objects;
+  if (!has_places(fields)) return {};
+  const auto surfels = surfel_truth(fields, truth, options, executor);
+  if (!surfels) {
+    bar.note(scored.files.truth.string() + ": boundaries are not scored: " + surfels.error().to_string());
+    return {};
+  }
+  if (surfels->points() == 0) return {};
+  SACCADE_TRY(scored.surfels, surfels->score(predicted, executor));
+  scored.bce = scored.surfels->bce;
+  scored.true_segments = surfels->segments();
+  return {};
 }
 
 /// One label per object: 1 for the table, the tens and one for the others, which keeps 10–19 apart from the table.
 std::uint32_t merged(std::uint32_t label) { return label == kUnlabelled ? label : label / kLabelsPerObject + 1; }
 
-Result<ScoredPair> score(const CloudPair& files, const ScoreOptions& options) {
-  SACCADE_TRY(const std::vector<std::uint32_t> predicted, read_labels(files.predicted));
-  SACCADE_TRY(std::vector<std::uint32_t> truth, read_labels(files.truth));
+Result<ScoredPair> score(const CloudPair& files, const ScoreOptions& options, const Executor& executor,
+                         ProgressBar& bar) {
+  SACCADE_TRY(const LabelledFile predicted_file, read_labelled(files.predicted));
+  SACCADE_TRY(const LabelledFile truth_file, read_labelled(files.truth));
+  const std::vector<std::uint32_t>& predicted = predicted_file.labels;
+  std::vector<std::uint32_t> truth = truth_file.labels;
   if (predicted.size() != truth.size()) {
     return Error{Errc::size_mismatch,
                  "has " + std::to_string(predicted.size()) + " points, " + files.truth.string() + " has " +
@@ -127,74 +167,100 @@ Result<ScoredPair> score(const CloudPair& files, const ScoreOptions& options) {
     std::transform(truth.begin(), truth.end(), truth.begin(), merged);
     first_object = merged(first_object);
   }
-  ScoredPair scored{files, {}, {}};
+  ScoredPair scored{files, {}, {}, {}, {}, 0};
   SACCADE_TRY(scored.all, score_segments(predicted, truth));
   SACCADE_TRY(scored.objects, score_segments(predicted, truth, first_object));
+  SACCADE_CHECK(score_surfels(truth_file.cloud.fields(), predicted, truth, options.truth, executor, bar, scored));
   return scored;
 }
 
-/// Means over the clouds in which there is anything to score.
-struct Means {
-  std::size_t clouds{0}, clouds_with_objects{0};
-  double fos{0.0}, fus{0.0}, wov{0.0}, wov_objects{0.0};
+/// Of the numbers that are there.
+class Mean {
+ public:
+  void add(const std::optional<double>& number) {
+    sum_ += number.value_or(0.0);
+    count_ += number ? 1 : 0;
+  }
+  [[nodiscard]] std::optional<double> value() const {
+    return count_ == 0 ? std::nullopt : std::optional<double>{sum_ / static_cast<double>(count_)};
+  }
 
-  explicit Means(const std::vector<ScoredPair>& pairs) {
-    for (const ScoredPair& pair : pairs) {
-      clouds += pair.all.objects > 0 ? 1 : 0;
-      clouds_with_objects += pair.objects.objects > 0 ? 1 : 0;
-      fos += pair.all.over_segmentation;
-      fus += pair.all.under_segmentation;
-      wov += pair.all.weighted_overlap;
-      wov_objects += pair.objects.weighted_overlap;
+ private:
+  double sum_{0.0};
+  std::size_t count_{0};
+};
+
+/// Of one cloud, or means over the clouds in which there is anything to score.
+struct Figures {
+  std::optional<double> fos, fus, wov, wov_objects, precision, recall, f, bce;
+
+  explicit Figures(const ScoredPair& pair) : bce{pair.bce} {
+    if (pair.all.objects > 0) {
+      fos = pair.all.over_segmentation;
+      fus = pair.all.under_segmentation;
+      wov = pair.all.weighted_overlap;
     }
-    for (double* sum : {&fos, &fus, &wov}) *sum /= std::max(1.0, static_cast<double>(clouds));
-    wov_objects /= std::max(1.0, static_cast<double>(clouds_with_objects));
+    if (pair.objects.objects > 0) wov_objects = pair.objects.weighted_overlap;
+    if (!pair.surfels) return;
+    precision = pair.surfels->precision();
+    recall = pair.surfels->recall();
+    f = pair.surfels->f();
+  }
+  explicit Figures(const std::vector<ScoredPair>& pairs) {
+    for (const auto figure : {&Figures::fos, &Figures::fus, &Figures::wov, &Figures::wov_objects, &Figures::precision,
+                              &Figures::recall, &Figures::f, &Figures::bce}) {
+      Mean mean;
+      for (const ScoredPair& pair : pairs) mean.add(Figures{pair}.*figure);
+      this->*figure = mean.value();
+    }
   }
 };
 
-json pair_json(const ScoredPair& pair) {
-  const bool any = pair.all.objects > 0;
-  return {{"predicted", pair.files.predicted.string()},
-          {"truth", pair.files.truth.string()},
-          {"points", pair.all.points},
-          {"labels", pair.all.objects},
-          {"objects", pair.objects.objects},
-          {"fos", any ? json(pair.all.over_segmentation) : json(nullptr)},
-          {"fus", any ? json(pair.all.under_segmentation) : json(nullptr)},
-          {"wov", any ? json(pair.all.weighted_overlap) : json(nullptr)},
-          {"wov_objects", pair.objects.objects > 0 ? json(pair.objects.weighted_overlap) : json(nullptr)}};
+json figures_json(const Figures& figures) {
+  return {{"fos", number_or_null(figures.fos)},
+          {"fus", number_or_null(figures.fus)},
+          {"wov", number_or_null(figures.wov)},
+          {"wov_objects", number_or_null(figures.wov_objects)},
+          {"boundary_precision", number_or_null(figures.precision)},
+          {"boundary_recall", number_or_null(figures.recall)},
+          {"boundary_f", number_or_null(figures.f)},
+          {"bce", number_or_null(figures.bce)}};
 }
 
-json score_json(const ScoreOptions& options, const std::vector<ScoredPair>& pairs) {
-  const Means means{pairs};
+json pair_json(const ScoredPair& pair, const ScoreOptions& options) {
+  json made = figures_json(Figures{pair});
+  if (pair.surfels) made.update(score_json(*pair.surfels));
+  made.update({{"predicted", pair.files.predicted.string()},
+               {"truth", pair.files.truth.string()},
+               {"points", pair.all.points},
+               {"labels", pair.all.objects},
+               {"objects", pair.objects.objects},
+               {"true_segments", pair.true_segments},
+               {"split", pair.surfels.has_value() && options.truth.config.split}});
+  return made;
+}
+
+json scores_json(const ScoreOptions& options, const std::vector<ScoredPair>& pairs) {
   json clouds = json::array();
-  for (const ScoredPair& pair : pairs) clouds.push_back(pair_json(pair));
-  const auto value = [](double mean, std::size_t count) { return count > 0 ? json(mean) : json(nullptr); };
-  return {{"fos", value(means.fos, means.clouds)},
-          {"fus", value(means.fus, means.clouds)},
-          {"wov", value(means.wov, means.clouds)},
-          {"wov_objects", value(means.wov_objects, means.clouds_with_objects)},
-          {"objects_from", options.first_object()},
-          {"merge_tens", options.merge_tens},
-          {"clouds", std::move(clouds)}};
+  for (const ScoredPair& pair : pairs) clouds.push_back(pair_json(pair, options));
+  json made = figures_json(Figures{pairs});
+  made.update({{"objects_from", options.first_object()},
+               {"merge_tens", options.merge_tens},
+               {"tolerance_m", options.truth.config.matching.tolerance_m},
+               {"clouds", std::move(clouds)}});
+  return made;
 }
 
 void print_scores(const std::vector<ScoredPair>& pairs) {
-  const Means means{pairs};
-  std::cout << "WOv objects    WOv    F_os    F_us  cloud\n";
-  const auto row = [](const SegmentOverlap& objects, const SegmentOverlap& all, const std::string& name) {
-    const auto shown = [](double value, const SegmentOverlap& of) {
-      return of.objects > 0 ? fixed(value, 3) : "    -";
-    };
-    std::cout << "      " << shown(objects.weighted_overlap, objects) << "  " << shown(all.weighted_overlap, all)
-              << "   " << shown(all.over_segmentation, all) << "   " << shown(all.under_segmentation, all) << "  "
-              << name << '\n';
+  std::cout << "WOv objects    WOv    F_os    F_us  boundary P       R       F     BCE  cloud\n";
+  const auto row = [](const Figures& figures, const std::string& name) {
+    std::cout << "      " << fixed_or_dash(figures.wov_objects) << "  " << fixed_or_dash(figures.wov) << "   "
+              << fixed_or_dash(figures.fos) << "   " << fixed_or_dash(figures.fus) << "       "
+              << fixed_or_dash(figures.precision) << "   " << fixed_or_dash(figures.recall) << "   "
+              << fixed_or_dash(figures.f) << "   " << fixed_or_dash(figures.bce) << "  " << name << '\n';
   };
-  for (const ScoredPair& pair : pairs) row(pair.objects, pair.all, pair.files.predicted.filename().string());
-  if (pairs.size() > 1) {
-    row({means.clouds_with_objects, 0, 0.0, 0.0, means.wov_objects}, {means.clouds, 0, means.fos, means.fus, means.wov},
-        "mean of " + std::to_string(means.clouds) + " clouds");
-  }
+  for (const ScoredPair& pair : pairs) row(Figures{pair}, pair.files.predicted.filename().string());
+  if (pairs.size() > 1) row(Figures{pairs}, "mean of " + std::to_string(pairs.size()) + " clouds");
 }
 
 Result<int> run_score(const ScoreOptions& options, const GlobalOptions& global) {
@@ -207,13 +273,13 @@ Result<int> run_score(const ScoreOptions& options, const GlobalOptions& global) 
   for (const CloudPair& pair : pairs) {
     if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
     bar.update("scoring", scored.size(), pairs.size());
-    SACCADE_TRY(ScoredPair found, score(pair, options));
+    SACCADE_TRY(ScoredPair found, score(pair, options, executor, bar));
     scored.push_back(std::move(found));
   }
   bar.finish();
   SACCADE_CHECK(write_json_output(
-      global, json_envelope("score", global, executor, {{"total", clock.elapsed_ms()}}, score_json(options, scored))));
-  if (Means{scored}.clouds == 0) {
+      global, json_envelope("score", global, executor, {{"total", clock.elapsed_ms()}}, scores_json(options, scored))));
+  if (!Figures{scored}.wov) {
     print_error("score", "no point has a true label above 0; there is nothing to score");
     return static_cast<int>(ExitStatus::no_result);
   }
@@ -228,6 +294,7 @@ void check_score_options(const ScoreOptions& options) {
   if (options.merge_tens && options.first_object() % kLabelsPerObject != 0) {
     usage_error("--objects-from", "must be a multiple of 10 with --merge-tens, which makes ten labels one object");
   }
+  check_truth_options(options.truth);
 }
 
 }  // namespace
@@ -247,6 +314,11 @@ void add_score(CLI::App& program, const GlobalOptions& global, Action& action) {
       ->type_name("LABEL");
   command->add_flag("--merge-tens", options->merge_tens,
                     "the true labels are mOSD's: 1 to 9 are the table, each ten from 20 on are parts of one object");
+  add_truth_options(*command, options->truth);
+  command
+      ->add_option("--radius", options->truth.radius_m,
+                   "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)")
+      ->type_name("METRES");
   command->callback([options, &global, &action] {
     check_score_options(*options);
     action = [options, &global] { return run_score(*options, global); };

@@ -20,10 +20,10 @@ namespace {
 namespace fs = std::filesystem;
 
 Status check_outputs(const SegmentOptions& options, const GlobalOptions& global) {
-  SACCADE_CHECK(check_output(options.out, "--out", {options.input}));
-  SACCADE_CHECK(check_output(options.picture, "--picture", {options.input, options.out}));
+  SACCADE_CHECK(check_output(options.out, "--out", {options.input, options.curve_truth}));
+  SACCADE_CHECK(check_output(options.picture, "--picture", {options.input, options.out, options.curve_truth}));
   const fs::path json_file = global.json_to_stdout() ? "" : global.json;
-  SACCADE_CHECK(check_output(json_file, "--json", {options.input, options.out, options.picture}));
+  SACCADE_CHECK(check_output(json_file, "--json", {options.input, options.out, options.picture, options.curve_truth}));
   return check_json_output(global);
 }
 
@@ -39,7 +39,7 @@ Status judge(const SegmentOptions& options, const SegmentInput& input, const Exe
              SegmentFindings& findings) {
   const Stopwatch clock;
   SACCADE_TRY(const SegmentedPoints points,
-              SegmentedPoints::create(input.cloud.positions_m, findings.segments.labels, findings.segments.segments));
+              SegmentedPoints::create(input.cloud.positions_m, findings.labels, findings.segments));
   SACCADE_TRY(findings.measures, measure_segments(points, options.measures, executor));
   findings.saliencies = options.saliency.heuristic({points, findings.measures, options.measures});
   findings.saliency_ms = clock.elapsed_ms();
@@ -47,9 +47,8 @@ Status judge(const SegmentOptions& options, const SegmentInput& input, const Exe
   return {};
 }
 
-Result<SegmentFindings> find_segments(const SegmentOptions& options, const SegmentInput& input,
-                                      const Executor& executor, ProgressBar& bar) {
-  SegmentFindings findings;
+Status find_by_supervoxels(const SegmentOptions& options, const SegmentInput& input, const Executor& executor,
+                           ProgressBar& bar, SegmentFindings& findings) {
   SupervoxelConfig config = options.supervoxels;
   const Eigen::Vector3d own_m = config.voxels.single_camera ? Eigen::Vector3d::Zero() : input.viewpoint_m;
   config.voxels.viewpoint_m = options.viewpoint_m.value_or(own_m);
@@ -61,12 +60,51 @@ Result<SegmentFindings> find_segments(const SegmentOptions& options, const Segme
   findings.supervoxels_ms = clock.lap_ms();
   SACCADE_CHECK(stop_if_interrupted());
   bar.update("segments", 0, 0);
-  SACCADE_TRY(findings.segments, segment_by_convexity(findings.supervoxels, options.lccp));
+  SupervoxelResult pruned;
+  if (options.method == kSvLccp) {
+    pruned = findings.supervoxels;
+    prune_by_color(pruned, options.max_color_difference);
+  }
+  SACCADE_TRY(LccpResult found,
+              segment_by_convexity(options.method == kSvLccp ? pruned : findings.supervoxels, options.lccp));
+  findings.labels = std::move(found.labels);
+  findings.segments = found.segments;
   findings.lccp_ms = clock.lap_ms();
+  return {};
+}
+
+Status find_by_filling(const SegmentOptions& options, SegmentInput& input, const Executor& executor, ProgressBar& bar,
+                       SegmentFindings& findings) {
+  bar.update("surfels", 0, 0);
+  Stopwatch clock;
+  input.radii = complete_radii(input.cloud, options.truth.radius_m, executor);
+  input.normals = complete_normals(input.cloud, options.viewpoint_m.value_or(input.viewpoint_m), executor);
+  findings.surfels_ms = clock.lap_ms();
+  SACCADE_CHECK(stop_if_interrupted());
+  bar.update("flood fill", 0, 0);
+  auto found = flood_fill(input.cloud, options.flood_fill, executor);
+  if (!found) return in_file(found.error(), options.input);
+  findings.labels = std::move(found->labels);
+  findings.segments = found->count;
+  findings.flood_fill_ms = clock.lap_ms();
+  return {};
+}
+
+Result<SegmentFindings> find_segments(const SegmentOptions& options, SegmentInput& input, const Executor& executor,
+                                      ProgressBar& bar) {
+  SegmentFindings findings;
+  if (options.fills()) {
+    SACCADE_CHECK(find_by_filling(options, input, executor, bar, findings));
+  } else {
+    SACCADE_CHECK(find_by_supervoxels(options, input, executor, bar, findings));
+  }
   SACCADE_CHECK(stop_if_interrupted());
   bar.update("saliency", 0, 0);
   SACCADE_CHECK(judge(options, input, executor, findings));
   SACCADE_CHECK(stop_if_interrupted());
+  if (!options.curve_truth.empty()) {
+    SACCADE_TRY(findings.curve, segment_curve(options, input, findings, executor, bar));
+  }
   return findings;
 }
 
@@ -96,7 +134,7 @@ Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& glob
   SACCADE_CHECK(stop_if_interrupted());
   SACCADE_TRY(SegmentFindings findings, find_segments(options, input, executor, bar));
   timings_ms["segment"] = clock.lap_ms();
-  if (!options.out.empty()) findings.label_kept_as = add_labels(input.file, findings.segments.labels);
+  if (!options.out.empty()) findings.label_kept_as = add_labels(input.file, findings.labels);
   if (!findings.label_kept_as.empty()) {
     bar.note("the cloud has a field label already; its values are kept as " + findings.label_kept_as);
   }
@@ -126,7 +164,9 @@ Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& glob
             "; there is nothing to segment");
     return static_cast<int>(ExitStatus::no_result);
   }
-  if (!global.json_to_stdout()) print_segments(options, findings);
+  if (global.json_to_stdout()) return static_cast<int>(ExitStatus::done);
+  print_segments(options, findings);
+  if (findings.curve) print_curve(*findings.curve);
   return static_cast<int>(ExitStatus::done);
 }
 
@@ -136,8 +176,8 @@ void add_segment(CLI::App& program, const GlobalOptions& global, Action& action)
   CLI::App* command = program.add_subcommand("segment", "a point cloud or a map in segments, and their saliency");
   auto options = std::make_shared<SegmentOptions>();
   add_segment_options(*command, *options);
-  command->callback([options, &global, &action] {
-    check_segment_options(*options);
+  command->callback([command, options, &global, &action] {
+    check_segment_options(*command, *options);
     action = [options, &global] { return run_segment(*options, global); };
   });
 }

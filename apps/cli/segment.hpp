@@ -13,21 +13,39 @@
 #include "saccade/attention/saliency.hpp"
 #include "saccade/io/cloud_io.hpp"
 #include "saccade/map/mesh.hpp"
-#include "saccade/segment/lccp.hpp"
+#include "saccade/segment/flood_fill.hpp"
+#include "saccade/segment/score_curve.hpp"
+#include "saccade/segment/sv_lccp.hpp"
 #include "segment_saliency.hpp"
+#include "surfel_input.hpp"
 
 namespace saccade::cli {
 
+class ProgressBar;
+
+inline constexpr const char* kLccp{"lccp"};
+inline constexpr const char* kSvLccp{"sv-lccp"};        ///< the thesis' of surfels, with colours
+inline constexpr const char* kFloodFill{"flood-fill"};  ///< as well
+
 struct SegmentOptions {
   std::filesystem::path input;  ///< a cloud, or a map
-  std::string method{"lccp"};
+  std::string method{kLccp};
   std::filesystem::path out;      ///< empty: no labelled cloud
   std::filesystem::path picture;  ///< empty: none
   SupervoxelConfig supervoxels;
   std::optional<Eigen::Vector3d> viewpoint_m;  ///< default: what the cloud says
   LccpConfig lccp;
+  double max_color_difference{SvLccpConfig{}.max_color_difference};
+  FloodFillConfig flood_fill;
+  std::optional<double> threshold;    ///< of flood_fill, or the greatest difference of colours
+  std::size_t list_from{1};           ///< points of the smallest segment in the JSON result
+  std::filesystem::path curve_truth;  ///< empty: no curve
+  std::vector<double> curve_thresholds;
+  TruthOptions truth;  ///< for the curve; its radius is for the flood fill, too
   MeasureConfig measures;
   SaliencyOptions saliency;
+
+  [[nodiscard]] bool fills() const { return method == kFloodFill; }
 };
 
 /// What there is to segment: a cloud with all its fields, or the surface of a map.
@@ -37,22 +55,29 @@ struct SegmentInput {
   std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of a map's surface
   Eigen::Vector3d viewpoint_m{Eigen::Vector3d::Zero()};
   bool is_map{false};
+  Origin radii{Origin::file};
+  Origin normals{Origin::file};
 };
 
 struct SegmentFindings {
-  SupervoxelResult supervoxels;
-  LccpResult segments;
+  SupervoxelResult supervoxels;  ///< with the edges that were there before colours pruned any; of a flood fill none
+  std::vector<std::uint32_t> labels;
+  std::size_t segments{0};
   std::vector<SegmentMeasures> measures;
   std::vector<Saliency> saliencies;
   std::size_t points{0};  ///< with a position, so in a segment
   double supervoxels_ms{0.0};
   double lccp_ms{0.0};
+  double surfels_ms{0.0};  ///< radii and normals that the file lacks
+  double flood_fill_ms{0.0};
   double saliency_ms{0.0};
+  std::optional<ScoreCurve> curve;
   std::string label_kept_as;  ///< the name of the input's own field "label" in the output; empty: it has none
 };
 
 void add_segment_options(CLI::App& command, SegmentOptions& options);
-void check_segment_options(SegmentOptions& options);
+/// Throws usage errors, and sets what the method's defaults are.
+void check_segment_options(const CLI::App& command, SegmentOptions& options);
 
 /// By its name: .sacmap.
 [[nodiscard]] bool is_map(const std::filesystem::path& input);
@@ -61,6 +86,13 @@ void check_segment_options(SegmentOptions& options);
 
 [[nodiscard]] nlohmann::json segment_json(const SegmentOptions& options, const SegmentInput& input,
                                           const SegmentFindings& findings);
+/// Scores at all thresholds against the labels of a truth.
+[[nodiscard]] Result<ScoreCurve> segment_curve(const SegmentOptions& options, const SegmentInput& input,
+                                               const SegmentFindings& findings, const Executor& executor,
+                                               ProgressBar& bar);
+[[nodiscard]] nlohmann::json curve_json(const SegmentOptions& options, const ScoreCurve& curve);
+void print_curve(const ScoreCurve& curve);
+
 void print_segments(const SegmentOptions& options, const SegmentFindings& findings);
 [[nodiscard]] ColorImage segment_sheet(const SegmentOptions& options, const SegmentInput& input,
                                        const SegmentFindings& findings, const Executor& executor);

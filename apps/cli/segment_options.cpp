@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <numbers>
+#include <sstream>
 
 #include "options.hpp"
 #include "segment.hpp"
@@ -10,21 +12,34 @@ namespace {
 
 constexpr double kDegree_rad{std::numbers::pi / 180.0};
 
+std::string brief(double number) {
+  std::ostringstream text;
+  text << number;
+  return text.str();
+}
+
 void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
   SupervoxelConfig& supervoxels = options.supervoxels;
-  command.add_option("--voxel-size", supervoxels.voxels.voxel_size_m, "edge of the voxels, metres")
+  command.add_option("--voxel-size", supervoxels.voxels.voxel_size_m, "edge of the voxels, metres (sv-lccp: 0.01)")
       ->type_name("METRES")
       ->capture_default_str();
-  command.add_option("--seed-size", supervoxels.seed_spacing_m, "between the seeds of supervoxels, metres")
+  command
+      .add_option("--seed-size", supervoxels.seed_spacing_m, "between the seeds of supervoxels, metres (sv-lccp: 0.05)")
       ->type_name("METRES")
       ->capture_default_str();
-  command.add_option("--spatial-weight", supervoxels.spatial_weight, "of the distance from a supervoxel's centre")
+  command
+      .add_option("--spatial-weight", supervoxels.spatial_weight,
+                  "of the distance from a supervoxel's centre (sv-lccp: 0.1)")
       ->type_name("WEIGHT")
       ->capture_default_str();
-  command.add_option("--normal-weight", supervoxels.normal_weight, "of the angle between normals")
+  command
+      .add_option("--normal-weight", supervoxels.normal_weight,
+                  "of the angle between normals (sv-lccp, flood-fill: 0.5)")
       ->type_name("WEIGHT")
       ->capture_default_str();
-  command.add_option("--color-weight", supervoxels.color_weight, "of the difference of colours, where there are any")
+  command
+      .add_option("--color-weight", supervoxels.color_weight,
+                  "of the difference of colours, where there are any (sv-lccp, flood-fill: 1)")
       ->type_name("WEIGHT")
       ->capture_default_str();
   command.add_flag("--transform,!--no-transform", supervoxels.voxels.single_camera,
@@ -55,6 +70,84 @@ void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
       ->capture_default_str();
 }
 
+void add_surfel_options(CLI::App& command, SegmentOptions& options) {
+  command
+      .add_option("--threshold", options.threshold,
+                  "flood-fill: surfels that touch and differ by less are of one segment (default: " +
+                      brief(FloodFillConfig{}.threshold) +
+                      "); sv-lccp: supervoxels whose colours differ by more are kept apart (default: " +
+                      brief(SvLccpConfig{}.max_color_difference) + ")")
+      ->type_name("DIFFERENCE");
+  command
+      .add_option("--radius", options.truth.radius_m,
+                  "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)")
+      ->type_name("METRES");
+  command
+      .add_option("--list-from", options.list_from,
+                  "points of the smallest segment in the JSON result (default: 1; flood-fill: 10)")
+      ->check(check_whole_number)
+      ->type_name("N");
+  command
+      .add_option("--curve", options.curve_truth,
+                  "a cloud of the same points with true labels: flood-fill and sv-lccp are scored at many thresholds")
+      ->type_name("TRUTH");
+  command
+      .add_option_function<std::string>(
+          "--thresholds",
+          [&options](const std::string& text) { options.curve_thresholds = parse_numbers("--thresholds", text, 0); },
+          "of the curve (default: 25 from 0.002 to 1)")
+      ->type_name("A,B,...");
+  add_truth_options(command, options.truth);
+}
+
+std::vector<double> default_thresholds() {
+  constexpr int kCount{25};
+  constexpr double kLeast{0.002};
+  std::vector<double> thresholds;
+  for (int i = 0; i < kCount; ++i) thresholds.push_back(std::pow(kLeast, 1.0 - static_cast<double>(i) / (kCount - 1)));
+  return thresholds;
+}
+
+void refuse(const CLI::App& command, const std::string& method, std::initializer_list<const char*> names) {
+  for (const char* name : names) {
+    if (command.count(name) > 0) usage_error(name, "has no meaning with --method " + method);
+  }
+}
+
+/// What a method is without, and its own defaults for what was not given.
+void apply_method(const CLI::App& command, SegmentOptions& options) {
+  if (options.method == kLccp) refuse(command, kLccp, {"--threshold", "--radius", "--curve"});
+  if (options.curve_truth.empty()) {
+    for (const char* name : {"--thresholds", "--tolerance", "--no-split"}) {
+      if (command.count(name) > 0) usage_error(name, "needs --curve TRUTH");
+    }
+  }
+  if (options.method == kSvLccp) {
+    if (command.count("--radius") > 0 && options.curve_truth.empty()) usage_error("--radius", "needs --curve TRUTH");
+    const SupervoxelConfig defaults = SvLccpConfig{}.supervoxels;
+    SupervoxelConfig& own = options.supervoxels;
+    if (command.count("--voxel-size") == 0) own.voxels.voxel_size_m = defaults.voxels.voxel_size_m;
+    if (command.count("--seed-size") == 0) own.seed_spacing_m = defaults.seed_spacing_m;
+    if (command.count("--spatial-weight") == 0) own.spatial_weight = defaults.spatial_weight;
+    if (command.count("--normal-weight") == 0) own.normal_weight = defaults.normal_weight;
+    if (command.count("--color-weight") == 0) own.color_weight = defaults.color_weight;
+    options.max_color_difference = options.threshold.value_or(options.max_color_difference);
+  }
+  if (options.fills()) {
+    refuse(command, kFloodFill,
+           {"--voxel-size", "--seed-size", "--spatial-weight", "--concavity", "--smoothness", "--sanity", "--extended",
+            "--min-size"});
+    FloodFillConfig& fill = options.flood_fill;
+    if (command.count("--normal-weight") > 0) fill.normal_weight = options.supervoxels.normal_weight;
+    if (command.count("--color-weight") > 0) fill.color_weight = options.supervoxels.color_weight;
+    fill.threshold = options.threshold.value_or(fill.threshold);
+    options.supervoxels = {.voxels = {.single_camera = options.supervoxels.voxels.single_camera}};
+    constexpr std::size_t kListFrom{10};
+    if (command.count("--list-from") == 0) options.list_from = kListFrom;
+  }
+  if (options.curve_thresholds.empty()) options.curve_thresholds = default_thresholds();
+}
+
 void check_extensions(const SegmentOptions& options) {
   const std::filesystem::path extension = options.out.extension();
   if (!options.out.empty() && extension != ".pcd" && extension != ".ply") {
@@ -71,7 +164,11 @@ void add_segment_options(CLI::App& command, SegmentOptions& options) {
   command.add_option("input", options.input, "a point cloud (PCD, PLY, text, KITTI .bin), or a saved map (.sacmap)")
       ->required()
       ->type_name("CLOUD|MAP");
-  command.add_option("--method", options.method, "how: lccp, supervoxels joined where surfaces bend outwards")
+  command
+      .add_option(
+          "--method", options.method,
+          "how: lccp, supervoxels joined where surfaces bend outwards; sv-lccp, the same kept apart by colours; "
+          "flood-fill, surfels that touch and look alike")
       ->type_name("NAME")
       ->capture_default_str();
   command
@@ -81,6 +178,7 @@ void add_segment_options(CLI::App& command, SegmentOptions& options) {
   command.add_option("--picture", options.picture, "PNG of the segments and of their saliency")->type_name("FILE");
   add_supervoxel_options(command, options);
   add_lccp_options(command, options.lccp);
+  add_surfel_options(command, options);
   add_saliency_options(command, options.saliency);
   command
       .add_option("--isolation-distance", options.measures.isolation_distance_m,
@@ -89,13 +187,22 @@ void add_segment_options(CLI::App& command, SegmentOptions& options) {
       ->capture_default_str();
 }
 
-void check_segment_options(SegmentOptions& options) {
-  if (options.method != "lccp") usage_error("--method", "must be lccp, not '" + options.method + "'");
+void check_segment_options(const CLI::App& command, SegmentOptions& options) {
+  if (options.method != kLccp && options.method != kSvLccp && options.method != kFloodFill) {
+    usage_error("--method", "must be lccp, sv-lccp or flood-fill, not '" + options.method + "'");
+  }
+  apply_method(command, options);
   check_extensions(options);
   require_positive(options.supervoxels.voxels.voxel_size_m, "--voxel-size");
   require_positive(options.supervoxels.seed_spacing_m, "--seed-size");
   require_ok(options.supervoxels.validate(), "--seed-size, --spatial-weight, --normal-weight, --color-weight");
   require_ok(options.lccp.validate(), "--concavity, --smoothness");
+  require_ok(options.flood_fill.validate(), "--threshold, --normal-weight, --color-weight");
+  for (const double threshold : options.curve_thresholds) {
+    if (!(threshold >= 0.0)) usage_error("--thresholds", "must not be negative");
+  }
+  if (!(options.max_color_difference >= 0.0)) usage_error("--threshold", "must not be negative");
+  check_truth_options(options.truth);
   require_ok(options.measures.validate(), "--isolation-distance");
   if (is_map(options.input) && options.supervoxels.voxels.single_camera) {
     usage_error("--transform", "is for the cloud of one camera in its frame; a map is in the world's");

@@ -3,9 +3,11 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
+#include <numbers>
 #include <numeric>
 
 #include "saccade/report/segment_picture.hpp"
+#include "score_json.hpp"
 #include "segment.hpp"
 #include "summary.hpp"
 
@@ -14,10 +16,11 @@ namespace {
 
 using nlohmann::json;
 
-json segments_json(const SegmentFindings& findings) {
+json segments_json(const SegmentOptions& options, const SegmentFindings& findings) {
   json segments = json::array();
   for (std::size_t s = 0; s < findings.measures.size(); ++s) {
     const SegmentMeasures& measures = findings.measures[s];
+    if (measures.points < options.list_from) continue;
     segments.push_back(
         {{"id", s + 1},
          {"points", measures.points},
@@ -32,22 +35,41 @@ json segments_json(const SegmentFindings& findings) {
   return segments;
 }
 
-json parameters_json(const SegmentOptions& options) {
-  const SupervoxelConfig& supervoxels = options.supervoxels;
-  return {{"voxel_size_m", supervoxels.voxels.voxel_size_m},
-          {"seed_size_m", supervoxels.seed_spacing_m},
-          {"weights",
-           {{"spatial", supervoxels.spatial_weight},
-            {"normal", supervoxels.normal_weight},
-            {"color", supervoxels.color_weight}}},
-          {"transform", supervoxels.voxels.single_camera},
-          {"concavity_rad", options.lccp.concavity_tolerance_rad},
-          {"smoothness_vox", options.lccp.smoothness},
-          {"sanity", options.lccp.sanity},
-          {"extended", options.lccp.extended_convexity},
-          {"min_size", options.lccp.min_supervoxels},
+json filling_json(const SegmentOptions& options) {
+  return {{"threshold", options.flood_fill.threshold},
+          {"weights", {{"normal", options.flood_fill.normal_weight}, {"color", options.flood_fill.color_weight}}},
+          {"radius_m", number_or_null(options.truth.radius_m)},
           {"saliency", options.saliency.names},
           {"isolation_distance_m", options.measures.isolation_distance_m}};
+}
+
+json parameters_json(const SegmentOptions& options) {
+  if (options.fills()) return filling_json(options);
+  const SupervoxelConfig& supervoxels = options.supervoxels;
+  json parameters{{"voxel_size_m", supervoxels.voxels.voxel_size_m},
+                  {"seed_size_m", supervoxels.seed_spacing_m},
+                  {"weights",
+                   {{"spatial", supervoxels.spatial_weight},
+                    {"normal", supervoxels.normal_weight},
+                    {"color", supervoxels.color_weight}}},
+                  {"transform", supervoxels.voxels.single_camera},
+                  {"concavity_rad", options.lccp.concavity_tolerance_rad},
+                  {"smoothness_vox", options.lccp.smoothness},
+                  {"sanity", options.lccp.sanity},
+                  {"extended", options.lccp.extended_convexity},
+                  {"min_size", options.lccp.min_supervoxels},
+                  {"saliency", options.saliency.names},
+                  {"isolation_distance_m", options.measures.isolation_distance_m}};
+  if (options.method == kSvLccp) parameters["threshold"] = options.max_color_difference;
+  return parameters;
+}
+
+json timings_json(const SegmentOptions& options, const SegmentFindings& findings) {
+  if (options.fills()) {
+    return {
+        {"surfels", findings.surfels_ms}, {"flood_fill", findings.flood_fill_ms}, {"saliency", findings.saliency_ms}};
+  }
+  return {{"supervoxels", findings.supervoxels_ms}, {"lccp", findings.lccp_ms}, {"saliency", findings.saliency_ms}};
 }
 
 json text_or_null(const std::string& text) { return text.empty() ? json(nullptr) : json(text); }
@@ -62,14 +84,26 @@ std::vector<std::size_t> by_saliency(const SegmentFindings& findings) {
   return order;
 }
 
+/// Of a point's neighbours, by its radius.
+double spacing_of_surfels(const SegmentInput& input, const SegmentFindings& findings) {
+  std::vector<float> radii_m;
+  for (std::size_t i = 0; i < findings.labels.size(); ++i) {
+    if (findings.labels[i] != kUnlabelled) radii_m.push_back(input.cloud.radii_m[i]);
+  }
+  const auto middle = radii_m.begin() + static_cast<std::ptrdiff_t>(radii_m.size() / 2);
+  std::nth_element(radii_m.begin(), middle, radii_m.end());
+  return static_cast<double>(*middle) / std::numbers::sqrt2;
+}
+
 /// Of points on a surface that fill its voxels as evenly as these do on average.
 double spacing_of(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings) {
+  if (options.fills()) return spacing_of_surfels(input, findings);
   const double per_voxel = static_cast<double>(findings.points) / static_cast<double>(findings.supervoxels.voxels);
   double edge_m = options.supervoxels.voxels.voxel_size_m;
   if (options.supervoxels.voxels.single_camera) {
     double depth_m{0.0};
     for (std::size_t i = 0; i < input.cloud.positions_m.size(); ++i) {
-      if (findings.segments.labels[i] != kUnlabelled) depth_m += static_cast<double>(input.cloud.positions_m[i].z());
+      if (findings.labels[i] != kUnlabelled) depth_m += static_cast<double>(input.cloud.positions_m[i].z());
     }
     edge_m *= depth_m / static_cast<double>(findings.points);
   }
@@ -90,30 +124,41 @@ std::vector<Eigen::Vector3f> normals_of(const SegmentInput& input, const Segment
 }  // namespace
 
 json segment_json(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings) {
-  return {{"input", options.input.string()},
-          {"kind", input.is_map ? "map" : "cloud"},
-          {"method", options.method},
-          {"parameters", parameters_json(options)},
-          {"rows", input.cloud.positions_m.size()},
-          {"points", findings.points},
-          {"voxels", findings.supervoxels.voxels},
-          {"supervoxels", findings.supervoxels.supervoxels.size()},
-          {"normals", input.cloud.normals.empty() ? "estimated" : (input.is_map ? "tsdf gradient" : "given")},
-          {"ms",
-           {{"supervoxels", findings.supervoxels_ms}, {"lccp", findings.lccp_ms}, {"saliency", findings.saliency_ms}}},
-          {"segments", segments_json(findings)},
-          {"out", text_or_null(options.out.string())},
-          {"picture", text_or_null(findings.points == 0 ? "" : options.picture.string())},
-          {"label_kept_as", text_or_null(findings.label_kept_as)}};
+  const auto unless_filled = [&](std::size_t count) { return options.fills() ? json(nullptr) : json(count); };
+  const bool has_normals = options.fills() ? input.normals != Origin::estimate : !input.cloud.normals.empty();
+  json result{{"input", options.input.string()},
+              {"kind", input.is_map ? "map" : "cloud"},
+              {"method", options.method},
+              {"parameters", parameters_json(options)},
+              {"rows", input.cloud.positions_m.size()},
+              {"points", findings.points},
+              {"voxels", unless_filled(findings.supervoxels.voxels)},
+              {"supervoxels", unless_filled(findings.supervoxels.supervoxels.size())},
+              {"normals", !has_normals ? "estimated" : (input.is_map ? "tsdf gradient" : "given")},
+              {"ms", timings_json(options, findings)},
+              {"found", findings.segments},
+              {"listed_from", options.list_from},
+              {"segments", segments_json(options, findings)},
+              {"out", text_or_null(options.out.string())},
+              {"picture", text_or_null(findings.points == 0 ? "" : options.picture.string())},
+              {"label_kept_as", text_or_null(findings.label_kept_as)}};
+  if (options.fills()) result["radii"] = to_string(input.radii);
+  if (findings.curve) result["curve"] = curve_json(options, *findings.curve);
+  return result;
 }
 
 void print_segments(const SegmentOptions& options, const SegmentFindings& findings) {
   const Summary summary{std::cout};
   summary.line("points", std::to_string(findings.points));
-  summary.line("supervoxels", std::to_string(findings.supervoxels.supervoxels.size()));
+  if (!options.fills()) summary.line("supervoxels", std::to_string(findings.supervoxels.supervoxels.size()));
   summary.line("segments", std::to_string(findings.measures.size()));
-  summary.line("time", fixed(findings.supervoxels_ms, 1) + " ms supervoxels, " + fixed(findings.lccp_ms, 1) +
-                           " ms LCCP, " + fixed(findings.saliency_ms, 1) + " ms saliency");
+  if (options.fills()) {
+    summary.line("time", fixed(findings.surfels_ms, 1) + " ms surfels, " + fixed(findings.flood_fill_ms, 1) +
+                             " ms flood fill, " + fixed(findings.saliency_ms, 1) + " ms saliency");
+  } else {
+    summary.line("time", fixed(findings.supervoxels_ms, 1) + " ms supervoxels, " + fixed(findings.lccp_ms, 1) +
+                             " ms LCCP, " + fixed(findings.saliency_ms, 1) + " ms saliency");
+  }
   if (!options.out.empty()) summary.line("labels", options.out.string());
   if (!options.picture.empty()) summary.line("picture", options.picture.string());
   constexpr std::size_t kShown{10};
@@ -132,7 +177,7 @@ void print_segments(const SegmentOptions& options, const SegmentFindings& findin
 ColorImage segment_sheet(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings,
                          const Executor& executor) {
   const std::vector<Eigen::Vector3f> normals = normals_of(input, findings);
-  const DrawnSegments drawn{input.cloud.positions_m, normals, findings.segments.labels, input.triangles,
+  const DrawnSegments drawn{input.cloud.positions_m, normals, findings.labels, input.triangles,
                             spacing_of(options, input, findings)};
   constexpr int kWidth_px{800};
   constexpr int kHeight_px{600};

@@ -32,9 +32,12 @@
 #include "saccade/robot/obstacle_map.hpp"
 #include "saccade/robot/swept_cells.hpp"
 #include "saccade/scene/time_of_flight.hpp"
+#include "saccade/segment/boundary_matching.hpp"
+#include "saccade/segment/flood_fill.hpp"
 #include "saccade/segment/lccp.hpp"
 #include "saccade/segment/live_segments.hpp"
 #include "saccade/segment/supervoxels.hpp"
+#include "saccade/segment/sv_lccp.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
@@ -181,6 +184,21 @@ TEST(Defaults, OfSurfelsAreDocumented) {
   expect_documented("GuidedFilterConfig::depth_sigma_m", {filter.guided.depth_sigma_m});
   expect_documented("ModeFilterConfig::color_sigmas", {filter.color_sigmas});
   expect_documented("ModeFilterConfig::max_modes", {static_cast<double>(filter.max_modes)});
+}
+
+TEST(Defaults, OfSurfelSegmentationAreDocumented) {
+  const FloodFillConfig fill;
+  expect_documented("FloodFillConfig::color_weight", {fill.color_weight, fill.normal_weight});
+  expect_documented("FloodFillConfig::threshold", {fill.threshold});
+  const SvLccpConfig surfels;
+  const SupervoxelConfig& of_surfels = surfels.supervoxels;
+  expect_documented("SvLccpConfig::supervoxels", {of_surfels.voxels.voxel_size_m, of_surfels.seed_spacing_m});
+  expect_documented("SvLccpConfig::supervoxels.spatial_weight",
+                    {of_surfels.spatial_weight, of_surfels.normal_weight, of_surfels.color_weight});
+  expect_documented("SvLccpConfig::max_color_difference", {surfels.max_color_difference});
+  const BoundaryMatchingConfig matching;
+  expect_documented("BoundaryMatchingConfig::tolerance_m", {matching.tolerance_m});
+  expect_documented("BoundaryMatchingConfig::exact_cluster", {static_cast<double>(matching.exact_cluster)});
 }
 
 TEST(Defaults, OfSaliencyAreDocumented) {

@@ -229,6 +229,11 @@ Result<PointCloud> cloud_from_fields(const ColumnTable& fields) {
   if (normals.empty()) normals = find_three(fields, {"nx", "ny", "nz"});
   if (!normals.empty()) cloud.normals = vectors_of(normals, fields.rows, 1.0);
   cloud.colors = point_colors(fields);
+  const Column* radii = fields.find(kRadiusField);
+  if (radii != nullptr && radii->count == 1) {
+    cloud.radii_m.resize(fields.rows);
+    for (std::size_t i = 0; i < fields.rows; ++i) cloud.radii_m[i] = static_cast<float>(radii->value(i));
+  }
   return cloud;
 }
 

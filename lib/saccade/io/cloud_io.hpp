@@ -19,6 +19,8 @@
 namespace saccade {
 
 inline constexpr std::string_view kLabelField{"label"};
+/// Of surfels.
+inline constexpr std::string_view kRadiusField{"radius"};
 /// What a field label of the input is called beside a new one.
 inline constexpr std::string_view kEarlierLabelField{"label_input"};
 
@@ -44,7 +46,7 @@ struct CloudFile {
 [[nodiscard]] Status write_cloud(const std::filesystem::path& path, const CloudFile& cloud);
 
 /// Positions from x, y, z; normals from normal_x … or nx …; colours from rgb or rgba (packed, as PCL does), red, green,
-/// blue, or r, g, b, where there are any.
+/// blue, or r, g, b, radii from radius, where there are any.
 /// @return corrupt_data without x, y and z.
 [[nodiscard]] Result<PointCloud> cloud_from_fields(const ColumnTable& fields);
 

@@ -20,7 +20,7 @@ struct PointCloud {
   std::vector<Eigen::Vector3f> normals;      ///< one per position, or none; zero or not finite: not known there
   std::vector<Eigen::Vector3f> colors;       ///< one per position, red, green, blue in [0, 1], or none
 
-  std::vector<float> radii_m;  ///< one per position, or none: of surfels
+  std::vector<float> radii_m{};  ///< one per position, or none: of surfels
 
   /// @return size_mismatch unless normals, colours and radii are none or one per position; invalid_argument for more
   /// points than labels, or a colour that is not finite.
