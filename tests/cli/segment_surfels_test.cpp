@@ -99,7 +99,7 @@ TEST_F(SegmentSurfels, SvLccpKeepsColoursApart) {
 }
 
 TEST_F(SegmentSurfels, ScoreAddsBoundariesAndBce) {
-  result_of({"--method", "flood-fill", "--out", out().string()});
+  ASSERT_EQ(result_of({"--method", "flood-fill", "--out", out().string()}).at("found"), 3);
   const auto score = [&](const Arguments& more) {
     const Outcome outcome =
         run_program(Arguments{"score", out().string(), cloud().string(), "--quiet", "--json", "-"} + more);
@@ -216,8 +216,8 @@ TEST_F(SegmentSurfels, NothingToFillIsNoCrash) {
     ColumnTable fields;
     for (const char* name : {"x", "y", "z"}) fields.add<float>(name, values);
     EXPECT_TRUE(write_ply(cloud(), fields));
-    return run_program({"segment", cloud().string(), "--method", "flood-fill", "--quiet", "--picture",
-                        (folder_ / "b.png").string()});
+    return run_program(
+        {"segment", cloud().string(), "--method", "flood-fill", "--quiet", "--picture", (folder_ / "b.png").string()});
   };
   expect_failure(with_rows({}), 5, "segment", {"no points"});
   expect_failure(with_rows({std::nanf("")}), 5, "segment", {"no point with a finite place"});

@@ -246,6 +246,12 @@ Result<BoundaryMatching> match_boundaries(std::span<const Eigen::Vector3f> posit
                                           std::span<const std::uint32_t> a, std::span<const std::uint32_t> b,
                                           const BoundaryMatchingConfig& config) {
   SACCADE_CHECK(config.validate());
+  if (a.size() > b.size()) {  // ways are looked for from a, so the fewer the better
+    SACCADE_TRY(BoundaryMatching matching, match_boundaries(positions_m, b, a, config));
+    for (auto& [first, second] : matching.pairs) std::swap(first, second);
+    std::sort(matching.pairs.begin(), matching.pairs.end());
+    return matching;
+  }
   const double reach_m = config.tolerance_m;
   SACCADE_TRY(BoundarySide side_a, BoundarySide::create(positions_m, a, reach_m));
   SACCADE_TRY(BoundarySide side_b, BoundarySide::create(positions_m, b, reach_m));
