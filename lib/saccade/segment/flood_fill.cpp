@@ -13,14 +13,29 @@ bool is_known(const Eigen::Vector3f& normal) { return normal.allFinite() && !nor
 struct Look {
   Eigen::Vector3f color{Eigen::Vector3f::Zero()};
   Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
+  float has_normal{0.0F};  ///< 1 or 0
 };
+
+/// surfel_difference, where it is known whether normals are known.
+double difference_of(const Look& a, const Look& b, const FloodFillConfig& config) {
+  const double of_colors = (a.color.cast<double>() - b.color.cast<double>()).norm();
+  const double of_normals = 1.0 - a.normal.cast<double>().dot(b.normal.cast<double>());
+  const auto both = static_cast<double>(a.has_normal * b.has_normal);
+  return config.color_weight * of_colors + config.normal_weight * (both * of_normals);
+}
+
+Look look_at(const Eigen::Vector3f& color, const Eigen::Vector3f& normal) {
+  if (!is_known(normal)) return {color, Eigen::Vector3f::Zero(), 0.0F};
+  return {color, normal, 1.0F};
+}
 
 std::vector<Look> looks_of(const SurfelGraph& graph, const PointCloud& cloud) {
   const std::span<const std::uint32_t> surfels = graph.surfels();
   std::vector<Look> looks(surfels.size());
   for (std::size_t n = 0; n < looks.size(); ++n) {
-    if (!cloud.colors.empty()) looks[n].color = cloud.colors[surfels[n]];
-    if (!cloud.normals.empty() && is_known(cloud.normals[surfels[n]])) looks[n].normal = cloud.normals[surfels[n]];
+    const Eigen::Vector3f none = Eigen::Vector3f::Zero();
+    looks[n] = look_at(cloud.colors.empty() ? none : cloud.colors[surfels[n]],
+                       cloud.normals.empty() ? none : cloud.normals[surfels[n]]);
   }
   return looks;
 }
@@ -39,12 +54,7 @@ Status FloodFillConfig::validate() const {
 double surfel_difference(const Eigen::Vector3f& color_a, const Eigen::Vector3f& normal_a,
                          const Eigen::Vector3f& color_b, const Eigen::Vector3f& normal_b,
                          const FloodFillConfig& config) {
-  const double of_colors = (color_a.cast<double>() - color_b.cast<double>()).norm();
-  double difference = config.color_weight * of_colors;
-  if (is_known(normal_a) && is_known(normal_b)) {
-    difference += config.normal_weight * (1.0 - normal_a.cast<double>().dot(normal_b.cast<double>()));
-  }
-  return difference;
+  return difference_of(look_at(color_a, normal_a), look_at(color_b, normal_b), config);
 }
 
 Result<SurfelComponents> flood_fill(const SurfelGraph& graph, const PointCloud& cloud, const FloodFillConfig& config,
@@ -56,8 +66,7 @@ Result<SurfelComponents> flood_fill(const SurfelGraph& graph, const PointCloud& 
   }
   const std::vector<Look> looks = looks_of(graph, cloud);
   return connected_surfels(graph, executor, [&](std::uint32_t a, std::uint32_t b) {
-    return surfel_difference(looks[a].color, looks[a].normal, looks[b].color, looks[b].normal, config) <
-           config.threshold;
+    return difference_of(looks[a], looks[b], config) < config.threshold;
   });
 }
 

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <map>
 #include <string>
 
@@ -10,11 +11,12 @@ namespace saccade {
 
 namespace {
 
-/// 2 to the power of this is wider than the surfel.
+/// 2 to the power of this is wider than the surfel. Sizes within a factor of four share a grid: looking into another
+/// one costs more than the points of wider cells.
 int size_exponent(float radius_m) {
   int exponent{0};
   static_cast<void>(std::frexp(2.0F * radius_m, &exponent));
-  return exponent;
+  return exponent + (exponent & 1);
 }
 
 /// Surfels much smaller than most do not get grids of their own, in which their neighbours would be hard to find.
@@ -66,32 +68,65 @@ Result<SurfelGraph> SurfelGraph::create(const PointCloud& cloud) {
   return graph;
 }
 
-void SurfelGraph::find_others(std::size_t level, std::size_t cell, std::vector<Range>& others) const {
-  others.clear();
-  const PointCells& own = levels_[level].cells;
-  const auto add = [&](std::size_t in_level, std::uint64_t key) {
-    const std::uint32_t found = levels_[in_level].cells.find(key);
-    if (found != kUnlabelled) others.push_back(range_of(in_level, found));
+void SurfelGraph::gather(std::size_t level, std::size_t cell, Nearby& near) const {
+  near.nodes.clear();
+  const auto add = [&](const Range& range) {
+    for (std::uint32_t node = range.begin; node < range.end; ++node) near.nodes.push_back(node);
   };
+  const auto add_cell = [&](std::size_t in_level, std::uint64_t key) {
+    const std::uint32_t found = levels_[in_level].cells.find(key);
+    if (found != kUnlabelled) add(range_of(in_level, found));
+  };
+  const PointCells& cells = levels_[level].cells;
+  add(range_of(level, static_cast<std::uint32_t>(cell)));
+  near.own = near.nodes.size();
+  // Half of the cells around it, so that a pair comes once, and all around it in coarser grids.
   const auto& around = neighbour_offsets();
-  for (std::size_t i = 0; i < around.size() / 2; ++i) add(level, own.key(cell) + around[i]);  // the rest are opposite
-  const Eigen::Vector3f p_m = nodes_[range_of(level, static_cast<std::uint32_t>(cell)).begin].head<3>();
+  for (std::size_t i = 0; i < around.size() / 2; ++i) add_cell(level, cells.key(cell) + around[i]);
+  const Eigen::Vector3f p_m = nodes_[near.nodes.front()].head<3>();
   for (std::size_t coarser = level + 1; coarser < levels_.size(); ++coarser) {
     const std::uint64_t key = cell_at(p_m, levels_[coarser].cells.size_m());
-    add(coarser, key);
-    for (const std::uint64_t offset : around) add(coarser, key + offset);
+    add_cell(coarser, key);
+    for (const std::uint64_t offset : around) add_cell(coarser, key + offset);
+  }
+  near.found.resize((near.nodes.size() + kBlock - 1) / kBlock);
+  for (std::size_t lane = 0; lane < near.lanes.size(); ++lane) {
+    std::vector<float>& values = near.lanes[lane];
+    values.assign(kBlock * near.found.size(), std::numeric_limits<float>::quiet_NaN());
+    for (std::size_t k = 0; k < near.nodes.size(); ++k) {
+      values[k] = nodes_[near.nodes[k]][static_cast<Eigen::Index>(lane)];
+    }
   }
 }
 
+void SurfelGraph::find_near(std::size_t i, Nearby& near) {
+  constexpr float kMargin{1.0F + 1e-5F};
+  const auto& [x, y, z, radius] = near.lanes;
+  const float x_i = x[i], y_i = y[i], z_i = z[i], radius_i = radius[i];
+  for (std::size_t block = (i + 1) / kBlock; block < near.found.size(); ++block) {
+    std::array<std::uint8_t, kBlock> flags;
+    for (std::size_t lane = 0; lane < kBlock; ++lane) {
+      const std::size_t k = kBlock * block + lane;
+      const float dx = x[k] - x_i, dy = y[k] - y_i, dz = z[k] - z_i;
+      const float reach_m = radius[k] + radius_i;
+      flags[lane] = dx * dx + dy * dy + dz * dz <= reach_m * reach_m * kMargin ? 1 : 0;
+    }
+    near.found[block] = std::bit_cast<std::uint64_t>(flags);
+  }
+  const std::size_t first = (i + 1) / kBlock;  // up to i itself there is nothing to find
+  if (first < near.found.size()) near.found[first] &= ~std::uint64_t{0} << (8 * ((i + 1) % kBlock));
+}
+
 SurfelComponents number_components(const SurfelGraph& graph, DisjointSets& sets) {
-  std::vector<std::uint32_t> surfels{graph.surfels().begin(), graph.surfels().end()};
-  std::sort(surfels.begin(), surfels.end());
   SurfelComponents components;
   components.labels.assign(graph.points(), kUnlabelled);
-  for (const std::uint32_t surfel : surfels) {
-    const std::uint32_t least = sets.root(surfel);
-    components.labels[surfel] =
-        least == surfel ? static_cast<std::uint32_t>(components.count++) : components.labels[least];
+  const std::span<const std::uint32_t> surfels = graph.surfels();
+  for (std::uint32_t node = 0; node < surfels.size(); ++node) components.labels[surfels[node]] = sets.root(node);
+  std::vector<std::uint32_t> numbers(surfels.size(), kUnlabelled);  // of roots
+  for (std::uint32_t& label : components.labels) {
+    if (label == kUnlabelled) continue;
+    if (numbers[label] == kUnlabelled) numbers[label] = static_cast<std::uint32_t>(components.count++);
+    label = numbers[label];
   }
   return components;
 }

@@ -3,6 +3,8 @@
 // SurfelGraph: which surfels of a cloud touch.
 
 #include <Eigen/Core>
+#include <array>
+#include <bit>
 #include <cstddef>
 #include <cstdint>
 #include <span>
@@ -40,17 +42,15 @@ class SurfelGraph {
     for (std::size_t level = 0; level < levels_.size(); ++level) {
       constexpr std::size_t kCellGrain{256};
       executor.parallel_for(levels_[level].cells.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {
-        std::vector<Range> others;
+        Nearby near;
         for (std::size_t cell = begin; cell < end; ++cell) {
-          const Range own = range_of(level, static_cast<std::uint32_t>(cell));
-          find_others(level, cell, others);
-          for (std::uint32_t a = own.begin; a < own.end; ++a) {
-            for (std::uint32_t b = a + 1; b < own.end; ++b) {
-              if (touch(a, b)) body(a, b);
-            }
-            for (const Range& other : others) {
-              for (std::uint32_t b = other.begin; b < other.end; ++b) {
-                if (touch(a, b)) body(a, b);
+          gather(level, cell, near);
+          for (std::size_t i = 0; i < near.own; ++i) {
+            find_near(i, near);
+            for (std::size_t block = (i + 1) / kBlock; block < near.found.size(); ++block) {
+              for (std::uint64_t found = near.found[block]; found != 0; found &= found - 1) {
+                const std::size_t k = kBlock * block + static_cast<std::size_t>(std::countr_zero(found)) / 8;
+                if (touch(near.nodes[i], near.nodes[k])) body(near.nodes[i], near.nodes[k]);
               }
             }
           }
@@ -72,18 +72,22 @@ class SurfelGraph {
     const Level& at = levels_[level];
     return {at.first + at.cells.first_of(cell), at.first + at.cells.end_of(cell)};
   }
-  /// Where surfels may touch those of a cell, besides itself: half of the cells around it, so that a pair comes once,
-  /// and all around it in coarser grids.
-  void find_others(std::size_t level, std::size_t cell, std::vector<Range>& others) const;
 
-  /// Decides in single precision where that is sure, else as the equation says.
+  static constexpr std::size_t kBlock{8};
+  /// Surfels of a cell, and all that may touch these and come later in the order of pairs; in whole blocks.
+  struct Nearby {
+    std::size_t own{0};  ///< of the cell, which are the first
+    std::vector<std::uint32_t> nodes;
+    std::array<std::vector<float>, 4> lanes;  ///< x, y, z, radius; of those that fill up the last block NaN
+    std::vector<std::uint64_t> found;         ///< by block: a byte for each, not 0 for those that may touch
+  };
+  void gather(std::size_t level, std::size_t cell, Nearby& near) const;
+  /// Which ones after `i` may touch it, by single precision and a margin for its rounding.
+  static void find_near(std::size_t i, Nearby& near);
+
   [[nodiscard]] bool touch(std::uint32_t a, std::uint32_t b) const {
-    constexpr float kMargin{1.0F + 1e-5F};
     const Eigen::Vector4f& i = nodes_[a];
     const Eigen::Vector4f& k = nodes_[b];
-    const float reach_m = i.w() + k.w();
-    const float squared_m2 = (i - k).head<3>().squaredNorm();
-    if (squared_m2 > reach_m * reach_m * kMargin) return false;
     const double sum_m = static_cast<double>(i.w()) + static_cast<double>(k.w());
     return (i.head<3>().cast<double>() - k.head<3>().cast<double>()).squaredNorm() < sum_m * sum_m;
   }
@@ -100,7 +104,7 @@ struct SurfelComponents {
   std::size_t count{0};
 };
 
-/// Those that are surfels of the graph.
+/// From sets of nodes.
 [[nodiscard]] SurfelComponents number_components(const SurfelGraph& graph, DisjointSets& sets);
 
 /// What edges connect whose ends are alike. `alike` is given nodes, by several threads at once.
@@ -108,10 +112,9 @@ struct SurfelComponents {
 template <class Alike>
 [[nodiscard]] SurfelComponents connected_surfels(const SurfelGraph& graph, const Executor& executor,
                                                  const Alike& alike) {
-  DisjointSets sets{graph.points()};
-  const std::span<const std::uint32_t> surfels = graph.surfels();
+  DisjointSets sets{graph.surfels().size()};
   graph.for_each_edge(executor, [&](std::uint32_t a, std::uint32_t b) {
-    if (alike(a, b)) sets.join(surfels[a], surfels[b]);
+    if (alike(a, b)) sets.join(a, b);
   });
   return number_components(graph, sets);
 }
