@@ -260,7 +260,8 @@ void print_scores(const std::vector<ScoredPair>& pairs) {
               << fixed_or_dash(figures.f) << "   " << fixed_or_dash(figures.bce) << "  " << name << '\n';
   };
   for (const ScoredPair& pair : pairs) row(Figures{pair}, pair.files.predicted.filename().string());
-  if (pairs.size() > 1) row(Figures{pairs}, "mean of " + std::to_string(pairs.size()) + " clouds");
+  const auto scored = std::count_if(pairs.begin(), pairs.end(), [](const auto& pair) { return pair.all.objects > 0; });
+  if (pairs.size() > 1) row(Figures{pairs}, "mean of " + std::to_string(scored) + " clouds");
 }
 
 Result<int> run_score(const ScoreOptions& options, const GlobalOptions& global) {
