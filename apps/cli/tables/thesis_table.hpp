@@ -22,6 +22,7 @@ namespace saccade::cli {
 
 struct AnnotationExperiments;
 struct ExplorationExperiments;
+struct SurfelExperiments;
 
 struct ReproduceOptions {
   std::size_t poses{0};  ///< view poses that are evaluated, evenly spread; 0: all that the thesis has
@@ -30,16 +31,22 @@ struct ReproduceOptions {
   std::size_t noise_seeds{20};   ///< that noise on them is averaged over
   std::filesystem::path clouds;  ///< folder of labelled clouds for Tables 4.5, 4.6 and 4.8; empty: made ones
   int image_width_px{0};  ///< of the simulated camera of Tables 2.7, 2.8, 3.1 to 3.3 and of made clouds; 0: as it has
-  std::size_t frames{0};  ///< of the beginning of the scan of Table 2.1; 0: all
+  std::size_t frames{0};  ///< of the beginning of the scan of Table 2.1, and of each scene of Table 4.1; 0: all
   /// Those of Tables 3.1 and 3.3 and Fig. 3.17, carried out by the first of them.
   mutable std::shared_ptr<const ExplorationExperiments> experiments{};
   mutable std::shared_ptr<const AnnotationExperiments> annotations{};  ///< the same of Tables 4.5 and 4.6
+  mutable std::shared_ptr<const SurfelExperiments> surfels{};  ///< of Tables 4.1 and 4.3 and Figs. 4.10 and 4.11
 };
 
 /// Files that tables' plots go to, all there are.
-constexpr std::array<std::string_view, 7> kTablePlotFiles{
-    "fig-2-12-translation.svg", "fig-2-12-rotation.svg",   "table-3-5.svg",          "fig-3-17-tabletop-1.svg",
-    "fig-3-17-tabletop-2.svg",  "fig-3-17-tabletop-3.svg", "fig-3-17-tabletop-4.svg"};
+constexpr std::array<std::string_view, 17> kTablePlotFiles{
+    "fig-2-12-translation.svg", "fig-2-12-rotation.svg",    "table-3-5.svg",
+    "fig-3-17-tabletop-1.svg",  "fig-3-17-tabletop-2.svg",  "fig-3-17-tabletop-3.svg",
+    "fig-3-17-tabletop-4.svg",  "fig-4-10-workshop-1.svg",  "fig-4-10-workshop-2.svg",
+    "fig-4-10-desk.svg",        "fig-4-10-magazines-1.svg", "fig-4-10-magazines-2.svg",
+    "fig-4-11-workshop-1.svg",  "fig-4-11-workshop-2.svg",  "fig-4-11-desk.svg",
+    "fig-4-11-magazines-1.svg", "fig-4-11-magazines-2.svg"};
+constexpr std::size_t kFirstSurfelPlot{7};  ///< of Fig. 4.10, a file per scene; then those of Fig. 4.11
 
 struct TablePlot {
   std::string_view file;
@@ -117,6 +124,16 @@ void print(std::ostream& out, const ReproducedTable& table);
                                                            const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_figure_3_9(const ReproduceOptions& options, const Executor& executor,
                                                            const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_1(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_2(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_3(const ReproduceOptions& options, const Executor& executor,
+                                                          const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_4_10(const ReproduceOptions& options, const Executor& executor,
+                                                            const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_4_11(const ReproduceOptions& options, const Executor& executor,
+                                                            const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_4_4(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_4_5(const ReproduceOptions& options, const Executor& executor,

@@ -1,0 +1,157 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "thesis/surfel_trials.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saccade/core/clock.hpp"
+#include "saccade/explore/strategy.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
+#include "saccade/scene/truth_labels.hpp"
+#include "saccade/surfel/mode_filter.hpp"
+#include "saccade/surfel/surfel_fusion.hpp"
+#include "thesis/surfel_figures.hpp"
+
+namespace saccade::thesis {
+namespace {
+
+struct SurfelClouds {
+  std::array<PointCloud, 2> by_colors;
+  std::vector<double> frame_ms;
+};
+
+Result<RenderedSequence> begin_sequence(const SurfelScene& scene, const RayScene& rays, std::size_t frames,
+                                        const SurfelTrialConfig& config, const Executor& executor) {
+  SACCADE_TRY(RenderedSequenceConfig sensor, surfel_sensor(scene.sensor));
+  sensor.color = scene.color;
+  sensor.color.seed = config.seed;
+  if (sensor.depth_noise) sensor.depth_noise->seed = config.seed;
+  if (sensor.pose_noise) sensor.pose_noise->seed = config.seed;
+  if (sensor.time_of_flight) sensor.time_of_flight->noise.seed = config.seed;
+  if (!config.noise) {
+    sensor.color.noise = false;
+    sensor.pose_noise.reset();
+    sensor.depth_noise.reset();
+    sensor.time_of_flight.reset();
+  }
+  if (config.image_width_px > 0) {
+    sensor.camera = coarser(sensor.camera, std::min(config.image_width_px, sensor.camera.width));
+  }
+  return RenderedSequence::create(rays, hand_held_poses(scene.path, frames, config.seed), sensor, executor);
+}
+
+/// @param all_frames  of the thesis' scene.
+Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::size_t all_frames,
+                          const SurfelTrialConfig& config, const Executor& executor, const Progress& progress,
+                          const std::string& stage) {
+  SurfelFusionConfig fusing;
+  fusing.image_sigma = is_vignetted ? kVignettedSigma : kImageSigma;
+  SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(fusing));
+  SACCADE_TRY(ModeFilter filter, ModeFilter::create());
+  SurfelClouds clouds;
+  for (;;) {
+    if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", stage};
+    progress.report(stage, clouds.frame_ms.size(), *sequence.size());
+    SACCADE_TRY(const std::optional<Frame> frame, sequence.next());
+    if (!frame) break;
+    const Stopwatch stopwatch;
+    if (const auto fused = fusion.add_frame(*frame, sequence.camera(), executor); !fused) return fused.error();
+    if (const auto filtered = filter.add_frame(*frame, fusion.association(), executor); !filtered) {
+      return filtered.error();
+    }
+    clouds.frame_ms.push_back(stopwatch.elapsed_ms());
+  }
+  const double share = std::min(1.0, double(clouds.frame_ms.size()) / double(all_frames));
+  const SurfelMap& map = fusion.map();
+  const std::vector<SurfelMode> winners = filter.winners(executor);
+  for (SurfelId id = 0; id < map.size(); ++id) {
+    const auto& [disc, color] = map.surfel(id);
+    if (static_cast<double>(disc.weight) < share * config.min_weight || winners[id].weight <= 0.0F) continue;
+    const auto add = [&](SurfelColors colors, const Eigen::Vector3f& position_m, const Eigen::Vector3f& shown) {
+      PointCloud& cloud = clouds.by_colors[static_cast<std::size_t>(colors)];
+      cloud.positions_m.push_back(position_m);
+      cloud.normals.push_back(disc.normal);
+      cloud.colors.push_back(shown);
+      cloud.radii_m.push_back(disc.radius_m);
+    };
+    add(SurfelColors::average, disc.position_m, color.color);
+    add(SurfelColors::modes, winners[id].position_m, winners[id].color);
+  }
+  return clouds;
+}
+
+/// Of the places that the surfels have without enhancement, as the thesis' were annotated.
+Result<SurfelComponents> true_segments(const PointCloud& cloud, const RayScene& rays, const Executor& executor) {
+  constexpr std::size_t kLookedUpAtOnce{1024};
+  SACCADE_TRY(const TruthLabels truth, TruthLabels::build(rays));
+  std::vector<std::uint32_t> labels(cloud.positions_m.size(), kUnlabelled);
+  executor.parallel_for(labels.size(), kLookedUpAtOnce, [&](std::size_t begin, std::size_t end) {
+    constexpr double kBeyond_m{0.03};
+    for (std::size_t i = begin; i < end; ++i) {
+      const std::uint16_t label =
+          truth.label(cloud.positions_m[i].cast<double>(), kBeyond_m, cloud.normals[i].cast<double>());
+      if (label != 0) labels[i] = label;
+    }
+  });
+  SACCADE_TRY(const SurfelGraph graph, SurfelGraph::create(cloud));
+  return split_unconnected(graph, labels, executor);
+}
+
+Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelColors colors, SurfelTrial& trial,
+             const Executor& executor, const Progress& progress) {
+  const std::vector<double> thresholds = surfel_thresholds();
+  SegmentationTruthConfig truths;
+  truths.matching.tolerance_m = kEvaluation_m;
+  truths.split = false;  // it is already
+  SACCADE_TRY(const SegmentationTruth truth, SegmentationTruth::create(cloud, segments.labels, truths, executor));
+  const FloodFillConfig filling{kColorWeight, kNormalWeight, 0.0};
+  const auto of = static_cast<std::size_t>(colors);
+  SACCADE_TRY(trial.flood_fill[of], flood_fill_curve(cloud, truth, thresholds, filling, executor, progress));
+  SupervoxelConfig growing;
+  growing.voxels.voxel_size_m = kVoxel_m;
+  growing.seed_spacing_m = kSupervoxel_m;
+  growing.spatial_weight = kPositionWeight;
+  growing.normal_weight = kNormalWeight;
+  growing.color_weight = kColorWeight;
+  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, growing, executor));
+  SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve(supervoxels, truth, thresholds, {}, executor, progress));
+  return {};
+}
+
+}  // namespace
+
+std::vector<double> surfel_thresholds() {
+  constexpr int kThresholds{24};
+  constexpr double kLeast{0.004};
+  constexpr double kMost{0.5};
+  std::vector<double> thresholds;
+  for (int i = 0; i < kThresholds; ++i) {
+    thresholds.push_back(kLeast * std::pow(kMost / kLeast, double(i) / (kThresholds - 1)));
+  }
+  return thresholds;
+}
+
+Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTrialConfig& config,
+                                           const Executor& executor, const Progress& progress) {
+  SACCADE_TRY(const SurfelScene scene, surfel_scene(name));
+  SACCADE_TRY(const RayScene rays, RayScene::build(scene.scene));
+  SurfelTrial trial;
+  trial.scene = name;
+  trial.frames = config.frames == 0 ? scene.frames : config.frames;
+  SACCADE_TRY(RenderedSequence sequence, begin_sequence(scene, rays, trial.frames, config, executor));
+  const bool is_vignetted = scene.color.vignetting == Vignetting::on;
+  SACCADE_TRY(SurfelClouds clouds,
+              fuse(sequence, is_vignetted, scene.frames, config, executor, progress, "surfels of " + trial.scene));
+  std::sort(clouds.frame_ms.begin(), clouds.frame_ms.end());
+  trial.ms_per_frame = clouds.frame_ms[clouds.frame_ms.size() / 2];
+  SACCADE_TRY(const SurfelComponents segments, true_segments(clouds.by_colors.front(), rays, executor));
+  trial.surfels = clouds.by_colors.front().positions_m.size();
+  trial.segments = segments.count;
+  for (const SurfelColors colors : kSurfelColors) {
+    SACCADE_CHECK(
+        score(clouds.by_colors[static_cast<std::size_t>(colors)], segments, colors, trial, executor, progress));
+  }
+  return trial;
+}
+
+}  // namespace saccade::thesis

@@ -1,0 +1,52 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The experiment of thesis §4.1.3: surfels of a rendered sequence, with and without the mode filter, segmented by two
+// algorithms at many thresholds, beside the truth.
+
+#include <array>
+#include <string>
+#include <vector>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/progress.hpp"
+#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/segment/score_curve.hpp"
+
+namespace saccade::thesis {
+
+struct SurfelTrialConfig {
+  std::size_t frames{0};  ///< 0: as many as the thesis' scene has; fewer are as many places along the same way
+  int image_width_px{0};  ///< 0: the sensor's
+  std::uint64_t seed{1};
+  bool noise{true};         ///< of depth, colour and poses
+  double min_weight{10.0};  ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
+};
+
+enum class SurfelColors { average, modes };  ///< not enhanced, enhanced
+inline constexpr std::array kSurfelColors{SurfelColors::average, SurfelColors::modes};
+
+struct SurfelTrial {
+  std::string scene;
+  std::size_t frames{0};
+  std::size_t surfels{0};                ///< that are segmented
+  std::size_t segments{0};               ///< true ones, after they were split
+  double ms_per_frame{0.0};              ///< fusion and mode filter, median
+  std::array<ScoreCurve, 2> flood_fill;  ///< by SurfelColors
+  std::array<ScoreCurve, 2> sv_lccp;
+
+  [[nodiscard]] const ScoreCurve& curve(bool by_flood_fill, SurfelColors colors) const {
+    return (by_flood_fill ? flood_fill : sv_lccp)[static_cast<std::size_t>(colors)];
+  }
+};
+
+/// T_ff and T_lccp of the curves.
+[[nodiscard]] std::vector<double> surfel_thresholds();
+
+/// Parameters of Table 4.2; σ_img is 0.1 where the scene is vignetted. Both clouds have the same surfels, with the
+/// truth of where the average is, split where its segments do not touch there.
+/// @param scene  of kSurfelScenes.
+/// @return not_found for another scene; cancelled.
+[[nodiscard]] Result<SurfelTrial> carry_out_surfel_trial(std::string_view scene, const SurfelTrialConfig& config,
+                                                         const Executor& executor, const Progress& progress);
+
+}  // namespace saccade::thesis
