@@ -1,0 +1,70 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade reproduce 4.1 to 4.3, 4.10 and 4.11 as a user runs them, with few frames.
+#include <gtest/gtest.h>
+
+#include "cli/run_program.hpp"
+#include "support/effort.hpp"
+
+namespace saccade::test {
+namespace {
+
+using nlohmann::json;
+
+constexpr std::size_t kScenes{5};
+
+json tables_of(const Outcome& outcome) {
+  EXPECT_EQ(outcome.status, 0) << outcome.err;
+  return outcome.json().at("result").at("tables");
+}
+
+TEST(ReproduceSurfels, ParametersStandBesideTheThesis) {
+  const json table = tables_of(run_program({"reproduce", "4.2", "--quiet", "--json", "-"})).at(0);
+  ASSERT_EQ(table.at("rows").size(), 9U);
+  for (const json& row : table.at("rows")) EXPECT_EQ(row.at("thesis"), row.at("here")) << row;
+}
+
+void expect_curve(const json& curve) {
+  EXPECT_EQ(curve.at("points").size(), 24U);
+  EXPECT_GT(curve.at("area").get<double>(), 0.0);
+  double least{1.0};
+  std::size_t before{static_cast<std::size_t>(-1)};
+  for (const json& point : curve.at("points")) {
+    least = std::min(least, point.at("bce").get<double>());
+    EXPECT_LE(point.at("segments").get<std::size_t>(), before) << "a larger threshold joins more";
+    before = point.at("segments").get<std::size_t>();
+  }
+  EXPECT_DOUBLE_EQ(curve.at("least_bce").get<double>(), least);
+}
+
+TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
+  if (kSanitized) GTEST_SKIP() << "five scenes take long under sanitizers";
+  const TempFolder folder;
+  const fs::path out = folder / "plots";
+  const json tables = tables_of(run_program({"reproduce", "4.1", "4.3", "4.10", "4.11", "--frames", "24",
+                                             "--image-width", "160", "--quiet", "--json", "-", "--out", out.string()}));
+  ASSERT_EQ(tables.size(), 4U);
+  for (const json& row : tables.at(0).at("rows")) {
+    EXPECT_EQ(row.at("frames"), 24);
+    EXPECT_GT(row.at("points").get<int>(), 5000) << row;
+    EXPECT_GT(row.at("labels").get<int>(), 50) << row;
+    EXPECT_GE(row.at("thesis").at("frames").get<int>(), 1698);
+  }
+  std::size_t better{0};
+  ASSERT_EQ(tables.at(1).at("rows").size(), kScenes);
+  for (const json& row : tables.at(1).at("rows")) {
+    for (const char* algorithm : {"flood_fill", "sv_lccp"}) {
+      expect_curve(row.at(algorithm).at("not_enhanced"));
+      expect_curve(row.at(algorithm).at("enhanced"));
+    }
+    const json& filled = row.at("flood_fill");
+    if (filled.at("enhanced").at("least_bce") < filled.at("not_enhanced").at("least_bce")) ++better;
+  }
+  EXPECT_GE(better, 4U) << "so few frames show it already";
+  for (const json& figure : {tables.at(2), tables.at(3)}) EXPECT_EQ(figure.at("rows").size(), kScenes);
+  const std::vector<std::string> plots = names_in(out);
+  EXPECT_EQ(plots.size(), 2 * kScenes);
+  EXPECT_EQ(plots.front(), "fig-4-10-desk.svg");
+}
+
+}  // namespace
+}  // namespace saccade::test
