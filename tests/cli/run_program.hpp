@@ -75,6 +75,13 @@ class RunningProgram {
   [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
   void send(int signal) const { ::kill(pid_, signal); }
   [[nodiscard]] pid_t id() const { return pid_; }
+  /// Of all its threads, so far: unlike the time on the wall, it does not grow with other work on the machine.
+  [[nodiscard]] double processor_ms() const {
+    clockid_t clock{};
+    timespec used{};
+    if (::clock_getcpuclockid(pid_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return 0.0;
+    return 1e3 * static_cast<double>(used.tv_sec) + 1e-6 * static_cast<double>(used.tv_nsec);
+  }
   /// Whether the text shows up on standard error within 120 s.
   [[nodiscard]] bool wait_for(const std::string& text) const {
     for (int i = 0; i < 24000; ++i) {
