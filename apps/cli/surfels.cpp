@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade surfels: RGB-D frames → surfel cloud, with or without the mode filter.
 #include <CLI/CLI.hpp>
+#include <algorithm>
+#include <cmath>
 #include <iostream>
 #include <memory>
 
@@ -11,7 +13,10 @@
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/io/image_io.hpp"
 #include "saccade/io/surfel_cloud.hpp"
+#include "saccade/report/sheet.hpp"
+#include "saccade/report/surfel_picture.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "summary.hpp"
@@ -23,7 +28,9 @@ using nlohmann::json;
 
 struct SurfelsOptions : FrameOptions {
   std::filesystem::path out;
+  std::filesystem::path picture;
   std::string mode_filter{"on"};
+  std::optional<double> min_confidence;  ///< default: min_weight
   SurfelFusionConfig fusion;
   ModeFilterConfig filter;
 
@@ -34,6 +41,13 @@ struct SurfelsOptions : FrameOptions {
     if (mode_filter == "off") return out;
     std::filesystem::path beside = out;
     return beside.replace_extension(".average" + out.extension().string());
+  }
+  /// Least w_s of what is written, of so many frames. ElasticFusion shows surfels of a confidence above 10; fewer than
+  /// 200 frames do not see things so often.
+  [[nodiscard]] double min_weight(std::size_t fused) const {
+    constexpr double kSeenOften{10.0};
+    constexpr double kShareOfFrames{0.05};
+    return min_confidence.value_or(std::min(kSeenOften, kShareOfFrames * static_cast<double>(fused)));
   }
 };
 
@@ -54,7 +68,10 @@ struct SurfelsRun {
   SurfelTimes times;
   std::size_t without_color{0};
   std::size_t evicted_modes{0};
+  std::size_t written{0};
   TimingsMs timings_ms;
+
+  [[nodiscard]] double min_weight() const { return options.min_weight(record.fused.size()); }
 };
 
 /// Fuses a frame whose pose is known.
@@ -102,14 +119,43 @@ Status check_color(const SurfelsRun& run) {
                run.options.frames.string()};
 }
 
+/// Averages and winners, whichever there are, as the frame in the middle saw them.
+Status write_picture(const SurfelsRun& run, std::span<const SurfelMode> winners) {
+  const Viewpoint view{run.frames.source->camera(), run.record.fused[run.record.fused.size() / 2].T_world_camera};
+  Sheet sheet;
+  const auto add = [&](const char* title, std::span<const SurfelMode> modes) {
+    const SurfelPoints points = surfel_points(run.fusion.map(), modes, run.min_weight());
+    sheet.panels.push_back({draw_surfels(points, view, run.executor), title, {}, {}, {}});
+  };
+  if (run.options.mode_filter != "on") add("averages", {});
+  if (run.options.filtered()) add("mode filter", winners);
+  return write_png(run.options.picture, compose(sheet));
+}
+
+/// Nothing where no surfel was seen often enough.
 Status write_clouds(SurfelsRun& run) {
   run.progress.update("writing", 0, 0);
   const SurfelMap& map = run.fusion.map();
+  const double least = run.min_weight();
+  run.written = static_cast<std::size_t>(std::count_if(
+      map.discs.begin(), map.discs.end(), [&](const SurfelDisc& disc) { return double(disc.weight) >= least; }));
+  if (run.written == 0) return {};
+  std::vector<SurfelMode> winners;
   if (run.options.filtered()) {
-    SACCADE_CHECK(write_surfel_cloud(run.options.out, map, run.filter.winners(run.executor)));
+    winners = run.filter.winners(run.executor);
+    SACCADE_CHECK(write_surfel_cloud(run.options.out, map, winners, least));
   }
   const std::filesystem::path average = run.options.average_out();
-  return average.empty() ? Status{} : write_surfel_cloud(average, map);
+  if (!average.empty()) SACCADE_CHECK(write_surfel_cloud(average, map, {}, least));
+  return run.options.picture.empty() ? Status{} : write_picture(run, winners);
+}
+
+Result<int> nothing_written(const SurfelsRun& run) {
+  float most{0.0F};
+  for (const SurfelDisc& disc : run.fusion.map().discs) most = std::max(most, disc.weight);
+  print_error("surfels", "no surfel has a confidence of " + fixed(run.min_weight(), 1) + ", the greatest is " +
+                             fixed(double(most), 1) + ": see --min-confidence; nothing was written");
+  return static_cast<int>(ExitStatus::no_result);
 }
 
 json result_json(const SurfelsRun& run) {
@@ -126,6 +172,9 @@ json result_json(const SurfelsRun& run) {
           {"lost_frames", left_out_json(run.record.lost)},
           {"skipped", left_out_json(run.record.skipped)},
           {"surfels", run.fusion.map().size()},
+          {"written", run.written},
+          {"min_confidence", run.min_weight()},
+          {"picture", run.options.picture.empty() ? json(nullptr) : json(run.options.picture.string())},
           {"evicted_modes", run.evicted_modes},
           {"bytes_per_surfel",
            {{"map", double(run.fusion.map().memory_bytes()) / double(run.fusion.map().size())},
@@ -145,12 +194,14 @@ void print_summary(const SurfelsRun& run) {
   summary.line("frames", std::to_string(record.fused.size()) + " fused, " + std::to_string(record.lost.size()) +
                              " lost, " + std::to_string(record.skipped.size()) + " skipped");
   summary.line("tracking", to_string(run.frames.tracking));
-  summary.line("surfels", std::to_string(run.fusion.map().size()));
+  summary.line("surfels", std::to_string(run.fusion.map().size()) + ", of which " + std::to_string(run.written) +
+                              " have a confidence of at least " + fixed(run.min_weight(), 1) + " and are written");
   summary.line("per frame", fixed(median_of(run.times.associate), 1) + " ms associate, " +
                                 fixed(median_of(run.times.guided_filter), 1) + " ms guided filter, " +
                                 fixed(median_of(run.times.integrate), 1) + " ms integrate (medians)");
   summary.line("cloud", run.options.out.string());
   if (run.options.mode_filter == "both") summary.line("average", run.options.average_out().string());
+  if (!run.options.picture.empty()) summary.line("picture", run.options.picture.string());
 }
 
 Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& global) {
@@ -169,17 +220,20 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
                  {},
                  0,
                  0,
+                 0,
                  {}};
   SACCADE_CHECK(check_color(run));
   const std::filesystem::path json_file = global.json_to_stdout() ? "" : global.json;
   SACCADE_CHECK(check_output(options.out, "--json", {json_file}));
   if (options.mode_filter == "both") SACCADE_CHECK(check_output(options.average_out(), "--json", {json_file}));
+  if (!options.picture.empty()) SACCADE_CHECK(check_output(options.picture, "--picture", {options.out, json_file}));
   SACCADE_CHECK(check_json_output(global));
   run.timings_ms["open"] = stopwatch.lap_ms();
   SACCADE_CHECK(fuse_surfels(run));
   run.timings_ms["frames"] = stopwatch.lap_ms();
   if (run.fusion.map().size() == 0) return nothing_fused("surfels", run.record, options.frames);
   SACCADE_CHECK(write_clouds(run));
+  if (run.written == 0) return nothing_written(run);
   run.timings_ms["write"] = stopwatch.lap_ms();
   run.timings_ms["total"] = total.elapsed_ms();
   run.progress.finish();
@@ -198,6 +252,12 @@ void check_surfels_options(SurfelsOptions& options) {
   if (extension != ".ply" && extension != ".pcd") usage_error("--out", "must end in .ply or .pcd");
   if (options.mode_filter != "on" && options.mode_filter != "off" && options.mode_filter != "both") {
     usage_error("--mode-filter", "must be one of on|off|both, not '" + options.mode_filter + "'");
+  }
+  if (!options.picture.empty() && options.picture.extension() != ".png") {
+    usage_error("--picture", "needs a name that ends in .png, not '" + options.picture.string() + "'");
+  }
+  if (options.min_confidence && !(*options.min_confidence >= 0.0 && std::isfinite(*options.min_confidence))) {
+    usage_error("--min-confidence", "must be 0 or more");
   }
   require_ok(options.fusion.validate(), "--image-sigma");
   require_ok(options.filter.validate(), "--max-modes");
@@ -228,6 +288,16 @@ void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action)
   command->add_option("--max-modes", options->filter.max_modes, "colours that a surfel remembers, 1 to 32")
       ->type_name("N")
       ->capture_default_str();
+  command
+      ->add_option(
+          "--min-confidence", options->min_confidence,
+          "surfels that were seen less, by the sum of their observations' weights, are not written: often they "
+          "are no surfaces; 0: all are (default: 10, or a twentieth of the number of frames if that is less)")
+      ->type_name("W");
+  command
+      ->add_option("--picture", options->picture,
+                   "PNG of the surfels as the frame in the middle saw them; with --mode-filter both side by side")
+      ->type_name("FILE");
   command->callback([options, &global, &action] {
     check_surfels_options(*options);
     action = [options, &global] { return run_surfels(*options, global); };

@@ -6,6 +6,7 @@
 
 #include "cli/run_program.hpp"
 #include "saccade/io/cloud_io.hpp"
+#include "saccade/io/image_io.hpp"
 
 namespace saccade::test {
 namespace {
@@ -56,13 +57,16 @@ TEST_F(Surfels, BothGivesTheModesAndTheAverages) {
   EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"cloud.average.ply", "cloud.ply", "frames"}));
   EXPECT_EQ(both.at("average_out"), (folder_ / "cloud.average.ply").string());
 
+  const auto written = both.at("written").get<std::size_t>();
+  EXPECT_LE(written, surfels);
+  EXPECT_GT(written, surfels / 2);
   const PointCloud modes = cloud("cloud.ply");
   const PointCloud averages = cloud("cloud.average.ply");
-  ASSERT_EQ(modes.positions_m.size(), surfels);
-  ASSERT_EQ(averages.positions_m.size(), surfels);
-  ASSERT_EQ(modes.normals.size(), surfels);
+  ASSERT_EQ(modes.positions_m.size(), written);
+  ASSERT_EQ(averages.positions_m.size(), written);
+  ASSERT_EQ(modes.normals.size(), written);
   std::size_t other_color{0};
-  for (std::size_t i = 0; i < surfels; ++i) {
+  for (std::size_t i = 0; i < written; ++i) {
     ASSERT_LT((modes.positions_m[i] - averages.positions_m[i]).norm(), 0.05F);
     ASSERT_EQ(modes.normals[i], averages.normals[i]);
     ASSERT_NEAR(modes.normals[i].norm(), 1.0F, 1e-4F);
@@ -75,6 +79,46 @@ TEST_F(Surfels, BothGivesTheModesAndTheAverages) {
   EXPECT_TRUE(text_of(folder_ / "on.ply") == text_of(folder_ / "cloud.ply"));
   EXPECT_EQ(result("off.ply", {"--mode-filter", "off"}).at("ms_per_frame").at("guided_filter").at("median"), 0.0);
   EXPECT_TRUE(text_of(folder_ / "off.ply") == text_of(folder_ / "cloud.average.ply"));
+}
+
+TEST_F(Surfels, WhatWasSeenTooLittleIsNotWritten) {
+  const auto written = [&](const Arguments& least) {
+    return result("cloud.ply", Arguments{"--mode-filter", "both"} + least);
+  };
+  const nlohmann::json all = written({"--min-confidence", "0"});
+  EXPECT_EQ(all.at("written"), all.at("surfels"));
+  const PointCloud whole = cloud("cloud.ply");
+  EXPECT_EQ(whole.positions_m.size(), all.at("surfels").get<std::size_t>());
+
+  const nlohmann::json some = written({"--min-confidence", "4"});
+  EXPECT_EQ(some.at("surfels"), all.at("surfels"));
+  EXPECT_EQ(some.at("min_confidence"), 4.0);
+  const auto count = some.at("written").get<std::size_t>();
+  EXPECT_LT(count, all.at("surfels").get<std::size_t>());
+  EXPECT_GT(count, 1000U);
+  for (const char* name : {"cloud.ply", "cloud.average.ply"}) {
+    const CloudFile file = read_cloud(folder_ / name).value();
+    ASSERT_EQ(file.fields().rows, count) << name;
+    for (std::size_t i = 0; i < count; ++i) ASSERT_GE(file.fields().find("confidence")->value(i), 4.0);
+  }
+  EXPECT_DOUBLE_EQ(written({}).at("min_confidence").get<double>(), 0.05 * 12) << "a twentieth of few frames";
+
+  fs::remove(folder_ / "cloud.ply");
+  fs::remove(folder_ / "cloud.average.ply");
+  expect_failure(run_program(surfels("cloud.ply", {"--min-confidence", "1000"})), 5, "surfels",
+                 {"1000", "the greatest is", "--min-confidence", "nothing was written"});
+  EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"frames"});
+}
+
+TEST_F(Surfels, ThePictureShowsAveragesAndModesSideBySide) {
+  const std::string picture = (folder_ / "cloud.png").string();
+  EXPECT_EQ(result("cloud.ply", {"--picture", picture}).at("picture"), picture);
+  const ColorImage one = read_color(picture).value();
+  EXPECT_EQ(result("cloud.ply", {"--picture", picture, "--mode-filter", "both"}).at("picture"), picture);
+  const ColorImage two = read_color(picture).value();
+  EXPECT_EQ(two.height(), one.height());
+  EXPECT_GT(two.width(), one.width() + 150);
+  expect_failure(run_program(surfels("cloud.ply", {"--picture", "cloud.jpg"})), 2, "surfels", {"--picture", ".png"});
 }
 
 TEST_F(Surfels, PcdHoldsTheSame) {
@@ -133,6 +177,7 @@ TEST_F(Surfels, WhatIsWrongIsSaidBeforeTheWork) {
   expect_failure(run_program(surfels("cloud.ply", {"--mode-filter", "some"})), 2, "surfels", {"on|off|both", "some"});
   expect_failure(run_program(surfels("cloud.ply", {"--image-sigma", "0"})), 2, "surfels", {"--image-sigma"});
   expect_failure(run_program(surfels("cloud.ply", {"--max-modes", "33"})), 2, "surfels", {"--max-modes", "1 to 32"});
+  expect_failure(run_program(surfels("cloud.ply", {"--min-confidence", "-1"})), 2, "surfels", {"--min-confidence"});
   expect_failure(run_program(surfels("nowhere/cloud.ply")), 3, "surfels", {"nowhere"});
   expect_failure(run_program(surfels("cloud.ply", {"--max-range", "0.2", "--min-range", "0.1"})), 5, "surfels",
                  {"--max-range", "nothing was written"});
@@ -161,7 +206,7 @@ TEST_F(Surfels, InterruptingKeepsWhatWasDone) {
   EXPECT_GE(document.at("result").at("frames").get<int>(), 3);
   EXPECT_LT(document.at("result").at("frames").get<int>(), 1199);
   EXPECT_EQ(document.at("result").at("skipped").at(0).at("frame"), name(3));
-  EXPECT_EQ(cloud("cloud.ply").positions_m.size(), document.at("result").at("surfels").get<std::size_t>());
+  EXPECT_EQ(cloud("cloud.ply").positions_m.size(), document.at("result").at("written").get<std::size_t>());
   EXPECT_EQ(names_in(folder_.path()), (std::vector<std::string>{"cloud.json", "cloud.ply", "frames"}));
 }
 

@@ -11,13 +11,14 @@
 
 namespace saccade {
 
-/// A row per surfel, in the order of their ids: x, y, z, normal, radius (metres), confidence (w_s of eq. 4.1), and
-/// 8-bit colour where any surfel has one (black for those without). PLY for a name that ends in .ply (nx …, red …),
-/// else binary PCD (normal_x …, rgb as PCL packs it).
+/// A row per surfel (surfel_points), in the order of their ids: x, y, z, normal, radius (metres), confidence (w_s of
+/// eq. 4.1), and 8-bit colour where any surfel has one (black for those without). PLY for a name that ends in .ply (nx
+/// …, red …), else binary PCD (normal_x …, rgb as PCL packs it).
 /// @param modes  eq. 4.11 per surfel, whose positions and colours stand for the surfels' own where their weight is not
 ///               0; or none: the averages of eq. 4.12.
+/// @param min_weight  surfels of a smaller w_s are left out.
 /// Atomic. size_mismatch unless there are as many modes as surfels, or none; errors as of write_ply and write_pcd.
 [[nodiscard]] Status write_surfel_cloud(const std::filesystem::path& path, const SurfelMap& map,
-                                        std::span<const SurfelMode> modes = {});
+                                        std::span<const SurfelMode> modes = {}, double min_weight = 0.0);
 
 }  // namespace saccade

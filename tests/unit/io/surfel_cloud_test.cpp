@@ -50,6 +50,15 @@ TEST(SurfelCloud, ModesStandForAveragesWhereThereAreAny) {
             Errc::size_mismatch);
 }
 
+TEST(SurfelCloud, SurfelsOfLessWeightAreLeftOut) {
+  const test::TempFolder folder;
+  ASSERT_TRUE(write_surfel_cloud(folder / "cloud.ply", two_surfels(), {}, 0.6));
+  const CloudFile file = read_cloud(folder / "cloud.ply").value();
+  EXPECT_EQ(file.fields().find("confidence")->values<float>(), (std::vector<float>{5.0F}));
+  ASSERT_TRUE(write_surfel_cloud(folder / "cloud.ply", two_surfels(), {}, 0.5));
+  EXPECT_EQ(read_cloud(folder / "cloud.ply").value().fields().rows, 2U);
+}
+
 TEST(SurfelCloud, WithoutAnyColourThereIsNone) {
   const test::TempFolder folder;
   SurfelMap map = two_surfels();

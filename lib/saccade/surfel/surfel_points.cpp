@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/surfel/surfel_points.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+
+SurfelPoints surfel_points(const SurfelMap& map, std::span<const SurfelMode> modes, double min_weight) {
+  SACCADE_EXPECTS(modes.empty() || modes.size() == map.size());
+  SurfelPoints points;
+  for (SurfelId id = 0; id < map.size(); ++id) {
+    const Surfel surfel = map.surfel(id);
+    if (static_cast<double>(surfel.disc.weight) < min_weight) continue;
+    const bool has_mode = !modes.empty() && modes[id].weight > 0.0F;
+    points.positions_m.push_back(has_mode ? modes[id].position_m : surfel.disc.position_m);
+    points.colors.push_back(has_mode ? modes[id].color : surfel.color.color);
+    points.normals.push_back(surfel.disc.normal);
+    points.radii_m.push_back(surfel.disc.radius_m);
+    points.weights.push_back(surfel.disc.weight);
+    points.has_color = points.has_color || surfel.color.weight > 0.0F;
+  }
+  return points;
+}
+
+Rgb8 byte_color(const Eigen::Vector3f& color) {
+  const auto level = [](float value) {
+    return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));
+  };
+  return {level(color.x()), level(color.y()), level(color.z())};
+}
+
+}  // namespace saccade

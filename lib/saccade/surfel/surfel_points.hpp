@@ -1,0 +1,39 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SurfelPoints, surfel_points: the surfels of a map that were seen often enough, as averages or as winning modes;
+// byte_color.
+
+#include <Eigen/Core>
+#include <cstddef>
+#include <span>
+#include <vector>
+
+#include "saccade/sensor/image.hpp"
+#include "saccade/surfel/mode_store.hpp"
+#include "saccade/surfel/surfel_map.hpp"
+
+namespace saccade {
+
+/// A row per surfel, in the order of their ids.
+struct SurfelPoints {
+  std::vector<Eigen::Vector3f> positions_m;
+  std::vector<Eigen::Vector3f> normals;
+  std::vector<Eigen::Vector3f> colors;  ///< in [0, 1]; black for a surfel without one
+  std::vector<float> radii_m;
+  std::vector<float> weights;  ///< w_s
+  bool has_color{false};       ///< of any
+
+  [[nodiscard]] std::size_t size() const { return positions_m.size(); }
+};
+
+/// Surfels of w_s ≥ min_weight. What was seen a few times only is often no surface: veil between near and far, or a
+/// surface at a place where a pose was wrong.
+/// @param modes  eq. 4.11 per surfel, whose positions and colours stand for the surfels' own where their weight is not
+///               0; or none: the averages of eq. 4.12. Expects none, or one per surfel.
+[[nodiscard]] SurfelPoints surfel_points(const SurfelMap& map, std::span<const SurfelMode> modes = {},
+                                         double min_weight = 0.0);
+
+/// The nearest 8-bit colour of one in [0, 1].
+[[nodiscard]] Rgb8 byte_color(const Eigen::Vector3f& color);
+
+}  // namespace saccade
