@@ -97,6 +97,16 @@ Result<SurfelComponents> true_segments(const PointCloud& cloud, const RayScene& 
   return split_unconnected(graph, labels, executor);
 }
 
+SupervoxelConfig thesis_supervoxels() {
+  SupervoxelConfig growing;
+  growing.voxels.voxel_size_m = kVoxel_m;
+  growing.seed_spacing_m = kSupervoxel_m;
+  growing.spatial_weight = kPositionWeight;
+  growing.normal_weight = kNormalWeight;
+  growing.color_weight = kColorWeight;
+  return growing;
+}
+
 Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelColors colors, SurfelTrial& trial,
              const Executor& executor, const Progress& progress) {
   const std::vector<double> thresholds = surfel_thresholds();
@@ -107,13 +117,7 @@ Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelCo
   const FloodFillConfig filling{kColorWeight, kNormalWeight, 0.0};
   const auto of = static_cast<std::size_t>(colors);
   SACCADE_TRY(trial.flood_fill[of], flood_fill_curve(cloud, truth, thresholds, filling, executor, progress));
-  SupervoxelConfig growing;
-  growing.voxels.voxel_size_m = kVoxel_m;
-  growing.seed_spacing_m = kSupervoxel_m;
-  growing.spatial_weight = kPositionWeight;
-  growing.normal_weight = kNormalWeight;
-  growing.color_weight = kColorWeight;
-  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, growing, executor));
+  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, thesis_supervoxels(), executor));
   SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve(supervoxels, truth, thresholds, {}, executor, progress));
   return {};
 }
@@ -151,7 +155,29 @@ Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTr
     SACCADE_CHECK(
         score(clouds.by_colors[static_cast<std::size_t>(colors)], segments, colors, trial, executor, progress));
   }
+  trial.clouds = std::move(clouds.by_colors);
   return trial;
+}
+
+Result<BestSegments> best_segments(const SurfelTrial& trial, bool by_flood_fill, SurfelColors colors,
+                                   const Executor& executor) {
+  const PointCloud& cloud = trial.clouds[static_cast<std::size_t>(colors)];
+  const std::optional<CurvePoint> best = trial.curve(by_flood_fill, colors).least_bce();
+  if (!best) return Error{Errc::not_found, "the curve has no points", trial.scene};
+  BestSegments segments{best->threshold, best->score.bce, {}, 0};
+  if (by_flood_fill) {
+    SACCADE_TRY(SurfelComponents found, flood_fill(cloud, {kColorWeight, kNormalWeight, best->threshold}, executor));
+    segments.labels = std::move(found.labels);
+    segments.count = found.count;
+  } else {
+    SvLccpConfig config;
+    config.supervoxels = thesis_supervoxels();
+    config.max_color_difference = best->threshold;
+    SACCADE_TRY(SvLccpResult found, segment_by_sv_lccp(cloud, config, executor));
+    segments.labels = std::move(found.segments.labels);
+    segments.count = found.segments.segments;
+  }
+  return segments;
 }
 
 }  // namespace saccade::thesis

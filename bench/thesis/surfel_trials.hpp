@@ -33,6 +33,7 @@ struct SurfelTrial {
   double ms_per_frame{0.0};              ///< fusion and mode filter, median
   std::array<ScoreCurve, 2> flood_fill;  ///< by SurfelColors
   std::array<ScoreCurve, 2> sv_lccp;
+  std::array<PointCloud, 2> clouds;  ///< by SurfelColors; the same surfels
 
   [[nodiscard]] const ScoreCurve& curve(bool by_flood_fill, SurfelColors colors) const {
     return (by_flood_fill ? flood_fill : sv_lccp)[static_cast<std::size_t>(colors)];
@@ -48,5 +49,15 @@ struct SurfelTrial {
 /// @return not_found for another scene; cancelled.
 [[nodiscard]] Result<SurfelTrial> carry_out_surfel_trial(std::string_view scene, const SurfelTrialConfig& config,
                                                          const Executor& executor, const Progress& progress);
+
+/// A cloud in the segments that the algorithm finds where its BCE is least.
+struct BestSegments {
+  double threshold{0.0};
+  double bce{0.0};
+  std::vector<std::uint32_t> labels;  ///< one per surfel, or kUnlabelled
+  std::size_t count{0};
+};
+[[nodiscard]] Result<BestSegments> best_segments(const SurfelTrial& trial, bool by_flood_fill, SurfelColors colors,
+                                                 const Executor& executor);
 
 }  // namespace saccade::thesis

@@ -7,43 +7,31 @@
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "summary.hpp"
-#include "tables/thesis_table.hpp"
+#include "tables/surfel_experiments.hpp"
 #include "thesis/surfel_figures.hpp"
-#include "thesis/surfel_trials.hpp"
 
 namespace saccade::cli {
-
-struct SurfelExperiments {
-  std::vector<thesis::SurfelTrial> trials;
-};
-
-namespace {
 
 using nlohmann::json;
 using thesis::SurfelColors;
 using thesis::SurfelTrial;
 
-constexpr int kErrorDecimals{3};
-
-/// The trials of all scenes, carried out by the first table that needs them.
-Result<std::shared_ptr<const SurfelExperiments>> experiments_of(const ReproduceOptions& options,
-                                                                const Executor& executor, const Progress& progress) {
-  if (!options.surfels) {
-    auto experiments = std::make_shared<SurfelExperiments>();
+Result<std::shared_ptr<const SurfelTrial>> surfel_trial(const ReproduceOptions& options, std::size_t scene,
+                                                        const Executor& executor, const Progress& progress) {
+  if (!options.surfels) options.surfels = std::make_shared<SurfelExperiments>();
+  std::shared_ptr<const SurfelTrial>& trial = options.surfels->trials.at(scene);
+  if (!trial) {
     thesis::SurfelTrialConfig config;
     config.frames = options.frames;
     config.image_width_px = options.image_width_px;
     config.seed = options.seed;
-    for (const std::string_view scene : kSurfelScenes) {
-      SACCADE_TRY(SurfelTrial trial, carry_out_surfel_trial(scene, config, executor, progress));
-      experiments->trials.push_back(std::move(trial));
-    }
-    options.surfels = std::move(experiments);
+    SACCADE_TRY(SurfelTrial made, carry_out_surfel_trial(kSurfelScenes.at(scene), config, executor, progress));
+    trial = std::make_shared<const SurfelTrial>(std::move(made));
   }
-  return options.surfels;
+  return trial;
 }
 
-void add_notes(const ReproduceOptions& options, ReproducedTable& table) {
+void add_surfel_notes(const ReproduceOptions& options, ReproducedTable& table) {
   table.notes.push_back(
       "Here scenes are rendered, with noise of depth, colours and poses (docs/surfel-scenes.md), and truth comes from "
       "the renderer; the thesis' were recorded and annotated by hand. Figures compare in kind.");
@@ -55,6 +43,19 @@ void add_notes(const ReproduceOptions& options, ReproducedTable& table) {
     table.notes.push_back("Images are " + std::to_string(options.image_width_px) +
                           " pixels wide (--image-width), which is quicker, but not what the thesis did.");
   }
+}
+
+namespace {
+
+constexpr int kErrorDecimals{3};
+
+/// The trials of all scenes.
+Result<std::shared_ptr<const SurfelExperiments>> experiments_of(const ReproduceOptions& options,
+                                                                const Executor& executor, const Progress& progress) {
+  for (std::size_t scene = 0; scene < kSurfelScenes.size(); ++scene) {
+    SACCADE_CHECK(surfel_trial(options, scene, executor, progress));
+  }
+  return std::shared_ptr<const SurfelExperiments>{options.surfels};
 }
 
 std::string thousands(std::size_t count) { return fixed(static_cast<double>(count) / 1000.0, 0) + "k"; }
@@ -105,7 +106,7 @@ Result<ReproducedTable> reproduce_curves(const ReproduceOptions& options, const 
   json rows = json::array();
   const std::size_t first_plot = by_flood_fill ? kFirstSurfelPlot : kFirstSurfelPlot + kSurfelScenes.size();
   for (std::size_t i = 0; i < experiments->trials.size(); ++i) {
-    const SurfelTrial& trial = experiments->trials[i];
+    const SurfelTrial& trial = *experiments->trials[i];
     const ScoreCurve& average = trial.curve(by_flood_fill, SurfelColors::average);
     const ScoreCurve& modes = trial.curve(by_flood_fill, SurfelColors::modes);
     const auto both = [&](const auto& figure) {
@@ -138,7 +139,7 @@ Result<ReproducedTable> reproduce_curves(const ReproduceOptions& options, const 
   table.notes = {
       "The thesis shows curves without figures. Thresholds go from 0.004 to 0.5; the area is that under the "
       "greatest precision at each recall or beyond it."};
-  add_notes(options, table);
+  add_surfel_notes(options, table);
   table.figures = {{"rows", std::move(rows)}};
   return table;
 }
@@ -153,7 +154,7 @@ Result<ReproducedTable> reproduce_table_4_1(const ReproduceOptions& options, con
   table.columns = {"scene", "frames", "points", "true labels", "ms per frame, here"};
   json rows = json::array();
   for (std::size_t i = 0; i < experiments->trials.size(); ++i) {
-    const SurfelTrial& trial = experiments->trials[i];
+    const SurfelTrial& trial = *experiments->trials[i];
     const thesis::SurfelDataset& printed = thesis::kTable4_1.at(i);
     table.rows.push_back({trial.scene, std::to_string(printed.frames) + " → " + std::to_string(trial.frames),
                           thousands(printed.points) + " → " + thousands(trial.surfels),
@@ -169,7 +170,7 @@ Result<ReproducedTable> reproduce_table_4_1(const ReproduceOptions& options, con
   table.notes = {
       "Labels are counted after parts that do not touch were split. Milliseconds are those of surfels and "
       "mode filter together, median; the thesis' took 100 ms on eight threads."};
-  add_notes(options, table);
+  add_surfel_notes(options, table);
   table.figures = {{"rows", std::move(rows)}};
   return table;
 }
@@ -215,7 +216,7 @@ Result<ReproducedTable> reproduce_table_4_3(const ReproduceOptions& options, con
   table.columns = {"scene", "flood fill, thesis", "here", "SV-LCCP, thesis", "here"};
   json rows = json::array();
   for (std::size_t i = 0; i < experiments->trials.size(); ++i) {
-    const SurfelTrial& trial = experiments->trials[i];
+    const SurfelTrial& trial = *experiments->trials[i];
     const thesis::LeastErrors& printed = thesis::kTable4_3.at(i);
     const auto thesis_pair = [](double average, double modes) {
       return fixed(average, kErrorDecimals) + " → " + fixed(modes, kErrorDecimals);
@@ -237,7 +238,7 @@ Result<ReproducedTable> reproduce_table_4_3(const ReproduceOptions& options, con
                      {{"not_enhanced", json_of(trial.curve(false, SurfelColors::average))},
                       {"enhanced", json_of(trial.curve(false, SurfelColors::modes))}}}});
   }
-  add_notes(options, table);
+  add_surfel_notes(options, table);
   table.figures = {{"rows", std::move(rows)}};
   return table;
 }

@@ -35,7 +35,7 @@ struct ReproduceOptions {
   /// Those of Tables 3.1 and 3.3 and Fig. 3.17, carried out by the first of them.
   mutable std::shared_ptr<const ExplorationExperiments> experiments{};
   mutable std::shared_ptr<const AnnotationExperiments> annotations{};  ///< the same of Tables 4.5 and 4.6
-  mutable std::shared_ptr<const SurfelExperiments> surfels{};  ///< of Tables 4.1 and 4.3 and Figs. 4.10 and 4.11
+  mutable std::shared_ptr<SurfelExperiments> surfels{};                ///< of Tables 4.1 and 4.3 and Figs. 4.5 to 4.11
 };
 
 /// Files that tables' plots go to, all there are.
@@ -54,7 +54,8 @@ struct TablePlot {
 };
 
 /// The same of pictures.
-constexpr std::array<std::string_view, 2> kTablePictureFiles{"fig-3-8.png", "fig-3-9.png"};
+constexpr std::array<std::string_view, 7> kTablePictureFiles{"fig-3-8.png", "fig-3-9.png", "fig-4-5.png", "fig-4-6.png",
+                                                             "fig-4-7.png", "fig-4-8.png", "fig-4-9.png"};
 
 struct TablePicture {
   std::string_view file;
@@ -130,6 +131,16 @@ void print(std::ostream& out, const ReproducedTable& table);
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_4_3(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_4_5(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_4_6(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_4_7(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_4_8(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_figure_4_9(const ReproduceOptions& options, const Executor& executor,
+                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_figure_4_10(const ReproduceOptions& options, const Executor& executor,
                                                             const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_figure_4_11(const ReproduceOptions& options, const Executor& executor,
