@@ -94,8 +94,15 @@ done
 
 echo "Arms beside FCL: 100,000 configurations each"
 scripts/install_packages.sh program tests
-configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io >"$out/build_parity.log" || failed=1
+configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io golden >"$out/build_parity.log" || failed=1
 step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity '--gtest_filter=ArmCollision*'
+
+echo "Surfels: colour edges of recorded frames"
+if [[ -d $data/rgbd_redkitchen ]]; then
+  step surfel_sharpness env SACCADE_SHARPNESS_FRAMES=200 build/release/tests/golden '--gtest_filter=SurfelSharpness*'
+else
+  echo "  skipped, $data/rgbd_redkitchen is not there"
+fi
 
 echo "Motions of the arm beside FCL: ten seeds, all built-in scenes"
 step motion_planning env SACCADE_PLANNING_SEEDS=10 build/release/tests/parity '--gtest_filter=MotionPlanning*'

@@ -256,6 +256,13 @@ def planning_section(folder, lines):
         lambda line: line.startswith(shown))
 
 
+def sharpness_section(folder, lines):
+    log_section(folder, lines, "surfel_sharpness", "Surfels on recorded frames", [
+        "How steeply luminance rises where the camera's image has edges, in renderings of the averages and of the modes",
+        "(docs/surfels.md). The step fails unless modes are half as steep again, in every frame a third, and cover as much."],
+        lambda line: line.startswith("sharpness: "))
+
+
 def greatest_fall(curve):
     """Below the best value before: how much, and at which value it is (from 1)."""
     return max((max(curve[:n]) - curve[n], n + 1) for n in range(1, len(curve)))
@@ -349,6 +356,7 @@ def main():
     held = update_section(folder, lines) and held
     arm_section(folder, lines)
     planning_section(folder, lines)
+    sharpness_section(folder, lines)
     held = annotation_section(folder, lines) and held
     kill_section(folder, lines)
     page_section(folder, lines)

@@ -198,7 +198,11 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
   auto options = std::make_shared<ReproduceOptions>();
   auto markdown = std::make_shared<std::string>();
   auto plots = std::make_shared<PlotOptions>();
-  command->add_option("tables", *numbers, "tables, and figures, by their number; none: lists those that there are")
+  command
+      ->add_option("tables", *numbers,
+                   "tables, and figures, by their number (fig-4.5 where there is a table of that number too); none: "
+                   "lists those that "
+                   "there are")
       ->type_name("TABLE");
   command
       ->add_option("--poses", options->poses,
@@ -207,10 +211,11 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
   command
-      ->add_option("--image-width", options->image_width_px,
-                   "images of Tables 2.7, 2.8, 3.1 to 3.3, 4.1, 4.3, Figs. 3.17, 4.10, 4.11 and of made clouds so many "
-                   "pixels wide: quicker, but no "
-                   "longer what the thesis did (default: 640, and 512 in chapter 3)")
+      ->add_option(
+          "--image-width", options->image_width_px,
+          "images of Tables 2.7, 2.8, 3.1 to 3.3, 4.1, 4.3, Figs. 3.17, 4.5 to 4.11 and of made clouds so many "
+          "pixels wide: quicker, but no "
+          "longer what the thesis did (default: 640, and 512 in chapter 3)")
       ->check(CLI::Range(16, 640))
       ->type_name("PIXELS");
   command
@@ -232,14 +237,15 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
       ->capture_default_str();
   command
       ->add_option("--frames", options->frames,
-                   "scan of Table 2.1: only so many of its first frames; scenes of Tables 4.1 and 4.3: so many along "
+                   "scan of Table 2.1: only so many of its first frames; scenes of Tables 4.1, 4.3 and Figs. 4.5 to "
+                   "4.11: so many along "
                    "the same way; for a quick look (default: all)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
   command
       ->add_option("--out", plots->folder,
                    "folder for the plots of Tables 2.1 (Fig. 2.12) and 3.5 and of Figs. 3.17, 4.10, 4.11, and the "
-                   "pictures of Figs. 3.8, 3.9")
+                   "pictures of Figs. 3.8, 3.9, 4.5 to 4.9")
       ->type_name("DIR");
   command->add_flag("--force", plots->force, "let --out write among other files");
   command->add_option("--markdown", *markdown, "write the tables as Markdown to a file")->type_name("FILE");

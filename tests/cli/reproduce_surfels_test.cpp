@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade reproduce 4.1 to 4.3, 4.10 and 4.11 as a user runs them, with few frames.
+// saccade reproduce 4.1 to 4.3, fig-4.5 to fig-4.9, 4.10 and 4.11 as a user runs them, with few frames.
 #include <gtest/gtest.h>
 
 #include "cli/run_program.hpp"
+#include "saccade/io/image_io.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {
@@ -36,13 +37,28 @@ void expect_curve(const json& curve) {
   EXPECT_DOUBLE_EQ(curve.at("least_bce").get<double>(), least);
 }
 
+/// Two rows of tiles, and what is in sight there.
+void expect_close_up(const json& figure, const fs::path& file) {
+  const ColorImage picture = read_color(file).value();
+  EXPECT_GT(picture.width(), 1100) << file;
+  EXPECT_GT(picture.height(), 850) << file;
+  ASSERT_EQ(figure.at("rows").size(), 2U) << file;
+  for (const json& row : figure.at("rows")) {
+    EXPECT_GT(row.at("surfels").get<int>(), 1000) << file;
+    EXPECT_GT(row.at("segments").get<int>(), 3) << file;
+    EXPECT_LE(row.at("of_one_surfel"), row.at("segments")) << file;
+    EXPECT_GT(row.at("bce").get<double>(), 0.0) << file;
+  }
+}
+
 TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
   if (kSanitized) GTEST_SKIP() << "five scenes take long under sanitizers";
   const TempFolder folder;
   const fs::path out = folder / "plots";
-  const json tables = tables_of(run_program({"reproduce", "4.1", "4.3", "4.10", "4.11", "--frames", "24",
-                                             "--image-width", "160", "--quiet", "--json", "-", "--out", out.string()}));
-  ASSERT_EQ(tables.size(), 4U);
+  const json tables = tables_of(
+      run_program({"reproduce", "4.1", "4.3", "4.10", "4.11", "fig-4.5", "fig-4.6", "fig-4.7", "fig-4.8", "fig-4.9",
+                   "--frames", "24", "--image-width", "160", "--quiet", "--json", "-", "--out", out.string()}));
+  ASSERT_EQ(tables.size(), 9U);
   for (const json& row : tables.at(0).at("rows")) {
     EXPECT_EQ(row.at("frames"), 24);
     EXPECT_GT(row.at("points").get<int>(), 5000) << row;
@@ -62,8 +78,16 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
   EXPECT_GE(better, 4U) << "so few frames show it already";
   for (const json& figure : {tables.at(2), tables.at(3)}) EXPECT_EQ(figure.at("rows").size(), kScenes);
   const std::vector<std::string> plots = names_in(out);
-  EXPECT_EQ(plots.size(), 2 * kScenes);
+  EXPECT_EQ(plots.size(), 2 * kScenes + 5);
   EXPECT_EQ(plots.front(), "fig-4-10-desk.svg");
+  for (std::size_t i = 4; i < 8; ++i) expect_close_up(tables.at(i), out / ("fig-4-" + std::to_string(i + 1) + ".png"));
+  const ColorImage positions = read_color(out / "fig-4-9.png").value();
+  EXPECT_GT(positions.width(), 1100);
+  for (const json& row : tables.at(8).at("rows")) {
+    EXPECT_GT(row.at("surfels").get<int>(), 100);
+    EXPECT_GT(row.at("background").get<double>(), 0.0);
+    EXPECT_LT(row.at("background").get<double>(), 0.9);
+  }
 }
 
 }  // namespace

@@ -71,13 +71,16 @@ TEST(SurfelSharpness, ModesAreSharperThanAveragesOnRecordedFrames) {
   SurfelFusion fusion = SurfelFusion::create().value();
   ModeFilter filter = ModeFilter::create().value();
   std::vector<Frame> looked_at;
+  ASSERT_GE(*reading.count, kLookedAt);
   std::size_t frames{0};
   for (auto next = (*source)->next(); next.ok() && next->has_value(); next = (*source)->next()) {
     ASSERT_TRUE(fusion.add_frame(**next, camera, executor));
     ASSERT_TRUE(filter.add_frame(**next, fusion.association(), executor));
     if (frames++ % (*reading.count / kLookedAt) == 0) looked_at.push_back(std::move(**next));
+    if (looked_at.size() > kLookedAt) looked_at.pop_back();
   }
   ASSERT_EQ(frames, *reading.count);
+  ASSERT_EQ(looked_at.size(), kLookedAt);
   // As saccade surfels writes them.
   const double min_weight = std::min(10.0, 0.05 * static_cast<double>(frames));
   const std::vector<SurfelMode> winners = filter.winners(executor);
@@ -85,7 +88,6 @@ TEST(SurfelSharpness, ModesAreSharperThanAveragesOnRecordedFrames) {
                                            surfel_points(fusion.map(), winners, min_weight)};
   std::array<EdgeSharpness, 3> mean{};
   std::array<double, 2> covered{};
-  std::size_t sharper{0};
   for (const Frame& frame : looked_at) {
     const std::vector<ColorEdge> edges = find_color_edges(*frame.color, frame.depth);
     std::array<Image<float>, 3> images;
@@ -94,19 +96,24 @@ TEST(SurfelSharpness, ModesAreSharperThanAveragesOnRecordedFrames) {
     }
     images[2] = luminance(*frame.color);
     const std::vector<EdgeSharpness> found = edge_sharpness(edges, images);
-    std::cout << frame.name << ": " << found[0].edges << " edges, across " << found[0].across << " → "
-              << found[1].across << " (image " << found[2].across << "), along " << found[0].along << " → "
-              << found[1].along << " (" << found[2].along << ")\n";
-    sharper += found[1].across > found[0].across ? 1 : 0;
+    EXPECT_GT(found[0].edges, 1000U) << frame.name;
+    EXPECT_GT(found[1].across, 1.3 * found[0].across) << frame.name;
     for (std::size_t i = 0; i < mean.size(); ++i) {
       mean[i].edges += found[i].edges;
-      mean[i].across += found[i].across / static_cast<double>(looked_at.size());
-      mean[i].along += found[i].along / static_cast<double>(looked_at.size());
+      mean[i].across += found[i].across / static_cast<double>(kLookedAt);
+      mean[i].along += found[i].along / static_cast<double>(kLookedAt);
     }
   }
-  std::cout << frames << " frames: across " << mean[0].across << " → " << mean[1].across << " (image " << mean[2].across
-            << "), along " << mean[0].along << " → " << mean[1].along << " (" << mean[2].along << "), covered "
-            << covered[0] / kLookedAt << " → " << covered[1] / kLookedAt << '\n';
+  const EdgeSharpness& average = mean[0];
+  const EdgeSharpness& modes = mean[1];
+  std::cout << "sharpness: " << frames << " frames, " << average.edges << " edges in " << kLookedAt
+            << " of them; rise per pixel across edges: average " << average.across << ", modes " << modes.across
+            << ", image " << mean[2].across << "; along edges: " << average.along << ", " << modes.along << ", "
+            << mean[2].along << "; pixels covered: " << covered[0] / kLookedAt << ", " << covered[1] / kLookedAt
+            << std::endl;
+  EXPECT_GT(modes.across, 1.5 * average.across);
+  EXPECT_GT(modes.across - modes.along, 1.2 * (average.across - average.along)) << "more than noise and jags give";
+  EXPECT_GT(covered[1], covered[0] - 0.002 * kLookedAt);
 }
 
 }  // namespace
