@@ -99,6 +99,8 @@ step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity
 
 echo "Surfels: colour edges of recorded frames"
 if [[ -d $data/rgbd_redkitchen ]]; then
+  step surfel_picture build/release/saccade surfels "$data/rgbd_redkitchen" --out "$out/surfels.ply" --mode-filter both \
+    --picture "$out/surfels.png"
   step surfel_sharpness env SACCADE_SHARPNESS_FRAMES=200 build/release/tests/golden '--gtest_filter=SurfelSharpness*'
 else
   echo "  skipped, $data/rgbd_redkitchen is not there"
