@@ -44,7 +44,7 @@ void expect_close_up(const json& figure, const fs::path& file) {
   EXPECT_GT(picture.height(), 850) << file;
   ASSERT_EQ(figure.at("rows").size(), 2U) << file;
   for (const json& row : figure.at("rows")) {
-    EXPECT_GT(row.at("surfels").get<int>(), 1000) << file;
+    EXPECT_GT(row.at("surfels").get<int>(), 500) << file;
     EXPECT_GT(row.at("segments").get<int>(), 3) << file;
     EXPECT_LE(row.at("of_one_surfel"), row.at("segments")) << file;
     EXPECT_GT(row.at("bce").get<double>(), 0.0) << file;
