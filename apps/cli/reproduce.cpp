@@ -34,7 +34,7 @@ Result<int> list_tables(const GlobalOptions& global) {
   json tables = json::array();
   for (const ThesisTable& table : thesis_tables()) {
     tables.push_back({{"table", table.number}, {"title", table.title}});
-    if (!global.json_to_stdout()) std::cout << std::left << std::setw(6) << table.number << table.title << '\n';
+    if (!global.json_to_stdout()) std::cout << std::left << std::setw(8) << table.number << table.title << '\n';
   }
   SACCADE_CHECK(write_json_output(global, json_envelope("reproduce", global, global.executor(),
                                                         {{"total", clock.elapsed_ms()}}, {{"known", tables}})));

@@ -31,10 +31,12 @@ struct SurfelsOptions : FrameOptions {
   std::filesystem::path picture;
   std::string mode_filter{"on"};
   std::optional<double> min_confidence;  ///< default: min_weight
+  std::string exposure_compensation{"off"};
   SurfelFusionConfig fusion;
   ModeFilterConfig filter;
 
   [[nodiscard]] bool filtered() const { return mode_filter != "off"; }
+  [[nodiscard]] bool compensated() const { return exposure_compensation == "on"; }
   /// Where the averages go: nowhere, to --out, or beside it.
   [[nodiscard]] std::filesystem::path average_out() const {
     if (mode_filter == "on") return {};
@@ -53,7 +55,7 @@ struct SurfelsOptions : FrameOptions {
 
 /// Milliseconds of each frame.
 struct SurfelTimes {
-  std::vector<double> associate, guided_filter, integrate, total;
+  std::vector<double> associate, exposure, guided_filter, integrate, total;
 };
 
 /// Everything between the command line and the summary.
@@ -64,6 +66,8 @@ struct SurfelsRun {
   OpenFrames frames;
   SurfelFusion fusion;
   ModeFilter filter;
+  ExposureCompensation exposure;
+  std::vector<ExposureReport> exposures;  ///< of frames with colour
   FuseRecord record;
   SurfelTimes times;
   std::size_t without_color{0};
@@ -75,8 +79,12 @@ struct SurfelsRun {
 };
 
 /// Fuses a frame whose pose is known.
-Status add_frame(SurfelsRun& run, const Frame& frame) {
-  SACCADE_TRY(const SurfelFusionReport fused, run.fusion.add_frame(frame, run.frames.source->camera(), run.executor));
+Status add_frame(SurfelsRun& run, Frame& frame) {
+  const PinholeCamera& camera = run.frames.source->camera();
+  SACCADE_TRY(const SurfelFusionReport fused, run.options.compensated()
+                                                  ? run.fusion.add_frame(frame, camera, run.exposure, run.executor)
+                                                  : run.fusion.add_frame(frame, camera, run.executor));
+  if (fused.exposure) run.exposures.push_back(*fused.exposure);
   ModeFilterReport filtered;
   if (run.options.filtered()) {
     SACCADE_TRY(filtered, run.filter.add_frame(frame, run.fusion.association(), run.executor));
@@ -86,9 +94,10 @@ Status add_frame(SurfelsRun& run, const Frame& frame) {
   const double associate_ms = fused.points_ms + fused.index_ms + fused.associate_ms;
   const double integrate_ms = fused.integrate_ms + filtered.integrate_ms + filtered.move_ms;
   run.times.associate.push_back(associate_ms);
+  run.times.exposure.push_back(fused.exposure_ms);
   run.times.guided_filter.push_back(filtered.guided_filter_ms);
   run.times.integrate.push_back(integrate_ms);
-  run.times.total.push_back(associate_ms + filtered.guided_filter_ms + integrate_ms);
+  run.times.total.push_back(associate_ms + fused.exposure_ms + filtered.guided_filter_ms + integrate_ms);
   return {};
 }
 
@@ -158,6 +167,20 @@ Result<int> nothing_written(const SurfelsRun& run) {
   return static_cast<int>(ExitStatus::no_result);
 }
 
+/// Gains relative to the first frame; null without compensation.
+json exposure_json(const SurfelsRun& run) {
+  if (!run.options.compensated()) return nullptr;
+  const auto [least, most] =
+      std::minmax_element(run.exposures.begin(), run.exposures.end(),
+                          [](const ExposureReport& a, const ExposureReport& b) { return a.gain < b.gain; });
+  const auto untold = std::count_if(run.exposures.begin(), run.exposures.end(),
+                                    [](const ExposureReport& report) { return !report.estimated; });
+  return {{"min", run.exposures.empty() ? 1.0 : least->gain},
+          {"max", run.exposures.empty() ? 1.0 : most->gain},
+          {"frames", run.exposures.size()},
+          {"not_estimated", untold}};
+}
+
 json result_json(const SurfelsRun& run) {
   const auto median = [](const std::vector<double>& ms) -> json { return {{"median", median_of(ms)}}; };
   const std::filesystem::path average = run.options.average_out();
@@ -180,8 +203,10 @@ json result_json(const SurfelsRun& run) {
            {{"map", double(run.fusion.map().memory_bytes()) / double(run.fusion.map().size())},
             {"modes", double(run.filter.memory_bytes()) / double(run.fusion.map().size())}}},
           {"image_sigma", run.options.fusion.image_sigma},
+          {"exposure", exposure_json(run)},
           {"ms_per_frame",
            {{"associate", median(run.times.associate)},
+            {"exposure", median(run.times.exposure)},
             {"guided_filter", median(run.times.guided_filter)},
             {"integrate", median(run.times.integrate)},
             {"total", median(run.times.total)}}},
@@ -199,6 +224,11 @@ void print_summary(const SurfelsRun& run) {
   summary.line("per frame", fixed(median_of(run.times.associate), 1) + " ms associate, " +
                                 fixed(median_of(run.times.guided_filter), 1) + " ms guided filter, " +
                                 fixed(median_of(run.times.integrate), 1) + " ms integrate (medians)");
+  if (run.options.compensated()) {
+    const json exposure = exposure_json(run);
+    summary.line("exposure", "gains of " + fixed(exposure["min"].get<double>(), 2) + " to " +
+                                 fixed(exposure["max"].get<double>(), 2) + " of the first frame's");
+  }
   summary.line("cloud", run.options.out.string());
   if (run.options.mode_filter == "both") summary.line("average", run.options.average_out().string());
   if (!run.options.picture.empty()) summary.line("picture", run.options.picture.string());
@@ -210,12 +240,15 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
   SACCADE_TRY(OpenFrames frames, open_frames(options));
   SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(options.fusion));
   SACCADE_TRY(ModeFilter filter, ModeFilter::create(options.filter));
+  SACCADE_TRY(ExposureCompensation exposure, ExposureCompensation::create());
   SurfelsRun run{options,
                  global.executor(),
                  ProgressBar{global.quiet},
                  std::move(frames),
                  std::move(fusion),
                  std::move(filter),
+                 std::move(exposure),
+                 {},
                  {},
                  {},
                  0,
@@ -259,6 +292,9 @@ void check_surfels_options(SurfelsOptions& options) {
   if (options.min_confidence && !(*options.min_confidence >= 0.0 && std::isfinite(*options.min_confidence))) {
     usage_error("--min-confidence", "must be 0 or more");
   }
+  if (options.exposure_compensation != "on" && options.exposure_compensation != "off") {
+    usage_error("--exposure-compensation", "must be on or off, not '" + options.exposure_compensation + "'");
+  }
   require_ok(options.fusion.validate(), "--image-sigma");
   require_ok(options.filter.validate(), "--max-modes");
 }
@@ -284,6 +320,12 @@ void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action)
       ->add_option("--image-sigma", options->fusion.image_sigma,
                    "how fast pixels lose weight away from the image's centre: smaller for strong vignetting")
       ->type_name("SIGMA")
+      ->capture_default_str();
+  command
+      ->add_option("--exposure-compensation", options->exposure_compensation,
+                   "on: for cameras with automatic gain or exposure: colours of each frame are brought to those of the "
+                   "first; vignetting must be corrected")
+      ->type_name("on|off")
       ->capture_default_str();
   command->add_option("--max-modes", options->filter.max_modes, "colours that a surfel remembers, 1 to 32")
       ->type_name("N")

@@ -18,6 +18,8 @@ namespace {
 struct SurfelClouds {
   std::array<PointCloud, 2> by_colors;
   std::vector<double> frame_ms;
+  std::vector<double> true_gains;
+  std::vector<double> found_gains;
 };
 
 Result<RenderedSequence> begin_sequence(const SurfelScene& scene, const RayScene& rays, std::size_t frames,
@@ -25,6 +27,7 @@ Result<RenderedSequence> begin_sequence(const SurfelScene& scene, const RayScene
   SACCADE_TRY(RenderedSequenceConfig sensor, surfel_sensor(scene.sensor));
   sensor.color = scene.color;
   sensor.color.seed = config.seed;
+  sensor.color.automatic_gain = config.automatic_gain.value_or(scene.color.automatic_gain);
   if (sensor.depth_noise) sensor.depth_noise->seed = config.seed;
   if (sensor.pose_noise) sensor.pose_noise->seed = config.seed;
   if (sensor.time_of_flight) sensor.time_of_flight->noise.seed = config.seed;
@@ -48,18 +51,23 @@ Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::si
   fusing.image_sigma = is_vignetted ? kVignettedSigma : kImageSigma;
   SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(fusing));
   SACCADE_TRY(ModeFilter filter, ModeFilter::create());
+  SACCADE_TRY(ExposureCompensation exposure, ExposureCompensation::create());
   SurfelClouds clouds;
   for (;;) {
     if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", stage};
     progress.report(stage, clouds.frame_ms.size(), *sequence.size());
-    SACCADE_TRY(const std::optional<Frame> frame, sequence.next());
+    SACCADE_TRY(std::optional<Frame> frame, sequence.next());
     if (!frame) break;
     const Stopwatch stopwatch;
-    if (const auto fused = fusion.add_frame(*frame, sequence.camera(), executor); !fused) return fused.error();
+    const auto fused = config.exposure_compensation ? fusion.add_frame(*frame, sequence.camera(), exposure, executor)
+                                                    : fusion.add_frame(*frame, sequence.camera(), executor);
+    if (!fused) return fused.error();
     if (const auto filtered = filter.add_frame(*frame, fusion.association(), executor); !filtered) {
       return filtered.error();
     }
     clouds.frame_ms.push_back(stopwatch.elapsed_ms());
+    clouds.true_gains.push_back(sequence.truth().gain);
+    clouds.found_gains.push_back(fused->exposure ? fused->exposure->gain : 1.0);
   }
   const double share = std::min(1.0, double(clouds.frame_ms.size()) / double(all_frames));
   const SurfelMap& map = fusion.map();
@@ -146,6 +154,8 @@ Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTr
   const bool is_vignetted = scene.color.vignetting == Vignetting::on;
   SACCADE_TRY(SurfelClouds clouds,
               fuse(sequence, is_vignetted, scene.frames, config, executor, progress, "surfels of " + trial.scene));
+  for (const double gain : clouds.true_gains) trial.true_gains.push_back(gain / clouds.true_gains.front());
+  trial.found_gains = std::move(clouds.found_gains);
   std::sort(clouds.frame_ms.begin(), clouds.frame_ms.end());
   trial.ms_per_frame = clouds.frame_ms[clouds.frame_ms.size() / 2];
   SACCADE_TRY(const SurfelComponents segments, true_segments(clouds.by_colors.front(), rays, executor));

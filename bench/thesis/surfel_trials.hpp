@@ -4,6 +4,7 @@
 // algorithms at many thresholds, beside the truth.
 
 #include <array>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -18,7 +19,9 @@ struct SurfelTrialConfig {
   std::size_t frames{0};  ///< 0: as many as the thesis' scene has; fewer are as many places along the same way
   int image_width_px{0};  ///< 0: the sensor's
   std::uint64_t seed{1};
-  bool noise{true};         ///< of depth, colour and poses
+  bool noise{true};                      ///< of depth, colour and poses
+  std::optional<bool> automatic_gain{};  ///< none: as the scene has it
+  bool exposure_compensation{false};
   double min_weight{10.0};  ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
 };
 
@@ -31,6 +34,8 @@ struct SurfelTrial {
   std::size_t surfels{0};                ///< that are segmented
   std::size_t segments{0};               ///< true ones, after they were split
   double ms_per_frame{0.0};              ///< fusion and mode filter, median
+  std::vector<double> true_gains;        ///< of frames, relative to the first
+  std::vector<double> found_gains;       ///< by exposure compensation
   std::array<ScoreCurve, 2> flood_fill;  ///< by SurfelColors
   std::array<ScoreCurve, 2> sv_lccp;
   std::array<PointCloud, 2> clouds;  ///< by SurfelColors; the same surfels

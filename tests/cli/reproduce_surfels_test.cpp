@@ -90,5 +90,24 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
   }
 }
 
+TEST(ReproduceSurfels, ExposureCompensationWinsBackWhatGainCosts) {
+  if (kSanitized) GTEST_SKIP() << "six trials take long under sanitizers";
+  const json table = tables_of(run_program({"reproduce", "4.gain", "--frames", "40", "--image-width", "160", "--quiet",
+                                            "--json", "-"}))
+                         .at(0);
+  ASSERT_EQ(table.at("rows").size(), 2U);
+  for (const json& row : table.at("rows")) {
+    EXPECT_GT(row.at("gains").at("max").get<double>() / row.at("gains").at("min").get<double>(), 1.05) << row;
+    EXPECT_LT(row.at("gains").at("worst_error").get<double>(), 0.03) << row;
+    for (const char* algorithm : {"flood_fill", "sv_lccp"}) {
+      ASSERT_EQ(row.at(algorithm).size(), 4U);
+      for (const json& figure : row.at(algorithm)) {
+        EXPECT_GT(figure.at("compensated").get<double>(), 0.0) << figure;
+        EXPECT_LE(figure.at("off").get<double>(), 1.0) << figure;
+      }
+    }
+  }
+}
+
 }  // namespace
 }  // namespace saccade::test

@@ -7,6 +7,7 @@
 #include "cli/run_program.hpp"
 #include "saccade/io/cloud_io.hpp"
 #include "saccade/io/image_io.hpp"
+#include "saccade/sensor/srgb.hpp"
 
 namespace saccade::test {
 namespace {
@@ -159,6 +160,32 @@ TEST_F(Surfels, TheImageSigmaReachesTheWeights) {
     return sum;
   };
   EXPECT_LT(confidence("0.1"), 0.6 * confidence("0.3"));
+}
+
+/// Sample frames have one exposure; half of them darker are compensated.
+TEST_F(Surfels, ExposureCompensationTellsTheGains) {
+  EXPECT_TRUE(result("off.ply").at("exposure").is_null());
+  const nlohmann::json even = result("even.ply", {"--exposure-compensation", "on"}).at("exposure");
+  EXPECT_EQ(even.at("frames"), 12);
+  EXPECT_EQ(even.at("not_estimated"), 1) << "the first";
+  EXPECT_NEAR(even.at("min").get<double>(), 1.0, 0.05);
+  EXPECT_NEAR(even.at("max").get<double>(), 1.0, 0.05);
+  for (const std::string& name : names_in(frames())) {
+    if (!name.ends_with("1.color.png") && !name.ends_with("6.color.png")) continue;
+    ColorImage image = read_color(frames() / name).value();
+    for (std::size_t i = 0; i < image.size(); ++i) {
+      for (std::uint8_t& channel : image.data()[i]) {
+        channel = static_cast<std::uint8_t>(
+            std::lround(255.0 * srgb_of_linear(0.6 * linear_of_srgb(static_cast<double>(channel) / 255.0))));
+      }
+    }
+    ASSERT_TRUE(write_png(frames() / name, image).ok());
+  }
+  const nlohmann::json on = result("on.ply", {"--exposure-compensation", "on"});
+  EXPECT_NEAR(on.at("exposure").at("min").get<double>(), 0.6, 0.03);
+  EXPECT_GT(on.at("ms_per_frame").at("exposure").at("median").get<double>(), 0.0);
+  expect_failure(run_program(surfels("cloud.ply", {"--exposure-compensation", "auto"})), 2, "surfels",
+                 {"--exposure-compensation", "auto"});
 }
 
 TEST_F(Surfels, WithoutColourTheFilterSaysWhatItNeeds) {

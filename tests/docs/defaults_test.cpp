@@ -178,6 +178,13 @@ TEST(Defaults, OfSurfelsAreDocumented) {
   expect_documented("SurfelFusionConfig::max_normal_angle_rad", {fusion.max_normal_angle_rad});
   expect_documented("SurfelFusionConfig::max_view_angle_rad", {fusion.max_view_angle_rad});
   expect_documented("SurfelFusionConfig::max_radius_m", {fusion.max_radius_m});
+  const ExposureCompensationConfig exposure;
+  expect_documented("ExposureCompensationConfig::step_px", {static_cast<double>(exposure.step_px)});
+  expect_documented("ExposureCompensationConfig::darkest", {exposure.darkest, exposure.brightest});
+  expect_documented("ExposureCompensationConfig::outlier_color", {exposure.outlier_color});
+  expect_documented("ExposureCompensationConfig::settled_weight", {exposure.settled_weight});
+  expect_documented("ExposureCompensationConfig::min_samples", {exposure.min_samples, exposure.min_agreement});
+  expect_documented("ExposureCompensationConfig::max_gain", {exposure.max_gain});
   const ModeFilterConfig filter;
   expect_documented("GuidedFilterConfig::radius_px", {static_cast<double>(filter.guided.radius_px)});
   expect_documented("GuidedFilterConfig::color_sigma", {filter.guided.color_sigma});

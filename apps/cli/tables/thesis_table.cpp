@@ -47,6 +47,8 @@ constexpr std::array kTables{
     ThesisTable{"4.10", "figure: boundary precision and recall of flood fill on surfels (takes half an hour)",
                 reproduce_figure_4_10, false, true},
     ThesisTable{"4.11", "figure: the same of supervoxels and LCCP", reproduce_figure_4_11, false, true},
+    ThesisTable{"4.gain", "ours: what automatic gain costs surfels, and its remedy (takes an hour)",
+                reproduce_table_4_gain},
     ThesisTable{"4.4", "parameters of annotation", reproduce_table_4_4},
     ThesisTable{"4.5", "errors of annotation by control points and by rectangles, simulated (also with --clouds)",
                 reproduce_table_4_5},

@@ -145,6 +145,8 @@ void print(std::ostream& out, const ReproducedTable& table);
                                                             const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_figure_4_11(const ReproduceOptions& options, const Executor& executor,
                                                             const Progress& progress);
+[[nodiscard]] Result<ReproducedTable> reproduce_table_4_gain(const ReproduceOptions& options, const Executor& executor,
+                                                             const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_4_4(const ReproduceOptions& options, const Executor& executor,
                                                           const Progress& progress);
 [[nodiscard]] Result<ReproducedTable> reproduce_table_4_5(const ReproduceOptions& options, const Executor& executor,

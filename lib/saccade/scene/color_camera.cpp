@@ -68,14 +68,6 @@ Status ColorCameraConfig::validate() const {
   return {};
 }
 
-double linear_of_srgb(double encoded) {
-  return encoded <= 0.04045 ? encoded / 12.92 : std::pow((encoded + 0.055) / 1.055, 2.4);
-}
-
-double srgb_of_linear(double linear) {
-  return linear <= 0.0031308 ? 12.92 * linear : 1.055 * std::pow(linear, 1.0 / 2.4) - 0.055;
-}
-
 double vignetting_at(const PinholeCamera& camera, double u, double v) {
   const double cosine_squared = 1.0 / camera.ray(u, v).squaredNorm();
   return cosine_squared * cosine_squared;

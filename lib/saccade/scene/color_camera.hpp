@@ -9,6 +9,7 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
+#include "saccade/sensor/srgb.hpp"
 
 namespace saccade {
 
@@ -49,9 +50,5 @@ struct ColorCameraConfig {
 /// size. O(pixels).
 [[nodiscard]] ColorImage expose(const LightImage& light, const PinholeCamera& camera, const ColorCameraConfig& config,
                                 double gain, std::uint64_t frame, const Executor& executor = {});
-
-/// sRGB (IEC 61966-2-1), 0 to 1.
-[[nodiscard]] double linear_of_srgb(double encoded);
-[[nodiscard]] double srgb_of_linear(double linear);
 
 }  // namespace saccade

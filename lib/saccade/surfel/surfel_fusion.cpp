@@ -257,8 +257,10 @@ void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, c
   });
 }
 
-void SurfelFusion::integrate(const Frame& frame, const PointImage& points, const Executor& executor) {
+void SurfelFusion::integrate(const Frame& frame, const Executor& executor, SurfelFusionReport& report) {
+  const Stopwatch stopwatch;
   const SurfelAssociation& seen = association_;
+  const PointImage& points = points_;
   const BackProjection back_project{seen};
   const Eigen::Matrix3f& R_world_camera = back_project.R_world_camera;
   const auto focal = static_cast<float>(std::sqrt(seen.camera.fx * seen.camera.fy));
@@ -304,23 +306,41 @@ void SurfelFusion::integrate(const Frame& frame, const PointImage& points, const
                         [&](std::size_t begin, std::size_t end) {
                           for_each_seen_surfel(seen, static_cast<int>(begin), static_cast<int>(end), fetch, fuse);
                         });
+  report.integrate_ms = stopwatch.elapsed_ms();
 }
 
-Result<SurfelFusionReport> SurfelFusion::add_frame(const Frame& frame, const PinholeCamera& camera,
+Result<SurfelFusionReport> SurfelFusion::associate(const Frame& frame, const PinholeCamera& camera,
                                                    const Executor& executor) {
   SACCADE_CHECK(check_frame(frame, camera));
   SurfelFusionReport report;
   report.has_color = frame.color.has_value();
   Stopwatch stopwatch;
-  const PointImage points = to_points(frame.depth, camera, executor);
+  points_ = to_points(frame.depth, camera, executor);
   report.points_ms = stopwatch.lap_ms();
   prepare(camera, *frame.T_world_camera);
-  project(points, executor);
+  project(points_, executor);
   report.index_ms = stopwatch.lap_ms();
-  associate(points, executor, report);
+  associate(points_, executor, report);
   report.associate_ms = stopwatch.lap_ms();
-  integrate(frame, points, executor);
-  report.integrate_ms = stopwatch.lap_ms();
+  return report;
+}
+
+Result<SurfelFusionReport> SurfelFusion::add_frame(const Frame& frame, const PinholeCamera& camera,
+                                                   const Executor& executor) {
+  SACCADE_TRY(SurfelFusionReport report, associate(frame, camera, executor));
+  integrate(frame, executor, report);
+  return report;
+}
+
+Result<SurfelFusionReport> SurfelFusion::add_frame(Frame& frame, const PinholeCamera& camera,
+                                                   ExposureCompensation& exposure, const Executor& executor) {
+  SACCADE_TRY(SurfelFusionReport report, associate(frame, camera, executor));
+  if (frame.color) {
+    const Stopwatch stopwatch;
+    report.exposure = exposure.apply(association_, map_, executor, *frame.color);
+    report.exposure_ms = stopwatch.elapsed_ms();
+  }
+  integrate(frame, executor, report);
   return report;
 }
 

@@ -5,12 +5,14 @@
 #include <atomic>
 #include <cstddef>
 #include <cstdint>
+#include <optional>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/camera_source.hpp"
 #include "saccade/sensor/point_image.hpp"
+#include "saccade/surfel/exposure_compensation.hpp"
 #include "saccade/surfel/surfel_association.hpp"
 #include "saccade/surfel/surfel_cells.hpp"
 #include "saccade/surfel/surfel_map.hpp"
@@ -41,7 +43,9 @@ struct SurfelFusionReport {
   double points_ms{0.0};
   double index_ms{0.0};
   double associate_ms{0.0};
+  double exposure_ms{0.0};
   double integrate_ms{0.0};
+  std::optional<ExposureReport> exposure{};  ///< of a frame with colour that was compensated
 };
 
 /// Fuses frames. The method is the published one (Keller et al., 3DV 2013; Whelan et al., RSS 2015), with an index
@@ -61,6 +65,10 @@ class SurfelFusion {
   ///         finite; size_mismatch if depth or colour differ from the camera's size.
   [[nodiscard]] Result<SurfelFusionReport> add_frame(const Frame& frame, const PinholeCamera& camera,
                                                      const Executor& executor);
+  /// The same, with the frame's colours brought to the exposure of the map before they are averaged: so `frame` has
+  /// them afterwards, for the mode filter.
+  [[nodiscard]] Result<SurfelFusionReport> add_frame(Frame& frame, const PinholeCamera& camera,
+                                                     ExposureCompensation& exposure, const Executor& executor);
 
   [[nodiscard]] const SurfelFusionConfig& config() const { return config_; }
   [[nodiscard]] const SurfelMap& map() const { return map_; }
@@ -69,16 +77,20 @@ class SurfelFusion {
 
  private:
   explicit SurfelFusion(const SurfelFusionConfig& config) : config_{config} {}
+  /// All but integrate().
+  [[nodiscard]] Result<SurfelFusionReport> associate(const Frame& frame, const PinholeCamera& camera,
+                                                     const Executor& executor);
   void prepare(const PinholeCamera& camera, const Pose& T_world_camera);
   void project(const PointImage& points, const Executor& executor);
   void fill_cells(const Executor& executor);
   void associate(const PointImage& points, const Executor& executor, SurfelFusionReport& report);
   void number_new_surfels(const std::vector<std::size_t>& created, const Executor& executor);
-  void integrate(const Frame& frame, const PointImage& points, const Executor& executor);
+  void integrate(const Frame& frame, const Executor& executor, SurfelFusionReport& report);
 
   SurfelFusionConfig config_;
   SurfelMap map_;
   SurfelAssociation association_;
+  PointImage points_;                 ///< of the last frame
   std::vector<std::uint64_t> cells_;  ///< (bits of the depth's difference, id): the least one fills the cell
   SurfelCells cell_discs_;
 };
