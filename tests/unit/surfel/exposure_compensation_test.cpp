@@ -123,7 +123,7 @@ TEST(ExposureCompensation, SaturatedPixelsTakeTheirSurfelsColourIfItIsBrighter) 
 TEST(ExposureCompensation, ACameraAtRestDoesNotDrift) {
   Wall wall;
   wall.camera = kSmallCamera;
-  wall.noise = 0.02;
+  wall.noise = 0.006;
   CompensatedFusion compensated;
   const int frames = test::kSanitized ? 200 : 2000;
   double worst{0.0};
