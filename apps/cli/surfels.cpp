@@ -32,6 +32,7 @@ struct SurfelsOptions : FrameOptions {
   std::string mode_filter{"on"};
   std::optional<double> min_confidence;  ///< default: min_weight
   std::string exposure_compensation{"off"};
+  std::string choice{"densest"};
   SurfelFusionConfig fusion;
   ModeFilterConfig filter;
 
@@ -203,6 +204,7 @@ json result_json(const SurfelsRun& run) {
            {{"map", double(run.fusion.map().memory_bytes()) / double(run.fusion.map().size())},
             {"modes", double(run.filter.memory_bytes()) / double(run.fusion.map().size())}}},
           {"image_sigma", run.options.fusion.image_sigma},
+          {"choice", run.options.choice},
           {"exposure", exposure_json(run)},
           {"ms_per_frame",
            {{"associate", median(run.times.associate)},
@@ -296,6 +298,11 @@ void check_surfels_options(SurfelsOptions& options) {
     usage_error("--exposure-compensation", "must be on or off, not '" + options.exposure_compensation + "'");
   }
   require_ok(options.fusion.validate(), "--image-sigma");
+  if (!(options.filter.max_depth_change_m > 0.0)) usage_error("--max-depth-change", "must be positive");
+  if (options.choice != "densest" && options.choice != "heaviest") {
+    usage_error("--choice", "must be densest or heaviest, not '" + options.choice + "'");
+  }
+  if (options.choice == "heaviest") options.filter.choice_sigmas = 0.0;
   require_ok(options.filter.validate(), "--max-modes");
 }
 
@@ -329,6 +336,17 @@ void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action)
       ->capture_default_str();
   command->add_option("--max-modes", options->filter.max_modes, "colours that a surfel remembers, 1 to 32")
       ->type_name("N")
+      ->capture_default_str();
+  command
+      ->add_option("--choice", options->choice,
+                   "what a surfel is in the end: where its colours are densest, or the heaviest one (thesis, eq. 4.11)")
+      ->type_name("densest|heaviest")
+      ->capture_default_str();
+  command
+      ->add_option("--max-depth-change", options->filter.max_depth_change_m,
+                   "a depth that the guided filter would move farther stays as it was measured; inf: all move, as in "
+                   "the thesis")
+      ->type_name("METRES")
       ->capture_default_str();
   command
       ->add_option(

@@ -191,6 +191,8 @@ TEST(Defaults, OfSurfelsAreDocumented) {
   expect_documented("GuidedFilterConfig::depth_sigma_m", {filter.guided.depth_sigma_m});
   expect_documented("ModeFilterConfig::color_sigmas", {filter.color_sigmas});
   expect_documented("ModeFilterConfig::max_modes", {static_cast<double>(filter.max_modes)});
+  expect_documented("ModeFilterConfig::max_depth_change_m", {filter.max_depth_change_m});
+  expect_documented("ModeFilterConfig::choice_sigmas", {filter.choice_sigmas});
 }
 
 TEST(Defaults, OfSurfelSegmentationAreDocumented) {

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <array>
 #include <cstdio>
+#include <limits>
 #include <random>
 
 #include "saccade/surfel/mode_filter.hpp"
@@ -33,6 +34,7 @@ TEST(ModeFilterProperty, EqualsAlgorithm6AsItIsPrinted) {
     config.max_modes = i % 2 == 0 ? 4 : 1 + static_cast<int>(random() % 10);
     config.color_sigmas = i % 2 == 0 ? 1.0 : static_cast<double>(1 + random() % 6);
     config.enhance_depth = random() % 4 != 0;
+    config.max_depth_change_m = i % 2 == 0 ? 0.001 : std::numeric_limits<double>::infinity();
     SurfelFusion fusion = SurfelFusion::create().value();
     ModeFilter filter = ModeFilter::create(config).value();
     test::NaiveModes naive;

@@ -104,7 +104,9 @@ inline void naive_mode_filter(NaiveModes& modes, const Frame& frame, const Surfe
     for (int u = 0; u < frame.depth.width(); ++u) {
       const SurfelId id = seen.of_pixel(u, v);
       if (id == kNoSurfel) continue;
-      const float d_e = enhanced[static_cast<std::size_t>(v * frame.depth.width() + u)];
+      const float guided_m = enhanced[static_cast<std::size_t>(v * frame.depth.width() + u)];
+      const double change_m = std::abs(double{guided_m} - double{frame.depth(u, v)});
+      const float d_e = change_m <= config.max_depth_change_m ? guided_m : frame.depth(u, v);
       const auto point = [&](float depth_m) -> Eigen::Vector3d {
         return seen.T_world_camera * (seen.camera.ray(u, v) * double{depth_m});
       };

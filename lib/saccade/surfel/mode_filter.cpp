@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/surfel/mode_choice.hpp"
 
 namespace saccade {
 namespace {
@@ -154,6 +155,12 @@ Status ModeFilterConfig::validate() const {
   if (max_modes < 1 || max_modes > kMostModes) {
     return Error{Errc::invalid_argument, "mode filter: a surfel has 1 to 32 modes", {}};
   }
+  if (!(max_depth_change_m > 0.0)) {
+    return Error{Errc::invalid_argument, "mode filter: the largest change of a depth must be positive", {}};
+  }
+  if (!(choice_sigmas >= 0.0 && std::isfinite(choice_sigmas))) {
+    return Error{Errc::invalid_argument, "mode filter: choice_sigmas must be 0 or more", {}};
+  }
   return {};
 }
 
@@ -237,7 +244,7 @@ void ModeFilter::move_to_enhanced(const Frame& frame, const SurfelAssociation& s
             const float enhanced_m = enhanced_m_[i];
             const float depth_m = frame.depth.data()[i];
             if (used_[i] == 0 || mode_of_pixel_[i] == kNoMode || !(enhanced_m > 0.0F) || enhanced_m == depth_m ||
-                !std::isfinite(enhanced_m)) {
+                !(std::abs(double{enhanced_m} - double{depth_m}) <= config_.max_depth_change_m)) {
               continue;
             }
             const StoredModes modes = store_.modes(id);
@@ -283,17 +290,18 @@ std::vector<SurfelMode> ModeFilter::modes(SurfelId id) const {
 }
 
 std::vector<SurfelMode> ModeFilter::winners(const Executor& executor) const {
-  std::vector<SurfelMode> best(store_.size());
-  executor.parallel_for(best.size(), kWinnersPerTask, [&](std::size_t begin, std::size_t end) {
+  std::vector<SurfelMode> chosen(store_.size());
+  const double bandwidth = config_.choice_sigmas * config_.guided.color_sigma;
+  executor.parallel_for(chosen.size(), kWinnersPerTask, [&](std::size_t begin, std::size_t end) {
+    std::vector<SurfelMode> modes;
     for (std::size_t k = begin; k < end; ++k) {
       const auto id = static_cast<SurfelId>(k);
-      for (std::size_t i = 0; i < store_.count(id); ++i) {
-        const SurfelMode mode = store_.mode(id, i);
-        if (mode.weight > best[k].weight) best[k] = mode;
-      }
+      modes.clear();
+      for (std::size_t i = 0; i < store_.count(id); ++i) modes.push_back(store_.mode(id, i));
+      chosen[k] = bandwidth > 0.0 ? densest_mode(modes, bandwidth) : heaviest_mode(modes);
     }
   });
-  return best;
+  return chosen;
 }
 
 }  // namespace saccade

@@ -21,8 +21,14 @@ struct ModeFilterConfig {
   double color_sigmas{5.0};     ///< K: a colour farther from all modes is a new one; infinity: one mode for all
   int max_modes{10};            ///< M_max
   bool enhance_depth{true};     ///< lines 16–19; without: d′_e = d′
+  /// A depth that the guided filter moves farther is taken as it was measured; infinity: all are moved, as printed.
+  double max_depth_change_m{0.01};
+  /// What a surfel is in the end: where its modes are densest, seen through a Gaussian of so many σ_c (densest_mode);
+  /// 0: its heaviest mode, eq. 4.11 as printed.
+  double choice_sigmas{4.0};
 
-  /// invalid_argument for a bad guided filter, K that is not positive, or M_max outside 1 to 32.
+  /// invalid_argument for a bad guided filter, K or a change of depth that is not positive, M_max outside 1 to 32, or
+  /// choice_sigmas that are negative or not finite.
   [[nodiscard]] Status validate() const;
 };
 
@@ -58,7 +64,7 @@ class ModeFilter {
 
   /// One surfel's modes, in the order in which they came.
   [[nodiscard]] std::vector<SurfelMode> modes(SurfelId id) const;
-  /// Eq. 4.11 per surfel: the mode of the largest weight, the first of equal ones; weight 0 where there is none.
+  /// What each surfel is in the end (choice_sigmas); weight 0 where there is no mode.
   [[nodiscard]] std::vector<SurfelMode> winners(const Executor& executor) const;
   [[nodiscard]] std::size_t size() const { return store_.size(); }
   /// Of the modes.
