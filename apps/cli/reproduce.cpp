@@ -242,6 +242,9 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
                    "the same way; for a quick look (default: all)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
+  command->add_flag("--as-printed", options->as_printed,
+                    "Tables 4.1, 4.3 and Figs. 4.5 to 4.11: the mode filter as the thesis prints it, without what is "
+                    "ours");
   command
       ->add_option("--out", plots->folder,
                    "folder for the plots of Tables 2.1 (Fig. 2.12) and 3.5 and of Figs. 3.17, 4.10, 4.11, and the "

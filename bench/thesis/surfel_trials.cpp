@@ -50,7 +50,7 @@ Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::si
   SurfelFusionConfig fusing;
   fusing.image_sigma = is_vignetted ? kVignettedSigma : kImageSigma;
   SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(fusing));
-  SACCADE_TRY(ModeFilter filter, ModeFilter::create());
+  SACCADE_TRY(ModeFilter filter, ModeFilter::create(config.mode_filter));
   SACCADE_TRY(ExposureCompensation exposure, ExposureCompensation::create());
   SurfelClouds clouds;
   for (;;) {
@@ -115,6 +115,34 @@ SupervoxelConfig thesis_supervoxels() {
   return growing;
 }
 
+/// Where the grid of seeds lies is chance, and with it by how much a supervoxel joins two things: the figures of
+/// several placements are taken together.
+Result<ScoreCurve> sv_lccp_curve_of_placements(PointCloud cloud, const SegmentationTruth& truth,
+                                               const std::vector<double>& thresholds, const Executor& executor,
+                                               const Progress& progress) {
+  constexpr int kPlacements{4};
+  ScoreCurve together;
+  for (int placement = 0; placement < kPlacements; ++placement) {
+    SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, thesis_supervoxels(), executor));
+    SACCADE_TRY(const ScoreCurve curve, sv_lccp_curve(supervoxels, truth, thresholds, {}, executor, progress));
+    together.points.resize(curve.points.size());
+    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+      CurvePoint& sum = together.points[i];
+      const CurvePoint& point = curve.points[i];
+      sum.threshold = point.threshold;
+      sum.segments += point.segments / kPlacements;
+      sum.score.boundary += point.score.boundary;
+      sum.score.true_boundary += point.score.true_boundary;
+      sum.score.matched += point.score.matched;
+      sum.score.distance_m += point.score.distance_m / kPlacements;
+      sum.score.bce += point.score.bce / kPlacements;
+    }
+    const auto step_m = static_cast<float>(kSupervoxel_m / kPlacements);
+    for (Eigen::Vector3f& position_m : cloud.positions_m) position_m.array() += step_m;
+  }
+  return together;
+}
+
 Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelColors colors, SurfelTrial& trial,
              const Executor& executor, const Progress& progress) {
   const std::vector<double> thresholds = surfel_thresholds();
@@ -125,16 +153,15 @@ Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelCo
   const FloodFillConfig filling{kColorWeight, kNormalWeight, 0.0};
   const auto of = static_cast<std::size_t>(colors);
   SACCADE_TRY(trial.flood_fill[of], flood_fill_curve(cloud, truth, thresholds, filling, executor, progress));
-  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, thesis_supervoxels(), executor));
-  SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve(supervoxels, truth, thresholds, {}, executor, progress));
+  SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve_of_placements(cloud, truth, thresholds, executor, progress));
   return {};
 }
 
 }  // namespace
 
 std::vector<double> surfel_thresholds() {
-  constexpr int kThresholds{24};
-  constexpr double kLeast{0.004};
+  constexpr int kThresholds{32};
+  constexpr double kLeast{0.0005};
   constexpr double kMost{0.5};
   std::vector<double> thresholds;
   for (int i = 0; i < kThresholds; ++i) {

@@ -12,6 +12,7 @@
 #include "saccade/core/progress.hpp"
 #include "saccade/scene/surfel_scenes.hpp"
 #include "saccade/segment/score_curve.hpp"
+#include "saccade/surfel/mode_filter.hpp"
 
 namespace saccade::thesis {
 
@@ -22,6 +23,7 @@ struct SurfelTrialConfig {
   bool noise{true};                      ///< of depth, colour and poses
   std::optional<bool> automatic_gain{};  ///< none: as the scene has it
   bool exposure_compensation{false};
+  ModeFilterConfig mode_filter{};
   double min_weight{10.0};  ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
 };
 

@@ -25,7 +25,7 @@ TEST(ReproduceSurfels, ParametersStandBesideTheThesis) {
 }
 
 void expect_curve(const json& curve) {
-  EXPECT_EQ(curve.at("points").size(), 24U);
+  EXPECT_EQ(curve.at("points").size(), 32U);
   EXPECT_GT(curve.at("area").get<double>(), 0.0);
   double least{1.0};
   std::size_t before{static_cast<std::size_t>(-1)};
@@ -92,7 +92,7 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
 
 TEST(ReproduceSurfels, ExposureCompensationWinsBackWhatGainCosts) {
   if (kSanitized) GTEST_SKIP() << "six trials take long under sanitizers";
-  const json table = tables_of(run_program({"reproduce", "4.gain", "--frames", "40", "--image-width", "160", "--quiet",
+  const json table = tables_of(run_program({"reproduce", "4.gain", "--frames", "24", "--image-width", "128", "--quiet",
                                             "--json", "-"}))
                          .at(0);
   ASSERT_EQ(table.at("rows").size(), 2U);
