@@ -97,6 +97,19 @@ scripts/install_packages.sh program tests
 configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io golden >"$out/build_parity.log" || failed=1
 step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity '--gtest_filter=ArmCollision*'
 
+echo "Surfels of rendered scenes, segmented: all frames"
+for scene in workshop-1 workshop-2 desk magazines-1 magazines-2; do
+  close_ups=()
+  case $scene in
+    workshop-1) close_ups=(fig-4.5 fig-4.9) ;;
+    workshop-2) close_ups=(fig-4.6) ;;
+    magazines-1) close_ups=(fig-4.7) ;;
+    magazines-2) close_ups=(fig-4.8) ;;
+  esac
+  step "surfels_$scene" build/release/saccade --quiet reproduce 4.1 4.3 4.10 4.11 "${close_ups[@]}" --scene "$scene" \
+    --out "$out/surfels_$scene" --force --json "$out/surfels_$scene.json"
+done
+
 echo "Surfels: colour edges of recorded frames"
 if [[ -d $data/rgbd_redkitchen ]]; then
   step surfel_picture build/release/saccade surfels "$data/rgbd_redkitchen" --out "$out/surfels.ply" --mode-filter both \

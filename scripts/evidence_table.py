@@ -8,6 +8,8 @@ import re
 import statistics
 import sys
 
+import evidence_surfels
+
 # What the figures are held to, per step: (name in the JSON result, limit, "at most" or "at least", unit, factor).
 LIMITS = {
     "fuse_rgbd_redkitchen_forced": [("depth_residual_m.median", 0.008, "at most"),
@@ -256,13 +258,6 @@ def planning_section(folder, lines):
         lambda line: line.startswith(shown))
 
 
-def sharpness_section(folder, lines):
-    log_section(folder, lines, "surfel_sharpness", "Surfels on recorded frames", [
-        "How steeply luminance rises where the camera's image has edges, in renderings of the averages and of the modes",
-        "(docs/surfels.md). The step fails unless modes are half as steep again, in every frame a third, and cover as much."],
-        lambda line: line.startswith("sharpness: "))
-
-
 def greatest_fall(curve):
     """Below the best value before: how much, and at which value it is (from 1)."""
     return max((max(curve[:n]) - curve[n], n + 1) for n in range(1, len(curve)))
@@ -356,7 +351,9 @@ def main():
     held = update_section(folder, lines) and held
     arm_section(folder, lines)
     planning_section(folder, lines)
-    sharpness_section(folder, lines)
+    held = evidence_surfels.section(folder, lines, command_of) and held
+    log_section(folder, lines, "surfel_sharpness", "Surfels on recorded frames", evidence_surfels.SHARPNESS_TEXT,
+                lambda line: line.startswith("sharpness: "))
     held = annotation_section(folder, lines) and held
     kill_section(folder, lines)
     page_section(folder, lines)

@@ -19,6 +19,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/image_io.hpp"
+#include "saccade/scene/surfel_scenes.hpp"
 #include "tables/hand_data.hpp"
 #include "tables/thesis_table.hpp"
 
@@ -242,6 +243,11 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
                    "the same way; for a quick look (default: all)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
+  command
+      ->add_option("--scene", options->surfel_scene,
+                   "Tables 4.1, 4.3 and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes")
+      ->check(CLI::IsMember(std::vector<std::string>(kSurfelScenes.begin(), kSurfelScenes.end())))
+      ->type_name("NAME");
   command->add_flag("--as-printed", options->as_printed,
                     "Tables 4.1, 4.3 and Figs. 4.5 to 4.11: the mode filter as the thesis prints it, without what is "
                     "ours");

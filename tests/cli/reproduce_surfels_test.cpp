@@ -90,6 +90,23 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
   }
 }
 
+TEST(ReproduceSurfels, OneSceneAloneAsPrintedOrNot) {
+  const Arguments quick{"--scene", "desk", "--frames", "8", "--image-width", "96", "--quiet", "--json", "-"};
+  const json ours = tables_of(run_program(Arguments{"reproduce", "4.1", "4.3"} + quick));
+  const json printed = tables_of(run_program(Arguments{"reproduce", "4.1", "4.3", "--as-printed"} + quick));
+  for (const json& tables : {ours, printed}) {
+    ASSERT_EQ(tables.at(0).at("rows").size(), 1U);
+    EXPECT_EQ(tables.at(0).at("rows").at(0).at("scene"), "desk");
+    EXPECT_EQ(tables.at(0).at("rows").at(0).at("thesis").at("labels"), 164) << "the third of the thesis'";
+  }
+  const auto curve = [](const json& tables, const char* cloud) {
+    return tables.at(1).at("rows").at(0).at("flood_fill").at(cloud);
+  };
+  EXPECT_EQ(curve(ours, "not_enhanced"), curve(printed, "not_enhanced"));
+  EXPECT_NE(curve(ours, "enhanced"), curve(printed, "enhanced"));
+  expect_failure(run_program({"reproduce", "4.1", "--scene", "table"}), 2, "reproduce", {"--scene", "workshop-1"});
+}
+
 TEST(ReproduceSurfels, ExposureCompensationWinsBackWhatGainCosts) {
   if (kSanitized) GTEST_SKIP() << "six trials take long under sanitizers";
   const json table = tables_of(run_program({"reproduce", "4.gain", "--frames", "24", "--image-width", "128", "--quiet",

@@ -58,10 +58,19 @@ namespace {
 
 constexpr int kErrorDecimals{3};
 
-/// The trials of all scenes.
+/// Of kSurfelScenes.
+std::vector<std::size_t> chosen_scenes(const ReproduceOptions& options) {
+  std::vector<std::size_t> chosen;
+  for (std::size_t scene = 0; scene < kSurfelScenes.size(); ++scene) {
+    if (options.surfel_scene.empty() || options.surfel_scene == kSurfelScenes.at(scene)) chosen.push_back(scene);
+  }
+  return chosen;
+}
+
+/// The trials of the chosen scenes.
 Result<std::shared_ptr<const SurfelExperiments>> experiments_of(const ReproduceOptions& options,
                                                                 const Executor& executor, const Progress& progress) {
-  for (std::size_t scene = 0; scene < kSurfelScenes.size(); ++scene) {
+  for (const std::size_t scene : chosen_scenes(options)) {
     SACCADE_CHECK(surfel_trial(options, scene, executor, progress));
   }
   return std::shared_ptr<const SurfelExperiments>{options.surfels};
@@ -114,7 +123,7 @@ Result<ReproducedTable> reproduce_curves(const ReproduceOptions& options, const 
   table.columns = {"scene", "area below the curve", "greatest F", "precision there", "recall there"};
   json rows = json::array();
   const std::size_t first_plot = by_flood_fill ? kFirstSurfelPlot : kFirstSurfelPlot + kSurfelScenes.size();
-  for (std::size_t i = 0; i < experiments->trials.size(); ++i) {
+  for (const std::size_t i : chosen_scenes(options)) {
     const SurfelTrial& trial = *experiments->trials[i];
     const ScoreCurve& average = trial.curve(by_flood_fill, SurfelColors::average);
     const ScoreCurve& modes = trial.curve(by_flood_fill, SurfelColors::modes);
@@ -162,7 +171,7 @@ Result<ReproducedTable> reproduce_table_4_1(const ReproduceOptions& options, con
   table.caption = "Table 4.1: the scenes, thesis → here";
   table.columns = {"scene", "frames", "points", "true labels", "ms per frame, here"};
   json rows = json::array();
-  for (std::size_t i = 0; i < experiments->trials.size(); ++i) {
+  for (const std::size_t i : chosen_scenes(options)) {
     const SurfelTrial& trial = *experiments->trials[i];
     const thesis::SurfelDataset& printed = thesis::kTable4_1.at(i);
     table.rows.push_back({trial.scene, std::to_string(printed.frames) + " → " + std::to_string(trial.frames),
@@ -224,7 +233,7 @@ Result<ReproducedTable> reproduce_table_4_3(const ReproduceOptions& options, con
   table.caption = "Table 4.3: least bidirectional consistency error, not enhanced → enhanced";
   table.columns = {"scene", "flood fill, thesis", "here", "SV-LCCP, thesis", "here"};
   json rows = json::array();
-  for (std::size_t i = 0; i < experiments->trials.size(); ++i) {
+  for (const std::size_t i : chosen_scenes(options)) {
     const SurfelTrial& trial = *experiments->trials[i];
     const thesis::LeastErrors& printed = thesis::kTable4_3.at(i);
     const auto thesis_pair = [](double average, double modes) {

@@ -1,0 +1,48 @@
+# SPDX-License-Identifier: Apache-2.0
+"""Figures of surfels and how well they are segmented, of docs/evidence.md: thesis §4.1.3."""
+import json
+
+SCENES = ("workshop-1", "workshop-2", "desk", "magazines-1", "magazines-2")
+SHARPNESS_TEXT = [
+    "How steeply luminance rises where the camera's image has edges, in renderings of the averages and of the modes",
+    "(docs/surfels.md). The step fails unless modes are half as steep again, in every frame a third, and cover as much."]
+ALGORITHMS = (("flood_fill", "4.10", "flood fill"), ("sv_lccp", "4.11", "SV-LCCP"))
+FIGURES = (("least_bce", "least BCE", -1), ("best_f", "greatest F", 1), ("area", "area below the curve", 1))
+
+
+def tables_of(folder, name):
+    """Rows of the scene by the table's number, or None."""
+    path = folder / f"{name}.json"
+    if not path.exists():
+        return None
+    tables = json.loads(path.read_text())["result"]["tables"]
+    return {table["table"]: table["rows"] for table in tables if "rows" in table}
+
+
+def section(folder, lines, command_of):
+    """Table 4.3 and Figs. 4.10 and 4.11 of all frames. Whether enhancement is better in every figure that is there."""
+    scenes = {scene: tables_of(folder, f"surfels_{scene}") for scene in SCENES}
+    scenes = {scene: tables for scene, tables in scenes.items() if tables}
+    if not scenes:
+        return True
+    lines += ["## Surfels, segmented", ""]
+    lines += [f"`{command_of(folder, f'surfels_{scene}')}`\n" for scene in scenes]
+    lines += ["Rendered scenes with noise, not enhanced → enhanced by the mode filter (docs/surfel-segmentation.md). Held to: better in "
+              "every figure.", "", "| scene | frames | surfels | ms per frame | algorithm | "
+              + " | ".join(f"{title} | better" for _, title, _ in FIGURES) + " |",
+              "|---|---|---|---|---|" + "---|---|" * len(FIGURES)]
+    held = True
+    for scene, tables in scenes.items():
+        about = tables["4.1"][0]
+        for algorithm, number, title in ALGORITHMS:
+            curves = tables[number][0]
+            cells = []
+            for figure, _, sense in FIGURES:
+                average, modes = curves["not_enhanced"][figure], curves["enhanced"][figure]
+                better = sense * (modes - average) > 0
+                held = held and better
+                cells.append(f"{average:.3f} → {modes:.3f} | {'yes' if better else 'NO'}")
+            lines.append(f"| {scene} | {about['frames']} | {about['points']} | {about['ms_per_frame']:.1f} | {title} | "
+                         + " | ".join(cells) + " |")
+    lines.append("")
+    return held
