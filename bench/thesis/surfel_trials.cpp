@@ -73,7 +73,7 @@ Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::si
   const SurfelMap& map = fusion.map();
   const std::vector<SurfelMode> winners = filter.winners(executor);
   for (SurfelId id = 0; id < map.size(); ++id) {
-    const auto& [disc, color] = map.surfel(id);
+    const SurfelDisc& disc = map.discs[id];
     if (static_cast<double>(disc.weight) < share * config.min_weight || winners[id].weight <= 0.0F) continue;
     const auto add = [&](SurfelColors colors, const Eigen::Vector3f& position_m, const Eigen::Vector3f& shown) {
       PointCloud& cloud = clouds.by_colors[static_cast<std::size_t>(colors)];
@@ -82,7 +82,7 @@ Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::si
       cloud.colors.push_back(shown);
       cloud.radii_m.push_back(disc.radius_m);
     };
-    add(SurfelColors::average, disc.position_m, color.color);
+    add(SurfelColors::average, disc.position_m, map.colors[id].color);
     add(SurfelColors::modes, winners[id].position_m, winners[id].color);
   }
   return clouds;
