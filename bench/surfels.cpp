@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
-// Fuses a folder of RGB-D frames into surfels with the mode filter and prints medians of the milliseconds per phase,
-// and bytes per surfel.   Usage: surfels FOLDER [FRAMES] [THREADS]; exit status 77 without frames.
+// Frames of the 7-Scenes kitchen into surfels, with the mode filter and without: the median of a frame's milliseconds,
+// of each phase, and bytes per surfel.
+#include <benchmark/benchmark.h>
+
 #include <algorithm>
+#include <array>
 #include <cstdio>
 #include <cstdlib>
+#include <filesystem>
+#include <numeric>
+#include <optional>
 #include <vector>
 
 #include "saccade/io/rgbd_folder.hpp"
+#include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 
@@ -14,53 +21,97 @@ namespace {
 
 using namespace saccade;
 
-double median(std::vector<double> values) {
-  std::nth_element(values.begin(), values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2), values.end());
-  return values[values.size() / 2];
+constexpr std::size_t kFrames{200};
+
+struct Frames {
+  PinholeCamera camera;
+  std::vector<Frame> all;
+};
+
+std::optional<Frames> recorded(const std::filesystem::path& folder) {
+  RgbdFolderConfig config;
+  config.count = kFrames;
+  const auto source = open_rgbd_folder(folder, config);
+  if (!source) return std::nullopt;
+  Frames frames{(*source)->camera(), {}};
+  while (true) {
+    auto frame = (*source)->next();
+    if (!frame) return std::nullopt;
+    if (!frame->has_value()) return frames;
+    frames.all.push_back(*std::move(*frame));
+  }
 }
+
+/// Recorded ones where they are there, else of the sample table, which have no noise.
+const Frames& frames() {
+  static const Frames made = [] {
+    const char* data = std::getenv("SACCADE_DATA");
+    const std::filesystem::path folder =
+        std::filesystem::path{data != nullptr ? data : "../shared/data"} / "rgbd_redkitchen";
+    if (auto read = recorded(folder)) return *std::move(read);
+    std::fprintf(stderr, "%s: no frames there, the sample scene is used\n", folder.c_str());
+    Frames rendered{camera_preset("kinect-v1").value(), {}};
+    for (const Pose& T_world_camera : sample_trajectory(static_cast<int>(kFrames))) {
+      RenderedFrame seen = render(sample_tabletop(), rendered.camera, T_world_camera).value();
+      Frame& frame = rendered.all.emplace_back();
+      frame.depth = std::move(seen.depth);
+      frame.color = std::move(seen.color);
+      frame.T_world_camera = T_world_camera;
+    }
+    return rendered;
+  }();
+  return made;
+}
+
+double median(std::vector<double> values) {
+  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
+  std::nth_element(values.begin(), middle, values.end());
+  return *middle;
+}
+
+/// One repetition is a whole sequence, and its time that of the median frame.
+void fuse_frames(benchmark::State& state, bool filtered) {
+  constexpr std::array kPhases{"points", "index", "associate", "integrate", "modes", "guided_filter", "move"};
+  const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(1)));
+  const auto count = std::min(frames().all.size(), static_cast<std::size_t>(state.range(0)));
+  for (auto _ : state) {
+    SurfelFusion fusion = SurfelFusion::create().value();
+    ModeFilter filter = ModeFilter::create().value();
+    std::vector<double> totals_ms;
+    std::array<std::vector<double>, kPhases.size()> phases_ms;
+    for (std::size_t i = 0; i < count; ++i) {
+      const Frame& frame = frames().all[i];
+      const auto fused = fusion.add_frame(frame, frames().camera, executor);
+      if (!fused) return state.SkipWithError(fused.error().to_string().c_str());
+      ModeFilterReport modes;
+      if (filtered) modes = filter.add_frame(frame, fusion.association(), executor).value();
+      const std::array ms{fused->points_ms,   fused->index_ms,        fused->associate_ms, fused->integrate_ms,
+                          modes.integrate_ms, modes.guided_filter_ms, modes.move_ms};
+      totals_ms.push_back(std::accumulate(ms.begin(), ms.end(), 0.0));
+      for (std::size_t k = 0; k < ms.size(); ++k) phases_ms[k].push_back(ms[k]);
+    }
+    state.SetIterationTime(1e-3 * median(totals_ms));
+    const auto surfels = static_cast<double>(fusion.map().size());
+    if (surfels < 1e5) return state.SkipWithError("hardly any surfels");
+    state.counters["surfels"] = surfels;
+    state.counters["bytes_per_surfel"] =
+        static_cast<double>(fusion.map().memory_bytes() + filter.memory_bytes()) / surfels;
+    for (std::size_t k = 0; k < (filtered ? kPhases.size() : 4); ++k) {
+      state.counters[std::string{kPhases[k]} + "_ms"] = median(phases_ms[k]);
+    }
+  }
+}
+
+void fusion(benchmark::State& state) { fuse_frames(state, false); }
+void fusion_and_mode_filter(benchmark::State& state) { fuse_frames(state, true); }
+
+void lengths(benchmark::internal::Benchmark* row) {
+  for (const int count : {5, 200}) row->Args({count, 2});
+  row->Args({200, 1})->ArgNames({"frames", "threads"})->Iterations(1)->UseManualTime()->Unit(benchmark::kMillisecond);
+}
+BENCHMARK(fusion)->Apply(lengths);
+BENCHMARK(fusion_and_mode_filter)->Apply(lengths);
 
 }  // namespace
 
-int main(int argc, char** argv) {
-  if (argc < 2) return 2;
-  RgbdFolderConfig config;
-  config.count = argc > 2 ? std::strtoul(argv[2], nullptr, 10) : 200;
-  const auto source = open_rgbd_folder(argv[1], config);
-  if (!source) return std::puts(source.error().to_string().c_str()), 77;
-  const Executor executor = Executor::with_threads(argc > 3 ? std::strtoul(argv[3], nullptr, 10) : 0);
-  SurfelFusion fusion = SurfelFusion::create().value();
-  ModeFilter filter = ModeFilter::create().value();
-  std::vector<std::vector<double>> phases(7);
-  while (true) {
-    const auto frame = (*source)->next();
-    if (!frame) return std::puts(frame.error().to_string().c_str()), 1;
-    if (!frame->has_value()) break;
-    const auto fused = fusion.add_frame(**frame, (*source)->camera(), executor);
-    if (!fused) return std::puts(fused.error().to_string().c_str()), 1;
-    const auto filtered = filter.add_frame(**frame, fusion.association(), executor);
-    const double ms[]{fused->points_ms,    fused->index_ms,        fused->associate_ms,
-                      fused->integrate_ms, filtered->integrate_ms, filtered->guided_filter_ms,
-                      filtered->move_ms};
-    for (std::size_t i = 0; i < phases.size(); ++i) phases[i].push_back(ms[i]);
-  }
-  const char* names[]{"points", "index", "associate", "integrate", "filter.integrate", "filter.guided", "filter.move"};
-  double fusion_ms{0.0};
-  double all_ms{0.0};
-  for (std::size_t i = 0; i < phases.size(); ++i) {
-    const double ms = median(phases[i]);
-    std::printf("%-18s %7.2f ms\n", names[i], ms);
-    all_ms += ms;
-    if (i < 4) fusion_ms += ms;
-  }
-  const auto surfels = static_cast<double>(fusion.map().size());
-  std::size_t modes{0};
-  for (SurfelId id = 0; id < filter.size(); ++id) modes += filter.modes(id).size();
-  std::printf("fusion %.2f ms, with the mode filter %.2f ms; %zu threads, %zu frames\n", fusion_ms, all_ms,
-              executor.threads(), phases[0].size());
-  std::printf("%.0f surfels, %.2f modes each; %.0f bytes each (map %.0f, modes %.0f)\n", surfels,
-              static_cast<double>(modes) / surfels,
-              static_cast<double>(fusion.map().memory_bytes() + filter.memory_bytes()) / surfels,
-              static_cast<double>(fusion.map().memory_bytes()) / surfels,
-              static_cast<double>(filter.memory_bytes()) / surfels);
-  return surfels > 0.0 ? 0 : 1;
-}
+BENCHMARK_MAIN();
