@@ -32,7 +32,7 @@ struct SurfelsOptions : FrameOptions {
   std::string mode_filter{"on"};
   std::optional<double> min_confidence;  ///< default: min_weight
   std::string exposure_compensation{"off"};
-  std::string choice{"densest"};
+  std::string choice{"sharpened"};
   SurfelFusionConfig fusion;
   ModeFilterConfig filter;
 
@@ -299,9 +299,10 @@ void check_surfels_options(SurfelsOptions& options) {
   }
   require_ok(options.fusion.validate(), "--image-sigma");
   if (!(options.filter.max_depth_change_m > 0.0)) usage_error("--max-depth-change", "must be positive");
-  if (options.choice != "densest" && options.choice != "heaviest") {
-    usage_error("--choice", "must be densest or heaviest, not '" + options.choice + "'");
+  if (options.choice != "sharpened" && options.choice != "densest" && options.choice != "heaviest") {
+    usage_error("--choice", "must be sharpened, densest or heaviest, not '" + options.choice + "'");
   }
+  if (options.choice != "sharpened") options.filter.sharpening.strength = 0.0;
   if (options.choice == "heaviest") options.filter.choice_sigmas = 0.0;
   require_ok(options.filter.validate(), "--max-modes");
 }
@@ -338,9 +339,11 @@ void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action)
       ->type_name("N")
       ->capture_default_str();
   command
-      ->add_option("--choice", options->choice,
-                   "what a surfel is in the end: where its colours are densest, or the heaviest one (thesis, eq. 4.11)")
-      ->type_name("densest|heaviest")
+      ->add_option(
+          "--choice", options->choice,
+          "what a surfel is in the end: the colour that is densest in its place more than around, where its own "
+          "colours are densest, or the heaviest one (thesis, eq. 4.11)")
+      ->type_name("sharpened|densest|heaviest")
       ->capture_default_str();
   command
       ->add_option("--max-depth-change", options->filter.max_depth_change_m,

@@ -193,6 +193,9 @@ TEST(Defaults, OfSurfelsAreDocumented) {
   expect_documented("ModeFilterConfig::max_modes", {static_cast<double>(filter.max_modes)});
   expect_documented("ModeFilterConfig::max_depth_change_m", {filter.max_depth_change_m});
   expect_documented("ModeFilterConfig::choice_sigmas", {filter.choice_sigmas});
+  expect_documented("ModeSharpeningConfig::strength", {filter.sharpening.strength});
+  expect_documented("ModeSharpeningConfig::reach_m", {filter.sharpening.reach_m});
+  expect_documented("ModeSharpeningConfig::color_sigma", {filter.sharpening.color_sigma});
 }
 
 TEST(Defaults, OfSurfelSegmentationAreDocumented) {

@@ -28,17 +28,9 @@ struct Density {
   double sum{0.0};
 };
 
-}  // namespace
-
-SurfelMode heaviest_mode(std::span<const SurfelMode> modes) {
-  SurfelMode best;
-  for (const SurfelMode& mode : modes) {
-    if (mode.weight > best.weight) best = mode;
-  }
-  return best;
-}
-
-SurfelMode densest_mode(std::span<const SurfelMode> modes, double bandwidth) {
+/// `favoured` colours, in [0, 1], are begun with rather than others that are as dense.
+template <class Favoured>
+SurfelMode densest_of(std::span<const SurfelMode> modes, double bandwidth, const Favoured& favoured) {
   SACCADE_EXPECTS(bandwidth > 0.0);
   if (modes.size() < 2) return heaviest_mode(modes);
   double most{0.0};
@@ -46,9 +38,9 @@ SurfelMode densest_mode(std::span<const SurfelMode> modes, double bandwidth) {
   Eigen::Vector3d color{Eigen::Vector3d::Zero()};
   Eigen::Vector3d position_m{Eigen::Vector3d::Zero()};
   for (const SurfelMode& mode : modes) {
-    const Density density{modes, mode.color.cast<double>(), bandwidth};
-    if (density.sum > most) {
-      most = density.sum;
+    const double density = Density{modes, mode.color.cast<double>(), bandwidth}.sum * favoured(mode.color);
+    if (density > most) {
+      most = density;
       color = mode.color.cast<double>();
     }
     position_m += static_cast<double>(mode.weight) * mode.position_m.cast<double>();
@@ -66,6 +58,27 @@ SurfelMode densest_mode(std::span<const SurfelMode> modes, double bandwidth) {
   densest.position_m = (position_m / weight).cast<float>();
   densest.weight = static_cast<float>(most);
   return densest;
+}
+
+}  // namespace
+
+SurfelMode heaviest_mode(std::span<const SurfelMode> modes) {
+  SurfelMode best;
+  for (const SurfelMode& mode : modes) {
+    if (mode.weight > best.weight) best = mode;
+  }
+  return best;
+}
+
+SurfelMode densest_mode(std::span<const SurfelMode> modes, double bandwidth) {
+  return densest_of(modes, bandwidth, [](const Eigen::Vector3f&) { return 1.0; });
+}
+
+SurfelMode densest_mode_like(std::span<const SurfelMode> modes, double bandwidth, const Eigen::Vector3f& color,
+                             double color_sigma) {
+  return densest_of(modes, bandwidth, [&](const Eigen::Vector3f& other) {
+    return std::exp(-static_cast<double>((other - color).squaredNorm()) / (2.0 * color_sigma * color_sigma));
+  });
 }
 
 }  // namespace saccade

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// heaviest_mode, densest_mode: what a surfel is in the end, of its modes.  Thesis §4.1.1, eq. 4.11; decision 18.
+// heaviest_mode, densest_mode, densest_mode_like: what a surfel is in the end, of its modes.  Thesis §4.1.1, eq. 4.11;
+// decision 18.
 
 #include <span>
 
@@ -16,5 +17,9 @@ namespace saccade {
 /// made of one colour count together, and colours far away count nothing. Its place is the mean over all modes, its
 /// weight that under the Gaussian. Weight 0 where there is no mode. Expects a bandwidth above 0. O(modes²).
 [[nodiscard]] SurfelMode densest_mode(std::span<const SurfelMode> modes, double bandwidth);
+
+/// The same from the mode that is densest among those that look like a colour, under a Gaussian of `color_sigma`.
+[[nodiscard]] SurfelMode densest_mode_like(std::span<const SurfelMode> modes, double bandwidth,
+                                           const Eigen::Vector3f& color, double color_sigma);
 
 }  // namespace saccade

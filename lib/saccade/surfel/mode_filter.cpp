@@ -161,6 +161,7 @@ Status ModeFilterConfig::validate() const {
   if (!(choice_sigmas >= 0.0 && std::isfinite(choice_sigmas))) {
     return Error{Errc::invalid_argument, "mode filter: choice_sigmas must be 0 or more", {}};
   }
+  SACCADE_CHECK(sharpening.validate());
   return {};
 }
 
@@ -290,8 +291,11 @@ std::vector<SurfelMode> ModeFilter::modes(SurfelId id) const {
 }
 
 std::vector<SurfelMode> ModeFilter::winners(const Executor& executor) const {
-  std::vector<SurfelMode> chosen(store_.size());
   const double bandwidth = config_.choice_sigmas * config_.guided.color_sigma;
+  if (bandwidth > 0.0 && config_.sharpening.strength > 0.0) {
+    return sharpened_modes(store_, config_.sharpening, bandwidth, executor);
+  }
+  std::vector<SurfelMode> chosen(store_.size());
   executor.parallel_for(chosen.size(), kWinnersPerTask, [&](std::size_t begin, std::size_t end) {
     std::vector<SurfelMode> modes;
     for (std::size_t k = begin; k < end; ++k) {

@@ -10,6 +10,7 @@
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/camera_source.hpp"
 #include "saccade/surfel/guided_filter.hpp"
+#include "saccade/surfel/mode_sharpening.hpp"
 #include "saccade/surfel/mode_store.hpp"
 #include "saccade/surfel/surfel_association.hpp"
 
@@ -26,9 +27,10 @@ struct ModeFilterConfig {
   /// What a surfel is in the end: where its modes are densest, seen through a Gaussian of so many σ_c (densest_mode);
   /// 0: its heaviest mode, eq. 4.11 as printed.
   double choice_sigmas{4.0};
+  ModeSharpeningConfig sharpening{};  ///< modes of the neighbours decide as well; of no use to the heaviest one
 
   /// invalid_argument for a bad guided filter, K or a change of depth that is not positive, M_max outside 1 to 32, or
-  /// choice_sigmas that are negative or not finite.
+  /// choice_sigmas that are negative or not finite, or bad sharpening.
   [[nodiscard]] Status validate() const;
 };
 
@@ -64,7 +66,7 @@ class ModeFilter {
 
   /// One surfel's modes, in the order in which they came.
   [[nodiscard]] std::vector<SurfelMode> modes(SurfelId id) const;
-  /// What each surfel is in the end (choice_sigmas); weight 0 where there is no mode.
+  /// What each surfel is in the end (choice_sigmas, sharpening); weight 0 where there is no mode.
   [[nodiscard]] std::vector<SurfelMode> winners(const Executor& executor) const;
   [[nodiscard]] std::size_t size() const { return store_.size(); }
   /// Of the modes.
