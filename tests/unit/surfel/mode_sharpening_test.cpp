@@ -4,6 +4,7 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 #include <cstring>
 #include <functional>
@@ -125,6 +126,118 @@ TEST(ModeSharpening, ThreadsChangeNoBit) {
     ASSERT_EQ(other.size(), one.size());
     EXPECT_EQ(std::memcmp(one.data(), other.data(), one.size() * sizeof(SurfelMode)), 0);
   }
+}
+
+/// The same by the book: all surfels asked by all, in double precision.
+class NaiveSharpening {
+ public:
+  explicit NaiveSharpening(const std::vector<std::vector<SurfelMode>>& surfels) : surfels_{surfels} {}
+
+  struct Answer {
+    Eigen::Vector3f color;
+    double lead;  ///< of the best group over the next
+  };
+  [[nodiscard]] Answer of(std::size_t k) const {
+    const ModeSharpeningConfig config;
+    std::vector<std::size_t> order(surfels_[k].size());
+    for (std::size_t i = 0; i < order.size(); ++i) order[i] = i;
+    std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) {
+      return share(k, surfels_[k][a].color) > share(k, surfels_[k][b].color);
+    });
+    std::vector<std::pair<double, Eigen::Vector3f>> groups;
+    for (const std::size_t i : order) {
+      const Eigen::Vector3f& color = surfels_[k][i].color;
+      const bool is_new = std::none_of(groups.begin(), groups.end(), [&](const auto& group) {
+        return (group.second - color).norm() <= static_cast<float>(config.color_sigma);
+      });
+      if (is_new) groups.emplace_back(score(k, color), color);
+    }
+    if (groups.size() < 2) return {densest_mode(surfels_[k], kPageBandwidth).color, 1.0};
+    std::sort(groups.begin(), groups.end(), [](const auto& a, const auto& b) { return a.first > b.first; });
+    return {densest_mode_like(surfels_[k], kPageBandwidth, groups[0].second, config.color_sigma).color,
+            groups[0].first - groups[1].first};
+  }
+
+ private:
+  static double bump(double squared, double sigma) {
+    return std::pow(std::max(0.0, 1.0 - squared / (8.0 * sigma * sigma)), 4.0);
+  }
+  [[nodiscard]] double share(std::size_t k, const Eigen::Vector3f& color) const {
+    double alike{0.0};
+    double all{0.0};
+    for (const SurfelMode& mode : surfels_[k]) {
+      all += mode.weight;
+      alike += mode.weight * bump((mode.color - color).cast<double>().squaredNorm(), ModeSharpeningConfig{}.color_sigma);
+    }
+    return alike / all;
+  }
+  [[nodiscard]] Eigen::Vector3d place_m(std::size_t k) const {
+    Eigen::Vector3d sum{Eigen::Vector3d::Zero()};
+    double all{0.0};
+    for (const SurfelMode& mode : surfels_[k]) {
+      sum += double{mode.weight} * mode.position_m.cast<double>();
+      all += double{mode.weight};
+    }
+    return sum / all;
+  }
+  [[nodiscard]] double score(std::size_t k, const Eigen::Vector3f& color) const {
+    const ModeSharpeningConfig config;
+    double near{0.0};
+    double near_weight{0.0};
+    double around{0.0};
+    double around_weight{0.0};
+    Eigen::Vector3d middle_m{Eigen::Vector3d::Zero()};
+    for (std::size_t other = 0; other < surfels_.size(); ++other) {
+      const Eigen::Vector3d offset_m = place_m(other) - place_m(k);
+      if (offset_m.norm() > config.reach_m) continue;
+      const double there = share(other, color);
+      const double w = bump(offset_m.squaredNorm(), config.reach_m / 12.0);
+      const double g = bump(offset_m.squaredNorm(), config.reach_m / 2.0);
+      near += w * there;
+      near_weight += w;
+      around += g * there;
+      around_weight += g;
+      middle_m += g * offset_m;
+    }
+    const double one_sided = (middle_m / around_weight).norm() / (0.25 * config.reach_m);
+    const double strength = config.strength * std::max(0.0, 1.0 - one_sided * one_sided);
+    return near / near_weight + strength * (near / near_weight - around / around_weight);
+  }
+
+  const std::vector<std::vector<SurfelMode>>& surfels_;
+};
+
+/// Random surfels, so few within reach that all of them are asked.
+TEST(ModeSharpening, EqualsANaiveOne) {
+  std::mt19937_64 random{29};
+  const auto between = [&](float low, float high) { return std::uniform_real_distribution<float>{low, high}(random); };
+  const std::vector<Eigen::Vector3f> colors{kPaper, kInk, {0.7F, 0.2F, 0.2F}, {0.75F, 0.25F, 0.2F}};
+  std::size_t compared{0};
+  for (int round = 0; round < 5; ++round) {
+    ModeStore store{6};
+    store.resize(300);
+    std::vector<std::vector<SurfelMode>> surfels(300);
+    for (SurfelId id = 0; id < 300; ++id) {
+      const Eigen::Vector3f at{between(-0.06F, 0.06F), between(-0.06F, 0.06F), between(0.99F, 1.0F)};
+      for (std::size_t i = 1 + random() % 6; i > 0; --i) {
+        const Eigen::Vector3f color = colors[random() % 4] + Eigen::Vector3f::Constant(between(-0.02F, 0.02F));
+        const Eigen::Vector3f units = color * (255.0F * ColorUnits::kPerLevel);
+        store.modes(id).add({static_cast<std::int32_t>(units.x()), static_cast<std::int32_t>(units.y()),
+                             static_cast<std::int32_t>(units.z())},
+                            at + Eigen::Vector3f::Constant(between(-0.001F, 0.001F)), between(0.5F, 9.0F));
+      }
+      for (std::size_t i = 0; i < store.count(id); ++i) surfels[id].push_back(store.mode(id, i));
+    }
+    const std::vector<SurfelMode> sharpened = sharpened_modes(store, {}, kPageBandwidth, {});
+    const NaiveSharpening naive{surfels};
+    for (SurfelId id = 0; id < 300; ++id) {
+      const NaiveSharpening::Answer answer = naive.of(id);
+      if (answer.lead < 1e-4) continue;
+      ++compared;
+      EXPECT_LT((sharpened[id].color - answer.color).norm(), 1e-5F) << round << ", " << id;
+    }
+  }
+  EXPECT_GT(compared, 1400U);
 }
 
 /// Without modes, alone, far away from everything.
