@@ -167,7 +167,8 @@ class NaiveSharpening {
     double all{0.0};
     for (const SurfelMode& mode : surfels_[k]) {
       all += mode.weight;
-      alike += mode.weight * bump((mode.color - color).cast<double>().squaredNorm(), ModeSharpeningConfig{}.color_sigma);
+      alike +=
+          mode.weight * bump((mode.color - color).cast<double>().squaredNorm(), ModeSharpeningConfig{}.color_sigma);
     }
     return alike / all;
   }
