@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
+#include <map>
+#include <utility>
 
 #include "saccade/core/clock.hpp"
 #include "saccade/explore/strategy.hpp"
@@ -89,7 +91,8 @@ Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::si
 }
 
 /// Of the places that the surfels have without enhancement, as the thesis' were annotated.
-Result<SurfelComponents> true_segments(const PointCloud& cloud, const RayScene& rays, const Executor& executor) {
+Result<std::vector<std::uint32_t>> true_labels(const PointCloud& cloud, const RayScene& rays,
+                                               const Executor& executor) {
   constexpr std::size_t kLookedUpAtOnce{1024};
   SACCADE_TRY(const TruthLabels truth, TruthLabels::build(rays));
   std::vector<std::uint32_t> labels(cloud.positions_m.size(), kUnlabelled);
@@ -101,8 +104,22 @@ Result<SurfelComponents> true_segments(const PointCloud& cloud, const RayScene& 
       if (label != 0) labels[i] = label;
     }
   });
-  SACCADE_TRY(const SurfelGraph graph, SurfelGraph::create(cloud));
-  return split_unconnected(graph, labels, executor);
+  return labels;
+}
+
+/// SurfelColors::truth.
+PointCloud with_true_colors(PointCloud cloud, const PointCloud& enhanced, const std::vector<std::uint32_t>& labels) {
+  std::map<std::uint32_t, std::pair<Eigen::Vector3d, double>> sums;
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    auto& [sum, count] = sums.try_emplace(labels[i], Eigen::Vector3d::Zero(), 0.0).first->second;
+    sum += enhanced.colors[i].cast<double>();
+    ++count;
+  }
+  for (std::size_t i = 0; i < labels.size(); ++i) {
+    const auto& [sum, count] = sums.at(labels[i]);
+    cloud.colors[i] = labels[i] == kUnlabelled ? enhanced.colors[i] : (sum / count).cast<float>();
+  }
+  return cloud;
 }
 
 SupervoxelConfig thesis_supervoxels() {
@@ -185,13 +202,18 @@ Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTr
   trial.found_gains = std::move(clouds.found_gains);
   std::sort(clouds.frame_ms.begin(), clouds.frame_ms.end());
   trial.ms_per_frame = clouds.frame_ms[clouds.frame_ms.size() / 2];
-  SACCADE_TRY(const SurfelComponents segments, true_segments(clouds.by_colors.front(), rays, executor));
-  trial.surfels = clouds.by_colors.front().positions_m.size();
+  const PointCloud& not_enhanced = clouds.by_colors.front();
+  SACCADE_TRY(const std::vector<std::uint32_t> labels, true_labels(not_enhanced, rays, executor));
+  SACCADE_TRY(const SurfelGraph graph, SurfelGraph::create(not_enhanced));
+  SACCADE_TRY(const SurfelComponents segments, split_unconnected(graph, labels, executor));
+  trial.surfels = not_enhanced.positions_m.size();
   trial.segments = segments.count;
   for (const SurfelColors colors : kSurfelColors) {
     SACCADE_CHECK(
         score(clouds.by_colors[static_cast<std::size_t>(colors)], segments, colors, trial, executor, progress));
   }
+  SACCADE_CHECK(score(with_true_colors(not_enhanced, clouds.by_colors.back(), labels), segments, SurfelColors::truth,
+                      trial, executor, progress));
   trial.clouds = std::move(clouds.by_colors);
   return trial;
 }

@@ -27,8 +27,10 @@ struct SurfelTrialConfig {
   double min_weight{10.0};  ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
 };
 
-enum class SurfelColors { average, modes };  ///< not enhanced, enhanced
-inline constexpr std::array kSurfelColors{SurfelColors::average, SurfelColors::modes};
+/// Not enhanced, enhanced, and as a yardstick: surfels that are not enhanced but for their colours, each that of the
+/// thing that it is on, which is the mean of the enhanced ones there.
+enum class SurfelColors { average, modes, truth };
+inline constexpr std::array kSurfelColors{SurfelColors::average, SurfelColors::modes};  ///< of the thesis
 
 struct SurfelTrial {
   std::string scene;
@@ -38,9 +40,9 @@ struct SurfelTrial {
   double ms_per_frame{0.0};              ///< fusion and mode filter, median
   std::vector<double> true_gains;        ///< of frames, relative to the first
   std::vector<double> found_gains;       ///< by exposure compensation
-  std::array<ScoreCurve, 2> flood_fill;  ///< by SurfelColors
-  std::array<ScoreCurve, 2> sv_lccp;
-  std::array<PointCloud, 2> clouds;  ///< by SurfelColors; the same surfels
+  std::array<ScoreCurve, 3> flood_fill;  ///< by SurfelColors
+  std::array<ScoreCurve, 3> sv_lccp;
+  std::array<PointCloud, 2> clouds;  ///< by SurfelColors; the same surfels, of the thesis' two
 
   [[nodiscard]] const ScoreCurve& curve(bool by_flood_fill, SurfelColors colors) const {
     return (by_flood_fill ? flood_fill : sv_lccp)[static_cast<std::size_t>(colors)];

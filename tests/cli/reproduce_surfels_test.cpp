@@ -76,7 +76,14 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
     if (filled.at("enhanced").at("least_bce") < filled.at("not_enhanced").at("least_bce")) ++better;
   }
   EXPECT_GE(better, 4U) << "so few frames show it already";
-  for (const json& figure : {tables.at(2), tables.at(3)}) EXPECT_EQ(figure.at("rows").size(), kScenes);
+  for (const json& figure : {tables.at(2), tables.at(3)}) {
+    ASSERT_EQ(figure.at("rows").size(), kScenes);
+    for (const json& row : figure.at("rows")) expect_curve(row.at("true_colors"));
+  }
+  for (const json& row : tables.at(2).at("rows")) {  // flood fill finds things that have one colour each
+    EXPECT_GT(row.at("true_colors").at("best_f"), row.at("enhanced").at("best_f")) << row.at("scene");
+    EXPECT_LT(row.at("true_colors").at("least_bce"), row.at("enhanced").at("least_bce")) << row.at("scene");
+  }
   const std::vector<std::string> plots = names_in(out);
   EXPECT_EQ(plots.size(), 2 * kScenes + 5);
   EXPECT_EQ(plots.front(), "fig-4-10-desk.svg");
