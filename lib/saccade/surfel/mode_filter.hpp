@@ -26,7 +26,7 @@ struct ModeFilterConfig {
   double max_depth_change_m{0.01};
   /// What a surfel is in the end: where its modes are densest, seen through a Gaussian of so many σ_c (densest_mode);
   /// 0: its heaviest mode, eq. 4.11 as printed.
-  double choice_sigmas{4.0};
+  double choice_sigmas{8.0};
   ModeSharpeningConfig sharpening{};  ///< modes of the neighbours decide as well; of no use to the heaviest one
 
   /// invalid_argument for a bad guided filter, K or a change of depth that is not positive, M_max outside 1 to 32, or

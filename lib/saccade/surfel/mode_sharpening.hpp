@@ -13,7 +13,7 @@ namespace saccade {
 struct ModeSharpeningConfig {
   double strength{2.0};      ///< λ; 0: every surfel by itself
   double reach_m{0.02};      ///< as far as wrong poses carry colours
-  double color_sigma{0.04};  ///< colours that count as one, in [0, 1] as colours are
+  double color_sigma{0.06};  ///< colours that count as one, in [0, 1] as colours are
 
   /// invalid_argument for a strength that is negative, a reach or σ that is not positive, or any that is not finite.
   [[nodiscard]] Status validate() const;
