@@ -33,10 +33,13 @@ struct SurfelsOptions : FrameOptions {
   std::optional<double> min_confidence;  ///< default: min_weight
   std::string exposure_compensation{"off"};
   std::string choice{"sharpened"};
+  std::string places;  ///< average, modes, or empty: as the choice needs it
   SurfelFusionConfig fusion;
   ModeFilterConfig filter;
 
   [[nodiscard]] bool filtered() const { return mode_filter != "off"; }
+  /// Guided depths go into the modes' places alone.
+  [[nodiscard]] bool places_of_modes() const { return places.empty() ? choice == "heaviest" : places == "modes"; }
   [[nodiscard]] bool compensated() const { return exposure_compensation == "on"; }
   /// Where the averages go: nowhere, to --out, or beside it.
   [[nodiscard]] std::filesystem::path average_out() const {
@@ -153,6 +156,7 @@ Status write_clouds(SurfelsRun& run) {
   std::vector<SurfelMode> winners;
   if (run.options.filtered()) {
     winners = run.filter.winners(run.executor);
+    if (!run.options.places_of_modes()) put_at_averages(winners, map);
     SACCADE_CHECK(write_surfel_cloud(run.options.out, map, winners, least));
   }
   const std::filesystem::path average = run.options.average_out();
@@ -205,6 +209,7 @@ json result_json(const SurfelsRun& run) {
             {"modes", double(run.filter.memory_bytes()) / double(run.fusion.map().size())}}},
           {"image_sigma", run.options.fusion.image_sigma},
           {"choice", run.options.choice},
+          {"places", run.options.places_of_modes() ? "modes" : "average"},
           {"exposure", exposure_json(run)},
           {"ms_per_frame",
            {{"associate", median(run.times.associate)},
@@ -302,6 +307,10 @@ void check_surfels_options(SurfelsOptions& options) {
   if (options.choice != "sharpened" && options.choice != "densest" && options.choice != "heaviest") {
     usage_error("--choice", "must be sharpened, densest or heaviest, not '" + options.choice + "'");
   }
+  if (!options.places.empty() && options.places != "average" && options.places != "modes") {
+    usage_error("--places", "must be average or modes, not '" + options.places + "'");
+  }
+  options.filter.enhance_depth = options.places_of_modes();
   if (options.choice != "sharpened") options.filter.sharpening.strength = 0.0;
   if (options.choice == "heaviest") options.filter.choice_sigmas = 0.0;
   require_ok(options.filter.validate(), "--max-modes");
@@ -320,8 +329,8 @@ void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action)
       ->type_name("CLOUD");
   command
       ->add_option("--mode-filter", options->mode_filter,
-                   "on: of each surfel's colours the most frequent one, with depth guided by it; off: averages; both: "
-                   "averages, too, in NAME.average.EXT beside --out")
+                   "on: of each surfel's colours one that was seen, not a blend; off: averages; both: averages, too, "
+                   "in NAME.average.EXT beside --out")
       ->type_name("on|off|both")
       ->capture_default_str();
   command
@@ -346,9 +355,16 @@ void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action)
       ->type_name("sharpened|densest|heaviest")
       ->capture_default_str();
   command
-      ->add_option("--max-depth-change", options->filter.max_depth_change_m,
-                   "a depth that the guided filter would move farther stays as it was measured; inf: all move, as in "
-                   "the thesis")
+      ->add_option(
+          "--places", options->places,
+          "where a surfel is: at the average of what was measured, or where its modes are, with depths guided by "
+          "colour as in the thesis (default: average; with --choice heaviest modes)")
+      ->type_name("average|modes");
+  command
+      ->add_option(
+          "--max-depth-change", options->filter.max_depth_change_m,
+          "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: "
+          "all move, as in the thesis")
       ->type_name("METRES")
       ->capture_default_str();
   command

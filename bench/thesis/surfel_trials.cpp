@@ -19,6 +19,7 @@ namespace {
 
 struct SurfelClouds {
   std::array<PointCloud, 2> by_colors;
+  std::vector<Eigen::Vector3f> mode_positions_m;
   std::vector<double> frame_ms;
   std::vector<double> true_gains;
   std::vector<double> found_gains;
@@ -85,7 +86,8 @@ Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::si
       cloud.radii_m.push_back(disc.radius_m);
     };
     add(SurfelColors::average, disc.position_m, map.colors[id].color);
-    add(SurfelColors::modes, winners[id].position_m, winners[id].color);
+    add(SurfelColors::modes, config.places_of_modes ? winners[id].position_m : disc.position_m, winners[id].color);
+    clouds.mode_positions_m.push_back(winners[id].position_m);
   }
   return clouds;
 }
@@ -215,6 +217,7 @@ Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTr
   SACCADE_CHECK(score(with_true_colors(not_enhanced, clouds.by_colors.back(), labels), segments, SurfelColors::truth,
                       trial, executor, progress));
   trial.clouds = std::move(clouds.by_colors);
+  trial.mode_positions_m = std::move(clouds.mode_positions_m);
   return trial;
 }
 

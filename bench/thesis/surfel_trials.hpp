@@ -24,7 +24,8 @@ struct SurfelTrialConfig {
   std::optional<bool> automatic_gain{};  ///< none: as the scene has it
   bool exposure_compensation{false};
   ModeFilterConfig mode_filter{};
-  double min_weight{10.0};  ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
+  bool places_of_modes{false};  ///< those of the enhanced; else all are where the average is (decision 20)
+  double min_weight{10.0};      ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
 };
 
 /// Not enhanced, enhanced, and as a yardstick: surfels that are not enhanced but for their colours, each that of the
@@ -43,6 +44,8 @@ struct SurfelTrial {
   std::array<ScoreCurve, 3> flood_fill;  ///< by SurfelColors
   std::array<ScoreCurve, 3> sv_lccp;
   std::array<PointCloud, 2> clouds;  ///< by SurfelColors; the same surfels, of the thesis' two
+
+  std::vector<Eigen::Vector3f> mode_positions_m;  ///< of the same, where their modes are
 
   [[nodiscard]] const ScoreCurve& curve(bool by_flood_fill, SurfelColors colors) const {
     return (by_flood_fill ? flood_fill : sv_lccp)[static_cast<std::size_t>(colors)];

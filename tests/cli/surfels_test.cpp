@@ -39,7 +39,7 @@ class Surfels : public ::testing::Test {
 };
 
 TEST_F(Surfels, BothGivesTheModesAndTheAverages) {
-  const nlohmann::json both = result("cloud.ply", {"--mode-filter", "both"});
+  const nlohmann::json both = result("cloud.ply", {"--mode-filter", "both", "--places", "modes"});
   EXPECT_EQ(both.at("frames"), 12);
   EXPECT_EQ(both.at("frames_without_color"), 0);
   EXPECT_EQ(both.at("mode_filter"), "both");
@@ -76,7 +76,7 @@ TEST_F(Surfels, BothGivesTheModesAndTheAverages) {
   EXPECT_GT(other_color, surfels / 50);
 
   // One alone is what both give.
-  EXPECT_EQ(result("on.ply").at("surfels"), surfels);
+  EXPECT_EQ(result("on.ply", {"--places", "modes"}).at("surfels"), surfels);
   EXPECT_TRUE(text_of(folder_ / "on.ply") == text_of(folder_ / "cloud.ply"));
   EXPECT_EQ(result("off.ply", {"--mode-filter", "off"}).at("ms_per_frame").at("guided_filter").at("median"), 0.0);
   EXPECT_TRUE(text_of(folder_ / "off.ply") == text_of(folder_ / "cloud.average.ply"));
@@ -162,11 +162,30 @@ TEST_F(Surfels, TheImageSigmaReachesTheWeights) {
   EXPECT_LT(confidence("0.1"), 0.6 * confidence("0.3"));
 }
 
+/// Averages and modes are at the same places unless those of the modes are asked for, which guided depths move.
+TEST_F(Surfels, PlacesAreThoseOfTheAverage) {
+  const auto xs = [&](const char* name) {
+    const CloudFile file = read_cloud(folder_ / name).value();
+    std::vector<double> values;
+    for (std::size_t i = 0; i < file.fields().rows; ++i) values.push_back(file.fields().find("x")->value(i));
+    return values;
+  };
+  const nlohmann::json average = result("cloud.ply", {"--mode-filter", "both"});
+  EXPECT_EQ(average.at("places"), "average");
+  EXPECT_EQ(average.at("ms_per_frame").at("guided_filter").at("median"), 0.0);
+  EXPECT_EQ(xs("cloud.ply"), xs("cloud.average.ply"));
+  const nlohmann::json modes = result("modes.ply", {"--places", "modes"});
+  EXPECT_EQ(modes.at("places"), "modes");
+  EXPECT_GT(modes.at("ms_per_frame").at("guided_filter").at("median"), 0.0);
+  EXPECT_NE(xs("modes.ply"), xs("cloud.ply"));
+}
+
 /// With eq. 4.11 as printed some surfels are other than where their modes are densest.
 TEST_F(Surfels, TheChoiceOfModesIsOurs) {
   EXPECT_EQ(result("sharpened.ply", {}).at("choice"), "sharpened");
   EXPECT_EQ(result("densest.ply", {"--choice", "densest"}).at("choice"), "densest");
   EXPECT_EQ(result("heaviest.ply", {"--choice", "heaviest", "--max-depth-change", "inf"}).at("choice"), "heaviest");
+  EXPECT_EQ(result("places.ply", {"--choice", "heaviest"}).at("places"), "modes");
   EXPECT_NE(text_of(folder_ / "densest.ply"), text_of(folder_ / "heaviest.ply"));
   EXPECT_EQ(fs::file_size(folder_ / "densest.ply"), fs::file_size(folder_ / "heaviest.ply"));
 }
@@ -215,6 +234,8 @@ TEST_F(Surfels, WhatIsWrongIsSaidBeforeTheWork) {
   expect_failure(run_program(surfels("cloud.ply", {"--max-modes", "33"})), 2, "surfels", {"--max-modes", "1 to 32"});
   expect_failure(run_program(surfels("cloud.ply", {"--choice", "best"})), 2, "surfels",
                  {"densest or heaviest", "best"});
+  expect_failure(run_program(surfels("cloud.ply", {"--places", "here"})), 2, "surfels",
+                 {"--places", "average or modes"});
   expect_failure(run_program(surfels("cloud.ply", {"--max-depth-change", "0"})), 2, "surfels", {"--max-depth-change"});
   expect_failure(run_program(surfels("cloud.ply", {"--min-confidence", "-1"})), 2, "surfels", {"--min-confidence"});
   expect_failure(run_program(surfels("nowhere/cloud.ply")), 3, "surfels", {"nowhere"});

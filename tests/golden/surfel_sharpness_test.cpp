@@ -83,7 +83,8 @@ TEST(SurfelSharpness, ModesAreSharperThanAveragesOnRecordedFrames) {
   ASSERT_EQ(looked_at.size(), kLookedAt);
   // As saccade surfels writes them.
   const double min_weight = std::min(10.0, 0.05 * static_cast<double>(frames));
-  const std::vector<SurfelMode> winners = filter.winners(executor);
+  std::vector<SurfelMode> winners = filter.winners(executor);
+  put_at_averages(winners, fusion.map());
   const std::array<SurfelPoints, 2> clouds{surfel_points(fusion.map(), {}, min_weight),
                                            surfel_points(fusion.map(), winners, min_weight)};
   std::array<EdgeSharpness, 3> mean{};

@@ -207,16 +207,18 @@ Result<ReproducedTable> reproduce_positions(const CloseUp& close_up, const Repro
   json rows = json::array();
   Sheet sheet;
   for (std::size_t i = 0; i < trial->clouds.size(); ++i) {
-    const PointCloud& cloud = trial->clouds[i];
+    PointCloud cloud = trial->clouds[i];
+    if (i == 1) cloud.positions_m = trial->mode_positions_m;
     const Sight sight = sight_of(cloud, nullptr, view, executor);
     table.rows.push_back({kCloudTitles[i], std::to_string(sight.surfels), fixed(sight.background, 3)});
     rows.push_back({{"cloud", kCloudTitles[i]}, {"surfels", sight.surfels}, {"background", sight.background}});
     sheet.panels.push_back({draw_surfels(discs_of(cloud), colors, view, executor), kCloudTitles[i], {}, {}, {}});
   }
   table.notes = {
-      "Colours are those of the mode filter on both sides: only positions differ. The gap between panel and wall, "
-      "which "
-      "the thesis shows to open, is open on both: depths that differ by more than 2 cm never meet in a surfel here."};
+      "Colours are those of the mode filter on both sides, positions on the right those of the modes with guided "
+      "depths, "
+      "which elsewhere are not used (decision 20). The gap between panel and wall, which the thesis shows to open, is "
+      "open on both: depths that differ by more than 2 cm never meet in a surfel here."};
   add_surfel_notes(options, table);
   table.figures = {{"rows", std::move(rows)}};
   table.pictures.push_back({close_up.file, compose(sheet)});

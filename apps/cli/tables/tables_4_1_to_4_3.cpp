@@ -27,6 +27,7 @@ Result<std::shared_ptr<const SurfelTrial>> surfel_trial(const ReproduceOptions& 
     config.image_width_px = options.image_width_px;
     if (options.as_printed) {
       config.mode_filter.choice_sigmas = 0.0;
+      config.places_of_modes = true;
       config.mode_filter.max_depth_change_m = std::numeric_limits<double>::infinity();
     }
     config.seed = options.seed;

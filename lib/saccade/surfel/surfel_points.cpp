@@ -25,6 +25,11 @@ SurfelPoints surfel_points(const SurfelMap& map, std::span<const SurfelMode> mod
   return points;
 }
 
+void put_at_averages(std::span<SurfelMode> modes, const SurfelMap& map) {
+  SACCADE_EXPECTS(modes.size() == map.size());
+  for (SurfelId id = 0; id < map.size(); ++id) modes[id].position_m = map.discs[id].position_m;
+}
+
 Rgb8 byte_color(const Eigen::Vector3f& color) {
   const auto level = [](float value) {
     return static_cast<std::uint8_t>(std::lround(255.0F * std::clamp(value, 0.0F, 1.0F)));

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // SurfelPoints, surfel_points: the surfels of a map that were seen often enough, as averages or as winning modes;
-// byte_color.
+// put_at_averages; byte_color.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -32,6 +32,10 @@ struct SurfelPoints {
 ///               0; or none: the averages of eq. 4.12. Expects none, or one per surfel.
 [[nodiscard]] SurfelPoints surfel_points(const SurfelMap& map, std::span<const SurfelMode> modes = {},
                                          double min_weight = 0.0);
+
+/// Puts modes where their surfels are, at the mean over all observations as they were measured (decision 20). Expects
+/// one per surfel.
+void put_at_averages(std::span<SurfelMode> modes, const SurfelMap& map);
 
 /// The nearest 8-bit colour of one in [0, 1].
 [[nodiscard]] Rgb8 byte_color(const Eigen::Vector3f& color);
