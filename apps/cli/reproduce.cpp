@@ -245,7 +245,7 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
       ->type_name("N");
   command
       ->add_option("--scene", options->surfel_scene,
-                   "Tables 4.1, 4.3 and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes")
+                   "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes")
       ->check(CLI::IsMember(std::vector<std::string>(kSurfelScenes.begin(), kSurfelScenes.end())))
       ->type_name("NAME");
   command->add_flag("--as-printed", options->as_printed,

@@ -128,9 +128,15 @@ TEST(ReproduceSurfels, ExposureCompensationWinsBackWhatGainCosts) {
       for (const json& figure : row.at(algorithm)) {
         EXPECT_GT(figure.at("compensated").get<double>(), 0.0) << figure;
         EXPECT_LE(figure.at("off").get<double>(), 1.0) << figure;
+        EXPECT_NE(figure.at("not_enhanced").at("off"), figure.at("off")) << figure;
       }
     }
   }
+}
+
+TEST(ReproduceSurfels, OnlyScenesWithGainLoseByIt) {
+  expect_failure(run_program({"reproduce", "4.gain", "--scene", "desk", "--quiet"}), 3, "reproduce",
+                 {"desk", "magazines-1"});
 }
 
 }  // namespace
