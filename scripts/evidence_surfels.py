@@ -29,7 +29,8 @@ def section(folder, lines, command_of):
     lines += [f"`{command_of(folder, f'surfels_{scene}')}`\n" for scene in scenes]
     lines += ["Rendered scenes with noise, not enhanced → enhanced by the mode filter (docs/surfel-segmentation.md). Held to: better in "
               "every figure. In brackets that of true colours: each surfel not enhanced, but in the one colour of the thing that it is "
-              "on. Where that is worse than not enhanced, the figure rewards blur.", "", "| scene | frames | surfels | ms per frame | algorithm | "
+              "on. Where that is worse than not enhanced, the figure rewards blur. Times are with whatever else the machine did; "
+              "alone: docs/performance.md.", "", "| scene | frames | surfels | ms per frame | algorithm | "
               + " | ".join(f"{title} | better" for _, title, _ in FIGURES) + " |",
               "|---|---|---|---|---|" + "---|---|" * len(FIGURES)]
     held = True
