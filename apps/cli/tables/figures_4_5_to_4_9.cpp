@@ -215,9 +215,9 @@ Result<ReproducedTable> reproduce_positions(const CloseUp& close_up, const Repro
     sheet.panels.push_back({draw_surfels(discs_of(cloud), colors, view, executor), kCloudTitles[i], {}, {}, {}});
   }
   table.notes = {
-      "Colours are those of the mode filter on both sides, positions on the right those of the modes with guided "
-      "depths, "
-      "which elsewhere are not used (decision 20). The gap between panel and wall, which the thesis shows to open, is "
+      "Colours are those of the mode filter on both sides. Positions on the right are those of the modes with guided "
+      "depths, which elsewhere are not used (decision 20). The gap between panel and wall, which the thesis shows to "
+      "open, is "
       "open on both: depths that differ by more than 2 cm never meet in a surfel here."};
   add_surfel_notes(options, table);
   table.figures = {{"rows", std::move(rows)}};
