@@ -49,6 +49,16 @@ fuse rgbd_realsense_box icp
 fuse rgbd_eyeinhand_shelfA forced
 fuse rgbd_eyeinhand_shelfA icp
 
+echo "Poses beside colour images"
+trajectory="$out/fuse_rgbd_redkitchen_icp/trajectory.txt"
+if [[ -f $trajectory ]]; then
+  scripts/install_packages.sh program tests
+  configure release -DSACCADE_BUILD_BENCH=ON && compile release color_agreement >"$out/build_color_agreement.log" || failed=1
+  step color_agreement build/release/bench/color_agreement "$data/rgbd_redkitchen" "$trajectory"
+else
+  echo "  skipped, $trajectory is not there"
+fi
+
 echo "View evaluation: 960 poses, 640×480, a forgotten sphere of 0.2 m on a table"
 map="$out/fuse_rgbd_redkitchen_forced/map.sacmap"
 if [[ -f $map ]]; then

@@ -71,6 +71,14 @@ def fuse_section(folder, lines):
     return held
 
 
+def color_section(folder, lines):
+    path = folder / "color_agreement.log"
+    if (folder / "color_agreement.done").exists():
+        lines += ["## Poses beside colour images", "", f"`{command_of(folder, 'color_agreement')}`", "",
+                  "How far points of a frame lie from where poses and depths put them in the image 30 frames later, median; what it",
+                  "says is in [tracking](tracking.md).", "", path.read_text().rstrip(), ""]
+
+
 def nbv_section(folder, lines):
     documents = [json.loads(path.read_text()) for path in sorted(folder.glob("nbv_*.json"))]
     if not documents:
@@ -344,6 +352,7 @@ def main():
     lines = ["# Evidence", "", "Written by `make evidence`; what the figures mean is in [metrics](metrics.md). "
              f"Machine: {processor()}.", ""]
     held = fuse_section(folder, lines)
+    color_section(folder, lines)
     held = nbv_section(folder, lines) and held
     reproduce_section(folder, lines)
     held = compare_section(folder, lines) and held
