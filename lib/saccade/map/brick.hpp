@@ -163,6 +163,7 @@ inline std::uint64_t FreeBrick::weight_at_least(std::size_t slice, std::uint16_t
 
 inline std::uint64_t DenseBrick::weight_at_least(std::size_t slice, std::uint16_t least) const {
   const std::uint64_t observed = ~unknown.words[slice];
+  if (least == 1) return observed;
   const std::uint16_t* weights = &w[slice * 64];
   const auto least_before = static_cast<std::uint16_t>(least - 1);
   unsigned rarely{0};  // whether any was observed, but less often: vector code

@@ -42,6 +42,9 @@ struct Cast {
   bool colors;
 };
 
+/// The corners of cells, and their neighbours along the axes, for gradients.
+IndexBox with_neighbours(const IndexBox& cells) { return {cells.lo - Index3{1, 1, 1}, cells.hi + Index3{2, 2, 2}}; }
+
 /// Unpacked bricks, the last few hundred that were asked for. One thread.
 class SurfaceBricks {
  public:
@@ -57,7 +60,7 @@ class SurfaceBricks {
     const SurfaceTiles::Brick& known_cells = cast_->tiles.bricks()[brick];
     slot.surface.cells = known_cells.cells;
     slot.surface.box = known_cells.box;
-    slot.surface.voxels.load(cast_->sectors, known_cells.index, 1);
+    slot.surface.voxels.load(cast_->sectors, known_cells.index, 1, with_neighbours(known_cells.box));
     return slot.surface;
   }
 

@@ -5,6 +5,9 @@
 #include <Eigen/Core>
 #include <algorithm>
 #include <array>
+#include <bit>
+#include <cstdint>
+#include <cstring>
 #include <optional>
 
 #include "saccade/map/tsdf_grid.hpp"
@@ -20,15 +23,22 @@ class VoxelBlock {
 
   /// Reads the block around `brick`; voxels observed less than min_weight (≥ 1) times count as unknown.
   void load(const SectorTable& table, const Index3& brick, std::uint16_t min_weight) {
-    for (int z = -1; z <= 1; ++z) {
-      for (int y = -1; y <= 1; ++y) {
-        for (int x = -1; x <= 1; ++x) {
+    constexpr int kEnd{kFirst + kEdge};
+    load(table, brick, min_weight, {{kFirst, kFirst, kFirst}, {kEnd, kEnd, kEnd}});
+  }
+  /// The same for the voxels of a box, and some beside them along x; others are left as they were.
+  void load(const SectorTable& table, const Index3& brick, std::uint16_t min_weight, const IndexBox& voxels) {
+    const auto first = [](int lo) { return lo < 0 ? -1 : 0; };
+    const auto last = [](int hi) { return hi > kBrickEdge ? 1 : 0; };
+    for (int z = first(voxels.lo.z); z <= last(voxels.hi.z); ++z) {
+      for (int y = first(voxels.lo.y); y <= last(voxels.hi.y); ++y) {
+        for (int x = first(voxels.lo.x); x <= last(voxels.hi.x); ++x) {
           const Index3 key = brick + Index3{x, y, z};
           const Sector* sector = table.find(parent(key));
           const BrickRef unknown;
           const BrickRef& ref =
               sector == nullptr ? unknown : sector->bricks[static_cast<std::size_t>(child_index(key))];
-          copy(ref, {x * kBrickEdge, y * kBrickEdge, z * kBrickEdge}, min_weight);
+          copy(ref, {x * kBrickEdge, y * kBrickEdge, z * kBrickEdge}, min_weight, voxels);
         }
       }
     }
@@ -77,35 +87,51 @@ class VoxelBlock {
     return static_cast<std::size_t>(((z - kFirst) * kEdge + (y - kFirst)) * kEdge + (x - kFirst));
   }
 
-  void copy(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight) {
+  void copy(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight, const IndexBox& voxels) {
     switch (origin.x) {  // along x a brick gives the last of its voxels, all, or the first two
-      case -kBrickEdge: return copy_rows<1>(brick, origin, min_weight);
-      case 0: return copy_rows<kBrickEdge>(brick, origin, min_weight);
-      default: return copy_rows<2>(brick, origin, min_weight);
+      case -kBrickEdge: return copy_rows<1>(brick, origin, min_weight, voxels);
+      case 0: return copy_rows<kBrickEdge>(brick, origin, min_weight, voxels);
+      default: return copy_rows<2>(brick, origin, min_weight, voxels);
     }
   }
 
-  /// Bit i of `known`: whether value i is. Without branches, so that a row becomes vector code.
-  template <std::size_t kCount>
-  static void copy_row(const std::int16_t* values, std::uint16_t known, std::int16_t* row) {
-    constexpr std::array<std::uint16_t, kBrickEdge> kBit{1, 2, 4, 8, 16, 32, 64, 128};
-    std::array<std::int16_t, kCount> copied;
-    std::copy_n(values, kCount, copied.begin());
-    for (std::size_t i = 0; i < kCount; ++i) {
-      const int hidden = (known & kBit[i]) == 0 ? -1 : 0;
-      copied[i] = static_cast<std::int16_t>((copied[i] & ~hidden) | (kUnknown & hidden));
+  /// All bits of the value set, per value and set bit of a byte: which of 8 neighbours are known.
+  using RowMask = std::array<std::uint64_t, 2>;
+  static constexpr std::array<RowMask, 256> kRowMasks = [] {
+    std::array<RowMask, 256> masks{};
+    for (std::size_t known = 0; known < masks.size(); ++known) {
+      for (std::size_t i = 0; i < kBrickEdge; ++i) {
+        if (((known >> i) & 1U) != 0) masks[known][i / 4] |= std::uint64_t{0xFFFF} << (16 * (i % 4));
+      }
     }
-    std::copy_n(copied.begin(), kCount, row);
+    return masks;
+  }();
+  static_assert(std::endian::native == std::endian::little, "values of a row are taken four at a time");
+
+  /// Bit i of `known`: whether value i is.
+  template <std::size_t kCount>
+  static void copy_row(const std::int16_t* values, std::uint8_t known, std::int16_t* row) {
+    if constexpr (kCount == kBrickEdge) {
+      constexpr std::uint64_t kAllUnknown{0x8000800080008000};
+      static_assert(kUnknown == static_cast<std::int16_t>(0x8000));
+      std::array<std::uint64_t, 2> words;
+      std::memcpy(words.data(), values, sizeof(words));
+      const RowMask& mask = kRowMasks[known];
+      for (std::size_t i = 0; i < 2; ++i) words[i] = (words[i] & mask[i]) | (kAllUnknown & ~mask[i]);
+      std::memcpy(row, words.data(), sizeof(words));
+    } else {
+      for (std::size_t i = 0; i < kCount; ++i) row[i] = ((known >> i) & 1U) != 0 ? values[i] : kUnknown;
+    }
   }
 
   template <std::size_t kCount>
-  void copy_rows(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight) {
-    const auto range = [](int start) {
-      return std::pair{std::max(start, kFirst), std::min(start + kBrickEdge, kFirst + kEdge)};
+  void copy_rows(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight, const IndexBox& voxels) {
+    const auto range = [](int start, int lo, int hi) {
+      return std::pair{std::max(start, lo), std::min(start + kBrickEdge, hi)};
     };
     const int x0 = std::max(origin.x, kFirst);
-    const auto [y0, y1] = range(origin.y);
-    const auto [z0, z1] = range(origin.z);
+    const auto [y0, y1] = range(origin.y, voxels.lo.y, voxels.hi.y);
+    const auto [z0, z1] = range(origin.z, voxels.lo.z, voxels.hi.z);
     const DenseBrick* dense = brick.dense();
     const FreeBrick* free = dense == nullptr ? brick.free() : nullptr;
     const bool constant_known = dense == nullptr && free == nullptr && brick.constant_weight() >= min_weight;
@@ -121,7 +147,7 @@ class VoxelBlock {
       if (free != nullptr) known = free->weight_at_least(slice, min_weight);
       int first = child_index({x0, y0, z});
       for (int y = y0; y < y1; ++y, row += kEdge, first += kBrickEdge) {
-        copy_row<kCount>(values + first * step, static_cast<std::uint16_t>(known >> (first & 63)), row);
+        copy_row<kCount>(values + first * step, static_cast<std::uint8_t>(known >> (first & 63)), row);
       }
     }
   }

@@ -3,7 +3,7 @@
 #define HWY_TARGET_INCLUDE "saccade/view/ray_packets.cpp"
 #include "saccade/core/simd_kernels.hpp"
 
-#include <bit>
+#include <utility>
 
 #include "saccade/map/ray_lanes-inl.hpp"
 #include "saccade/view/ray_packets.hpp"
@@ -14,81 +14,146 @@ namespace {
 
 using namespace lanes::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary of these kernels
 
-/// Some rays of a packet on their way.
+/// Rays on their way, side by side: what Walkers need to go on with them.
+struct Waiting {
+  static constexpr std::size_t kRoom{RayPacket::kMost + 16};  // vectors are stored whole
+  std::size_t count{0};
+  alignas(64) std::array<std::array<float, kRoom>, 3> inv;
+  alignas(64) std::array<std::array<float, kRoom>, 3> plane;
+  alignas(64) std::array<float, kRoom> entered_t;
+  alignas(64) std::array<float, kRoom> exit_t;
+  alignas(64) std::array<std::int32_t, kRoom> exit_axis;
+  alignas(64) std::array<std::int32_t, kRoom> voxel;
+  alignas(64) std::array<std::int32_t, kRoom> ray;  ///< in the packet
+};
+
+/// Some rays of a packet on their way, one per lane.
 class Walkers {
  public:
-  HWY_INLINE Walkers(const RayPacket& packet, std::size_t first, const FlatStops& stops) : stops_{stops} {
+  HWY_INLINE Walkers(const RayPacket& packet, const FlatStops& stops) : stops_{stops} {
+    for (std::size_t axis = 0; axis < 3; ++axis) rays_.o[axis] = hn::Set(f_, packet.origin.fraction[axis]);
+    const Index3 size = stops_.voxels.hi - stops_.voxels.lo;
+    strides_ = {1, size.x, size.x * size.y};
+  }
+
+  /// Takes the packet's rays from `first` on from a slab of voxels to where they leave the box of scoring voxels;
+  /// returns how many of them meet it.
+  HWY_INLINE std::size_t start(const RayPacket& packet, std::size_t first, float max_t) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VF d = hn::Load(f_, packet.d[axis].data() + first);
       const M parallel = hn::Lt(hn::Abs(d), hn::Set(f_, kParallel));
-      rays_.o[axis] = hn::Set(f_, packet.origin.fraction[axis]);
       rays_.d[axis] = hn::IfThenZeroElse(parallel, d);
       rays_.inv[axis] = hn::IfThenElse(parallel, hn::Set(f_, HUGE_VALF), hn::Div(hn::Set(f_, 1.0F), d));
       rays_.forward[axis] = hn::Gt(rays_.inv[axis], hn::Zero(f_));
     }
-    active_ = hn::FirstN(f_, packet.count - first);
-  }
-
-  /// From a slab of voxels to where the rays leave the box of scoring voxels; returns how many are left.
-  HWY_INLINE std::size_t start(const RayPacket& packet, float max_t) {
     const Index3& origin = packet.origin.voxel;
     const RayLanes::Span region =
         rays_.clip(planes(stops_.scoring_voxels.lo - origin), planes(stops_.scoring_voxels.hi - origin));
-    entered_ = ray_start();
+    Event entered = ray_start();
     const auto major = static_cast<std::size_t>(packet.major);
     if (packet.slab > 0) {
       const VF ahead = hn::Set(f_, static_cast<float>(packet.slab));
       const VF plane = hn::IfThenElse(rays_.forward[major], ahead, hn::Sub(hn::Set(f_, 1.0F), ahead));
-      entered_ = {rays_.crossing(major, plane), hn::Set(i_, packet.major)};
+      entered = {rays_.crossing(major, plane), hn::Set(i_, packet.major)};
     }
     exit_ = earlier(past_depth(max_t), region.exit);
-    active_ = hn::And(hn::And(active_, region.inside), before(region.enter, region.exit));
-    active_ = hn::And(active_, before(entered_, exit_));
+    active_ = hn::And(hn::FirstN(f_, packet.count - first), hn::And(region.inside, before(region.enter, region.exit)));
+    active_ = hn::And(active_, before(entered, exit_));
     const std::size_t cast = hn::CountTrue(f_, active_);
     if (cast == 0) return 0;
-    const Index3 size = stops_.voxels.hi - stops_.voxels.lo;
-    const std::array<std::int32_t, 3> strides{1, size.x, size.x * size.y};
     const std::array<std::int32_t, 3> from_lo{origin.x - stops_.voxels.lo.x, origin.y - stops_.voxels.lo.y,
                                               origin.z - stops_.voxels.lo.z};
     const VF far = hn::Set(f_, 4194304.0F);
     voxel_ = hn::Zero(i_);
     for (std::size_t axis = 0; axis < 3; ++axis) {
-      const VF p = rays_.position(axis, entered_, hn::Neg(far), far, active_);
+      const VF p = rays_.position(axis, entered, hn::Neg(far), far, active_);
       next_.plane[axis] = rays_.plane_ahead(axis, p);
-      next_.t[axis] = rays_.crossing(axis, next_.plane[axis]);
-      const VI stride = hn::Set(i_, strides[axis]);
-      voxel_ = hn::Add(voxel_, hn::Mul(hn::Add(hn::ConvertTo(i_, p), hn::Set(i_, from_lo[axis])), stride));
-      const M forward = rays_.forward[axis];
-      onward_[axis] = hn::IfThenElse(forward, hn::Set(f_, 1.0F), hn::Set(f_, -1.0F));
-      stride_[axis] = hn::IfThenElse(hn::RebindMask(i_, forward), stride, hn::Neg(stride));
+      const VI along = hn::Add(hn::ConvertTo(i_, p), hn::Set(i_, from_lo[axis]));
+      voxel_ = hn::Add(voxel_, hn::Mul(along, hn::Set(i_, strides_[axis])));
     }
     voxel_ = hn::IfThenElseZero(hn::RebindMask(i_, active_), voxel_);
+    entered_t_ = packet.slab > 0 ? entered.t : hn::Set(f_, kNever);
+    ray_ = hn::Iota(i_, static_cast<std::int32_t>(first));
+    aim();
     return cast;
   }
 
-  /// Until every ray is stopped or has left; returns those that scored, a bit each.
-  HWY_INLINE std::uint64_t walk(float min_t) {
+  /// Goes on with rays [first, count) of those that wait, or as many as there are lanes.
+  HWY_INLINE void go_on(const Waiting& waiting, std::size_t first, std::size_t count) {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      rays_.inv[axis] = hn::LoadU(f_, waiting.inv[axis].data() + first);
+      rays_.forward[axis] = hn::Gt(rays_.inv[axis], hn::Zero(f_));
+      next_.plane[axis] = hn::LoadU(f_, waiting.plane[axis].data() + first);
+    }
+    active_ = hn::FirstN(f_, count - first);
+    entered_t_ = hn::LoadU(f_, waiting.entered_t.data() + first);
+    exit_ = {hn::LoadU(f_, waiting.exit_t.data() + first), hn::LoadU(i_, waiting.exit_axis.data() + first)};
+    voxel_ = hn::IfThenElseZero(hn::RebindMask(i_, active_), hn::LoadU(i_, waiting.voxel.data() + first));
+    ray_ = hn::LoadU(i_, waiting.ray.data() + first);
+    aim();
+  }
+
+  /// Those that are neither stopped nor have left, behind others that wait.
+  HWY_INLINE void wait(Waiting& waiting) const {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      put(rays_.inv[axis], waiting.count, waiting.inv[axis]);
+      put(next_.plane[axis], waiting.count, waiting.plane[axis]);
+    }
+    put(entered_t_, waiting.count, waiting.entered_t);
+    put(exit_.t, waiting.count, waiting.exit_t);
+    put(exit_.axis, waiting.count, waiting.exit_axis);
+    put(voxel_, waiting.count, waiting.voxel);
+    put(ray_, waiting.count, waiting.ray);
+    waiting.count += hn::CountTrue(f_, active_);
+  }
+
+  /// Until at most so many rays are neither stopped nor have left; returns those that scored, a bit per ray of the
+  /// packet. Rays that were stopped go on meanwhile, unheeded: so no step waits for what was looked up before it.
+  HWY_INLINE std::uint64_t walk(float min_t, std::size_t at_most) {
+    const VF counts_from = hn::Set(f_, min_t);
     M scored = none();
-    while (any(active_)) {
+    M done = none();
+    while (hn::CountTrue(f_, hn::AndNot(done, active_)) > at_most) {
       const VI bits = bits_of_voxels();
-      const M stopped = hn::And(active_, has(bits, FlatStops::kStops));
-      if (any(stopped)) {
-        const M late_enough = hn::Ge(entered_.t, hn::Set(f_, min_t));
-        const M entered = hn::RebindMask(f_, hn::Gt(entered_.axis, hn::Set(i_, -1)));  // not the camera's own voxel
-        const M counts = hn::And(hn::And(stopped, has(bits, FlatStops::kScores)), hn::And(late_enough, entered));
-        scored = hn::Or(scored, counts);
-        active_ = hn::AndNot(stopped, active_);
-      }
+      const M stopped = hn::AndNot(done, hn::And(active_, has(bits, FlatStops::kStops)));
+      scored =
+          hn::Or(scored, hn::And(hn::And(stopped, has(bits, FlatStops::kScores)), hn::Ge(entered_t_, counts_from)));
+      done = hn::Or(done, stopped);
       step();
     }
-    std::array<std::uint8_t, 8> bytes{};
-    hn::StoreMaskBits(f_, scored, bytes.data());
-    return std::bit_cast<std::uint64_t>(bytes) & ((std::uint64_t{1} << hn::Lanes(f_)) - 1);
+    active_ = hn::AndNot(done, active_);
+    alignas(64) std::array<std::int32_t, hn::MaxLanes(I{})> rays;
+    hn::Store(hn::Compress(ray_, hn::RebindMask(i_, scored)), i_, rays.data());
+    const std::size_t count = hn::CountTrue(f_, scored);
+    std::uint64_t bits{0};
+    for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{1} << static_cast<unsigned>(rays[i]);
+    return bits;
   }
 
  private:
+  static constexpr float kNever{-1.0F};  ///< entered: the camera's own voxel, which does not count
+
   static std::array<float, 3> planes(const Index3& voxel) {
     return {static_cast<float>(voxel.x), static_cast<float>(voxel.y), static_cast<float>(voxel.z)};
+  }
+
+  /// The values of active rays, side by side. (Storing them compressed in one go takes some processors ten times as
+  /// long.)
+  template <class V, class Values>
+  HWY_INLINE void put(V value, std::size_t at, Values& values) const {
+    const hn::DFromV<V> d;
+    hn::StoreU(hn::Compress(value, hn::RebindMask(d, active_)), d, values.data() + at);
+  }
+
+  /// What follows from where the rays are and their directions.
+  HWY_INLINE void aim() {
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+      next_.t[axis] = rays_.crossing(axis, next_.plane[axis]);
+      const M forward = rays_.forward[axis];
+      const VI stride = hn::Set(i_, strides_[axis]);
+      onward_[axis] = hn::IfThenElse(forward, hn::Set(f_, 1.0F), hn::Set(f_, -1.0F));
+      stride_[axis] = hn::IfThenElse(hn::RebindMask(i_, forward), stride, hn::Neg(stride));
+    }
   }
 
   HWY_INLINE void step() {
@@ -97,7 +162,7 @@ class Walkers {
     cross(0, hn::AndNot(hn::Or(leave.y, leave.z), active_));
     cross(1, hn::AndNot(leave.z, hn::And(leave.y, active_)));
     cross(2, hn::And(leave.z, active_));
-    entered_ = select(active_, leave.event, entered_);
+    entered_t_ = hn::IfThenElse(active_, leave.event.t, entered_t_);
   }
   /// NextPlanes::advance.
   HWY_INLINE void cross(std::size_t axis, M rays) {
@@ -122,24 +187,40 @@ class Walkers {
   static constexpr I i_{};
   static constexpr hn::RebindToUnsigned<F> u_{};
   const FlatStops& stops_;
+  std::array<std::int32_t, 3> strides_;  ///< of the table
   RayLanes rays_;
-  M active_;
-  Event entered_;  ///< the voxels that the rays are in
+  VI ray_;        ///< in the packet
+  M active_;      ///< not yet at their exits
+  VF entered_t_;  ///< when they entered the voxels that they are in
   Event exit_;
   NextPlanes next_;
   std::array<VF, 3> onward_;  ///< ± 1
-  std::array<VI, 3> stride_;  ///< ± of the table
+  std::array<VI, 3> stride_;  ///< ± strides_
   VI voxel_;                  ///< in the table
 };
 
+/// Rays end here and there: once half of those in a vector have, the others wait, and go on with such of other vectors.
 PacketTally cast_packets_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
+  const std::size_t lanes = hn::Lanes(F{});
+  const std::size_t regroup_at = lanes >= 8 ? lanes / 2 : 0;
   PacketTally tally;
-  for (std::size_t first = 0; first < packet.count; first += hn::Lanes(F{})) {
-    Walkers walkers{packet, first, stops};
-    const std::size_t cast = walkers.start(packet, max_t);
+  Waiting waiting;
+  Walkers walkers{packet, stops};
+  for (std::size_t first = 0; first < packet.count; first += lanes) {
+    const std::size_t cast = walkers.start(packet, first, max_t);
     if (cast == 0) continue;
     tally.cast += cast;
-    tally.scored |= walkers.walk(min_t) << first;
+    tally.scored |= walkers.walk(min_t, packet.count > lanes ? regroup_at : 0);
+    walkers.wait(waiting);
+  }
+  while (waiting.count > 0) {
+    const std::size_t at_most = waiting.count > lanes ? regroup_at : 0;
+    const std::size_t count = std::exchange(waiting.count, 0);
+    for (std::size_t first = 0; first < count; first += lanes) {
+      walkers.go_on(waiting, first, count);
+      tally.scored |= walkers.walk(min_t, at_most);
+      walkers.wait(waiting);  // over rays that were taken up already
+    }
   }
   return tally;
 }
