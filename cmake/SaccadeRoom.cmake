@@ -27,6 +27,18 @@ if(SACCADE_SANITIZE)
   endif()
 endif()
 
+# What is around the code that is tested is compiled in half of the time or less: the tests themselves (saccade_test_flags),
+# and under sanitizers the programs, too (saccade_app_flags). The rooms stay optimised; checks go without UBSan. To be
+# linked after saccade_flags, which this overrides.
+add_library(saccade_app_flags INTERFACE)
+add_library(saccade_test_flags INTERFACE)
+if(SACCADE_SANITIZE)
+  target_compile_options(saccade_app_flags INTERFACE -O0)
+  target_compile_options(saccade_test_flags INTERFACE -O0 $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=undefined>)
+else()
+  target_compile_options(saccade_test_flags INTERFACE $<$<CONFIG:Release>:-O1>)
+endif()
+
 # saccade_room(NAME SOURCES file… [ROOMS room…] [PACKAGES "name arguments of find_package"…]
 #              [PUBLIC target…] [PRIVATE target…])
 # ROOMS are the rooms that this one includes; the layer test holds them to the order of the layers. PACKAGES are what the

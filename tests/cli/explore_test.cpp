@@ -26,6 +26,7 @@ Arguments explore(const fs::path& out, Arguments more) {
 const Arguments kFewerPictures = kSanitized ? Arguments{"--no-pictures"} : Arguments{};
 
 TEST(ExploreCommand, TakesAKinectV2) {
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; GoesFromViewToView runs one";
   const TempFolder folder;
   const Arguments some{"--robot", "free", "--max-views", "1", "--json", "-"};
   const Outcome v2 = run_program(explore(folder / "v2", Arguments{"--sensor", "kinect-v2"} + some));
@@ -104,6 +105,7 @@ TEST(ExploreCommand, GoesFromViewToView) {
 }
 
 TEST(ExploreCommand, EveryStrategyTakesAView) {
+  if (kSanitized) GTEST_SKIP() << "every strategy has its own tests";
   const TempFolder folder;
   for (const std::string strategy : {"attention", "standard", "sphere", "random", "random-contours", "oracle"}) {
     const Outcome outcome =
@@ -123,6 +125,7 @@ TEST(ExploreCommand, EveryStrategyTakesAView) {
 }
 
 TEST(ExploreCommand, SaliencyDecidesWhatIsLookedAtFirst) {
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; GoesFromViewToView runs one";
   const TempFolder folder;
   const auto first_segment = [&](const char* name, const char* saliency) {
     const Outcome outcome = run_program(explore(folder / name, {"--saliency", saliency, "--max-views", "1",
@@ -135,6 +138,7 @@ TEST(ExploreCommand, SaliencyDecidesWhatIsLookedAtFirst) {
 }
 
 TEST(ExploreCommand, AShorterRunLeavesNoPicturesOfALongerOne) {
+  if (kSanitized) GTEST_SKIP() << "two explorations take long under sanitizers; GoesFromViewToView runs one";
   const TempFolder folder;
   const fs::path run = folder / "run";
   ASSERT_EQ(run_program(explore(run, {"--max-views", "1", "--min-gain", "5"})).status, 0);
@@ -145,6 +149,7 @@ TEST(ExploreCommand, AShorterRunLeavesNoPicturesOfALongerOne) {
 }
 
 TEST(ExploreCommand, TheSeedDecidesAndTheThreadsDoNot) {
+  if (kSanitized) GTEST_SKIP() << "three explorations take long under sanitizers; GoesFromViewToView runs one";
   const TempFolder folder;
   const auto views = [&](const char* name, const char* seed, const char* threads) {
     const Outcome outcome =
@@ -170,6 +175,7 @@ nlohmann::json figures(const fs::path& run) {
 }
 
 TEST(ExploreCommand, AKilledRunGoesOnAndEndsAsOneThatWasNotKilled) {
+  if (kSanitized) GTEST_SKIP() << "two explorations take long under sanitizers; GoesFromViewToView runs one";
   const TempFolder folder;
   const Arguments options = kFewerPictures + Arguments{"--max-views", kSanitized ? "2" : "3", "--min-gain", "5"};
   ASSERT_EQ(run_program(explore(folder / "whole", options)).status, 0);

@@ -7,6 +7,7 @@
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/sacmap.hpp"
 #include "saccade/io/trajectory_io.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -123,6 +124,7 @@ TEST_F(Fuse, ThreadsDoNotChangeTheMap) {
 }
 
 TEST_F(Fuse, ContinuingEqualsOneRun) {
+  if (kSanitized) GTEST_SKIP() << "takes long under sanitizers; the next test goes on with a map, too";
   const Arguments plain{"--tracking", "forced", "--no-pictures", "--no-mesh"};
   fused(plain, "whole");
   fused(plain + Arguments{"--count", "9"}, "parts");

@@ -90,6 +90,7 @@ TEST_F(ReproduceAnnotation, NoLabelCountsAsTheBackground) {
 }
 
 TEST_F(ReproduceAnnotation, MadeCloudsAreLabelledByTheirScenes) {
+  if (kSanitized) GTEST_SKIP() << "takes long under sanitizers; the tests of annotation run the code";
   const Arguments small{"--image-width", "160", "--seed", "3"};
   const nlohmann::json tables = tables_of({"4.6", "4.8"}, small + Arguments{"--threads", "1"});
   const nlohmann::json clicks =
@@ -150,6 +151,7 @@ TEST_F(ReproduceAnnotation, BadInputIsOneLine) {
 
 /// Some of mOSD's clouds, by links.
 TEST(AnnotateRecordedClouds, ThreeClicksPerLabelAreAlmostEnough) {
+  if (kSanitized) GTEST_SKIP() << "takes long under sanitizers; the tests of annotation run the code";
   const fs::path recorded = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
   if (!fs::exists(recorded)) GTEST_SKIP() << "no " << recorded;
   const TempFolder folder;

@@ -12,6 +12,7 @@
 #include "saccade/io/urdf.hpp"
 #include "saccade/robot/reach_map.hpp"
 #include "saccade/scene/fixture_boxes.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -50,6 +51,7 @@ ObstacleMap fixtures_alone(const Scene& scene) {
 }
 
 TEST(RobotReach, TableIsWhatASlowRecomputationGives) {
+  if (kSanitized) GTEST_SKIP() << "tables take long under sanitizers; GoesByWhatItIsTold makes one";
   const TempFolder folder;
   const fs::path out = folder / "reach";
   const Outcome outcome = run_program(reach(out));
@@ -87,6 +89,7 @@ TEST(RobotReach, TableIsWhatASlowRecomputationGives) {
 }
 
 TEST(RobotReach, WritesTheSameForEveryThreadCount) {
+  if (kSanitized) GTEST_SKIP() << "tables take long under sanitizers; GoesByWhatItIsTold makes one";
   const TempFolder folder;
   const Outcome one = run_program(reach(folder / "one", {"--threads", "1", "--json", "-"}));
   const Outcome two = run_program(reach(folder / "two", {"--threads", "2", "--json", (folder / "two.json").string()}));

@@ -6,6 +6,7 @@
 
 #include "run_program.hpp"
 #include "saccade/io/json_io.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -39,6 +40,7 @@ std::size_t layers_of(const nlohmann::json& document, const std::string& name, s
 }
 
 TEST(ShowCommand, ShowsAnExplorationViewByView) {
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; ShowsARunWhileItGoesOn runs one";
   const TempFolder folder;
   const fs::path run = folder / "run";
   ASSERT_EQ(run_program(short_run(run)).status, 0);

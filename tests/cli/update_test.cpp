@@ -102,6 +102,7 @@ TEST(UpdateCommand, LooksAgainWhereAJugWasTakenAndPutDown) {
 }
 
 TEST(UpdateCommand, FusesOnItsWayWhenItIsTold) {
+  if (kSanitized) GTEST_SKIP() << "the bottle's update is enough under sanitizers";
   const TempFolder folder;
   Arguments few{"--scene", "jug", "--no-pictures"};
   if (!kSanitized) few = few + Arguments{"--image-size", "160,120"};
@@ -164,6 +165,7 @@ TEST(UpdateCommand, APlaceOutsideTheWorkspaceIsNotCalledDone) {
 }
 
 TEST(UpdateCommand, PicturesOfAViewAreThoseOfTheViewAndNotOfTheWayToIt) {
+  if (kSanitized) GTEST_SKIP() << "the bottle's update is enough under sanitizers";
   const TempFolder folder;
   const Arguments first_view{"update", "--quiet",    "--scene",     "bottle", "--image-size", "160,120", "--voxel-size",
                              "0.02",   "--no-noise", "--max-views", "1"};

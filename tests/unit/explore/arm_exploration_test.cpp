@@ -95,6 +95,7 @@ TEST(ArmExploration, AnArmThatReachesIntoTheTableTouchesIt) {
 
 // What the arm sweeps during a scan is taken to be empty, so the scan itself must keep clear of the objects.
 TEST(ArmExploration, TheScanBeforeATaskShowsTheTableAndTouchesNothing) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   for (const char* name : {"bottle-before", "jug-before"}) {
     const RayScene rays = RayScene::build(find_scene(name).value()).value();
     for (std::uint64_t seed = 1; seed <= (test::kSanitized ? 1 : 2); ++seed) {
@@ -125,6 +126,7 @@ TEST(ArmExploration, SaysWhatItRefusedAndHowItMoved) {
 }
 
 TEST(ArmExploration, IsTheSameForEveryThreadCount) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   const Explored one = explore_with_arm(clutter(), 3, 1);
   const Explored two = explore_with_arm(clutter(), 3, 2);
   ASSERT_EQ(one.motions.size(), two.motions.size());
@@ -138,6 +140,7 @@ TEST(ArmExploration, IsTheSameForEveryThreadCount) {
 }
 
 TEST(ArmExploration, AmongViewsThatAreAsGoodTheSoonestIsTaken) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   const Explored best = explore_with_arm(clutter(), 1, 2, 1);
   const Explored near = explore_with_arm(clutter(), 1, 2, 1, 0.7);
   ASSERT_FALSE(best.result.views.empty());

@@ -9,6 +9,7 @@
 #include "saccade/explore/contour_strategies.hpp"
 #include "saccade/explore/oracle_strategy.hpp"
 #include "saccade/explore/strategy_kind.hpp"
+#include "support/effort.hpp"
 #include "unit/explore/scanned_clutter.hpp"
 
 namespace saccade {
@@ -108,6 +109,7 @@ std::vector<Pose> views_until_the_next_segment(const AttentionStrategy& strategy
 }
 
 TEST_F(Attention, GoesOnToTheNextSegmentWhenAllViewsOfOneWereAttempted) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   ObjectAttentionConfig wanted = config().attention;
   wanted.rival_share = 1.0;  // else a rival may be next before all were attempted
   const AttentionStrategy strategy{wanted, config().contour_views, gain()};
@@ -291,6 +293,7 @@ TEST_F(Attention, ExploresWithAStrategyThatHasMoreToPropose) {
 }
 
 TEST_F(Attention, CoversTheObjectsOfAClutter) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   SimulatedRunConfig run = config();
   run.exploration.max_views = 6;
   const SimulatedRun attentive = *run_simulated(truth(), run, Executor::with_threads(2));

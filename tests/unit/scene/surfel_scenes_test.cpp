@@ -122,6 +122,7 @@ TEST(SurfelScenes, TheirNoiseIsFrozen) {
 }
 
 TEST(SurfelScenes, PixelsAndTheNearestSurfaceHaveTheSameLabels) {
+  if (test::kSanitized) GTEST_SKIP() << "five scenes take long under sanitizers; others make them";
   for (const std::string_view name : kSurfelScenes) {
     const SurfelScene made = surfel_scene(name).value();
     const RayScene rays = RayScene::build(made.scene).value();

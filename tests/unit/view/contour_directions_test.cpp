@@ -14,6 +14,7 @@
 #include "saccade/sensor/noise.hpp"
 #include "saccade/view/contour_views.hpp"
 #include "saccade/view/view_gain.hpp"
+#include "support/effort.hpp"
 
 namespace saccade {
 namespace {
@@ -160,6 +161,7 @@ TEST(ContourDirections, OfABoxSeenFromOneSideShowItsOtherSides) {
 }
 
 TEST(ContourDirections, OfThingsOnATableShowMoreThanAsPrinted) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long under sanitizers; the other tests of contours run the code";
   AnalyticScene scene;
   scene.objects = {{"table", HalfSpace{Eigen::Vector3d::UnitZ(), -0.1}},
                    {"box", Box{{-0.12, -0.05, -0.1}, {-0.04, 0.07, 0.06}}},
