@@ -39,6 +39,26 @@ else()
   target_compile_options(saccade_test_flags INTERFACE $<$<CONFIG:Release>:-O1>)
 endif()
 
+# saccade_rooms_first(TARGET ROOMS…): of a function that several objects contain (a template, say) the linker keeps the first.
+# Under sanitizers, those of the rooms come first, so that they are the optimised ones.
+function(saccade_rooms_first target)
+  if(NOT SACCADE_SANITIZE OR NOT ARGN)
+    return()
+  endif()
+  set(rooms ${ARGN})
+  set(open ${ARGN})
+  while(open)
+    list(POP_FRONT open room)
+    get_property(below GLOBAL PROPERTY SACCADE_ROOM_${room}_ROOMS)
+    list(REMOVE_ITEM below ${rooms})
+    list(APPEND rooms ${below})
+    list(APPEND open ${below})
+  endwhile()
+  list(TRANSFORM rooms REPLACE "(.+)" "$<TARGET_FILE:saccade::\\1>")
+  list(JOIN rooms "," archives)
+  target_link_options(${target} PRIVATE "LINKER:--whole-archive,${archives},--no-whole-archive")
+endfunction()
+
 # saccade_room(NAME SOURCES file… [ROOMS room…] [PACKAGES "name arguments of find_package"…]
 #              [PUBLIC target…] [PRIVATE target…])
 # ROOMS are the rooms that this one includes; the layer test holds them to the order of the layers. PACKAGES are what the
