@@ -278,6 +278,7 @@ TEST(ExploreCommand, StepAsksBeforeEachMove) {
 }
 
 TEST(ExploreCommand, ScannedObjectsAreExplored) {
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; GoesFromViewToView runs one";
   const fs::path meshes = fs::absolute(fs::path{SACCADE_SHARED_DATA} / "meshes_ycb");
   if (!fs::exists(meshes)) GTEST_SKIP() << meshes << " is not there";
   const auto object = [&](const std::string& name, const std::string& file, const std::string& at) {

@@ -117,6 +117,7 @@ TEST_F(ReproduceHands, RowsAreAboutTheirHands) {
 }
 
 TEST_F(ReproduceHands, ThreadsMakeNoDifference) {
+  if (kSanitized) GTEST_SKIP() << "takes long under sanitizers; CountsWhatAttendCounts runs the code";
   const Arguments tables{"2.2", "2.4", "2.6"};
   EXPECT_EQ(tables_of(tables, {"--noise-seeds", "1", "--threads", "1"}),
             tables_of(tables, {"--noise-seeds", "1", "--threads", "4"}));

@@ -9,6 +9,7 @@
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/rgbd_folder.hpp"
 #include "saccade/io/trajectory_io.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -94,6 +95,7 @@ TEST_F(SceneSequence, FusesWithItsPoses) {
 }
 
 TEST_F(SceneSequence, IsTheSameForEveryThreadCount) {
+  if (kSanitized) GTEST_SKIP() << "takes long under sanitizers; the other tests render, too";
   for (const std::string scene : {"desk", "magazines-1"}) {
     ASSERT_EQ(run(scene + "1", {"--frames", "3", "--threads", "1"}, scene).status, 0);
     ASSERT_EQ(run(scene + "5", {"--frames", "3", "--threads", "5"}, scene).status, 0);
