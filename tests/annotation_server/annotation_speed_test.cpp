@@ -75,6 +75,7 @@ TEST_F(AnnotationSpeedTest, OfAnActionOn300000Points) {
 
 /// The worst there is: one control point labels two thirds of the cloud, and is taken back, again and again.
 TEST_F(AnnotationSpeedTest, OfActionsThatLabelMostOf300000Points) {
+  if (test::kSanitized) GTEST_SKIP() << "OfAnActionOn300000Points is enough under sanitizers";
   constexpr int kRounds{20};
   Page page = this->page(1);
   const Page other = this->page(2);

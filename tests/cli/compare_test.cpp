@@ -7,6 +7,7 @@
 #include "run_program.hpp"
 #include "saccade/io/campaign_figures.hpp"
 #include "saccade/io/json_io.hpp"
+#include "support/effort.hpp"
 
 namespace saccade::test {
 namespace {
@@ -105,6 +106,7 @@ TEST(CompareCommand, AnInterruptionKeepsWhatIsDone) {
 }
 
 TEST(CompareCommand, HasTheFiguresOfExplore) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; GoesOnWhereItStopped makes two";
   for (const char* robot : {"free", "comau"}) {
     const TempFolder folder;
     const Outcome compared = run_program(compare(
@@ -161,6 +163,7 @@ std::vector<std::string> figures_in(const fs::path& out) {
 }
 
 TEST(CompareCommand, JobsAndThreadsChangeNoFigure) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; GoesOnWhereItStopped makes two";
   const TempFolder folder;
   const Arguments wanted{"--seeds", "1-2", "--robot", "comau", "--noise", "none,kinect-v1", "--quiet"};
   ASSERT_EQ(run_program(compare(folder / "one", wanted + Arguments{"--jobs", "1", "--threads", "1"})).status, 0);
@@ -171,6 +174,7 @@ TEST(CompareCommand, JobsAndThreadsChangeNoFigure) {
 }
 
 TEST(CompareCommand, AKilledComparisonGoesOnWhereItStopped) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; GoesOnWhereItStopped makes two";
   const TempFolder folder;
   const Arguments wanted{"--seeds", "1-6", "--jobs", "3"};
   {
@@ -192,6 +196,7 @@ TEST(CompareCommand, AKilledComparisonGoesOnWhereItStopped) {
 }
 
 TEST(CompareCommand, RandomGetsAsManyViewsAsSphereTook) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; GoesOnWhereItStopped makes two";
   const TempFolder folder;
   const fs::path out = folder / "out";
   // Nothing gains that much: sphere takes no view.
@@ -266,6 +271,7 @@ std::string box_obj(double x, double y, double z) {
 }
 
 TEST(CompareCommand, EveryMeshOfAFolderIsAScene) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; GoesOnWhereItStopped makes two";
   const TempFolder folder;
   folder.write("meshes/box.obj", box_obj(120, 80, 150));
   folder.write("meshes/flat.OBJ", box_obj(200, 200, 30));
@@ -314,6 +320,7 @@ TEST(CompareCommand, AFullDiskIsSaidBeforeTheWork) {
 }
 
 TEST(CompareCommand, ThereIsNoViewWhereEverythingIsKnownOrNothingCanBeReached) {
+  if (kSanitized) GTEST_SKIP() << "comparisons take long under sanitizers; GoesOnWhereItStopped makes two";
   const TempFolder folder;
   // Nothing gains so much: to the strategy, everything is known.
   const Outcome known = run_program(once(folder / "known", "clutter:5", {"--min-gain", "1e9", "--json", "-"}));

@@ -31,6 +31,7 @@ void expect_experiments(const nlohmann::json& experiments) {
 }
 
 TEST(ReproduceExploration, SegmentsOfObjectsComeBeforeTheTable) {
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; explore_test runs one";
   const Outcome outcome = reproduce({"3.2"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json table = outcome.json().at("result").at("tables").at(0);
@@ -49,7 +50,7 @@ TEST(ReproduceExploration, SegmentsOfObjectsComeBeforeTheTable) {
 }
 
 TEST(ReproduceExploration, PhasesMarksAndCurvesOfFourScenes) {
-  if (kSanitized) GTEST_SKIP() << "eight explorations take long here; the table above covers the code";
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; explore_test runs one";
   const TempFolder folder;
   const Outcome outcome = reproduce({"3.1", "3.3", "3.17"}, {"--out", folder.path().string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
