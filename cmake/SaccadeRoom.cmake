@@ -28,14 +28,14 @@ if(SACCADE_SANITIZE)
 endif()
 
 # What is around the code that is tested is compiled in half of the time or less: the tests themselves (saccade_test_flags),
-# and under sanitizers the programs, too (saccade_app_flags). The rooms stay optimised; checks go without UBSan. To be
-# linked after saccade_flags, which this overrides.
+# and under AddressSanitizer the programs, too (saccade_app_flags). The rooms stay optimised; checks go without UBSan. To be
+# linked after saccade_flags, which this overrides. (Under ThreadSanitizer the slow references of tests need it all.)
 add_library(saccade_app_flags INTERFACE)
 add_library(saccade_test_flags INTERFACE)
-if(SACCADE_SANITIZE)
+if(SACCADE_SANITIZE MATCHES "address")
   target_compile_options(saccade_app_flags INTERFACE -O0)
   target_compile_options(saccade_test_flags INTERFACE -O0 $<$<CXX_COMPILER_ID:Clang>:-fno-sanitize=undefined>)
-else()
+elseif(NOT SACCADE_SANITIZE)
   target_compile_options(saccade_test_flags INTERFACE $<$<CONFIG:Release>:-O1>)
 endif()
 
