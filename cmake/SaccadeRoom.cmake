@@ -40,9 +40,9 @@ elseif(NOT SACCADE_SANITIZE)
 endif()
 
 # saccade_rooms_first(TARGET ROOMS…): of a function that several objects contain (a template, say) the linker keeps the first.
-# Under sanitizers, those of the rooms come first, so that they are the optimised ones.
+# Under AddressSanitizer, those of the rooms come first, so that they are the optimised ones.
 function(saccade_rooms_first target)
-  if(NOT SACCADE_SANITIZE OR NOT ARGN)
+  if(NOT SACCADE_SANITIZE MATCHES "address" OR NOT ARGN)
     return()
   endif()
   set(rooms ${ARGN})
