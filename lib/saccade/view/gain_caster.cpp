@@ -291,10 +291,7 @@ void GainCaster::cast_packet(const Tile& tile) {
   RayPacket packet = no_rays(tile.major, tile.slab);
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
     const ColumnRange range = window_.columns_of(j);
-    const int end = std::min(range.end, tile.column_end);
-    for (int i = std::max(range.begin, tile.column_begin); i < end; ++i) {
-      if (shows(i, j)) add_ray(i, j, packet);
-    }
+    add_rays(std::max(range.begin, tile.column_begin), std::min(range.end, tile.column_end), j, packet);
   }
   const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
   scored_ += static_cast<std::uint64_t>(std::popcount(tally.scored));
@@ -307,6 +304,31 @@ RayPacket GainCaster::no_rays(int major, int slab) const {
   packet.major = major;
   packet.slab = slab;
   return packet;
+}
+
+/// Those of columns [begin, end) of a row that are shown.
+void GainCaster::add_rays(int begin, int end, int row, RayPacket& packet) const {
+  if (begin >= end) return;
+  const bool all = shown_.footprint == nullptr ||
+                   shown_.footprint->count({begin + shown_.column, end + shown_.column, row + shown_.row,
+                                            row + shown_.row + 1}) == static_cast<std::uint64_t>(end - begin);
+  if (!all) {
+    for (int i = begin; i < end; ++i) {
+      if (shows(i, row)) add_ray(i, row, packet);
+    }
+    return;
+  }
+  const auto count = static_cast<std::size_t>(end - begin);
+  const float* const a = window_.a.data() + begin;
+  const float b = window_.b[static_cast<std::size_t>(row)];
+  const SensorRays& rays = window_.rays;
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const float x = rays.x[axis];
+    const float in_row = rays.y[axis] * b + rays.z[axis];
+    float* const d = packet.d[axis].data() + packet.count;
+    for (std::size_t i = 0; i < count; ++i) d[i] = x * a[i] + in_row;
+  }
+  packet.count += count;
 }
 
 void GainCaster::add_ray(int column, int row, RayPacket& packet) const {

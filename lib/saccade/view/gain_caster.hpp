@@ -72,6 +72,7 @@ class GainCaster {
   void cast_packet(const Tile& tile);
   void judge(std::span<OpenTile> tiles);
   [[nodiscard]] RayPacket no_rays(int major, int slab) const;
+  void add_rays(int begin, int end, int row, RayPacket& packet) const;
   void add_ray(int column, int row, RayPacket& packet) const;
   void cast_ray(float a, float b, int major, int slab);
   void walk_bricks(const LatticeRay& ray, const RaySpan& span);

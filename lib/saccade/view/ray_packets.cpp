@@ -67,14 +67,13 @@ class Walkers {
     voxel_ = hn::Zero(i_);
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VF p = rays_.position(axis, entered, hn::Neg(far), far, active_);
-      next_.plane[axis] = rays_.plane_ahead(axis, p);
+      plane_[axis] = rays_.plane_ahead(axis, p);
       const VI along = hn::Add(hn::ConvertTo(i_, p), hn::Set(i_, from_lo[axis]));
       voxel_ = hn::Add(voxel_, hn::Mul(along, hn::Set(i_, strides_[axis])));
     }
     voxel_ = hn::IfThenElseZero(hn::RebindMask(i_, active_), voxel_);
     entered_t_ = packet.slab > 0 ? entered.t : hn::Set(f_, kNever);
     ray_ = hn::Iota(i_, static_cast<std::int32_t>(first));
-    aim();
     return cast;
   }
 
@@ -83,21 +82,20 @@ class Walkers {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       rays_.inv[axis] = hn::LoadU(f_, waiting.inv[axis].data() + first);
       rays_.forward[axis] = hn::Gt(rays_.inv[axis], hn::Zero(f_));
-      next_.plane[axis] = hn::LoadU(f_, waiting.plane[axis].data() + first);
+      plane_[axis] = hn::LoadU(f_, waiting.plane[axis].data() + first);
     }
     active_ = hn::FirstN(f_, count - first);
     entered_t_ = hn::LoadU(f_, waiting.entered_t.data() + first);
     exit_ = {hn::LoadU(f_, waiting.exit_t.data() + first), hn::LoadU(i_, waiting.exit_axis.data() + first)};
     voxel_ = hn::IfThenElseZero(hn::RebindMask(i_, active_), hn::LoadU(i_, waiting.voxel.data() + first));
     ray_ = hn::LoadU(i_, waiting.ray.data() + first);
-    aim();
   }
 
   /// Those that are neither stopped nor have left, behind others that wait.
   HWY_INLINE void wait(Waiting& waiting) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       put(rays_.inv[axis], waiting.count, waiting.inv[axis]);
-      put(next_.plane[axis], waiting.count, waiting.plane[axis]);
+      put(plane_[axis], waiting.count, waiting.plane[axis]);
     }
     put(entered_t_, waiting.count, waiting.entered_t);
     put(exit_.t, waiting.count, waiting.exit_t);
@@ -111,17 +109,39 @@ class Walkers {
   /// packet. Rays that were stopped go on meanwhile, unheeded: so no step waits for what was looked up before it.
   HWY_INLINE std::uint64_t walk(float min_t, std::size_t at_most) {
     const VF counts_from = hn::Set(f_, min_t);
+    const VI stops = hn::Set(i_, static_cast<std::int32_t>(FlatStops::kStops));
+    const VI scores = hn::Set(i_, static_cast<std::int32_t>(FlatStops::kScores));
+    // Members that may be read through a pointer are written back at every look-up; these are not.
+    Way x = way(0);
+    Way y = way(1);
+    Way z = way(2);
+    VI voxel = voxel_;
+    VF entered_t = entered_t_;
+    M active = active_;
     M scored = none();
     M done = none();
-    while (hn::CountTrue(f_, hn::AndNot(done, active_)) > at_most) {
-      const VI bits = bits_of_voxels();
-      const M stopped = hn::AndNot(done, hn::And(active_, has(bits, FlatStops::kStops)));
-      scored =
-          hn::Or(scored, hn::And(hn::And(stopped, has(bits, FlatStops::kScores)), hn::Ge(entered_t_, counts_from)));
+    while (hn::CountTrue(f_, hn::AndNot(done, active)) > at_most) {
+      const VI bits = bits_of(voxel);
+      const M stopped = hn::AndNot(done, hn::And(active, hn::RebindMask(f_, hn::TestBit(bits, stops))));
+      const M counts = hn::And(hn::RebindMask(f_, hn::TestBit(bits, scores)), hn::Ge(entered_t, counts_from));
+      scored = hn::Or(scored, hn::And(stopped, counts));
       done = hn::Or(done, stopped);
-      step();
+      // NextPlanes::first, but that the exit is asked of each axis by itself.
+      const M y_first = hn::Lt(y.t, x.t);
+      const VF t_xy = hn::IfThenElse(y_first, y.t, x.t);
+      const M z_first = hn::Lt(z.t, t_xy);
+      const VF t = hn::IfThenElse(z_first, z.t, t_xy);
+      const M by_x = hn::And(hn::Lt(x.t, x.exit_t), hn::AndNot(hn::Or(y_first, z_first), active));
+      const M by_y = hn::And(hn::Lt(y.t, y.exit_t), hn::AndNot(z_first, hn::And(y_first, active)));
+      const M by_z = hn::And(hn::Lt(z.t, z.exit_t), hn::And(z_first, active));
+      active = hn::Or(hn::Or(by_x, by_y), by_z);
+      voxel = hn::Add(voxel, hn::Add(x.cross(by_x), hn::Add(y.cross(by_y), z.cross(by_z))));
+      entered_t = hn::IfThenElse(active, t, entered_t);
     }
-    active_ = hn::AndNot(done, active_);
+    plane_ = {x.plane, y.plane, z.plane};
+    voxel_ = voxel;
+    entered_t_ = entered_t;
+    active_ = hn::AndNot(done, active);
     alignas(64) std::array<std::int32_t, hn::MaxLanes(I{})> rays;
     hn::Store(hn::Compress(ray_, hn::RebindMask(i_, scored)), i_, rays.data());
     const std::size_t count = hn::CountTrue(f_, scored);
@@ -145,42 +165,48 @@ class Walkers {
     hn::StoreU(hn::Compress(value, hn::RebindMask(d, active_)), d, values.data() + at);
   }
 
-  /// What follows from where the rays are and their directions.
-  HWY_INLINE void aim() {
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-      next_.t[axis] = rays_.crossing(axis, next_.plane[axis]);
-      const M forward = rays_.forward[axis];
-      const VI stride = hn::Set(i_, strides_[axis]);
-      onward_[axis] = hn::IfThenElse(forward, hn::Set(f_, 1.0F), hn::Set(f_, -1.0F));
-      stride_[axis] = hn::IfThenElse(hn::RebindMask(i_, forward), stride, hn::Neg(stride));
-    }
-  }
+  /// The rays along one axis.
+  struct Way {
+    VF o;
+    VF inv;
+    VF onward;  ///< ± 1
+    VI stride;  ///< ± that of the table
+    VF exit_t;  ///< crossings of this axis come before the ray's exit where they come before this
+    VF plane;   ///< the next
+    VF t;       ///< of its crossing
 
-  HWY_INLINE void step() {
-    const NextPlanes::First leave = next_.first();
-    active_ = hn::And(active_, before(leave.event, exit_));
-    cross(0, hn::AndNot(hn::Or(leave.y, leave.z), active_));
-    cross(1, hn::AndNot(leave.z, hn::And(leave.y, active_)));
-    cross(2, hn::And(leave.z, active_));
-    entered_t_ = hn::IfThenElse(active_, leave.event.t, entered_t_);
+    /// NextPlanes::advance; returns by how much the voxel changes.
+    HWY_INLINE VI cross(M rays) {
+      plane = hn::IfThenElse(rays, hn::Add(plane, onward), plane);
+      t = hn::IfThenElse(rays, hn::Mul(hn::Sub(plane, o), inv), t);
+      return hn::IfThenElseZero(hn::RebindMask(i_, rays), stride);
+    }
+  };
+  [[nodiscard]] HWY_INLINE Way way(std::size_t axis) const {
+    const M forward = rays_.forward[axis];
+    const VI stride = hn::Set(i_, strides_[axis]);
+    const M wins_tie = hn::RebindMask(f_, hn::Lt(hn::Set(i_, static_cast<std::int32_t>(axis)), exit_.axis));
+    return {rays_.o[axis],
+            rays_.inv[axis],
+            hn::IfThenElse(forward, hn::Set(f_, 1.0F), hn::Set(f_, -1.0F)),
+            hn::IfThenElse(hn::RebindMask(i_, forward), stride, hn::Neg(stride)),
+            hn::IfThenElse(wins_tie, next_after(exit_.t), exit_.t),
+            plane_[axis],
+            rays_.crossing(axis, plane_[axis])};
   }
-  /// NextPlanes::advance.
-  HWY_INLINE void cross(std::size_t axis, M rays) {
-    next_.plane[axis] = hn::IfThenElse(rays, hn::Add(next_.plane[axis], onward_[axis]), next_.plane[axis]);
-    next_.t[axis] = hn::IfThenElse(rays, rays_.crossing(axis, next_.plane[axis]), next_.t[axis]);
-    voxel_ = hn::Add(voxel_, hn::IfThenElseZero(hn::RebindMask(i_, rays), stride_[axis]));
+  /// The least number above t ≥ 0.
+  [[nodiscard]] static HWY_INLINE VF next_after(VF t) {
+    const VF positive = hn::Add(t, hn::Zero(f_));  // −0 becomes 0
+    return hn::BitCast(f_, hn::Add(hn::BitCast(i_, positive), hn::Set(i_, 1)));
   }
 
   /// Of the voxels the rays are in, in the lowest two bits. They lie in the table: it holds all cameras and the box
   /// that rays end in, so all between.
-  [[nodiscard]] HWY_INLINE VI bits_of_voxels() const {
-    const VI word = hn::ShiftRight<4>(voxel_);
+  [[nodiscard]] HWY_INLINE VI bits_of(VI voxel) const {
+    const VI word = hn::ShiftRight<4>(voxel);
     const VI words = hn::GatherIndex(i_, reinterpret_cast<const std::int32_t*>(stops_.bits.data()), word);
-    const VI place = hn::ShiftLeft<1>(hn::And(voxel_, hn::Set(i_, FlatStops::kVoxelsPerWord - 1)));
+    const VI place = hn::ShiftLeft<1>(hn::And(voxel, hn::Set(i_, FlatStops::kVoxelsPerWord - 1)));
     return hn::BitCast(i_, hn::Shr(hn::BitCast(u_, words), hn::BitCast(u_, place)));
-  }
-  [[nodiscard]] HWY_INLINE static M has(VI bits, std::uint32_t bit) {
-    return hn::RebindMask(f_, hn::Ne(hn::And(bits, hn::Set(i_, static_cast<std::int32_t>(bit))), hn::Zero(i_)));
   }
 
   static constexpr F f_{};
@@ -193,10 +219,8 @@ class Walkers {
   M active_;      ///< not yet at their exits
   VF entered_t_;  ///< when they entered the voxels that they are in
   Event exit_;
-  NextPlanes next_;
-  std::array<VF, 3> onward_;  ///< ± 1
-  std::array<VI, 3> stride_;  ///< ± strides_
-  VI voxel_;                  ///< in the table
+  std::array<VF, 3> plane_;  ///< the next ones
+  VI voxel_;                 ///< in the table
 };
 
 /// Rays end here and there: once half of those in a vector have, the others wait, and go on with such of other vectors.
