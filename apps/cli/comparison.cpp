@@ -44,6 +44,7 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
                 {"oscillation_rad", config.exploration.oscillation_rad},
                 {"oscillation_frames", config.exploration.oscillation_frames},
                 {"robot", config.arm ? config.arm->name() : "free"}};
+  if (map.clearing_percent != 100) settings["clearing_percent"] = map.clearing_percent;
   if (config.strategy == StrategyKind::attention) settings["rival_share"] = config.attention.rival_share;
   if (config.arm) {
     settings["robot_hash"] = arm_hash;

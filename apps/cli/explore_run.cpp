@@ -49,6 +49,7 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"gain_width_px", run.gain_width_px},
                 {"min_gain", run.exploration.min_gain},
                 {"good_enough", run.exploration.good_enough}};
+  if (run.clearing_percent != 100) settings["clearing_percent"] = run.clearing_percent;
   if (run.strategy == StrategyKind::attention) {
     settings["saliency"] = saliency_text(options.saliency);
     settings["rival_share"] = run.attention.rival_share;

@@ -217,7 +217,8 @@ void add_fuse(CLI::App& program, const GlobalOptions& global, Action& action) {
   auto options = std::make_shared<FuseOptions>();
   add_fuse_options(*command, *options);
   command->callback([options, command, &global, &action] {
-    options->map_size_given = command->count("--voxel-size") + command->count("--truncation") > 0;
+    options->map_size_given =
+        command->count("--voxel-size") + command->count("--truncation") + command->count("--clearing") > 0;
     check_fuse_options(*options);
     action = [options, &global] { return run_fuse(*options, global); };
   });

@@ -13,6 +13,7 @@ void add_map_options(CLI::App& command, FuseOptions& options) {
   command.add_option("--truncation", options.map.truncation_vox, "truncation distance, voxels")
       ->type_name("VOXELS")
       ->capture_default_str();
+  add_clearing_option(command, options.map.clearing_percent);
   command
       .add_option_function<std::string>(
           "--workspace",
@@ -40,10 +41,10 @@ void check_fuse_options(FuseOptions& options) {
   if (!options.map.color) options.folder.read_color = false;
   require_positive(options.map.voxel_size_m, "--voxel-size");
   require_positive(options.map.truncation_vox, "--truncation");
-  require_ok(options.map.validate(), "--voxel-size, --truncation");
+  require_ok(options.map.validate(), "--voxel-size, --truncation, --clearing");
   check_frame_options(options);
   if (!options.continue_map.empty() && options.map_size_given) {
-    usage_error("--continue", "a saved map keeps its voxel size and truncation; leave those options out");
+    usage_error("--continue", "a saved map keeps its voxel size, truncation and clearing; leave those options out");
   }
 }
 

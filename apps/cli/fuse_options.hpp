@@ -14,6 +14,9 @@ class App;
 namespace saccade::cli {
 
 struct FuseOptions : FrameOptions {
+  /// Recorded poses are not exact: docs/decisions/0021-clearing.md.
+  FuseOptions() { map.clearing_percent = 50; }
+
   std::filesystem::path out;
   TsdfConfig map;
   bool map_size_given{false};

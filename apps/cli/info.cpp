@@ -104,6 +104,7 @@ json saved_map_json(const TsdfSnapshot& map) {
               {"truncation_m", map.config.truncation_m()},
               {"max_weight", map.config.max_weight},
               {"free_weight", map.config.free_weight},
+              {"clearing_percent", map.config.clearing_percent},
               {"color", map.config.color},
               {"workspace", nullptr},
               {"bounds_m", {{"min", corner(sectors.lo)}, {"max", corner(sectors.hi)}}},

@@ -129,6 +129,17 @@ std::optional<Intrinsics> CameraOptions::given_intrinsics() const {
   return given;
 }
 
+void add_clearing_option(CLI::App& command, std::uint8_t& percent) {
+  command
+      .add_option_function<int>(
+          "--clearing", [&percent](int given) { percent = static_cast<std::uint8_t>(given); },
+          "how much it counts against a surface when a ray passes it by: 100 as much as everything else, less keeps "
+          "edges and thin walls (default: " +
+              std::to_string(percent) + ")")
+      ->check(CLI::Range(1, 100))
+      ->type_name("PERCENT");
+}
+
 void add_camera_options(CLI::App& command, CameraOptions& options, bool with_image_size) {
   std::string names;
   for (const CameraPreset& preset : camera_presets()) names += (names.empty() ? "" : ", ") + std::string{preset.name};

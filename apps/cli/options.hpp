@@ -58,5 +58,7 @@ struct CameraOptions {
 
 /// Adds --camera, --intrinsics, --min-range and --max-range, and --image-size where the images do not say their size.
 void add_camera_options(CLI::App& command, CameraOptions& options, bool with_image_size);
+/// --clearing PERCENT: TsdfConfig::clearing_percent.
+void add_clearing_option(CLI::App& command, std::uint8_t& percent);
 
 }  // namespace saccade::cli

@@ -55,6 +55,7 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
   command.add_option("--truncation", options.run.truncation_vox, "truncation distance, voxels")
       ->type_name("VOXELS")
       ->capture_default_str();
+  add_clearing_option(command, options.run.clearing_percent);
   command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of the sensor");
   command
       .add_option_function<std::string>(
@@ -73,7 +74,7 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
 void check_run_options(RunOptions& options) {
   require_positive(options.run.voxel_size_m, "--voxel-size");
   require_positive(options.run.truncation_vox, "--truncation");
-  require_ok(options.run.map().validate(), "--voxel-size, --truncation");
+  require_ok(options.run.map().validate(), "--voxel-size, --truncation, --clearing");
   options.run.sphere.radii_m = parse_distances(options.distances);
   options.run.contour_views.distances_m = options.run.sphere.radii_m;
   options.run.camera = options.camera.camera(options.run.camera);

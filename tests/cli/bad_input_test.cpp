@@ -150,6 +150,8 @@ TEST_F(BadInput, VoxelsOfZeroAndLess) {
 
 TEST_F(BadInput, SizesOfZeroAndLess) {
   expect_refused(2, {"--truncation", "positive"}, {"--truncation", "0"});
+  expect_refused(2, {"--clearing", "1 to 100"}, {"--clearing", "0"});
+  expect_refused(2, {"--clearing", "1 to 100"}, {"--clearing", "101"});
   expect_refused(2, {"--max-range", "positive"}, {"--max-range", "0"});
   expect_refused(2, {"--min-range"}, {"--min-range=-1"});
   expect_refused(2, {"--min-range", "--max-range"}, {"--min-range", "3", "--max-range", "2"});

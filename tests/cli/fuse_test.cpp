@@ -246,5 +246,24 @@ TEST(FuseRecorded, FiveFramesOfALivingRoom) {
   }
 }
 
+TEST(FuseRecorded, KitchenFitsItsMapWithinEightMillimetres) {
+  const fs::path data = fs::path{SACCADE_SHARED_DATA} / "rgbd_redkitchen";
+  if (!fs::exists(data)) GTEST_SKIP() << data << " is not there";
+  if (kSanitized) GTEST_SKIP() << "two hundred frames take minutes with sanitizers; release fuses them";
+  const TempFolder folder;
+  std::vector<double> residuals_m;
+  for (const char* clearing : {"50", "100"}) {
+    const Outcome outcome =
+        run_program({"fuse", data.string(), "--tracking", "forced", "--out", (folder / clearing).string(), "--quiet",
+                     "--clearing", clearing, "--no-color", "--no-mesh", "--no-pictures", "--json", "-"});
+    ASSERT_EQ(outcome.status, 0) << outcome.err;
+    const nlohmann::json residual = outcome.json().at("result").at("depth_residual_m");
+    residuals_m.push_back(residual.at("median").get<double>());
+    EXPECT_GE(residual.at("share").get<double>(), 0.9);
+  }
+  EXPECT_LE(residuals_m[0], 0.008);
+  EXPECT_LT(residuals_m[0], residuals_m[1]) << "why fuse clears by half: docs/decisions/0021-clearing.md";
+}
+
 }  // namespace
 }  // namespace saccade::test

@@ -80,6 +80,7 @@ TEST(Defaults, OfTheMapAreDocumented) {
   expect_documented("TsdfConfig::truncation_vox", {map.truncation_vox});
   expect_documented("TsdfConfig::max_weight", {static_cast<double>(map.max_weight)});
   expect_documented("TsdfConfig::free_weight", {static_cast<double>(map.free_weight)});
+  expect_documented("TsdfConfig::clearing_percent", {static_cast<double>(map.clearing_percent)});
 }
 
 TEST(Defaults, OfArmsAreDocumented) {

@@ -47,7 +47,8 @@ class DenseReference {
       const int sample = tsdf::sample_voxel(fusion_camera, p, range(camera, fusion_camera, u, v, depth(u, v)));
       if (sample == tsdf::kNotSeen) return;
       const Voxel before = voxel;
-      voxel.v = tsdf::average_v(before.v, before.w, sample);
+      const int counts_as = tsdf::clearing_sample(before.v, before.w, sample, config_.clearing_share());
+      voxel.v = tsdf::average_v(before.v, before.w, counts_as);
       voxel.w = tsdf::next_w(voxel.v, before.w, config_.max_weight, config_.free_weight);
       if (color != nullptr && config_.color && std::abs(sample) < tsdf::kSampleOne) {
         const bool first = voxel_color == Rgb8{};

@@ -20,6 +20,7 @@ class RandomRun {
     config_.truncation_vox = uniform(1.5, 5.0);
     config_.max_weight = static_cast<std::uint16_t>(integer(5, 60));
     config_.free_weight = static_cast<std::uint16_t>(integer(1, 5));
+    config_.clearing_percent = static_cast<std::uint8_t>(integer(0, 2) == 0 ? 100 : integer(1, 100));
     camera_.width = integer(8, 90);
     camera_.height = integer(8, 70);
     camera_.fx = uniform(20.0, 90.0);

@@ -62,6 +62,7 @@ TsdfConfig SimulatedRunConfig::map() const {
   TsdfConfig config;
   config.voxel_size_m = voxel_size_m;
   config.truncation_vox = truncation_vox;
+  config.clearing_percent = clearing_percent;
   return config;
 }
 

@@ -24,7 +24,8 @@ enum class DepthSensor : std::uint8_t {
 
 struct SimulatedRunConfig {
   double voxel_size_m{0.0058};
-  double truncation_vox{2.0};  ///< thin: within 2 m depth is better than that, and vessels have thin walls
+  double truncation_vox{2.0};          ///< thin: within 2 m depth is better than that, and vessels have thin walls
+  std::uint8_t clearing_percent{100};  ///< of its maps
   PinholeCamera camera{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 2.0};  ///< beyond 2 m depth is too coarse here
   bool noise{true};                                                      ///< of `sensor`; else depth is exact
   DepthSensor sensor{DepthSensor::kinect_v1};

@@ -34,7 +34,8 @@ struct FixedHeader {
   std::array<char, 8> magic{kMagic};
   std::uint32_t version{kVersion};
   std::uint16_t max_weight{0};
-  std::uint16_t free_weight{0};
+  std::uint8_t free_weight{0};
+  std::uint8_t clearing_percent{0};  ///< 0 is 100
   double voxel_size_m{0.0};
   double truncation_vox{0.0};
   std::array<double, 6> workspace{};  ///< min, max; zeros without one
@@ -99,7 +100,8 @@ Status check_map(const TsdfSnapshot& map, const std::vector<Index3>& keys) {
 FixedHeader header_of(const TsdfSnapshot& map) {
   FixedHeader header;
   header.max_weight = map.config.max_weight;
-  header.free_weight = map.config.free_weight;
+  header.free_weight = static_cast<std::uint8_t>(map.config.free_weight);
+  header.clearing_percent = map.config.clearing_percent == 100 ? std::uint8_t{0} : map.config.clearing_percent;
   header.voxel_size_m = map.config.voxel_size_m;
   header.truncation_vox = map.config.truncation_vox;
   header.color = map.config.color ? 1 : 0;
@@ -186,6 +188,8 @@ Result<TsdfConfig> config_of(const FixedHeader& header) {
   config.truncation_vox = header.truncation_vox;
   config.max_weight = header.max_weight;
   config.free_weight = header.free_weight;
+  if (header.clearing_percent == 100) return damaged(0, "the header writes a clearing share of 100 % other than as 0");
+  config.clearing_percent = header.clearing_percent == 0 ? std::uint8_t{100} : header.clearing_percent;
   config.color = header.color == 1;
   const auto& w = header.workspace;
   if (header.has_workspace == 1) config.workspace = Box{{w[0], w[1], w[2]}, {w[3], w[4], w[5]}};

@@ -183,7 +183,7 @@ void FrameFuser::observe_free(const Cube& cube, Sector& sector, Counts& counts) 
         alignas(fusion::kVectorBytes) std::array<std::int16_t, kBrickVoxels> samples;
         samples.fill(tsdf::kSampleOne);
         fusion::update_brick(samples, Mask512::all_set(), config_.max_weight, config_.free_weight,
-                             ref.writable_dense());
+                             config_.clearing_share(), ref.writable_dense());
         ref.canonicalize(config_.free_weight);
         break;
       }
@@ -203,7 +203,8 @@ bool FrameFuser::observe(const fusion::BrickSamples& observed, BrickRef& ref) co
   } else {
     DenseBrick& dense = ref.densify();
     if (color_ != nullptr && config_.color) update_colors(observed, dense);
-    fusion::update_brick(observed.samples, observed.seen, config_.max_weight, config_.free_weight, dense);
+    fusion::update_brick(observed.samples, observed.seen, config_.max_weight, config_.free_weight,
+                         config_.clearing_share(), dense);
   }
   ref.canonicalize(config_.free_weight);
   return true;

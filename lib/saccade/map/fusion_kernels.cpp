@@ -211,12 +211,14 @@ void sample_brick_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFram
 }
 
 void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen,
-                         std::uint16_t max_weight, std::uint16_t free_weight, DenseBrick& brick) {
+                         std::uint16_t max_weight, std::uint16_t free_weight, float clearing_share, DenseBrick& brick) {
   const Floats d;
   const Ints di;
   const Shorts d16;
   const Words dw;
   const IntVec one = hn::Set(di, 1);
+  const IntVec free = hn::Set(di, tsdf::kSampleOne);
+  const FloatVec share = hn::Set(d, clearing_share);
   const IntVec zero = hn::Zero(di);
   const std::uint64_t all_lanes = (std::uint64_t{1} << hn::Lanes(d)) - 1;
   for (std::size_t z = 0; z < kBrickEdge; ++z) {
@@ -229,11 +231,14 @@ void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, 
       const IntVec sample = hn::PromoteTo(di, hn::Load(d16, samples.data() + i));
       const IntVec old_v = hn::PromoteTo(di, hn::LoadU(d16, brick.v.data() + i));
       const IntVec old_w = hn::PromoteTo(di, hn::LoadU(dw, brick.w.data() + i));
+      // tsdf::clearing_sample
+      const IntVec way = round_to_even(hn::Mul(hn::ConvertTo(d, hn::Sub(free, old_v)), share));
+      const auto clears = hn::And(hn::Eq(sample, free), hn::Gt(old_w, zero));
+      const IntVec counts_as = hn::IfThenElse(clears, hn::Add(old_v, way), sample);
       const IntVec counted = hn::Add(old_w, one);
-      const IntVec numerator = hn::Add(hn::Mul(old_v, old_w), sample);  // eq. 2.2
+      const IntVec numerator = hn::Add(hn::Mul(old_v, old_w), counts_as);  // eq. 2.2
       const IntVec average = round_to_even(hn::Div(hn::ConvertTo(d, numerator), hn::ConvertTo(d, counted)));
-      const IntVec limit = hn::IfThenElse(hn::Eq(average, hn::Set(di, tsdf::kSampleOne)), hn::Set(di, free_weight),
-                                          hn::Set(di, max_weight));
+      const IntVec limit = hn::IfThenElse(hn::Eq(average, free), hn::Set(di, free_weight), hn::Set(di, max_weight));
       const auto is_seen = hn::Ne(sample, hn::Set(di, tsdf::kNotSeen));
       const IntVec v = hn::IfThenElse(is_seen, average, old_v);
       const IntVec w = hn::IfThenElse(is_seen, hn::Min(counted, limit), old_w);  // eq. 2.3
@@ -306,8 +311,8 @@ void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& fram
 }
 
 void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen, std::uint16_t max_weight,
-                  std::uint16_t free_weight, DenseBrick& brick) {
-  HWY_DYNAMIC_DISPATCH(update_brick_kernel)(samples, seen, max_weight, free_weight, brick);
+                  std::uint16_t free_weight, float clearing_share, DenseBrick& brick) {
+  HWY_DYNAMIC_DISPATCH(update_brick_kernel)(samples, seen, max_weight, free_weight, clearing_share, brick);
 }
 
 std::size_t ranges_of_row(const RayLengths& rays, float dy_squared, const float* depths_m, float* ranges_m,

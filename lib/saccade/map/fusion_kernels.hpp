@@ -33,7 +33,7 @@ void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& fram
 /// tsdf::average_v and tsdf::next_w (eq. 2.2 and 2.3) of the voxels in `seen`; keeps both masks up to date.
 /// `samples` is aligned to kVectorBytes.
 void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen, std::uint16_t max_weight,
-                  std::uint16_t free_weight, DenseBrick& brick);
+                  std::uint16_t free_weight, float clearing_share, DenseBrick& brick);
 
 /// Parts of tsdf::range_of_depth that a whole image shares, and the depths that fusion believes.
 struct RayLengths {

@@ -14,6 +14,7 @@ Status TsdfConfig::validate() const {
   if (max_weight < 1 || max_weight > 500) return fail("the maximum weight must be within 1 and 500");
   if (free_weight < 1 || free_weight > 7) return fail("the free-space weight must be within 1 and 7");
   if (free_weight > max_weight) return fail("the free-space weight must not exceed the maximum weight");
+  if (clearing_percent < 1 || clearing_percent > 100) return fail("the clearing share must be within 1 and 100 %");
   if (workspace) {
     if (const Status valid = saccade::validate(Region{*workspace}); !valid) return fail("the workspace box is empty");
     const double largest = std::max(workspace->min.cwiseAbs().maxCoeff(), workspace->max.cwiseAbs().maxCoeff());

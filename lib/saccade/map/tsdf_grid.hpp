@@ -17,10 +17,14 @@ struct TsdfConfig {
   double truncation_vox{4.0};     ///< M_v of eq. 2.2 in voxels
   std::uint16_t max_weight{128};  ///< M_w of eq. 2.3; at most 500, so that averaging is exact in float
   std::uint16_t free_weight{5};   ///< W_th: where v = 1 the weight saturates here; 1 … 7
-  bool color{true};               ///< fuse colours where frames have them
-  std::optional<Box> workspace;   ///< bounds what is unknown: voxels outside are transparent to view rays
+  /// How much it counts against a surface when a ray passes it by; 1 … 100, which is eq. 2.2 as it stands:
+  /// docs/decisions/0021-clearing.md.
+  std::uint8_t clearing_percent{100};
+  bool color{true};              ///< fuse colours where frames have them
+  std::optional<Box> workspace;  ///< bounds what is unknown: voxels outside are transparent to view rays
 
   [[nodiscard]] double truncation_m() const { return truncation_vox * voxel_size_m; }
+  [[nodiscard]] float clearing_share() const { return static_cast<float>(clearing_percent) / 100.0F; }
   [[nodiscard]] Status validate() const;
 };
 

@@ -104,6 +104,13 @@ SACCADE_HD inline int sample_voxel(const FusionCamera& camera, const Float3& p, 
   return hit ? sample : (seen_free ? kSampleOne : kNotSeen);
 }
 
+/// What an observation counts as: where it sees farther than the truncation past a voxel that was found near a surface,
+/// it is only so large a share of the way from the old v to 1 (docs/decisions/0021).
+SACCADE_HD inline int clearing_sample(std::int16_t v, std::uint16_t w, int sample, float share) {
+  const int way = static_cast<int>(round_to_even(static_cast<float>(kSampleOne - static_cast<int>(v)) * share));
+  return sample == kSampleOne && w > 0 ? static_cast<int>(v) + way : sample;
+}
+
 /// Eq. 2.2 in fixed point. The numerator is exact in float for w ≤ 500.
 SACCADE_HD inline std::int16_t average_v(std::int16_t v, std::uint16_t w, int sample) {
   const int numerator = static_cast<int>(v) * static_cast<int>(w) + sample;

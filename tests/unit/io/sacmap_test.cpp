@@ -114,11 +114,28 @@ TEST(Sacmap, LoadingGivesAnEqualGridAndSavingThatTheSameBytes) {
   EXPECT_EQ(loaded.config.truncation_vox, map.config.truncation_vox);
   EXPECT_EQ(loaded.config.max_weight, map.config.max_weight);
   EXPECT_EQ(loaded.config.free_weight, map.config.free_weight);
+  EXPECT_EQ(loaded.config.clearing_percent, map.config.clearing_percent);
   EXPECT_EQ(loaded.config.color, map.config.color);
   ASSERT_TRUE(loaded.config.workspace.has_value());
   EXPECT_EQ(loaded.config.workspace->min, map.config.workspace->min);
   EXPECT_EQ(loaded.config.workspace->max, map.config.workspace->max);
   EXPECT_EQ(encoded(loaded), file);
+}
+
+TEST(Sacmap, KeepsTheClearingShareWhereOlderMapsHadAZero) {
+  constexpr std::size_t kOffset{15};
+  TsdfSnapshot map = rich_map();
+  Bytes file = encoded(map);
+  EXPECT_EQ(file[kOffset], std::byte{0});
+  EXPECT_EQ(decode_map(file).value().config.clearing_percent, 100);
+  map.config.clearing_percent = 50;
+  file = encoded(map);
+  EXPECT_EQ(file[kOffset], std::byte{50});
+  EXPECT_EQ(decode_map(file).value().config.clearing_percent, 50);
+  for (const int wrong : {100, 101, 255}) {
+    patch_header(file, kOffset, static_cast<std::uint8_t>(wrong));
+    expect_corrupt(file, "clearing share");
+  }
 }
 
 TEST(Sacmap, MasksAndSummariesAreRecomputed) {

@@ -27,5 +27,31 @@ TEST(TsdfMap, RefusesFramesThatSeeTooManyVoxels) {
   EXPECT_FALSE(map.content().grid.empty());
 }
 
+/// v of a voxel on a wall at 1 m after so many frames of the wall, and then of nothing before 3 m.
+double value_after(int frames_of_wall, int frames_past_it, std::uint8_t clearing_percent) {
+  TsdfConfig config;
+  config.voxel_size_m = 0.01;
+  config.clearing_percent = clearing_percent;
+  TsdfMap map = TsdfMap::create(config).value();
+  const PinholeCamera camera{40, 30, 60.0, 60.0, 19.5, 14.5, 0.1, 4.0};
+  for (int i = 0; i < frames_of_wall; ++i) {
+    EXPECT_TRUE(map.integrate(camera, DepthImage{40, 30, 1.0F}, Pose::Identity(), {}).ok());
+  }
+  for (int i = 0; i < frames_past_it; ++i) {
+    EXPECT_TRUE(map.integrate(camera, DepthImage{40, 30, 3.0F}, Pose::Identity(), {}).ok());
+  }
+  return map.content().grid.voxel({0, 0, 100}).v / 32767.0;
+}
+
+TEST(TsdfMap, WhatPassesASurfaceByCountsAsMuchAsItIsSaidTo) {
+  const double wall = value_after(9, 0, 100);
+  ASSERT_NEAR(wall, -0.125, 0.01);  // half a voxel behind the wall, of a truncation of four
+  EXPECT_NEAR(value_after(9, 1, 100), wall + (1.0 - wall) / 10.0, 1e-4) << "eq. 2.2";
+  EXPECT_NEAR(value_after(9, 1, 50), wall + 0.5 * (1.0 - wall) / 10.0, 1e-4);
+  EXPECT_NEAR(value_after(9, 1, 1), wall + 0.01 * (1.0 - wall) / 10.0, 1e-4);
+  EXPECT_GT(value_after(9, 4, 50), 0.0) << "a wall that is gone goes from the map";
+  EXPECT_EQ(value_after(0, 3, 50), 1.0) << "free space is learnt as before";
+}
+
 }  // namespace
 }  // namespace saccade
