@@ -238,7 +238,7 @@ void ModeFilter::move_to_enhanced(const Frame& frame, const SurfelAssociation& s
   const BackProjection back_project{seen};
   executor.parallel_for(rows, kModeRowsPerTask, [&](std::size_t begin, std::size_t end) {
     for_each_seen_surfel(
-        seen, static_cast<int>(begin), static_cast<int>(end), [&](SurfelId id, int, int) { store_.fetch(id); },
+        seen, static_cast<int>(begin), static_cast<int>(end), [&](SurfelId id, int, int) { store_.fetch_places(id); },
         [&](SurfelId id, std::span<const SeenPixel> pixels) {
           for (const auto& [u, v] : pixels) {
             const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);

@@ -22,10 +22,10 @@ SurfelMode ModeStore::mode(SurfelId id, std::size_t i) const {
           reinterpret_cast<const float*>(weights)[i]};
 }
 
-void ModeStore::fetch(SurfelId id) const {
+void ModeStore::fetch(SurfelId id, std::size_t first_byte) const {
   constexpr std::size_t kLine{64};
   const std::byte* const first = room(id);
-  for (std::size_t i = 0; i < stride(); i += kLine) __builtin_prefetch(first + i, 1);
+  for (std::size_t i = first_byte; i < stride(); i += kLine) __builtin_prefetch(first + i, 1);
 }
 
 }  // namespace saccade

@@ -139,7 +139,7 @@ void GainCaster::judge(std::span<OpenTile> tiles) {
     for (int j = tile.row_begin + kSamplePx / 2; j < tile.row_end; j += kSamplePx) {
       const ColumnRange range = window_.columns_of(j);
       for (int i = tile.column_begin + kSamplePx / 2; i < tile.column_end; i += kSamplePx) {
-        if (i >= range.begin && i < range.end && shows(i, j)) add_ray(i, j, packet);
+        if (i >= range.begin && i < range.end && shows(i, j)) add_rays(i, i + 1, j, packet);
       }
     }
     ends.push_back(packet.count);
@@ -291,7 +291,15 @@ void GainCaster::cast_packet(const Tile& tile) {
   RayPacket packet = no_rays(tile.major, tile.slab);
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
     const ColumnRange range = window_.columns_of(j);
-    add_rays(std::max(range.begin, tile.column_begin), std::min(range.end, tile.column_end), j, packet);
+    const int begin = std::max(range.begin, tile.column_begin);
+    const int end = std::min(range.end, tile.column_end);
+    if (begin < end && shows_all(begin, end, j)) {
+      add_rays(begin, end, j, packet);
+      continue;
+    }
+    for (int i = begin; i < end; ++i) {
+      if (shows(i, j)) add_rays(i, i + 1, j, packet);
+    }
   }
   const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
   scored_ += static_cast<std::uint64_t>(std::popcount(tally.scored));
@@ -306,18 +314,8 @@ RayPacket GainCaster::no_rays(int major, int slab) const {
   return packet;
 }
 
-/// Those of columns [begin, end) of a row that are shown.
+/// Of columns [begin, end) of a row.
 void GainCaster::add_rays(int begin, int end, int row, RayPacket& packet) const {
-  if (begin >= end) return;
-  const bool all = shown_.footprint == nullptr ||
-                   shown_.footprint->count({begin + shown_.column, end + shown_.column, row + shown_.row,
-                                            row + shown_.row + 1}) == static_cast<std::uint64_t>(end - begin);
-  if (!all) {
-    for (int i = begin; i < end; ++i) {
-      if (shows(i, row)) add_ray(i, row, packet);
-    }
-    return;
-  }
   const auto count = static_cast<std::size_t>(end - begin);
   const float* const a = window_.a.data() + begin;
   const float b = window_.b[static_cast<std::size_t>(row)];
@@ -329,16 +327,6 @@ void GainCaster::add_rays(int begin, int end, int row, RayPacket& packet) const 
     for (std::size_t i = 0; i < count; ++i) d[i] = x * a[i] + in_row;
   }
   packet.count += count;
-}
-
-void GainCaster::add_ray(int column, int row, RayPacket& packet) const {
-  const SensorRays& rays = window_.rays;
-  const float a = window_.a[static_cast<std::size_t>(column)];
-  const float b = window_.b[static_cast<std::size_t>(row)];
-  for (std::size_t axis = 0; axis < 3; ++axis) {
-    packet.d[axis][packet.count] = rays.x[axis] * a + (rays.y[axis] * b + rays.z[axis]);
-  }
-  ++packet.count;
 }
 
 void GainCaster::cast_ray(float a, float b, int major, int slab) {

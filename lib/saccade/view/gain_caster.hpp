@@ -73,7 +73,6 @@ class GainCaster {
   void judge(std::span<OpenTile> tiles);
   [[nodiscard]] RayPacket no_rays(int major, int slab) const;
   void add_rays(int begin, int end, int row, RayPacket& packet) const;
-  void add_ray(int column, int row, RayPacket& packet) const;
   void cast_ray(float a, float b, int major, int slab);
   void walk_bricks(const LatticeRay& ray, const RaySpan& span);
   void walk_voxels(const LatticeRay& ray, const RaySpan& span);
@@ -81,6 +80,12 @@ class GainCaster {
   [[nodiscard]] std::uint64_t rays_in(const Tile& tile) const;
   [[nodiscard]] bool shows(int column, int row) const {
     return shown_.footprint == nullptr || shown_.footprint->test(column + shown_.column, row + shown_.row);
+  }
+  [[nodiscard]] bool shows_all(int begin, int end, int row) const {
+    if (shown_.footprint == nullptr) return true;
+    const int at = row + shown_.row;
+    return shown_.footprint->count({begin + shown_.column, end + shown_.column, at, at + 1}) ==
+           static_cast<std::uint64_t>(end - begin);
   }
   [[nodiscard]] int last_slab(const RayBeam& beam) const;
   void score(const Index3& voxel, const RayEvent& entered);
