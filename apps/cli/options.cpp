@@ -133,8 +133,8 @@ void add_clearing_option(CLI::App& command, std::uint8_t& percent) {
   command
       .add_option_function<int>(
           "--clearing", [&percent](int given) { percent = static_cast<std::uint8_t>(given); },
-          "how much it counts against a surface when a ray passes it by: 100 as much as everything else, less keeps "
-          "edges and thin walls (default: " +
+          "how much it counts against a surface when a ray passes it by: 100 as much as everything else, less where "
+          "poses are not exact (default: " +
               std::to_string(percent) + ")")
       ->check(CLI::Range(1, 100))
       ->type_name("PERCENT");

@@ -30,7 +30,7 @@ struct BrickSamples {
 void sample_brick(const tsdf::FusionCamera& camera, const tsdf::BrickFrame& frame, const float* ranges, bool inside,
                   KnownOctants known, BrickSamples& out);
 
-/// tsdf::average_v and tsdf::next_w (eq. 2.2 and 2.3) of the voxels in `seen`; keeps both masks up to date.
+/// tsdf::clearing_sample, average_v and next_w (eq. 2.2 and 2.3) of the voxels in `seen`; keeps both masks up to date.
 /// `samples` is aligned to kVectorBytes.
 void update_brick(const std::array<std::int16_t, kBrickVoxels>& samples, const Mask512& seen, std::uint16_t max_weight,
                   std::uint16_t free_weight, float clearing_share, DenseBrick& brick);
