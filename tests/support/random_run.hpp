@@ -20,7 +20,6 @@ class RandomRun {
     config_.truncation_vox = uniform(1.5, 5.0);
     config_.max_weight = static_cast<std::uint16_t>(integer(5, 60));
     config_.free_weight = static_cast<std::uint16_t>(integer(1, 5));
-    config_.clearing_percent = static_cast<std::uint8_t>(integer(0, 2) == 0 ? 100 : integer(1, 100));
     camera_.width = integer(8, 90);
     camera_.height = integer(8, 70);
     camera_.fx = uniform(20.0, 90.0);
@@ -29,6 +28,13 @@ class RandomRun {
     camera_.cy = uniform(0.3, 0.7) * camera_.height;
     camera_.min_range_m = 0.05;
     camera_.max_range_m = uniform(1.0, 4.0) * extent();
+  }
+
+  /// Of the same draws, with any clearing share; every third has that of eq. 2.2.
+  [[nodiscard]] static RandomRun with_clearing(std::uint32_t seed) {
+    RandomRun run{seed};
+    if (seed % 3 != 0) run.config_.clearing_percent = static_cast<std::uint8_t>(1 + seed * 37 % 100);
+    return run;
   }
 
   [[nodiscard]] const TsdfConfig& config() const { return config_; }
