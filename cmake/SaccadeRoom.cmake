@@ -27,6 +27,15 @@ if(SACCADE_SANITIZE)
   endif()
 endif()
 
+# Rooms that read what others wrote (FUZZED) are searched by libFuzzer, and get all of UBSan. Elsewhere the checks of
+# every pointer that is followed cost a third of the compilation, and AddressSanitizer sees most of what they would.
+add_library(saccade_fuzzed_flags INTERFACE)
+add_library(saccade_unfuzzed_flags INTERFACE)
+if(SACCADE_BUILD_FUZZERS)
+  target_compile_options(saccade_fuzzed_flags INTERFACE -fsanitize=fuzzer-no-link)
+  target_compile_options(saccade_unfuzzed_flags INTERFACE -fno-sanitize=null,alignment,object-size,vptr)
+endif()
+
 # What is around the code that is tested is compiled in half of the time or less: the tests themselves (saccade_test_flags),
 # and under AddressSanitizer the programs, too (saccade_app_flags). The rooms stay optimised; checks go without UBSan. To be
 # linked after saccade_flags, which this overrides. (Under ThreadSanitizer the slow references of tests need it all.)
@@ -60,12 +69,12 @@ function(saccade_rooms_first target)
 endfunction()
 
 # saccade_room(NAME SOURCES file… [ROOMS room…] [PACKAGES "name arguments of find_package"…]
-#              [PUBLIC target…] [PRIVATE target…])
+#              [PUBLIC target…] [PRIVATE target…] [FUZZED])
 # ROOMS are the rooms that this one includes; the layer test holds them to the order of the layers. PACKAGES are what the
 # targets in PUBLIC and PRIVATE come from; the installed package looks for the same ones, for this component only.
 # A room whose packages or rooms are not there is left out of the build, with a line that says why.
 function(saccade_room name)
-  cmake_parse_arguments(ROOM "" "" "SOURCES;ROOMS;PACKAGES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "FUZZED" "" "SOURCES;ROOMS;PACKAGES;PUBLIC;PRIVATE" ${ARGN})
   if(ROOM_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "saccade_room(${name}): unknown arguments ${ROOM_UNPARSED_ARGUMENTS}")
   endif()
@@ -105,8 +114,12 @@ function(saccade_room name)
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/lib> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)
   list(TRANSFORM ROOM_ROOMS PREPEND saccade:: OUTPUT_VARIABLE room_targets)
+  set(room_flags saccade_unfuzzed_flags)
+  if(ROOM_FUZZED)
+    set(room_flags saccade_fuzzed_flags)
+  endif()
   target_link_libraries(${target} PUBLIC ${room_targets} ${ROOM_PUBLIC}
-                        PRIVATE $<BUILD_INTERFACE:saccade_flags> ${ROOM_PRIVATE})
+                        PRIVATE $<BUILD_INTERFACE:saccade_flags> $<BUILD_INTERFACE:${room_flags}> ${ROOM_PRIVATE})
   set_property(GLOBAL APPEND PROPERTY SACCADE_ROOMS ${name})
   set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_ROOMS "${ROOM_ROOMS}")
   set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_PACKAGES "${ROOM_PACKAGES}")

@@ -5,14 +5,13 @@
 #include <iostream>
 
 #include "attend.hpp"
+#include "json_output.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
 json trajectory_json(const AttendedTrajectory& trajectory) {
   json actions = json::array();

@@ -12,6 +12,7 @@
 
 #include "explore_report.hpp"
 #include "interrupt.hpp"
+#include "json_output.hpp"
 #include "saccade/explore/object_attention.hpp"
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/json_io.hpp"
@@ -23,8 +24,6 @@ namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-json optional_json(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
 
 /// All that decides how a run goes on.
 json settings_of(const ExploreOptions& options, const ExploreCase& subject, const PinholeCamera& camera) {

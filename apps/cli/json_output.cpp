@@ -49,6 +49,10 @@ Status write_json_output(const GlobalOptions& global, const nlohmann::json& docu
   return {};
 }
 
+nlohmann::json optional_json(const std::optional<double>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
+
 nlohmann::json point_json(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }
 
 double median_of(std::vector<double> values) {

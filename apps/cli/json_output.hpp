@@ -5,6 +5,7 @@
 #include <Eigen/Core>
 #include <map>
 #include <nlohmann/json.hpp>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -29,6 +30,9 @@ using TimingsMs = std::map<std::string, double>;
 
 /// The most memory that the program held so far.
 [[nodiscard]] std::size_t peak_rss_bytes();
+
+/// Null for none.
+[[nodiscard]] nlohmann::json optional_json(const std::optional<double>& value);
 
 /// [x, y, z]
 [[nodiscard]] nlohmann::json point_json(const Eigen::Vector3d& p);

@@ -95,7 +95,7 @@ Result<TsdfSnapshot> prepare_map(const NbvOptions& options, const Executor& exec
   return map.snapshot();
 }
 
-double degrees(double angle_rad) { return angle_rad * 180.0 / pi; }
+double in_degrees(double angle_rad) { return angle_rad * 180.0 / pi; }
 
 json region_json(const NbvOptions& options) {
   const auto point = [](const Eigen::Vector3d& p) { return json{p.x(), p.y(), p.z()}; };
@@ -145,9 +145,9 @@ void print_table(const NbvOptions& options, const Candidates& candidates, const 
     std::cout << std::right << std::setw(4) << i + 1 << std::setw(10) << view.gain << "  ";
     if (!candidates.sphere.empty()) {
       const ViewCandidate& on_sphere = candidates.sphere[view.index];
-      std::cout << std::setw(8) << fixed(degrees(on_sphere.longitude_rad), 0) << "°" << std::setw(9)
-                << fixed(degrees(on_sphere.latitude_rad), 0) << "°" << std::setw(6)
-                << fixed(degrees(on_sphere.roll_rad), 0) << "°  ";
+      std::cout << std::setw(8) << fixed(in_degrees(on_sphere.longitude_rad), 0) << "°" << std::setw(9)
+                << fixed(in_degrees(on_sphere.latitude_rad), 0) << "°" << std::setw(6)
+                << fixed(in_degrees(on_sphere.roll_rad), 0) << "°  ";
     }
     const Eigen::Vector3d p = view.T_world_camera.translation();
     for (int axis = 0; axis < 3; ++axis) std::cout << std::setw(8) << fixed(p[axis], 3);

@@ -67,15 +67,19 @@ Result<UrdfArm> read_arm(const ReachOptions& options) {
   return UrdfArm{std::move(arm), std::move(robot.notes)};
 }
 
+IkConfig ik_config() {
+  IkConfig config;
+  config.numeric.restarts = kNumericRestarts;
+  return config;
+}
+
+/// Nothing here takes long, so that what is asked for wrongly is refused at once.
 Result<ReachTask> make_task(const ReachOptions& options) {
   SACCADE_TRY(UrdfArm robot, read_arm(options));
   SACCADE_TRY(const Scene scene, find_scene(options.scene));
   SACCADE_TRY(std::vector<FixtureBox> fixtures, fixture_boxes(scene));
-  SACCADE_TRY(const ArmCollision collision, ArmCollision::create(robot.arm));
-  IkConfig ik;
-  ik.numeric.restarts = kNumericRestarts;
-  SACCADE_TRY(Reachability reachability, Reachability::create(collision, ik));
-  const bool numeric = reachability.ik().method() == IkMethod::numeric;
+  SACCADE_TRY(InverseKinematics ik, InverseKinematics::create(robot.arm, ik_config()));
+  const bool numeric = ik.method() == IkMethod::numeric;
   ReachMapConfig config;
   config.workspace = options.workspace.value_or(scene.workspace);
   SACCADE_TRY(config.height_m, points_height_m(options, fixtures, config.workspace));
@@ -87,7 +91,7 @@ Result<ReachTask> make_task(const ReachOptions& options) {
     config.sphere.roll_step_rad = kNumericRollStep_rad;
   }
   SACCADE_CHECK(config.validate());
-  return ReachTask{std::move(robot), std::move(reachability), scene.name, std::move(fixtures), std::move(config)};
+  return ReachTask{std::move(robot), std::move(ik), scene.name, std::move(fixtures), std::move(config)};
 }
 
 /// Free space and the fixtures.
@@ -122,18 +126,20 @@ Result<int> run_reach(const ReachOptions& options, const GlobalOptions& global) 
   SACCADE_CHECK(check_json_output(global));
   SACCADE_TRY(const ReachTask task, make_task(options));
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, kReachFiles, "reach.json", options.force));
+  SACCADE_TRY(const ArmCollision collision, ArmCollision::create(task.robot.arm));
+  SACCADE_TRY(const Reachability reachability, Reachability::create(collision, ik_config()));
   SACCADE_TRY(const ObstacleMap obstacles, obstacles_of(task, executor));
   timings_ms["prepare"] = stopwatch.lap_ms();
 
   ProgressBar bar{global.quiet};
-  if (task.reachability.ik().method() == IkMethod::numeric) {
+  if (task.ik.method() == IkMethod::numeric) {
     bar.note("no closed form for this arm: its inverse kinematics iterates, which takes milliseconds a pose");
   }
   Progress progress{
       [&bar](std::string_view stage, std::size_t done, std::size_t all) { bar.update(stage, done, all); }};
   const CancelOnInterrupt cancel{progress};
   SACCADE_TRY(const ReachMap map,
-              reach_map(task.reachability, task.robot.arm.middle(), obstacles, task.config, executor, progress));
+              reach_map(reachability, task.robot.arm.middle(), obstacles, task.config, executor, progress));
   if (map.points_done == 0) return Error{Errc::cancelled, "no point was done", ""};
   timings_ms["test"] = stopwatch.lap_ms();
   timings_ms["total"] = total.elapsed_ms();

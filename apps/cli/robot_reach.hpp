@@ -30,7 +30,7 @@ struct ReachOptions {
 /// What was asked, with everything that the options left open settled.
 struct ReachTask {
   UrdfArm robot;
-  Reachability reachability;
+  InverseKinematics ik;
   std::string scene;
   std::vector<FixtureBox> fixtures;
   ReachMapConfig config;

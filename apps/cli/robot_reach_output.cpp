@@ -44,7 +44,7 @@ std::string part_of(std::size_t part, std::size_t all) {
   return percent(all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all));
 }
 
-int degrees(double angle_rad) { return static_cast<int>(std::lround(angle_rad * 180.0 / std::numbers::pi)); }
+int whole_degrees(double angle_rad) { return static_cast<int>(std::lround(angle_rad * 180.0 / std::numbers::pi)); }
 
 std::string radii_text(const std::vector<double>& radii_m) {
   std::string text;
@@ -161,7 +161,7 @@ json reach_json(const ReachTask& task, const ReachMap& map) {
   const Box& workspace = task.config.workspace;
   return {{"robot", task.robot.arm.name()},
           {"T_world_base", pose_to_json(task.robot.arm.T_world_base())},
-          {"inverse_kinematics", to_string(task.reachability.ik().method())},
+          {"inverse_kinematics", to_string(task.ik.method())},
           {"scene", task.scene},
           {"fixtures", std::move(fixtures)},
           {"workspace", {{"min_m", point_json(workspace.min)}, {"max_m", point_json(workspace.max)}}},
@@ -183,7 +183,7 @@ json reach_json(const ReachTask& task, const ReachMap& map) {
 void print_reach(const ReachTask& task, const ReachMap& map, double test_ms) {
   const Summary summary{std::cout};
   const ReachCounts total = map.total();
-  const InverseKinematics& ik = task.reachability.ik();
+  const InverseKinematics& ik = task.ik;
   summary.line("robot", task.robot.arm.name() + ", inverse kinematics: " + std::string{to_string(ik.method())});
   summary.line("scene", task.scene + ": " + names_of(task.fixtures));
   summary.line("points", std::to_string(map.points_done) + " at z = " + fixed(task.config.height_m, 3) +
@@ -205,7 +205,7 @@ void print_reach(const ReachTask& task, const ReachMap& map, double test_ms) {
   }
   print_head("latitude");
   for (const ReachDirection& band : map.by_latitude()) {
-    print_row(std::to_string(degrees(band.latitude_rad)), band.counts);
+    print_row(std::to_string(whole_degrees(band.latitude_rad)), band.counts);
   }
   print_row("all", total);
   if (map.by_radius.size() < 2) return;

@@ -138,6 +138,7 @@ TEST_F(Fuse, ContinuingEqualsOneRun) {
 }
 
 TEST_F(Fuse, ContinuingWithIcpStartsAtTheFirstPose) {
+  if (kSanitized) GTEST_SKIP() << "takes long under sanitizers; ContinuingEqualsOneRun goes on with a map, too";
   fused({"--tracking", "icp", "--no-pictures", "--count", "12"});
   const Outcome outcome =
       run_program({"fuse", frames().string(), "--tracking", "icp", "--first", "12", "--continue",

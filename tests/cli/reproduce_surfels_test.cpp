@@ -57,7 +57,7 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
   const fs::path out = folder / "plots";
   const json tables = tables_of(
       run_program({"reproduce", "4.1", "4.3", "4.10", "4.11", "fig-4.5", "fig-4.6", "fig-4.7", "fig-4.8", "fig-4.9",
-                   "--frames", "24", "--image-width", "160", "--quiet", "--json", "-", "--out", out.string()}));
+                   "--frames", "24", "--image-width", "128", "--quiet", "--json", "-", "--out", out.string()}));
   ASSERT_EQ(tables.size(), 9U);
   for (const json& row : tables.at(0).at("rows")) {
     EXPECT_EQ(row.at("frames"), 24);

@@ -80,6 +80,7 @@ TEST(AnnotationGuidance, AFewSeedsGiveTheTruthBack) {
 }
 
 TEST(AnnotationGuidance, ClicksWhereMostIsSettledBeatRandomOnes) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long under sanitizers; the next test runs the code";
   const std::vector<TrueScene> scenes = true_scenes(5);
   if (scenes.empty()) GTEST_SKIP() << "no labelled clouds in " << SACCADE_SHARED_DATA;
   constexpr std::uint32_t kSeeds{3};

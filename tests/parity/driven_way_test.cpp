@@ -132,7 +132,7 @@ TEST(DrivenWayParity, BackOutIsTheWayThatItCameAndNeverDeeper) {
   const ArmModel model = find_robot("comau_smart_six")->arm;
   const ArmCollision arm = ArmCollision::create(model).value();
   Driven driven{model, arm, 5};
-  constexpr double kStep_s{0.011};
+  constexpr double kStep_s{test::kSanitized ? 0.11 : 0.011};
   const int cases = test::scaled_cases(250);
   int touching = 0;
   int backed_out = 0;

@@ -16,7 +16,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint32_t kSeed{20240611};
+constexpr std::uint32_t kRaysSeed{20240611};
 
 struct Visit {
   Index3 voxel;
@@ -109,9 +109,9 @@ void collect(const LatticeRay& ray, const RaySpan& span, std::vector<Visit>& vis
 }
 
 TEST(RayWalk, HierarchyVisitsTheVoxelsOfThePlainWalk) {
-  std::cout << "seed " << kSeed << '\n';
+  std::cout << "seed " << kRaysSeed << '\n';
   constexpr int kRays{test::scaled_cases(20000)};
-  RandomRays rays{kSeed};
+  RandomRays rays{kRaysSeed};
   std::size_t compared{0};
   int ties{0};
   for (int i = 0; i < kRays; ++i) {
@@ -134,9 +134,9 @@ TEST(RayWalk, HierarchyVisitsTheVoxelsOfThePlainWalk) {
 }
 
 TEST(RayWalk, ClipCutsThePlainWalk) {
-  std::cout << "seed " << kSeed + 1 << '\n';
+  std::cout << "seed " << kRaysSeed + 1 << '\n';
   constexpr int kRays{test::scaled_cases(20000)};
-  RandomRays rays{kSeed + 1};
+  RandomRays rays{kRaysSeed + 1};
   int met{0};
   for (int i = 0; i < kRays; ++i) {
     const LatticeRay ray = rays.next();
@@ -190,9 +190,9 @@ TsdfGrid random_grid(std::mt19937& random) {
 }
 
 TEST(FirstVoxel, IsThatOfThePlainWalkInRandomMaps) {
-  std::cout << "seed " << kSeed + 2 << '\n';
-  std::mt19937 random{kSeed + 2};
-  RandomRays rays{kSeed + 3};
+  std::cout << "seed " << kRaysSeed + 2 << '\n';
+  std::mt19937 random{kRaysSeed + 2};
+  RandomRays rays{kRaysSeed + 3};
   int compared{0};
   int hits{0};
   for (int map = 0; map < 10; ++map) {

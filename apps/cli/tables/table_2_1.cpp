@@ -24,13 +24,13 @@ struct ThesisErrors {
   double standard_deviation_m;
 };
 
-struct Scenario {
+struct UpdateScenario {
   int number;
   const char* scene;
   ThesisErrors egomotion;
   ThesisErrors kinematics;
 };
-constexpr std::array<Scenario, 2> kScenarios{
+constexpr std::array<UpdateScenario, 2> kScenarios{
     {{1, "bottle", {0.031, 0.040}, {0.005, 0.006}}, {2, "jug", {0.027, 0.041}, {0.006, 0.008}}}};
 constexpr double kThesisDrift_m{0.12};  // "at the end ... about 12 cm"
 
@@ -46,12 +46,12 @@ std::string method_of(const ScanTracking& tracking) {
 }
 
 /// The thesis has no rows for a camera that is off.
-std::optional<ThesisErrors> thesis_errors(const Scenario& scenario, const ScanTracking& tracking) {
+std::optional<ThesisErrors> thesis_errors(const UpdateScenario& scenario, const ScanTracking& tracking) {
   if (!is_as_it_is(tracking)) return std::nullopt;
   return tracking.egomotion ? scenario.egomotion : scenario.kinematics;
 }
 
-std::vector<std::string> cells_of(const Scenario& scenario, const ScanTracking& tracking) {
+std::vector<std::string> cells_of(const UpdateScenario& scenario, const ScanTracking& tracking) {
   const std::optional<ThesisErrors> thesis = thesis_errors(scenario, tracking);
   const ShapeErrors here = summarize(tracking.errors);
   const bool measured = here.parameters > 0;
@@ -71,7 +71,7 @@ std::vector<std::string> cells_of(const Scenario& scenario, const ScanTracking& 
   return cells;
 }
 
-json figures_of(const Scenario& scenario, const ScanTracking& tracking) {
+json figures_of(const UpdateScenario& scenario, const ScanTracking& tracking) {
   const std::optional<ThesisErrors> thesis = thesis_errors(scenario, tracking);
   const ShapeErrors here = summarize(tracking.errors);
   json objects = json::array();
@@ -107,7 +107,7 @@ class DriftPlots {
     rotation_.y_label = "rotation error, °";
     for (Plot* plot : {&translation_, &rotation_}) plot->x_label = "time, s";
   }
-  void add(const Scenario& scenario, const ScanTracking& tracking) {
+  void add(const UpdateScenario& scenario, const ScanTracking& tracking) {
     PlotSeries series;
     series.name = "scenario " + std::to_string(scenario.number);
     if (!is_as_it_is(tracking)) series.name += ", depth too long";
@@ -187,7 +187,7 @@ Result<ReproducedTable> reproduce_table_2_1(const ReproduceOptions& options, con
   json rows = json::array();
   DriftPlots plots;
   Totals totals;
-  for (const Scenario& scenario : kScenarios) {
+  for (const UpdateScenario& scenario : kScenarios) {
     SACCADE_TRY(const std::vector<ScanTracking> trackings,
                 thesis::track_scan(scenario.scene, config, executor, progress));
     for (const ScanTracking& tracking : trackings) {

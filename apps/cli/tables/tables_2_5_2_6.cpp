@@ -6,6 +6,7 @@
 #include <span>
 #include <utility>
 
+#include "json_output.hpp"
 #include "saccade/attention/gmm_as.hpp"
 #include "summary.hpp"
 #include "tables/hand_data.hpp"
@@ -71,8 +72,6 @@ struct SaliencySide {
 
 std::string saliency_text(const std::optional<double>& value) { return value ? fixed(*value, 6) : "–"; }
 
-json optional_json_of(const std::optional<double>& value) { return value ? json(*value) : json(nullptr); }
-
 /// Adds the cells of Gaussian `g`. Returns the same for machines; null where there is none.
 template <class Gaussian>
 json add_cells(const SaliencySide<Gaussian>& side, std::size_t g, std::vector<std::string>& cells) {
@@ -84,8 +83,8 @@ json add_cells(const SaliencySide<Gaussian>& side, std::size_t g, std::vector<st
   cells.insert(cells.end(), {saliency_text(gaussian.saliency), saliency_text(side.recomputed[g]),
                              saliency_text(gaussian.threshold), gaussian.is_poi ? "YES" : "NO"});
   return {{"saliency", gaussian.saliency},
-          {"recomputed_threshold", optional_json_of(side.recomputed[g])},
-          {"threshold", optional_json_of(gaussian.threshold)},
+          {"recomputed_threshold", optional_json(side.recomputed[g])},
+          {"threshold", optional_json(gaussian.threshold)},
           {"poi", gaussian.is_poi}};
 }
 

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::size_t kMostLayers{8};
 constexpr std::size_t kPointsPerPixelOfALayer{4};
-constexpr std::size_t kBlock{64};
+constexpr std::size_t kSplatsAtOnce{64};
 constexpr std::size_t kRowGrain{16};
 constexpr std::size_t kColumnGrain{64};
 
@@ -36,9 +36,9 @@ void SplatDepth::add(std::size_t layer, std::span<const ScreenPosition> position
   const double before = 0.5 - 0.5 * size_px_;
   float* const depths_m = layers_[layer].data();
   const std::size_t outside = layers_[layer].size() - 1;
-  std::array<std::size_t, kBlock> places;
+  std::array<std::size_t, kSplatsAtOnce> places;
   while (!positions.empty()) {  // all memory is asked for before any is waited for
-    const auto block = positions.first(std::min(kBlock, positions.size()));
+    const auto block = positions.first(std::min(kSplatsAtOnce, positions.size()));
     positions = positions.subspan(block.size());
     for (std::size_t i = 0; i < block.size(); ++i) {
       const int u = static_cast<int>(std::floor(block[i].u_px + before));

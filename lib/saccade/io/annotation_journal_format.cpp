@@ -21,13 +21,13 @@ namespace {
 using Bytes = std::vector<std::byte>;
 
 constexpr std::array<char, 8> kMagic{'S', 'A', 'C', 'A', 'N', 'N', '\n', '\x1A'};
-constexpr std::uint32_t kVersion{1};
+constexpr std::uint32_t kJournalVersion{1};
 constexpr std::size_t kMaxNameBytes{4096};
 
 /// Before the cloud's name, which the header's checksum follows.
 struct FixedHeader {
   std::array<char, 8> magic{kMagic};
-  std::uint32_t version{kVersion};
+  std::uint32_t version{kJournalVersion};
   std::uint32_t name_bytes{0};
   std::uint64_t points{0};
   std::uint64_t positions_hash{0};
@@ -91,10 +91,10 @@ Result<SessionSubject> read_header(ByteReader& reader) {
   const Error short_header = damaged(reader.left(), "the file ends within its header");
   if (!reader.has(sizeof(FixedHeader))) return short_header;
   const auto header = reader.value<FixedHeader>();
-  if (header.version != kVersion) {
+  if (header.version != kJournalVersion) {
     return Error{Errc::unsupported,
                  "the session has format version " + std::to_string(header.version) + ", this program reads version " +
-                     std::to_string(kVersion),
+                     std::to_string(kJournalVersion),
                  {}};
   }
   if (header.name_bytes > kMaxNameBytes) return damaged(12, "the cloud's name is too long");

@@ -95,7 +95,7 @@ CREATE VIEW curves AS
          views.unknown_near_objects
   FROM views JOIN runs ON runs.id = views.run;
 )sql"};
-constexpr std::int64_t kVersion{kVersions.size()};
+constexpr std::int64_t kNewestVersion{kVersions.size()};
 
 }  // namespace
 
@@ -108,17 +108,17 @@ Status make_campaign_tables(const SqliteFile& file) {
   if (!fresh && (application != kApplicationId || version < 1)) {
     return Error{Errc::invalid_argument, "is the database of another program; name another file", where};
   }
-  if (version > kVersion) {
+  if (version > kNewestVersion) {
     return Error{Errc::unsupported,
                  "was written by a newer Saccade (its format is " + std::to_string(version) + ", this program knows " +
-                     std::to_string(kVersion) + "); use that one, or another file",
+                     std::to_string(kNewestVersion) + "); use that one, or another file",
                  where};
   }
-  for (std::int64_t next = version; next < kVersion; ++next) {
+  for (std::int64_t next = version; next < kNewestVersion; ++next) {
     SACCADE_CHECK(file.run(kVersions[static_cast<std::size_t>(next)]));
   }
   if (fresh) SACCADE_CHECK(file.run("PRAGMA application_id = " + std::to_string(kApplicationId)));
-  return file.run("PRAGMA user_version = " + std::to_string(kVersion));
+  return file.run("PRAGMA user_version = " + std::to_string(kNewestVersion));
 }
 
 }  // namespace saccade

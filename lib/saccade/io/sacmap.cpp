@@ -24,7 +24,7 @@ using Sink = std::function<Status(std::span<const std::byte>)>;
 
 // "\r\n" and 0x1A show a transfer that changed line ends or stopped at one.
 constexpr std::array<char, 8> kMagic{'S', 'A', 'C', 'M', 'A', 'P', '\n', '\x1A'};
-constexpr std::uint32_t kVersion{1};
+constexpr std::uint32_t kMapVersion{1};
 constexpr int kZstdLevel{1};
 constexpr std::int32_t kMaxSectorCoordinate{1 << 20};  // voxel coordinates stay below 2^27
 constexpr std::size_t kSectorsAtOnce{32};
@@ -32,7 +32,7 @@ constexpr std::size_t kSectorsAtOnce{32};
 /// Everything before the first sector but its checksum.
 struct FixedHeader {
   std::array<char, 8> magic{kMagic};
-  std::uint32_t version{kVersion};
+  std::uint32_t version{kMapVersion};
   std::uint16_t max_weight{0};
   std::uint8_t free_weight{0};
   std::uint8_t clearing_percent{0};  ///< 0 is 100
@@ -169,10 +169,10 @@ Result<FixedHeader> read_header(ByteReader& reader) {
   if (!reader.has(kBytes)) return damaged(reader.left(), "the file ends within its header");
   peek = reader;
   const auto unchecked = peek.value<FixedHeader>();
-  if (unchecked.version != kVersion) {
+  if (unchecked.version != kMapVersion) {
     return Error{Errc::unsupported,
                  "the map has format version " + std::to_string(unchecked.version) + ", this program reads version " +
-                     std::to_string(kVersion),
+                     std::to_string(kMapVersion),
                  {}};
   }
   const std::optional<FixedHeader> header = read_with_crc<FixedHeader>(reader);

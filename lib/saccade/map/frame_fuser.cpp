@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kSlackM{1e-4};          // far above the rounding, far below a voxel
+constexpr double kRoundingM{1e-4};       // far above the rounding, far below a voxel
 constexpr double kMostSectors{1 << 24};  // to go through for a frame
 
 Index3 octant(const Index3& lo, int half, int i) {
@@ -70,8 +70,8 @@ Result<std::vector<Index3>> FrameFuser::candidate_sectors(const Executor& execut
   const double sector_m = kSectorVoxelEdge * config_.voxel_size_m;
   const Eigen::Vector3d sectors = (hi - lo) / sector_m + Eigen::Vector3d::Ones();
   if (sectors.prod() > kMostSectors) return too_many_voxels();
-  const Index3 first = voxel_at(lo - Eigen::Vector3d::Constant(kSlackM), sector_m);
-  const Index3 last = voxel_at(hi + Eigen::Vector3d::Constant(kSlackM), sector_m);
+  const Index3 first = voxel_at(lo - Eigen::Vector3d::Constant(kRoundingM), sector_m);
+  const Index3 last = voxel_at(hi + Eigen::Vector3d::Constant(kRoundingM), sector_m);
   std::vector<Index3> keys;
   for (int z = first.z; z <= last.z; ++z) {
     for (int y = first.y; y <= last.y; ++y) {

@@ -11,7 +11,7 @@ namespace saccade {
 namespace {
 
 /// Slack of the conservative tests: far above the rounding of the floats, far below a voxel or a pixel.
-constexpr float kSlackM{1e-4F};
+constexpr float kTileSlackM{1e-4F};
 constexpr float kSlackPx{0.1F};
 /// Bricks that reach nearer than this to the camera's plane are on every tile's list.
 constexpr float kNearestZ{0.02F};
@@ -66,7 +66,7 @@ class BrickProjector {
     }
     const auto [nearest, farthest] = std::minmax_element(z.begin(), z.end());
     if (*farthest < 0.0F || *nearest > static_cast<float>(camera_.max_range_m)) return false;
-    out.nearest_m = *nearest - kSlackM;
+    out.nearest_m = *nearest - kTileSlackM;
     if (*nearest < kNearestZ) {
       out.u0 = out.v0 = 0;
       out.u1 = static_cast<std::int16_t>(last_u_);

@@ -13,8 +13,8 @@ namespace {
 
 constexpr Rgb8 kChosen{214, 28, 92};
 constexpr Rgb8 kEarlier{112, 119, 131};
-constexpr Rgb8 kNoGain{176, 180, 188};
-constexpr Rgb8 kPaper{236, 239, 243};  // that of the maps
+constexpr Rgb8 kWithoutGain{176, 180, 188};
+constexpr Rgb8 kMapGround{236, 239, 243};  // that of the maps
 
 /// Averages of the pixels that a smaller picture's pixels cover.
 ColorImage averaged(const ColorImage& image, int width, int height) {
@@ -77,7 +77,7 @@ void draw_places(Canvas& canvas, const std::vector<Place>& places, double full_g
     if (place.gain > 0.0) {
       canvas.point(place.p_world, 8.0, amount_colors()(place.gain / full_gain), kHidden);
     } else {  // without gain, or NaN: not evaluated
-      canvas.point(place.p_world, std::isnan(place.gain) ? 3.0 : 5.0, kNoGain, kHidden);
+      canvas.point(place.p_world, std::isnan(place.gain) ? 3.0 : 5.0, kWithoutGain, kHidden);
     }
   }
 }
@@ -92,7 +92,7 @@ ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_w
   const int width = std::min(panel_width, frame.depth.width());
   const int height = std::max(1, frame.depth.height() * width / frame.depth.width());
   const int depth_x = frame.color ? width + kGap : 0;
-  ColorImage page{depth_x + width, height + kScaleHeight_px, kPaper};
+  ColorImage page{depth_x + width, height + kScaleHeight_px, kMapGround};
   if (frame.color) paste(page, 0, 0, averaged(*frame.color, width, height));
   const Panel depth = depth_panel(thinned(frame.depth, width, height), scale, {});
   paste(page, depth_x, 0, depth.image);
@@ -131,7 +131,7 @@ ColorImage candidates_picture(const CandidatesScene& scene, const Executor& exec
   canvas.frustum(config.sensor, scene.T_world_chosen, frustum_m, {kChosen, 3.0, 0.5});
   ColorImage map = canvas.finish();
   if (!bar) return map;
-  return with_scale(map, amount_colors(), *bar, kPaper);
+  return with_scale(map, amount_colors(), *bar, kMapGround);
 }
 
 ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& executor,
@@ -148,7 +148,7 @@ ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& 
 
 std::vector<CandidateMark> candidate_marks(bool with_robot) {
   std::vector<CandidateMark> marks{
-      {kNoGain, "candidates without gain", true}, {kChosen, "the view chosen"}, {kEarlier, "views before it"}};
+      {kWithoutGain, "candidates without gain", true}, {kChosen, "the view chosen"}, {kEarlier, "views before it"}};
   if (with_robot) marks.push_back({path_color(), "the camera's way to it"});
   return marks;
 }

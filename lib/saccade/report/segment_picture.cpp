@@ -15,7 +15,7 @@ namespace saccade {
 
 namespace {
 
-constexpr Rgb8 kGround{236, 239, 243};
+constexpr Rgb8 kSegmentGround{236, 239, 243};
 constexpr Rgb8 kNoSegment{150, 154, 160};
 constexpr Rgb8 kNameColor{16, 18, 24};
 constexpr std::size_t kNamed{20};  // segments that are named, at most
@@ -72,7 +72,7 @@ Canvas canvas_with(const DrawnSegments& segments, const Viewpoint& view, std::sp
                    const Executor& executor) {
   SACCADE_EXPECTS(segments.labels.size() == segments.positions_m.size());
   SACCADE_EXPECTS(segments.normals.empty() || segments.normals.size() == segments.positions_m.size());
-  Canvas canvas{view, kGround};
+  Canvas canvas{view, kSegmentGround};
   if (segments.triangles.empty()) {
     draw_points(canvas, segments, colors);
   } else {

@@ -8,8 +8,8 @@
 namespace saccade {
 namespace {
 
-constexpr Rgb8 kPaper{255, 255, 255};
-constexpr Rgb8 kInk{40, 44, 52};
+constexpr Rgb8 kSheetPaper{255, 255, 255};
+constexpr Rgb8 kSheetInk{40, 44, 52};
 constexpr Rgb8 kSoftInk{90, 94, 102};
 constexpr Rgb8 kFrame{206, 210, 216};
 constexpr int kMargin{16};
@@ -44,7 +44,7 @@ int legend_height(const Panel& panel, int width) {
 }
 
 void draw_panel(ColorImage& page, int x, int y, const Panel& panel) {
-  draw_text(page, x, y - 8, panel.title, {.size_px = 10.5, .color = kInk});
+  draw_text(page, x, y - 8, panel.title, {.size_px = 10.5, .color = kSheetInk});
   const int w = panel.image.width();
   const int h = panel.image.height();
   fill_rect(page, x - 1, y - 1, w + 2, h + 2, kFrame);
@@ -102,8 +102,8 @@ ColorImage compose(const Sheet& sheet) {
       {width + kMargin, panel_width, 2 * kMargin + static_cast<int>(text_width(sheet.note, {.size_px = 9.5}))});
   const int height = panel_bottom + kMargin + (sheet.note.empty() ? 0 : 20);
 
-  ColorImage page{width, height, kPaper};
-  if (!sheet.title.empty()) draw_text(page, kMargin, kMargin + 14, sheet.title, {.size_px = 14.0, .color = kInk});
+  ColorImage page{width, height, kSheetPaper};
+  if (!sheet.title.empty()) draw_text(page, kMargin, kMargin + 14, sheet.title, {.size_px = 14.0, .color = kSheetInk});
   int x = kMargin;
   for (const Panel& panel : sheet.panels) {
     draw_panel(page, x, top, panel);

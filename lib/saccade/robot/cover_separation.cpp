@@ -10,7 +10,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kBarely_m{1e-6};
+constexpr double kTouching_m{1e-6};
 
 /// Of two covers, from coarse to fine.
 class Separation {
@@ -67,7 +67,7 @@ double separation_m(const PlacedBody& a, const PlacedBody& b, double enough_m) {
   if (gap_m > enough_m) return gap_m;
   if (boxes_apart(a.T_world_link * a.box.T_link_box, a.box.half_m, b.T_world_link * b.box.T_link_box, b.box.half_m,
                   enough_m)) {
-    return enough_m + kBarely_m;
+    return enough_m + kTouching_m;
   }
   const Pose T_a_b = a.T_world_link.inverse(Eigen::Isometry) * b.T_world_link;
   return Separation{a.cover, T_a_b, b.cover, enough_m}.metres();

@@ -9,7 +9,7 @@ namespace saccade {
 namespace {
 
 constexpr double kInfinity{std::numeric_limits<double>::infinity()};
-constexpr double kHalfPi{1.5707963267948966};
+constexpr double kQuarterTurn{1.5707963267948966};
 constexpr double kMargin_vox{0.05};
 constexpr double kHalfDiagonal_vox{0.8660254037844387};
 
@@ -57,11 +57,11 @@ Range disc_range(double x, double z, double radius) {
   if (distance <= radius) return {};
   const double middle = std::atan2(x, z);
   const double half = std::asin(radius / distance);
-  if (middle - half >= kHalfPi || middle + half <= -kHalfPi) {
-    return middle - half <= -3.0 * kHalfPi || middle + half >= 3.0 * kHalfPi ? Range{} : kNowhere;
+  if (middle - half >= kQuarterTurn || middle + half <= -kQuarterTurn) {
+    return middle - half <= -3.0 * kQuarterTurn || middle + half >= 3.0 * kQuarterTurn ? Range{} : kNowhere;
   }
-  return {middle - half <= -kHalfPi ? -kInfinity : std::tan(middle - half),
-          middle + half >= kHalfPi ? kInfinity : std::tan(middle + half)};
+  return {middle - half <= -kQuarterTurn ? -kInfinity : std::tan(middle - half),
+          middle + half >= kQuarterTurn ? kInfinity : std::tan(middle + half)};
 }
 
 struct ImageRange {

@@ -10,11 +10,11 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kDirections{5};
-constexpr double kSlack{1e-9};  // a step that divides the circle to within rounding counts as dividing it
-constexpr double kMostPoses{1e7};
+constexpr double kRollSlack{1e-9};  // a step that divides the circle to within rounding counts as dividing it
+constexpr double kMostContourViews{1e7};
 
-double rolls_of(double step_rad) { return std::max(1.0, std::ceil(2.0 * std::numbers::pi / step_rad - kSlack)); }
-bool is_positive(double x) { return std::isfinite(x) && x > 0.0; }
+double rolls_of(double step_rad) { return std::max(1.0, std::ceil(2.0 * std::numbers::pi / step_rad - kRollSlack)); }
+bool is_distance(double x) { return std::isfinite(x) && x > 0.0; }
 Error fail(const char* what) { return {Errc::invalid_argument, what, "contour views"}; }
 
 /// The normal, and those tilted towards the right, top, left and bottom of an image taken along it.
@@ -30,10 +30,10 @@ std::array<Eigen::Vector3d, kDirections> directions_around(const Eigen::Vector3d
 
 Status ContourViewConfig::validate() const {
   if (distances_m.empty()) return fail("at least one distance is needed");
-  if (!std::all_of(distances_m.begin(), distances_m.end(), is_positive)) return fail("distances must be positive");
+  if (!std::all_of(distances_m.begin(), distances_m.end(), is_distance)) return fail("distances must be positive");
   if (!(cone_rad > 0.0 && cone_rad < 0.5 * std::numbers::pi)) return fail("cone_rad must lie between 0 and 90 deg");
-  if (!is_positive(roll_step_rad)) return fail("roll_step_rad must be positive");
-  if (static_cast<double>(kDirections * distances_m.size()) * rolls_of(roll_step_rad) > kMostPoses) {
+  if (!is_distance(roll_step_rad)) return fail("roll_step_rad must be positive");
+  if (static_cast<double>(kDirections * distances_m.size()) * rolls_of(roll_step_rad) > kMostContourViews) {
     return fail("the steps give more than ten million poses per point; make them larger");
   }
   return {};
@@ -45,7 +45,7 @@ std::size_t ContourViewConfig::views_per_point() const {
 
 Result<std::vector<Pose>> contour_views(std::span<const ContourPoint> points, const ContourViewConfig& config) {
   SACCADE_CHECK(config.validate());
-  if (static_cast<double>(points.size()) * static_cast<double>(config.views_per_point()) > kMostPoses) {
+  if (static_cast<double>(points.size()) * static_cast<double>(config.views_per_point()) > kMostContourViews) {
     return fail("more than ten million poses; group the contours more coarsely");
   }
   const auto rolls = static_cast<int>(rolls_of(config.roll_step_rad));

@@ -8,8 +8,8 @@ namespace saccade {
 namespace {
 
 // Far above what float32 crossings can be off by (a few 2⁻²⁴ of the distance), far below a voxel.
-constexpr float kSlack_vox{0.01F};
-constexpr float kSlackRate{2e-6F};
+constexpr float kBeamSlack_vox{0.01F};
+constexpr float kBeamSlackRate{2e-6F};
 constexpr float kSteepest{10.0F};  // of slopes; 1.4 where the major axis is that of the ray
 
 struct Direction {
@@ -66,8 +66,8 @@ RayBeam::RayBeam(const CastWindow& window, const Tile& tile)
   }
   for (const Direction& corner : corners) one_way_ = one_way_ && (corner.d[major_] > 0.0F) == positive_;
   one_way_ = one_way_ && slowest_ > 0.0F && steepest <= kSteepest;
-  slack_ = kSlack_vox;
-  slack_rate_ = kSlackRate * (1.0F + steepest);
+  slack_ = kBeamSlack_vox;
+  slack_rate_ = kBeamSlackRate * (1.0F + steepest);
   const int in_brick = origin_[major_] & (kBrickEdge - 1);
   skipped_ = positive_ ? in_brick : kBrickEdge - 1 - in_brick;
   first_ = positive_ ? 1.0F - o[major_] : o[major_];

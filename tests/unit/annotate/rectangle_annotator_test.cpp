@@ -8,6 +8,7 @@
 #include <random>
 
 #include "saccade/annotate/selection.hpp"
+#include "support/effort.hpp"
 
 namespace saccade {
 namespace {
@@ -67,7 +68,7 @@ TEST(RectangleAnnotator, ActionsAreThoseOfTheToolsAndNoneOfThemIsBetter) {
   const Scene scene = made_scene(600, 1);
   const RectangleAnnotatorConfig config = coarse(7, 5);
   RectangleAnnotator annotator = RectangleAnnotator::create(scene.positions_m, scene.truth, config, Executor{}).value();
-  for (int step = 0; step < 3; ++step) {
+  for (int step = 0; step < (test::kSanitized ? 1 : 3); ++step) {
     const Labels before = annotator.labels();
     std::size_t least_wrong = wrong_points(before, scene);
     EXPECT_EQ(annotator.wrong(), least_wrong);

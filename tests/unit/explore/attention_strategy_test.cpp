@@ -40,6 +40,7 @@ std::vector<double> best_gains(const ObjectAttention& seen, const TsdfSnapshot& 
 }
 
 TEST_F(Attention, ProposesViewsOfTheMostSalientSegmentOrOfARivalThatGainsMore) {
+  if (test::kSanitized) GTEST_SKIP() << "takes long under sanitizers; other tests propose views";
   ObjectAttentionConfig wanted = config().attention;
   std::set<std::uint32_t> chosen;
   for (const double min_gain : {10.0, 400.0}) {

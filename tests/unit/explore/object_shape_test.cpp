@@ -138,6 +138,7 @@ TEST(ObjectShapes, AMissingTopIsMissed) {
 }
 
 TEST(ObjectShapes, AShiftedTableOrNeighbourIsNotTheObject) {
+  if (test::kSanitized) GTEST_SKIP() << "true shapes take long under sanitizers; the tests around measure, too";
   const TriangleMesh raised = moved(0, [](const Vector3d& p) -> Vector3d { return p + Vector3d{0.0, 0.0, 0.008}; });
   for (const std::size_t object : shapes().objects()) {
     const ObjectShape error = error_of(object, raised);
@@ -148,6 +149,7 @@ TEST(ObjectShapes, AShiftedTableOrNeighbourIsNotTheObject) {
 
 /// Spurs in the air about every object: single triangles of 10 mm² as noise leaves them.
 TEST(ObjectShapes, StrayTrianglesDoNotCount) {
+  if (test::kSanitized) GTEST_SKIP() << "true shapes take long under sanitizers; the tests around measure, too";
   TriangleMesh mesh = everything();
   for (const std::size_t object : shapes().objects()) {
     const Vector3d at = rays().scene().objects[object].T_world_object.translation();
@@ -194,6 +196,7 @@ TEST(ObjectShapes, TooLittleIsNothing) {
 
 /// A camera with the noise of a Kinect goes around the shelf.
 TEST(ObjectShapes, NoiseCostsMillimetres) {
+  if (test::kSanitized) GTEST_SKIP() << "true shapes take long under sanitizers; the tests around measure, too";
   SimulatedCameraConfig config;
   config.camera = test::kSanitized ? PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.5, 2.0}
                                    : PinholeCamera{320, 240, 262.5, 262.5, 159.5, 119.5, 0.5, 2.0};
