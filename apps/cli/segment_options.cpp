@@ -42,6 +42,11 @@ void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
                   "of the difference of colours, where there are any (sv-lccp, flood-fill: 1)")
       ->type_name("WEIGHT")
       ->capture_default_str();
+  command
+      .add_option("--rounds", supervoxels.rounds,
+                  "of growth; before each but the first, supervoxels move to the means of their voxels (sv-lccp: 5)")
+      ->type_name("COUNT")
+      ->capture_default_str();
   command.add_flag("--transform,!--no-transform", supervoxels.voxels.single_camera,
                    "the cloud is one camera's, in its frame (z forwards): voxels grow with depth");
   command
@@ -131,12 +136,13 @@ void apply_method(const CLI::App& command, SegmentOptions& options) {
     if (command.count("--spatial-weight") == 0) own.spatial_weight = defaults.spatial_weight;
     if (command.count("--normal-weight") == 0) own.normal_weight = defaults.normal_weight;
     if (command.count("--color-weight") == 0) own.color_weight = defaults.color_weight;
+    if (command.count("--rounds") == 0) own.rounds = defaults.rounds;
     options.max_color_difference = options.threshold.value_or(options.max_color_difference);
   }
   if (options.fills()) {
     refuse(command, kFloodFill,
-           {"--voxel-size", "--seed-size", "--spatial-weight", "--concavity", "--smoothness", "--sanity", "--extended",
-            "--min-size"});
+           {"--voxel-size", "--seed-size", "--spatial-weight", "--rounds", "--concavity", "--smoothness", "--sanity",
+            "--extended", "--min-size"});
     FloodFillConfig& fill = options.flood_fill;
     if (command.count("--normal-weight") > 0) fill.normal_weight = options.supervoxels.normal_weight;
     if (command.count("--color-weight") > 0) fill.color_weight = options.supervoxels.color_weight;

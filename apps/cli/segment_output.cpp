@@ -52,6 +52,7 @@ json parameters_json(const SegmentOptions& options) {
                    {{"spatial", supervoxels.spatial_weight},
                     {"normal", supervoxels.normal_weight},
                     {"color", supervoxels.color_weight}}},
+                  {"rounds", supervoxels.rounds},
                   {"transform", supervoxels.voxels.single_camera},
                   {"concavity_rad", options.lccp.concavity_tolerance_rad},
                   {"smoothness_vox", options.lccp.smoothness},

@@ -125,7 +125,7 @@ PointCloud with_true_colors(PointCloud cloud, const PointCloud& enhanced, const 
 }
 
 SupervoxelConfig thesis_supervoxels() {
-  SupervoxelConfig growing;
+  SupervoxelConfig growing = SvLccpConfig{}.supervoxels;
   growing.voxels.voxel_size_m = kVoxel_m;
   growing.seed_spacing_m = kSupervoxel_m;
   growing.spatial_weight = kPositionWeight;

@@ -158,6 +158,7 @@ TEST(Defaults, OfSegmentationAreDocumented) {
   expect_documented("SupervoxelConfig::seed_spacing_m", {supervoxels.seed_spacing_m});
   expect_documented("SupervoxelConfig::spatial_weight",
                     {supervoxels.spatial_weight, supervoxels.normal_weight, supervoxels.color_weight});
+  expect_documented("SupervoxelConfig::rounds", {static_cast<double>(supervoxels.rounds)});
   expect_documented("SupervoxelConfig::min_seed_share", {supervoxels.min_seed_share});
   const MapSegmentsConfig map;
   expect_documented("MapSegmentsConfig::voxel_size_m", {map.voxel_size_m});
@@ -208,6 +209,7 @@ TEST(Defaults, OfSurfelSegmentationAreDocumented) {
   expect_documented("SvLccpConfig::supervoxels", {of_surfels.voxels.voxel_size_m, of_surfels.seed_spacing_m});
   expect_documented("SvLccpConfig::supervoxels.spatial_weight",
                     {of_surfels.spatial_weight, of_surfels.normal_weight, of_surfels.color_weight});
+  expect_documented("SvLccpConfig::supervoxels.rounds", {static_cast<double>(of_surfels.rounds)});
   expect_documented("SvLccpConfig::max_color_difference", {surfels.max_color_difference});
   const BoundaryMatchingConfig matching;
   expect_documented("BoundaryMatchingConfig::tolerance_m", {matching.tolerance_m});

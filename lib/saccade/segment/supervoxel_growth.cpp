@@ -11,6 +11,28 @@ namespace {
 
 constexpr std::size_t kSeedGrain{512};
 
+/// Of places, normals and colours.
+class VoxelSum {
+ public:
+  void add(const CloudVoxel& voxel) {
+    place_ += voxel.place.cast<double>();
+    normal_ += voxel.normal.cast<double>();
+    color_ += voxel.color.cast<double>();
+    count_ += 1.0;
+  }
+  /// Where it is counts by its place; its normal is of unit length, or zero where the sum is.
+  [[nodiscard]] CloudVoxel mean() const {
+    return {(place_ / count_).cast<float>(), Eigen::Vector3f::Zero(), normal_.normalized().cast<float>(),
+            (color_ / count_).cast<float>(), 0};
+  }
+
+ private:
+  Eigen::Vector3d place_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d normal_{Eigen::Vector3d::Zero()};
+  Eigen::Vector3d color_{Eigen::Vector3d::Zero()};
+  double count_{0.0};
+};
+
 }  // namespace
 
 void SupervoxelGrowth::seed(std::span<const std::uint32_t> cell_of, std::size_t cells, double radius, double fewest,
@@ -38,6 +60,29 @@ void SupervoxelGrowth::seed(std::span<const std::uint32_t> cell_of, std::size_t 
     grown_.labels[voxel] = static_cast<std::uint32_t>(grown_.seeds.size());
     grown_.seeds.push_back(voxel);
   }
+  centres_.clear();
+  for (const std::uint32_t seed : grown_.seeds) centres_.push_back(cloud_.voxels[seed]);
+}
+
+void SupervoxelGrowth::move_to_means(const Grown& grown) {
+  const std::size_t count = grown.seeds.size();
+  std::vector<VoxelSum> sums(count);
+  for (std::size_t v = 0; v < grown.labels.size(); ++v) {
+    if (grown.labels[v] != kUnlabelled) sums[grown.labels[v]].add(cloud_.voxels[v]);
+  }
+  for (std::size_t s = 0; s < count; ++s) centres_[s] = sums[s].mean();
+  std::vector<float> nearest_squared(count, std::numeric_limits<float>::infinity());
+  grown_.seeds = grown.seeds;
+  for (std::uint32_t v = 0; v < grown.labels.size(); ++v) {
+    const std::uint32_t s = grown.labels[v];
+    if (s == kUnlabelled) continue;
+    const float squared = (cloud_.voxels[v].place - centres_[s].place).squaredNorm();
+    if (squared >= nearest_squared[s]) continue;
+    nearest_squared[s] = squared;
+    grown_.seeds[s] = v;
+  }
+  grown_.labels.assign(cloud_.voxels.size(), kUnlabelled);
+  for (std::uint32_t s = 0; s < count; ++s) grown_.labels[grown_.seeds[s]] = s;
 }
 
 SupervoxelGrowth::Grown SupervoxelGrowth::grow(double steps, std::span<const std::uint8_t> outside) {
@@ -112,11 +157,11 @@ void SupervoxelGrowth::step() {
   }
   changed_.clear();
   for (const auto& [voxel, label] : offers) {
-    const CloudVoxel& seed = cloud_.voxels[grown_.seeds[label]];
+    const CloudVoxel& centre = centres_[label];
     for (const std::uint32_t other : cloud_.neighbours(voxel)) {
       if (grown_.labels[other] == label || distances_[other] == kOutside) continue;
       if (distances_[other] == 0.0F && grown_.seeds[grown_.labels[other]] == other) continue;  // a seed keeps its own
-      const float distance = difference_.of(cloud_.voxels[other], seed);
+      const float distance = difference_.of(cloud_.voxels[other], centre);
       if (std::pair{distance, label} >= std::pair{distances_[other], grown_.labels[other]}) continue;
       grown_.labels[other] = label;
       distances_[other] = distance;

@@ -57,6 +57,10 @@ class SupervoxelGrowth {
   /// outside does not grow. One thread.
   [[nodiscard]] Grown grow(double steps, std::span<const std::uint8_t> outside = {});
 
+  /// What has grown is to grow anew: from the means of its voxels' places, normals and colours, and from the voxel
+  /// nearest to the mean place.
+  void move_to_means(const Grown& grown);
+
  private:
   [[nodiscard]] float gradient(std::uint32_t voxel) const;
   [[nodiscard]] std::vector<std::uint32_t> voxels_nearest_to_means(std::span<const std::uint32_t> cell_of,
@@ -69,7 +73,8 @@ class SupervoxelGrowth {
   const VoxelCloud& cloud_;
   VoxelDifference difference_;
   Grown grown_;
-  std::vector<float> distances_;        ///< from the seed of the label; of those outside kOutside
+  std::vector<CloudVoxel> centres_;     ///< of supervoxels, from which voxels differ; at first their seeds
+  std::vector<float> distances_;        ///< from the centre of the label; of those outside kOutside
   std::vector<std::uint32_t> changed_;  ///< in the last step
   std::vector<std::uint8_t> is_changed_;
 };

@@ -103,6 +103,7 @@ Status SupervoxelConfig::validate() const {
   }
   if (spatial_weight + normal_weight + color_weight == 0.0) return error("all weights are zero");
   if (seed_spacing_m < voxels.voxel_size_m) return error("seed_spacing_m must be at least voxel_size_m");
+  if (rounds < 1) return error("rounds must be at least 1");
   return {};
 }
 
@@ -118,7 +119,12 @@ Result<SupervoxelResult> find_supervoxels(const PointCloud& cloud, const Supervo
   const auto [cell_of, cells] = seed_cells(voxels, config.seed_spacing_m);
   SupervoxelGrowth growth{voxels, VoxelDifference{config, config.seed_spacing_m}};
   growth.seed(cell_of, cells, 0.5 * config.seed_spacing_m, config.fewest_around_seed(spacing_vox), executor);
-  const std::vector<std::uint32_t> labels = with_rest(voxels, growth.grow(2.0 * spacing_vox));
+  SupervoxelGrowth::Grown grown = growth.grow(2.0 * spacing_vox);
+  for (int round = 1; round < config.rounds; ++round) {
+    growth.move_to_means(grown);
+    grown = growth.grow(2.0 * spacing_vox);
+  }
+  const std::vector<std::uint32_t> labels = with_rest(voxels, std::move(grown));
   SupervoxelResult result;
   result.supervoxels = summarise(voxels, labels);
   result.edges = touching(voxels, labels);

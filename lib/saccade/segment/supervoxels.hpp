@@ -22,10 +22,11 @@ struct SupervoxelConfig {
   double normal_weight{4.0};    ///< of 1 − cos of the angle between normals
   double color_weight{0.0};     ///< of the distance between colours
   double min_seed_share{
-      0.3};  ///< of the voxels that a plane fills within half a seed spacing: a seed with fewer is dropped
+      0.3};       ///< of the voxels that a plane fills within half a seed spacing: a seed with fewer is dropped
+  int rounds{1};  ///< of growth; before each but the first, supervoxels are taken to be at the means of their voxels
 
-  /// @return invalid_argument for a number that is not finite or negative, all weights zero, or seeds closer
-  /// than voxels.
+  /// @return invalid_argument for a number that is not finite or negative, all weights zero, seeds closer than voxels,
+  /// or no round.
   [[nodiscard]] Status validate() const;
   /// Voxels within half a seed spacing, given in voxels, that a seed needs.
   [[nodiscard]] double fewest_around_seed(double spacing_vox) const;
@@ -51,10 +52,10 @@ struct SupervoxelResult {
 
 /// Voxel cloud connectivity segmentation (Papon et al., CVPR 2013): seeds on a regular grid, moved to where normals and
 /// colours change least, grow from voxel to neighbouring voxel, each voxel going to the nearest seed that reaches it.
-/// Unlike the paper's, seeds stay where they are: docs/segmentation.md says what that is good for. A connected part
-/// without a seed becomes a supervoxel of its own, so that every point has a label.
+/// Unless there are more rounds, seeds stay where they are, unlike the paper's: docs/segmentation.md says what that is
+/// good for. A connected part without a seed becomes a supervoxel of its own, so that every point has a label.
 /// @return an error of the cloud or the config; no points: no supervoxels.
-/// O(points + voxels). The thread count never changes a bit of the result.
+/// O(points + voxels × rounds). The thread count never changes a bit of the result.
 [[nodiscard]] Result<SupervoxelResult> find_supervoxels(const PointCloud& cloud, const SupervoxelConfig& config,
                                                         const Executor& executor);
 

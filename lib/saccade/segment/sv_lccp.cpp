@@ -11,6 +11,7 @@ SvLccpConfig::SvLccpConfig() {
   supervoxels.spatial_weight = 0.1;
   supervoxels.normal_weight = 0.5;
   supervoxels.color_weight = 1.0;
+  supervoxels.rounds = 5;
 }
 
 Status SvLccpConfig::validate() const {

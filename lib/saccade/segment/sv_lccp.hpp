@@ -9,11 +9,12 @@
 
 namespace saccade {
 
-/// Parameters of segment_by_sv_lccp: thesis Table 4.2. What it leaves open is as for LCCP.
+/// Parameters of segment_by_sv_lccp: thesis Table 4.2. What it leaves open is as for LCCP, but for the rounds, which
+/// are those of the paper of VCCS: a seed's own colour says less of what is around it than the mean does.
 struct SvLccpConfig {
   SvLccpConfig();
 
-  SupervoxelConfig supervoxels;  ///< V_lccp 1 cm, S_lccp 5 cm, weights α_p 0.1, α_n 0.5, α_c 1
+  SupervoxelConfig supervoxels;  ///< V_lccp 1 cm, S_lccp 5 cm, weights α_p 0.1, α_n 0.5, α_c 1; 5 rounds
   LccpConfig lccp;
   double max_color_difference{0.1};  ///< T_lccp, between colours in [0, 1]
 

@@ -99,6 +99,7 @@ void GainCaster::cast_rows(int begin, int end) {
       cast_tile(tile);
     }
   }
+  finish();
 }
 
 void GainCaster::look_over(int tile_px) {
@@ -144,30 +145,25 @@ void GainCaster::judge(std::span<OpenTile> tiles) {
     }
     ends.push_back(packet.count);
   }
-  const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
-  rays_cast_ += tally.cast;
+  const RaysThatScore scoring = cast_alone(packet, grid_.flat(), limits_.min_t, limits_.max_t);
+  rays_cast_ += scoring.cast;
   std::size_t begin{0};
   for (std::size_t k = 0; k < tiles.size(); begin = ends[k++]) {
     const std::size_t rays = ends[k] - begin;
     if (rays == 0) continue;
-    const std::uint64_t scored = tally.scored >> begin & ((std::uint64_t{1} << rays) - 1);
+    const std::uint64_t scored = scoring.which >> begin & ((std::uint64_t{1} << rays) - 1);
     tiles[k].scoring = static_cast<double>(tiles[k].rays) * std::popcount(scored) / static_cast<double>(rays);
   }
 }
 
 void GainCaster::refine(std::uint64_t enough) {
-  while (!open_tiles_.empty() && at_most() >= enough) {
+  while (!open_tiles_.empty() && may_be(enough)) {
     const OpenTile open = open_tiles_.back();
     open_tiles_.pop_back();
     open_rays_ -= open.rays;
     decide(open.tile);
   }
-}
-
-double GainCaster::about() const {
-  auto gain = static_cast<double>(scored_);
-  for (const OpenTile& open : open_tiles_) gain += open.scoring;
-  return gain;
+  if (decided()) finish();
 }
 
 std::uint64_t GainCaster::rays_in(const Tile& tile) const {
@@ -301,8 +297,8 @@ void GainCaster::cast_packet(const Tile& tile) {
       if (shows(i, j)) add_rays(i, i + 1, j, packet);
     }
   }
-  const PacketTally tally = cast_packets(packet, grid_.flat(), limits_.min_t, limits_.max_t);
-  scored_ += static_cast<std::uint64_t>(std::popcount(tally.scored));
+  const PacketTally tally = cast_with_others(packet, grid_.flat(), limits_.min_t, limits_.max_t, waiting_);
+  scored_ += tally.scored;
   rays_cast_ += tally.cast;
 }
 

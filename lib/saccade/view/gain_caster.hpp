@@ -43,12 +43,9 @@ class GainCaster {
   void look_over(int tile_px);
   /// Casts some rays of the open tiles, to judge how many of theirs score; those that seem to score least come first.
   void judge_open_tiles();
-  /// Decides open tiles, one after the other, until none is left or at_most() < enough.
+  /// Decides open tiles, one after the other, until none is left or the window scores less than enough for certain.
   void refine(std::uint64_t enough);
   [[nodiscard]] bool decided() const { return open_tiles_.empty(); }
-  /// What the window scores at most, and about, as open tiles were judged.
-  [[nodiscard]] std::uint64_t at_most() const { return scored_ + open_rays_; }
-  [[nodiscard]] double about() const;
   [[nodiscard]] std::uint64_t open_rays() const { return open_rays_; }
 
   [[nodiscard]] std::uint64_t scored() const { return scored_; }
@@ -70,6 +67,13 @@ class GainCaster {
   void split(const Tile& tile);
   void cast_rays(const Tile& tile);
   void cast_packet(const Tile& tile);
+  /// The rays that wait for others come to their ends.
+  void finish() { scored_ += finish_rays(window_.rays.origin, grid_.flat(), limits_.min_t, waiting_); }
+  /// Whether all open rays together could make it enough; the same whatever the vectors' width.
+  [[nodiscard]] bool may_be(std::uint64_t enough) {
+    if (scored_ + open_rays_ < enough && scored_ + open_rays_ + waiting_.count >= enough) finish();
+    return scored_ + open_rays_ >= enough;
+  }
   void judge(std::span<OpenTile> tiles);
   [[nodiscard]] RayPacket no_rays(int major, int slab) const;
   void add_rays(int begin, int end, int row, RayPacket& packet) const;
@@ -98,6 +102,7 @@ class GainCaster {
   bool use_packets_;
   int finest_slabs_;  ///< of voxels, that tiles look at
   int leave_open_px_{0};
+  WaitingRays waiting_;  ///< of packets; all with an end to cast_rows, and to refine if no tile is left open
   std::vector<OpenTile> open_tiles_;
   std::uint64_t open_rays_{0};
   std::uint64_t scored_{0};

@@ -3,6 +3,7 @@
 #define HWY_TARGET_INCLUDE "saccade/view/ray_packets.cpp"
 #include "saccade/core/simd_kernels.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "saccade/map/ray_lanes-inl.hpp"
@@ -14,24 +15,11 @@ namespace {
 
 using namespace lanes::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary of these kernels
 
-/// Rays on their way, side by side: what Walkers need to go on with them.
-struct Waiting {
-  static constexpr std::size_t kRoom{RayPacket::kMost + 16};  // vectors are stored whole
-  std::size_t count{0};
-  alignas(64) std::array<std::array<float, kRoom>, 3> inv;
-  alignas(64) std::array<std::array<float, kRoom>, 3> plane;
-  alignas(64) std::array<float, kRoom> entered_t;
-  alignas(64) std::array<float, kRoom> exit_t;
-  alignas(64) std::array<std::int32_t, kRoom> exit_axis;
-  alignas(64) std::array<std::int32_t, kRoom> voxel;
-  alignas(64) std::array<std::int32_t, kRoom> ray;  ///< in the packet
-};
-
-/// Some rays of a packet on their way, one per lane.
+/// Some rays on their way, one per lane.
 class Walkers {
  public:
-  HWY_INLINE Walkers(const RayPacket& packet, const FlatStops& stops) : stops_{stops} {
-    for (std::size_t axis = 0; axis < 3; ++axis) rays_.o[axis] = hn::Set(f_, packet.origin.fraction[axis]);
+  HWY_INLINE Walkers(const LatticePoint& origin, const FlatStops& stops) : stops_{stops} {
+    for (std::size_t axis = 0; axis < 3; ++axis) rays_.o[axis] = hn::Set(f_, origin.fraction[axis]);
     const Index3 size = stops_.voxels.hi - stops_.voxels.lo;
     strides_ = {1, size.x, size.x * size.y};
   }
@@ -77,14 +65,16 @@ class Walkers {
     return cast;
   }
 
-  /// Goes on with rays [first, count) of those that wait, or as many as there are lanes.
-  HWY_INLINE void go_on(const Waiting& waiting, std::size_t first, std::size_t count) {
+  /// Goes on with the last of those that wait, as many as there are lanes.
+  HWY_INLINE void go_on(WaitingRays& waiting) {
+    const std::size_t taken = std::min(waiting.count, hn::Lanes(f_));
+    const std::size_t first = waiting.count -= taken;
     for (std::size_t axis = 0; axis < 3; ++axis) {
       rays_.inv[axis] = hn::LoadU(f_, waiting.inv[axis].data() + first);
       rays_.forward[axis] = hn::Gt(rays_.inv[axis], hn::Zero(f_));
       plane_[axis] = hn::LoadU(f_, waiting.plane[axis].data() + first);
     }
-    active_ = hn::FirstN(f_, count - first);
+    active_ = hn::FirstN(f_, taken);
     entered_t_ = hn::LoadU(f_, waiting.entered_t.data() + first);
     exit_ = {hn::LoadU(f_, waiting.exit_t.data() + first), hn::LoadU(i_, waiting.exit_axis.data() + first)};
     voxel_ = hn::IfThenElseZero(hn::RebindMask(i_, active_), hn::LoadU(i_, waiting.voxel.data() + first));
@@ -92,7 +82,7 @@ class Walkers {
   }
 
   /// Those that are neither stopped nor have left, behind others that wait.
-  HWY_INLINE void wait(Waiting& waiting) const {
+  HWY_INLINE void wait(WaitingRays& waiting) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       put(rays_.inv[axis], waiting.count, waiting.inv[axis]);
       put(plane_[axis], waiting.count, waiting.plane[axis]);
@@ -105,9 +95,9 @@ class Walkers {
     waiting.count += hn::CountTrue(f_, active_);
   }
 
-  /// Until at most so many rays are neither stopped nor have left; returns those that scored, a bit per ray of the
-  /// packet. Rays that were stopped go on meanwhile, unheeded: so no step waits for what was looked up before it.
-  HWY_INLINE std::uint64_t walk(float min_t, std::size_t at_most) {
+  /// Until at most so many rays are neither stopped nor have left; returns those that scored. Rays that were stopped go
+  /// on meanwhile, unheeded: so no step waits for what was looked up before it.
+  HWY_INLINE M walk(float min_t, std::size_t at_most) {
     const VF counts_from = hn::Set(f_, min_t);
     const VI stops = hn::Set(i_, static_cast<std::int32_t>(FlatStops::kStops));
     const VI scores = hn::Set(i_, static_cast<std::int32_t>(FlatStops::kScores));
@@ -142,9 +132,14 @@ class Walkers {
     voxel_ = voxel;
     entered_t_ = entered_t;
     active_ = hn::AndNot(done, active);
+    return scored;
+  }
+
+  /// A bit per ray of the packet.
+  [[nodiscard]] HWY_INLINE std::uint64_t bits_of(M rays_in_lanes) const {
     alignas(64) std::array<std::int32_t, hn::MaxLanes(I{})> rays;
-    hn::Store(hn::Compress(ray_, hn::RebindMask(i_, scored)), i_, rays.data());
-    const std::size_t count = hn::CountTrue(f_, scored);
+    hn::Store(hn::Compress(ray_, hn::RebindMask(i_, rays_in_lanes)), i_, rays.data());
+    const std::size_t count = hn::CountTrue(f_, rays_in_lanes);
     std::uint64_t bits{0};
     for (std::size_t i = 0; i < count; ++i) bits |= std::uint64_t{1} << static_cast<unsigned>(rays[i]);
     return bits;
@@ -223,30 +218,59 @@ class Walkers {
   VI voxel_;                 ///< in the table
 };
 
-/// Rays end here and there: once half of those in a vector have, the others wait, and go on with such of other vectors.
-PacketTally cast_packets_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
+/// Rays end here and there: once so few of a vector are left, they wait, and go on with such of other vectors.
+HWY_INLINE std::size_t few() {
   const std::size_t lanes = hn::Lanes(F{});
-  const std::size_t regroup_at = lanes >= 8 ? lanes / 2 : 0;
-  PacketTally tally;
-  Waiting waiting;
-  Walkers walkers{packet, stops};
+  return lanes >= 8 ? lanes / 2 : 0;
+}
+
+/// Returns how many rays meet the box of scoring voxels. `ended` is told which of those in the walkers scored.
+template <class Ended>
+HWY_INLINE std::uint64_t cast(const RayPacket& packet, float min_t, float max_t, WaitingRays& waiting, Walkers& walkers,
+                              const Ended& ended) {
+  const std::size_t lanes = hn::Lanes(F{});
+  std::uint64_t cast{0};
   for (std::size_t first = 0; first < packet.count; first += lanes) {
-    const std::size_t cast = walkers.start(packet, first, max_t);
-    if (cast == 0) continue;
-    tally.cast += cast;
-    tally.scored |= walkers.walk(min_t, packet.count > lanes ? regroup_at : 0);
+    const std::size_t started = walkers.start(packet, first, max_t);
+    if (started == 0) continue;
+    cast += started;
+    if (started > few()) ended(walkers.walk(min_t, few()));
     walkers.wait(waiting);
-  }
-  while (waiting.count > 0) {
-    const std::size_t at_most = waiting.count > lanes ? regroup_at : 0;
-    const std::size_t count = std::exchange(waiting.count, 0);
-    for (std::size_t first = 0; first < count; first += lanes) {
-      walkers.go_on(waiting, first, count);
-      tally.scored |= walkers.walk(min_t, at_most);
-      walkers.wait(waiting);  // over rays that were taken up already
+    while (waiting.count >= lanes) {
+      walkers.go_on(waiting);
+      ended(walkers.walk(min_t, few()));
+      walkers.wait(waiting);
     }
   }
+  return cast;
+}
+
+PacketTally cast_with_others_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t,
+                                  WaitingRays& waiting) {
+  Walkers walkers{packet.origin, stops};
+  PacketTally tally;
+  tally.cast = cast(packet, min_t, max_t, waiting, walkers,
+                    [&](M scored) HWY_ATTR { tally.scored += hn::CountTrue(F{}, scored); });
   return tally;
+}
+
+std::uint64_t finish_rays_simd(const LatticePoint& origin, const FlatStops& stops, float min_t, WaitingRays& waiting) {
+  if (waiting.count == 0) return 0;
+  Walkers walkers{origin, stops};
+  walkers.go_on(waiting);
+  return hn::CountTrue(F{}, walkers.walk(min_t, 0));
+}
+
+RaysThatScore cast_alone_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
+  Walkers walkers{packet.origin, stops};
+  WaitingRays waiting;
+  RaysThatScore rays;
+  const auto add = [&](M scored) HWY_ATTR { rays.which |= walkers.bits_of(scored); };
+  rays.cast = cast(packet, min_t, max_t, waiting, walkers, add);
+  if (waiting.count == 0) return rays;
+  walkers.go_on(waiting);
+  add(walkers.walk(min_t, 0));
+  return rays;
 }
 
 }  // namespace
@@ -258,14 +282,27 @@ namespace saccade {
 namespace view_kernels {
 namespace {
 
-HWY_EXPORT(cast_packets_simd);
+HWY_EXPORT(cast_with_others_simd);
+HWY_EXPORT(finish_rays_simd);
+HWY_EXPORT(cast_alone_simd);
 
 }  // namespace
 }  // namespace view_kernels
 
-PacketTally cast_packets(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
+PacketTally cast_with_others(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t,
+                             WaitingRays& waiting) {
   using namespace view_kernels;
-  return HWY_DYNAMIC_DISPATCH(cast_packets_simd)(packet, stops, min_t, max_t);
+  return HWY_DYNAMIC_DISPATCH(cast_with_others_simd)(packet, stops, min_t, max_t, waiting);
+}
+
+std::uint64_t finish_rays(const LatticePoint& origin, const FlatStops& stops, float min_t, WaitingRays& waiting) {
+  using namespace view_kernels;
+  return HWY_DYNAMIC_DISPATCH(finish_rays_simd)(origin, stops, min_t, waiting);
+}
+
+RaysThatScore cast_alone(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
+  using namespace view_kernels;
+  return HWY_DYNAMIC_DISPATCH(cast_alone_simd)(packet, stops, min_t, max_t);
 }
 
 }  // namespace saccade

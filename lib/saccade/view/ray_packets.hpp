@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// FlatStops and cast_packets: many rays at a time through what stops them.
+// FlatStops, cast_with_others, finish_rays and cast_alone: many rays at a time through what stops them.
 
 #include <array>
 #include <cstdint>
@@ -35,13 +35,38 @@ struct RayPacket {
   alignas(64) std::array<std::array<float, kMost>, 3> d;  ///< voxels per metre of depth
 };
 
-struct PacketTally {
-  std::uint64_t scored{0};  ///< bit i: ray i scores
-  std::uint64_t cast{0};    ///< rays that meet the box of scoring voxels
+/// Rays on their way that wait until there are enough to fill a vector. All from one origin.
+struct WaitingRays {
+  static constexpr std::size_t kRoom{48};  ///< fewer than two vectors of 16 wait, and they are stored whole
+  std::size_t count{0};
+  alignas(64) std::array<std::array<float, kRoom>, 3> inv;
+  alignas(64) std::array<std::array<float, kRoom>, 3> plane;
+  alignas(64) std::array<float, kRoom> entered_t;
+  alignas(64) std::array<float, kRoom> exit_t;
+  alignas(64) std::array<std::int32_t, kRoom> exit_axis;
+  alignas(64) std::array<std::int32_t, kRoom> voxel;
+  alignas(64) std::array<std::int32_t, kRoom> ray;  ///< in their packet
 };
 
-/// Walks every ray voxel by voxel to the first that stops it, as GainCaster's walk does, to the bit; counts those that
-/// score at a depth of at least min_t and enter the voxel no later than max_t.
-[[nodiscard]] PacketTally cast_packets(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t);
+struct PacketTally {
+  std::uint64_t cast{0};    ///< rays that meet the box of scoring voxels
+  std::uint64_t scored{0};  ///< of the rays that came to their ends
+};
+
+/// Walks rays voxel by voxel to the first that stops them, as GainCaster's walk does, to the bit; counts those that
+/// score at a depth of at least min_t and enter the voxel no later than max_t. Rays that were left when too few were on
+/// their way wait, and go on with those of packets to come.
+[[nodiscard]] PacketTally cast_with_others(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t,
+                                           WaitingRays& waiting);
+/// The rays that wait come to their ends; returns how many of them score.
+[[nodiscard]] std::uint64_t finish_rays(const LatticePoint& origin, const FlatStops& stops, float min_t,
+                                        WaitingRays& waiting);
+
+struct RaysThatScore {
+  std::uint64_t which{0};  ///< bit i: ray i of the packet scores
+  std::uint64_t cast{0};
+};
+/// All of a packet's rays, without any other.
+[[nodiscard]] RaysThatScore cast_alone(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t);
 
 }  // namespace saccade
