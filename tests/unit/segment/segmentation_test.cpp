@@ -224,6 +224,34 @@ TEST(Segmentation, ColourDividesSupervoxels) {
   EXPECT_GT(mixed(config), 3);
 }
 
+/// As k-means does.
+TEST(Segmentation, MoreRoundsBringSupervoxelsCloserTogether) {
+  PointCloud cloud = plane();
+  const Eigen::AngleAxisf turned{0.5F, Eigen::Vector3f{0.3F, 0.5F, 1.0F}.normalized()};
+  for (Eigen::Vector3f& p : cloud.positions_m) {
+    p = turned * p;
+    cloud.colors.push_back(Eigen::Vector3f::Constant(0.5F + 0.5F * std::sin(40.0F * p.x()) * std::cos(30.0F * p.y())));
+  }
+  SupervoxelConfig config;
+  config.seed_spacing_m = 0.05;
+  config.normal_weight = 0.0;
+  const auto spread = [&](int rounds, double color_weight) {
+    config.rounds = rounds;
+    config.color_weight = color_weight;
+    const SupervoxelResult found = find_supervoxels(cloud, config, Executor{}).value();
+    double sum{0.0};
+    for (std::size_t i = 0; i < cloud.positions_m.size(); ++i) {
+      const Supervoxel& supervoxel = found.supervoxels[found.labels[i]];
+      sum += color_weight > 0.0 ? (cloud.colors[i] - supervoxel.color).squaredNorm()
+                                : (cloud.positions_m[i] - supervoxel.centroid_m).squaredNorm();
+    }
+    return sum;
+  };
+  for (const double color_weight : {0.0, 10.0}) {
+    EXPECT_LT(spread(5, color_weight), 0.9 * spread(1, color_weight)) << color_weight;
+  }
+}
+
 TEST(Segmentation, NothingIsNothing) {
   for (const std::size_t points : {0, 50}) {
     PointCloud cloud;
@@ -267,6 +295,7 @@ TEST(Segmentation, NoSupervoxelIsEmptyWhateverTheWeights) {
     config.spatial_weight = weights[0];
     config.normal_weight = weights[1];
     config.color_weight = weights[2];
+    config.rounds = weights[0] > 0.0 ? 1 : 3;
     const SupervoxelResult found = find_supervoxels(scene.cloud, config, Executor{}).value();
     EXPECT_GT(found.supervoxels.size(), 50U);
     std::size_t voxels{0};
@@ -324,6 +353,9 @@ TEST(Segmentation, BadInputIsRefused) {
   EXPECT_EQ(find_supervoxels(cloud, {}, executor).error().code, Errc::invalid_argument);
   SupervoxelConfig config;
   config.seed_spacing_m = 0.001;
+  EXPECT_EQ(find_supervoxels(plane(), config, executor).error().code, Errc::invalid_argument);
+  config = {};
+  config.rounds = 0;
   EXPECT_EQ(find_supervoxels(plane(), config, executor).error().code, Errc::invalid_argument);
   config = {};
   config.voxels.voxel_size_m = -1.0;
