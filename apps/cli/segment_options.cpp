@@ -201,7 +201,8 @@ void check_segment_options(const CLI::App& command, SegmentOptions& options) {
   check_extensions(options);
   require_positive(options.supervoxels.voxels.voxel_size_m, "--voxel-size");
   require_positive(options.supervoxels.seed_spacing_m, "--seed-size");
-  require_ok(options.supervoxels.validate(), "--seed-size, --spatial-weight, --normal-weight, --color-weight");
+  require_ok(options.supervoxels.validate(),
+             "--seed-size, --spatial-weight, --normal-weight, --color-weight, --rounds");
   require_ok(options.lccp.validate(), "--concavity, --smoothness");
   require_ok(options.flood_fill.validate(), "--threshold, --normal-weight, --color-weight");
   for (const double threshold : options.curve_thresholds) {

@@ -12,6 +12,8 @@ namespace saccade {
 
 namespace {
 
+constexpr int kMostRounds{100};  // they stand still long before
+
 /// The number of the grid's cell in which each voxel lies, and how many there are.
 std::pair<std::vector<std::uint32_t>, std::size_t> seed_cells(const VoxelCloud& cloud, double spacing) {
   CellIndex index;
@@ -103,7 +105,7 @@ Status SupervoxelConfig::validate() const {
   }
   if (spatial_weight + normal_weight + color_weight == 0.0) return error("all weights are zero");
   if (seed_spacing_m < voxels.voxel_size_m) return error("seed_spacing_m must be at least voxel_size_m");
-  if (rounds < 1) return error("rounds must be at least 1");
+  if (rounds < 1 || rounds > kMostRounds) return error("rounds must be from 1 to 100");
   return {};
 }
 

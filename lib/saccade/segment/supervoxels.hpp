@@ -26,7 +26,7 @@ struct SupervoxelConfig {
   int rounds{1};  ///< of growth; before each but the first, supervoxels are taken to be at the means of their voxels
 
   /// @return invalid_argument for a number that is not finite or negative, all weights zero, seeds closer than voxels,
-  /// or no round.
+  /// or rounds that are not from 1 to 100.
   [[nodiscard]] Status validate() const;
   /// Voxels within half a seed spacing, given in voxels, that a seed needs.
   [[nodiscard]] double fewest_around_seed(double spacing_vox) const;

@@ -355,8 +355,10 @@ TEST(Segmentation, BadInputIsRefused) {
   config.seed_spacing_m = 0.001;
   EXPECT_EQ(find_supervoxels(plane(), config, executor).error().code, Errc::invalid_argument);
   config = {};
-  config.rounds = 0;
-  EXPECT_EQ(find_supervoxels(plane(), config, executor).error().code, Errc::invalid_argument);
+  for (const int rounds : {-1, 0, 101}) {
+    config.rounds = rounds;
+    EXPECT_EQ(find_supervoxels(plane(), config, executor).error().code, Errc::invalid_argument);
+  }
   config = {};
   config.voxels.voxel_size_m = -1.0;
   EXPECT_EQ(find_supervoxels(plane(), config, executor).error().code, Errc::invalid_argument);
