@@ -9,6 +9,7 @@
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 #include "options.hpp"
+#include "saccade/core/freed_memory.hpp"
 
 namespace {
 
@@ -108,6 +109,7 @@ int main(int argc, char** argv) {
   CLI::App program{"Saccade decides where a depth camera should look next, and builds the 3-D map as it goes.",
                    "saccade"};
   try {
+    saccade::keep_freed_memory();
     saccade::cli::install_interrupt_handler();
     return run(argc, argv, program);
   } catch (const std::bad_alloc&) {
