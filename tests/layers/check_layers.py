@@ -24,7 +24,7 @@ ALLOWED["io"] = set(KNOWS_ALL)
 ALLOWED["report"] = KNOWS_ALL | {"io"}
 
 CORE_ROOMS = {"core", "sensor", "map", "surfel", "segment", "attention", "view", "annotate"}
-CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "nanoflann.hpp", "zstd.h"}  # first part of the path in <…>
+CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "nanoflann.hpp", "zstd.h", "malloc.h"}  # first part of the path in <…>
 CORE_PACKAGES = {"Eigen3", "TBB", "HWY", "hwy", "nanoflann", "zstd"}
 
 MAX_LINES = 400
