@@ -35,7 +35,7 @@ def machine(results, repetitions):
     asked = subprocess.run([PROGRAM, "info", "--json", "-"], capture_output=True, text=True, check=True)
     about = json.loads(asked.stdout)["result"]
     caches = ", ".join(f"L{cache['level']} {cache['size'] // 1024:,} KiB" for cache in results.context.get("caches", [])
-                       if cache["type"] in ("Unified", "Data"))
+                       if cache["type"] in ("Unified", "Data")) or "unknown"
     versions = ", ".join(f"{name} {version(package)}" for package, name in PACKAGES if version(package))
     load = ", ".join(f"{load:.1f}" for load in results.context.get("load_avg", [])) or "unknown"
     return [f"- Command: `{command}`, {results.context.get('date', 'undated')[:10]}; a Release build.",
