@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <map>
+#include <mutex>
 #include <utility>
 
 #include "saccade/core/clock.hpp"
@@ -134,31 +135,53 @@ SupervoxelConfig thesis_supervoxels() {
   return growing;
 }
 
-/// Where the grid of seeds lies is chance, and with it by how much a supervoxel joins two things: the figures of
-/// several placements are taken together.
-Result<ScoreCurve> sv_lccp_curve_of_placements(PointCloud cloud, const SegmentationTruth& truth,
+/// With the grid of seeds moved along its diagonal by a share of its spacing.
+Result<ScoreCurve> sv_lccp_curve_at(PointCloud cloud, double share, const SegmentationTruth& truth,
+                                    const std::vector<double>& thresholds, const Progress& progress) {
+  const auto step_m = static_cast<float>(share * kSupervoxel_m);
+  for (Eigen::Vector3f& position_m : cloud.positions_m) position_m.array() += step_m;
+  const Executor here;
+  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, thesis_supervoxels(), here));
+  return sv_lccp_curve(supervoxels, truth, thresholds, {}, here, progress);
+}
+
+/// Where the grid of seeds lies is chance, and with it by how much a supervoxel joins two things: the greatest F of one
+/// place and another differ by 0.006 to 0.009 (standard deviation, magazines-2). So the figures of sixteen places are
+/// taken together.
+Result<ScoreCurve> sv_lccp_curve_of_placements(const PointCloud& cloud, const SegmentationTruth& truth,
                                                const std::vector<double>& thresholds, const Executor& executor,
                                                const Progress& progress) {
-  constexpr int kPlacements{4};
+  constexpr std::size_t kPlacements{16};
+  std::vector<Result<ScoreCurve>> curves(kPlacements, ScoreCurve{});
+  std::mutex reporting;
+  std::size_t done{0};
+  executor.parallel_for(kPlacements, 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      Progress followed{[&followed, &progress](auto&&...) {
+        if (progress.cancelled()) followed.request_cancel();
+      }};
+      curves[i] = sv_lccp_curve_at(cloud, double(i) / kPlacements, truth, thresholds, followed);
+      const std::lock_guard lock{reporting};
+      progress.report("SV-LCCP", ++done, kPlacements);
+    }
+  });
   ScoreCurve together;
-  for (int placement = 0; placement < kPlacements; ++placement) {
-    SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, thesis_supervoxels(), executor));
-    SACCADE_TRY(const ScoreCurve curve, sv_lccp_curve(supervoxels, truth, thresholds, {}, executor, progress));
-    together.points.resize(curve.points.size());
-    for (std::size_t i = 0; i < curve.points.size(); ++i) {
+  for (const Result<ScoreCurve>& curve : curves) {
+    if (!curve) return curve.error();
+    together.points.resize(curve->points.size());
+    for (std::size_t i = 0; i < curve->points.size(); ++i) {
       CurvePoint& sum = together.points[i];
-      const CurvePoint& point = curve.points[i];
+      const CurvePoint& point = curve->points[i];
       sum.threshold = point.threshold;
-      sum.segments += point.segments / kPlacements;
+      sum.segments += point.segments;
       sum.score.boundary += point.score.boundary;
       sum.score.true_boundary += point.score.true_boundary;
       sum.score.matched += point.score.matched;
       sum.score.distance_m += point.score.distance_m / kPlacements;
       sum.score.bce += point.score.bce / kPlacements;
     }
-    const auto step_m = static_cast<float>(kSupervoxel_m / kPlacements);
-    for (Eigen::Vector3f& position_m : cloud.positions_m) position_m.array() += step_m;
   }
+  for (CurvePoint& point : together.points) point.segments /= kPlacements;
   return together;
 }
 

@@ -39,7 +39,7 @@ Result<std::shared_ptr<const SurfelTrial>> surfel_trial(const ReproduceOptions& 
 
 void add_surfel_notes(const ReproduceOptions& options, ReproducedTable& table) {
   table.notes.push_back(
-      "SV-LCCP is done with the grid of seeds in four places, and the figures are taken together. "
+      "SV-LCCP is done with the grid of seeds in sixteen places, and the figures are taken together. "
       "Here scenes are rendered, with noise of depth, colours and poses (docs/surfel-scenes.md), and truth comes from "
       "the renderer; the thesis' were recorded and annotated by hand. Figures compare in kind.");
   if (options.as_printed) {
