@@ -7,7 +7,9 @@
 #include <cstddef>
 #include <vector>
 
-namespace saccade {
+#include "support/effort.hpp"
+
+namespace saccade::test {
 namespace {
 
 long page_faults() {
@@ -26,9 +28,7 @@ long faults_of_one_frame() {
 }
 
 TEST(FreedMemory, KeptMemoryServesTheNextFrameWithoutPageFaults) {
-#if !defined(__GLIBC__) || defined(__SANITIZE_ADDRESS__) || defined(__SANITIZE_THREAD__)
-  GTEST_SKIP() << "another allocator than the GNU C library's";
-#endif
+  if (kSanitized) GTEST_SKIP() << "sanitizers have an allocator of their own";
   keep_freed_memory();
   EXPECT_GT(faults_of_one_frame(), 1000);  // new to the process
   EXPECT_LT(faults_of_one_frame(), 20);
@@ -36,4 +36,4 @@ TEST(FreedMemory, KeptMemoryServesTheNextFrameWithoutPageFaults) {
 }
 
 }  // namespace
-}  // namespace saccade
+}  // namespace saccade::test
