@@ -112,7 +112,7 @@ class RawClient {
     return sent > 0 ? static_cast<std::size_t>(sent) : 0U;
   }
   /// False at the server's end, or when nothing comes for as long.
-  bool receive(std::chrono::milliseconds patience = std::chrono::seconds{5}) {
+  bool receive(std::chrono::milliseconds patience = std::chrono::seconds{30}) {
     pollfd waits{socket_, POLLIN, 0};
     if (::poll(&waits, 1, static_cast<int>(patience.count())) <= 0) return false;
     static thread_local std::array<char, 1U << 16U> bytes;
@@ -164,7 +164,7 @@ class RawClient {
 
   bool send_message(std::string_view payload) const { return send(frame(Opcode::binary, payload)); }
   /// Nothing at the server's end.
-  std::optional<Frame> read_frame(std::chrono::milliseconds patience = std::chrono::seconds{5}) {
+  std::optional<Frame> read_frame(std::chrono::milliseconds patience = std::chrono::seconds{30}) {
     const auto have = [this, patience](std::size_t bytes) {
       while (read_.size() < bytes) {
         if (!receive(patience)) return false;
@@ -191,7 +191,7 @@ class RawClient {
     return read;
   }
   /// The next message, its fragments joined; the payload of what closes with its code in front. Pings are answered.
-  std::optional<Frame> read_message(std::chrono::milliseconds patience = std::chrono::seconds{5}) {
+  std::optional<Frame> read_message(std::chrono::milliseconds patience = std::chrono::seconds{30}) {
     Frame whole;
     bool begun{false};
     for (;;) {

@@ -84,9 +84,9 @@ inline double resident_mib() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
 }
 
-/// Whether it comes true within seconds.
+/// Whether it comes true, on a machine however busy.
 inline bool eventually(const std::function<bool()>& condition,
-                       std::chrono::seconds patience = std::chrono::seconds{5}) {
+                       std::chrono::seconds patience = std::chrono::seconds{30}) {
   const auto end = std::chrono::steady_clock::now() + patience;
   while (!condition()) {
     if (std::chrono::steady_clock::now() > end) return false;

@@ -140,7 +140,7 @@ TEST_F(Socket, EndOfTheServerWaitsForNobody) {
   ASSERT_TRUE(eventually([this] { return service_->opened_count == 5; }));
   const auto begin = std::chrono::steady_clock::now();
   server_.reset();
-  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::milliseconds{1500});
+  EXPECT_LT(std::chrono::steady_clock::now() - begin, std::chrono::seconds{5}) << "less than a request's timeout";
   EXPECT_EQ(service_->closed_count, 5);
 }
 
