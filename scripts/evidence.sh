@@ -104,7 +104,7 @@ done
 
 echo "Arms beside FCL: 100,000 configurations each"
 scripts/install_packages.sh program tests
-configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io golden >"$out/build_parity.log" || failed=1
+configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io unit_surfel golden >"$out/build_parity.log" || failed=1
 step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity '--gtest_filter=ArmCollision*'
 
 echo "Surfels of rendered scenes, segmented: all frames"
@@ -119,6 +119,9 @@ for scene in workshop-1 workshop-2 desk magazines-1 magazines-2; do
   step "surfels_$scene" build/release/saccade --quiet reproduce 4.1 4.3 4.10 4.11 "${close_ups[@]}" --scene "$scene" \
     --out "$out/surfels_$scene" --force --json "$out/surfels_$scene.json"
 done
+
+echo "Surfels: 100,000 frames of the same spot"
+step surfel_growth env SACCADE_SURFEL_FRAMES=100000 build/release/tests/unit_surfel '--gtest_filter=*FramesOfTheSameSpot*'
 
 echo "Surfels: colour edges of recorded frames"
 if [[ -d $data/rgbd_redkitchen ]]; then

@@ -6,6 +6,9 @@ SCENES = ("workshop-1", "workshop-2", "desk", "magazines-1", "magazines-2")
 SHARPNESS_TEXT = [
     "How steeply luminance rises where the camera's image has edges, in renderings of the averages and of the modes",
     "(docs/surfels.md). The step fails unless modes are half as steep again, in every frame a third, and cover as much."]
+GROWTH_TEXT = [
+    "The step fails where surfels become more than a hundredth more after the first tenth of the frames, or memory more",
+    "at all."]
 ALGORITHMS = (("flood_fill", "4.10", "flood fill"), ("sv_lccp", "4.11", "SV-LCCP"))
 FIGURES = (("least_bce", "least BCE", -1), ("best_f", "greatest F", 1), ("area", "area below the curve", 1))
 

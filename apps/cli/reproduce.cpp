@@ -248,6 +248,13 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
                    "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes")
       ->check(CLI::IsMember(std::vector<std::string>(kSurfelScenes.begin(), kSurfelScenes.end())))
       ->type_name("NAME");
+  command
+      ->add_option("--placements", options->placements,
+                   "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: SV-LCCP with the grid of seeds in so many places; "
+                   "its figures depend on them, and are taken together")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}))
+      ->type_name("N")
+      ->capture_default_str();
   command->add_flag("--as-printed", options->as_printed,
                     "Tables 4.1, 4.3 and Figs. 4.5 to 4.11: the mode filter as the thesis prints it, without what is "
                     "ours");

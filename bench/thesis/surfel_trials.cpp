@@ -146,23 +146,23 @@ Result<ScoreCurve> sv_lccp_curve_at(PointCloud cloud, double share, const Segmen
 }
 
 /// Where the grid of seeds lies is chance, and with it by how much a supervoxel joins two things: the greatest F of one
-/// place and another differ by 0.006 to 0.009 (standard deviation, magazines-2). So the figures of sixteen places are
+/// place and another differ by 0.006 to 0.009 (standard deviation, magazines-2). So the figures of several places are
 /// taken together.
 Result<ScoreCurve> sv_lccp_curve_of_placements(const PointCloud& cloud, const SegmentationTruth& truth,
-                                               const std::vector<double>& thresholds, const Executor& executor,
-                                               const Progress& progress) {
-  constexpr std::size_t kPlacements{16};
-  std::vector<Result<ScoreCurve>> curves(kPlacements, ScoreCurve{});
+                                               const std::vector<double>& thresholds, std::size_t placements,
+                                               const Executor& executor, const Progress& progress) {
+  const auto count = static_cast<double>(placements);
+  std::vector<Result<ScoreCurve>> curves(placements, ScoreCurve{});
   std::mutex reporting;
   std::size_t done{0};
-  executor.parallel_for(kPlacements, 1, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(placements, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       Progress followed{[&followed, &progress](auto&&...) {
         if (progress.cancelled()) followed.request_cancel();
       }};
-      curves[i] = sv_lccp_curve_at(cloud, double(i) / kPlacements, truth, thresholds, followed);
+      curves[i] = sv_lccp_curve_at(cloud, double(i) / count, truth, thresholds, followed);
       const std::lock_guard lock{reporting};
-      progress.report("SV-LCCP", ++done, kPlacements);
+      progress.report("SV-LCCP", ++done, placements);
     }
   });
   ScoreCurve together;
@@ -177,16 +177,16 @@ Result<ScoreCurve> sv_lccp_curve_of_placements(const PointCloud& cloud, const Se
       sum.score.boundary += point.score.boundary;
       sum.score.true_boundary += point.score.true_boundary;
       sum.score.matched += point.score.matched;
-      sum.score.distance_m += point.score.distance_m / kPlacements;
-      sum.score.bce += point.score.bce / kPlacements;
+      sum.score.distance_m += point.score.distance_m / count;
+      sum.score.bce += point.score.bce / count;
     }
   }
-  for (CurvePoint& point : together.points) point.segments /= kPlacements;
+  for (CurvePoint& point : together.points) point.segments /= placements;
   return together;
 }
 
-Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelColors colors, SurfelTrial& trial,
-             const Executor& executor, const Progress& progress) {
+Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelColors colors, std::size_t placements,
+             SurfelTrial& trial, const Executor& executor, const Progress& progress) {
   const std::vector<double> thresholds = surfel_thresholds();
   SegmentationTruthConfig truths;
   truths.matching.tolerance_m = kEvaluation_m;
@@ -195,7 +195,7 @@ Status score(const PointCloud& cloud, const SurfelComponents& segments, SurfelCo
   const FloodFillConfig filling{kColorWeight, kNormalWeight, 0.0};
   const auto of = static_cast<std::size_t>(colors);
   SACCADE_TRY(trial.flood_fill[of], flood_fill_curve(cloud, truth, thresholds, filling, executor, progress));
-  SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve_of_placements(cloud, truth, thresholds, executor, progress));
+  SACCADE_TRY(trial.sv_lccp[of], sv_lccp_curve_of_placements(cloud, truth, thresholds, placements, executor, progress));
   return {};
 }
 
@@ -214,6 +214,7 @@ std::vector<double> surfel_thresholds() {
 
 Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTrialConfig& config,
                                            const Executor& executor, const Progress& progress) {
+  if (config.placements == 0) return Error{Errc::invalid_argument, "the seeds' grid needs a place", "placements"};
   SACCADE_TRY(const SurfelScene scene, surfel_scene(name));
   SACCADE_TRY(const RayScene rays, RayScene::build(scene.scene));
   SurfelTrial trial;
@@ -234,11 +235,11 @@ Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTr
   trial.surfels = not_enhanced.positions_m.size();
   trial.segments = segments.count;
   for (const SurfelColors colors : kSurfelColors) {
-    SACCADE_CHECK(
-        score(clouds.by_colors[static_cast<std::size_t>(colors)], segments, colors, trial, executor, progress));
+    SACCADE_CHECK(score(clouds.by_colors[static_cast<std::size_t>(colors)], segments, colors, config.placements, trial,
+                        executor, progress));
   }
   SACCADE_CHECK(score(with_true_colors(not_enhanced, clouds.by_colors.back(), labels), segments, SurfelColors::truth,
-                      trial, executor, progress));
+                      config.placements, trial, executor, progress));
   trial.clouds = std::move(clouds.by_colors);
   trial.mode_positions_m = std::move(clouds.mode_positions_m);
   return trial;

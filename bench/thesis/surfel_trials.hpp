@@ -24,6 +24,7 @@ struct SurfelTrialConfig {
   std::optional<bool> automatic_gain{};  ///< none: as the scene has it
   bool exposure_compensation{false};
   ModeFilterConfig mode_filter{};
+  std::size_t placements{16};   ///< of the grid of SV-LCCP's seeds; its figures are those of all together
   bool places_of_modes{false};  ///< those of the enhanced; else all are where the average is (decision 20)
   double min_weight{10.0};      ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
 };
@@ -58,7 +59,7 @@ struct SurfelTrial {
 /// Parameters of Table 4.2; σ_img is 0.1 where the scene is vignetted. Both clouds have the same surfels, with the
 /// truth of where the average is, split where its segments do not touch there.
 /// @param scene  of kSurfelScenes.
-/// @return not_found for another scene; cancelled.
+/// @return not_found for another scene; invalid_argument without placements; cancelled.
 [[nodiscard]] Result<SurfelTrial> carry_out_surfel_trial(std::string_view scene, const SurfelTrialConfig& config,
                                                          const Executor& executor, const Progress& progress);
 

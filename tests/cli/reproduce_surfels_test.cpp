@@ -55,9 +55,10 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
   if (kSanitized) GTEST_SKIP() << "five scenes take long under sanitizers";
   const TempFolder folder;
   const fs::path out = folder / "plots";
-  const json tables = tables_of(
-      run_program({"reproduce", "4.1", "4.3", "4.10", "4.11", "fig-4.5", "fig-4.6", "fig-4.7", "fig-4.8", "fig-4.9",
-                   "--frames", "24", "--image-width", "128", "--quiet", "--json", "-", "--out", out.string()}));
+  const json tables =
+      tables_of(run_program({"reproduce",    "4.1",     "4.3",     "4.10",     "4.11", "fig-4.5",       "fig-4.6",
+                             "fig-4.7",      "fig-4.8", "fig-4.9", "--frames", "24",   "--image-width", "128",
+                             "--placements", "2",       "--quiet", "--json",   "-",    "--out",         out.string()}));
   ASSERT_EQ(tables.size(), 9U);
   for (const json& row : tables.at(0).at("rows")) {
     EXPECT_EQ(row.at("frames"), 24);
@@ -99,7 +100,8 @@ TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
 
 TEST(ReproduceSurfels, OneSceneAloneAsPrintedOrNot) {
   if (kSanitized) GTEST_SKIP() << "two scenes take long under sanitizers; the tests of surfels run the code";
-  const Arguments quick{"--scene", "desk", "--frames", "8", "--image-width", "96", "--quiet", "--json", "-"};
+  const Arguments quick{"--scene", "desk",    "--frames", "8", "--image-width", "96", "--placements",
+                        "2",       "--quiet", "--json",   "-"};
   const json ours = tables_of(run_program(Arguments{"reproduce", "4.1", "4.3"} + quick));
   const json printed = tables_of(run_program(Arguments{"reproduce", "4.1", "4.3", "--as-printed"} + quick));
   for (const json& tables : {ours, printed}) {
@@ -118,7 +120,7 @@ TEST(ReproduceSurfels, OneSceneAloneAsPrintedOrNot) {
 TEST(ReproduceSurfels, ExposureCompensationWinsBackWhatGainCosts) {
   if (kSanitized) GTEST_SKIP() << "three trials take long under sanitizers";
   const json table = tables_of(run_program({"reproduce", "4.gain", "--scene", "magazines-2", "--frames", "24",
-                                            "--image-width", "128", "--quiet", "--json", "-"}))
+                                            "--image-width", "128", "--placements", "2", "--quiet", "--json", "-"}))
                          .at(0);
   ASSERT_EQ(table.at("rows").size(), 1U);
   for (const json& row : table.at("rows")) {

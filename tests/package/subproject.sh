@@ -7,8 +7,8 @@ set -euo pipefail
 source_dir="$1" build="$2" work="$3"
 core_rooms=(core sensor map surfel segment attention view annotate)
 rm -rf "$work"
-cmake -S "$source_dir/tests/package/subproject" -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=Debug \
-  -DCMAKE_CXX_FLAGS="-g0 -DHWY_COMPILE_ONLY_STATIC" -DCMAKE_UNITY_BUILD=ON \
+cmake -S "$source_dir/tests/package/subproject" -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=None \
+  -DCMAKE_CXX_FLAGS="-O0 -DNDEBUG -DHWY_COMPILE_ONLY_STATIC" -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=32 \
   -DCMAKE_PROJECT_TOP_LEVEL_INCLUDES="$source_dir/tests/package/only_core_dependencies.cmake" \
   -DSACCADE_SOURCE="$source_dir" -DCONSUMER_SOURCE="$source_dir/examples/embedding.cpp" -DCORE_ROOMS="$(IFS=';' && echo "${core_rooms[*]}")"
 cmake --build "$work" -j 2 --target subproject

@@ -80,6 +80,7 @@ Result<std::array<SurfelTrial, 3>> trials_of(std::string_view scene, const Repro
     thesis::SurfelTrialConfig config;
     config.frames = options.frames;
     config.image_width_px = options.image_width_px;
+    config.placements = options.placements;
     config.seed = options.seed;
     config.automatic_gain = i > 0;
     config.exposure_compensation = i > 1;

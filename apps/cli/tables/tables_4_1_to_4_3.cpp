@@ -25,6 +25,7 @@ Result<std::shared_ptr<const SurfelTrial>> surfel_trial(const ReproduceOptions& 
     thesis::SurfelTrialConfig config;
     config.frames = options.frames;
     config.image_width_px = options.image_width_px;
+    config.placements = options.placements;
     if (options.as_printed) {
       config.mode_filter.choice_sigmas = 0.0;
       config.places_of_modes = true;
@@ -39,7 +40,8 @@ Result<std::shared_ptr<const SurfelTrial>> surfel_trial(const ReproduceOptions& 
 
 void add_surfel_notes(const ReproduceOptions& options, ReproducedTable& table) {
   table.notes.push_back(
-      "SV-LCCP is done with the grid of seeds in sixteen places, and the figures are taken together. "
+      "SV-LCCP is done with the grid of seeds in " + std::to_string(options.placements) +
+      " place(s), and the figures are taken together. "
       "Here scenes are rendered, with noise of depth, colours and poses (docs/surfel-scenes.md), and truth comes from "
       "the renderer; the thesis' were recorded and annotated by hand. Figures compare in kind.");
   if (options.as_printed) {

@@ -32,7 +32,8 @@ struct ReproduceOptions {
   std::filesystem::path clouds;  ///< folder of labelled clouds for Tables 4.5, 4.6 and 4.8; empty: made ones
   int image_width_px{0};  ///< of the simulated camera of Tables 2.7, 2.8, 3.1 to 3.3 and of made clouds; 0: as it has
   std::size_t frames{0};  ///< of the beginning of the scan of Table 2.1, and of each scene of Table 4.1; 0: all
-  std::string surfel_scene;  ///< the only one of Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11; empty: all
+  std::string surfel_scene;    ///< the only one of Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11; empty: all
+  std::size_t placements{16};  ///< of the grid of SV-LCCP's seeds, for the same
   bool as_printed{false};  ///< the mode filter of Tables 4.1, 4.3 and their figures, without what is ours (decision 18)
   /// Those of Tables 3.1 and 3.3 and Fig. 3.17, carried out by the first of them.
   mutable std::shared_ptr<const ExplorationExperiments> experiments{};
