@@ -16,7 +16,7 @@ namespace saccade::test {
 #if defined(__SANITIZE_THREAD__)
 constexpr int kEffortDivisor{12};
 #elif defined(SACCADE_TEST_SANITIZES_ADDRESSES)
-constexpr int kEffortDivisor{4};
+constexpr int kEffortDivisor{8};
 #else
 constexpr int kEffortDivisor{1};
 #endif

@@ -10,6 +10,7 @@
 #include <string>
 
 #include "saccade/core/simd.hpp"
+#include "support/effort.hpp"
 #include "support/naive_guided_filter.hpp"
 
 namespace saccade {
@@ -92,7 +93,8 @@ void compare(const GuidedFilterConfig& config, const GuidedImages& images, const
 TEST(GuidedFilter, IsWithinOneUnitInTheLastPlaceOfTheDefinition) {
   Comparison total;
   std::uint32_t seed{1};
-  const std::vector<std::pair<int, int>> sizes{{1, 1}, {1, 9}, {9, 1}, {3, 2}, {8, 8}, {15, 33}, {67, 41}, {150, 30}};
+  std::vector<std::pair<int, int>> sizes{{1, 1}, {1, 9}, {9, 1}, {3, 2}, {8, 8}, {15, 33}};
+  if (!test::kSanitized) sizes.insert(sizes.end(), {{67, 41}, {150, 30}});
   for (const int radius_px : {0, 1, 2, 3, 5, 9, 16}) {
     GuidedFilter filter{{.radius_px = radius_px}};  // one for all sizes
     for (const auto& [width, height] : sizes) {
@@ -104,8 +106,8 @@ TEST(GuidedFilter, IsWithinOneUnitInTheLastPlaceOfTheDefinition) {
       }
     }
   }
-  EXPECT_GT(total.used, 50'000U);
-  EXPECT_GT(total.not_used, 10'000U);
+  EXPECT_GT(total.used, test::kSanitized ? 5'000U : 50'000U);
+  EXPECT_GT(total.not_used, test::kSanitized ? 1'000U : 10'000U);
   std::printf("compared %zu pixels, at most %.6f units in the last place off\n", total.used, total.worst_ulps);
 }
 
@@ -152,7 +154,7 @@ TEST(GuidedFilter, InstructionSetsNeverChangeABit) {
   const std::vector<std::string> targets = simd_targets();
   std::size_t compared{0};
   for (const int radius_px : {0, 3, 5, 16}) {
-    const GuidedImages images = random_images(13, {.width = 149, .height = 60});
+    const GuidedImages images = random_images(13, {.width = test::kSanitized ? 53 : 149, .height = 60});
     std::vector<std::uint32_t> first;
     Comparison total;
     for (const std::string& target : targets) {
