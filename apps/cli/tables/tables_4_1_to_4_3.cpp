@@ -41,7 +41,7 @@ Result<std::shared_ptr<const SurfelTrial>> surfel_trial(const ReproduceOptions& 
 void add_surfel_notes(const ReproduceOptions& options, ReproducedTable& table) {
   table.notes.push_back(
       "SV-LCCP is done with the grid of seeds in " + std::to_string(options.placements) +
-      " place(s), and the figures are taken together. "
+      (options.placements == 1 ? " place. " : " places, and the figures are taken together. ") +
       "Here scenes are rendered, with noise of depth, colours and poses (docs/surfel-scenes.md), and truth comes from "
       "the renderer; the thesis' were recorded and annotated by hand. Figures compare in kind.");
   if (options.as_printed) {
