@@ -80,7 +80,7 @@ TEST(VoxelBlock, HoldsTheVoxelsOfTheMap) {
   EXPECT_EQ(whole.wrong, 0U);
   EXPECT_EQ(boxes.wrong, 0U);
   for (const std::size_t count : {whole.known, whole.unknown, boxes.known, boxes.unknown}) {
-    EXPECT_GT(count, static_cast<std::size_t>(test::scaled_cases(1000)));
+    EXPECT_GT(count, static_cast<std::size_t>(test::scaled_cases(500)));
   }
 }
 
