@@ -2,6 +2,8 @@
 // Files as documents of the viewer; where rays end.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include <cstring>
 
 #include "saccade/io/cloud_io.hpp"
@@ -183,7 +185,7 @@ TEST(ShowDocuments, AViewRecordIsReadAsItWasWritten) {
 }
 
 TEST(ShowDocuments, RaysThatGainAreThoseOfTheGain) {
-  const int cases = scaled_cases(60);
+  const int cases = std::max(15, scaled_cases(60));  // many regions gain nothing
   std::size_t gained{0};
   int ran{0};
   for (int seed = 0; seed < cases; ++seed) {
