@@ -6,7 +6,8 @@ import { kBox, kTable, kTops, makeTable } from "./support/clouds";
 import { expect, test } from "./support/desk";
 
 const kTimes = 5;
-const kMostAnswer_ms = 10;
+const kMostAnswer_ms = 10; // on a machine that needs at most 25 times as long for a redraw; slower or busier ones in proportion
+const kAnswersPerRedraw = 25;
 const kRounds = 3; // while something else has the processor, a round may be slow; of a page that is slow, all are
 
 function quantile(times: readonly number[], share: number): number {
@@ -120,12 +121,13 @@ test("300,000 points: from a click to the labels that it gives", async ({ desk }
     },
     { origin, times: 2 * kTimes, point: cloud.truth.indexOf(kBox) + 100 },
   );
+  const mostAnswer_ms = Math.max(kMostAnswer_ms, redraw / kAnswersPerRedraw);
   let answers = await askOften();
-  for (let round = 1; round < kRounds && quantile(answers, 0.25) > kMostAnswer_ms; ++round) answers = await askOften();
+  for (let round = 1; round < kRounds && quantile(answers, 0.25) > mostAnswer_ms; ++round) answers = await askOften();
 
   const figures = `${cloud.truth.length} points: click to labels ${click.toFixed(0)} ms, full redraw ${redraw.toFixed(0)} ms (medians of ${kTimes}); an action asked and answered ${quantile(answers, 0.5).toFixed(1)} ms (median of ${answers.length}), a quarter within ${quantile(answers, 0.25).toFixed(1)} ms`;
   console.log(figures);
   test.info().annotations.push({ type: "figures", description: figures });
   expect(click).toBeLessThanOrEqual(2 * redraw);
-  expect(quantile(answers, 0.25)).toBeLessThanOrEqual(kMostAnswer_ms);
+  expect(quantile(answers, 0.25)).toBeLessThanOrEqual(mostAnswer_ms);
 });
