@@ -150,6 +150,21 @@ void check_frame_options(FrameOptions& options) {
   require_ok(options.folder.validate(), "--every, --count");
 }
 
+Status check_beside_frames(const FrameOptions& options, const std::filesystem::path& file, const char* option) {
+  namespace fs = std::filesystem;
+  std::error_code ignored;
+  if (!fs::exists(file, ignored)) return {};
+  const auto whole = [&ignored](const fs::path& path) { return fs::weakly_canonical(path, ignored); };
+  const auto is_read = [&](const std::optional<fs::path>& other) { return other && whole(file) == whole(*other); };
+  const fs::path from_folder = whole(file).lexically_relative(whole(options.frames));
+  const bool is_inside = !from_folder.empty() && *from_folder.begin() != "..";
+  if (!is_inside && !is_read(options.folder.mask_file) && !is_read(options.folder.poses_file)) return {};
+  return Error{Errc::invalid_argument,
+               std::string{"is read, or lies among the frames, and would be replaced by "} + option +
+                   "; name another file there",
+               file.string()};
+}
+
 Result<OpenFrames> open_frames(const FrameOptions& options) {
   OpenFrames frames;
   frames.folder = options.folder;

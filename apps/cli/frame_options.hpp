@@ -34,6 +34,10 @@ void add_frame_options(CLI::App& command, FrameOptions& options);
 /// What only shows when all options are known; throws usage errors. Completes options.folder.
 void check_frame_options(FrameOptions& options);
 
+/// Fails where a file that is to be written is one of those that are read: a mask, poses, or what lies in the folder.
+[[nodiscard]] Status check_beside_frames(const FrameOptions& options, const std::filesystem::path& file,
+                                         const char* option);
+
 struct OpenFrames {
   std::unique_ptr<RgbdFolderSource> source;
   RgbdFolderConfig folder;  ///< that the source was opened with

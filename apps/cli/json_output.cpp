@@ -4,7 +4,7 @@
 #include <sys/resource.h>
 
 #include <algorithm>
-#include <fstream>
+#include <filesystem>
 #include <iostream>
 
 #include "saccade/io/atomic_file.hpp"
@@ -33,9 +33,10 @@ std::size_t peak_rss_bytes() {
 Status check_json_output(const GlobalOptions& global) {
   if (global.json.empty() || global.json_to_stdout()) return {};
   SACCADE_TRY(const AtomicFile probe, AtomicFile::create(global.json));
-  std::ifstream existing{global.json, std::ios::binary};
-  char first{0};
-  if (existing.get(first) && first != '{') {
+  std::error_code ignored;
+  if (const auto size = std::filesystem::file_size(global.json, ignored); ignored || size == 0) return {};
+  const Result<nlohmann::json> existing = read_json(global.json);
+  if (!existing || !existing->is_object() || existing->value("schema", nlohmann::json{}) != kJsonSchema) {
     return Error{Errc::invalid_argument, "holds something else than a result; name another file", global.json};
   }
   return {};

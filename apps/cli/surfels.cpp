@@ -77,6 +77,7 @@ struct SurfelsRun {
   std::size_t without_color{0};
   std::size_t evicted_modes{0};
   std::size_t written{0};
+  std::size_t uncolored{0};  ///< seen often enough, but by no frame with colour while others were
   TimingsMs timings_ms;
 
   [[nodiscard]] double min_weight() const { return options.min_weight(record.fused.size()); }
@@ -126,9 +127,12 @@ Status fuse_surfels(SurfelsRun& run) {
   return {};
 }
 
+/// Before the work, of the folder; after it, of the frames that were used.
 Status check_color(const SurfelsRun& run) {
-  if (!run.options.filtered() || run.frames.source->info().has_color) return {};
-  return Error{Errc::not_found, "there are no colour images, which the mode filter needs; use --mode-filter off",
+  const bool has_color =
+      run.frames.source->info().has_color && (run.record.fused.empty() || run.without_color < run.record.fused.size());
+  if (!run.options.filtered() || has_color) return {};
+  return Error{Errc::not_found, "no frame has a colour image, which the mode filter needs; use --mode-filter off",
                run.options.frames.string()};
 }
 
@@ -150,8 +154,10 @@ Status write_clouds(SurfelsRun& run) {
   run.progress.update("writing", 0, 0);
   const SurfelMap& map = run.fusion.map();
   const double least = run.min_weight();
-  run.written = static_cast<std::size_t>(std::count_if(
-      map.discs.begin(), map.discs.end(), [&](const SurfelDisc& disc) { return double(disc.weight) >= least; }));
+  const auto seen = std::count_if(map.discs.begin(), map.discs.end(),
+                                  [&](const SurfelDisc& disc) { return double(disc.weight) >= least; });
+  run.written = shown_surfels(map, least).size();
+  run.uncolored = static_cast<std::size_t>(seen) - run.written;
   if (run.written == 0) return {};
   std::vector<SurfelMode> winners;
   if (run.options.filtered()) {
@@ -201,6 +207,7 @@ json result_json(const SurfelsRun& run) {
           {"skipped", left_out_json(run.record.skipped)},
           {"surfels", run.fusion.map().size()},
           {"written", run.written},
+          {"uncolored", run.uncolored},
           {"min_confidence", run.min_weight()},
           {"picture", run.options.picture.empty() ? json(nullptr) : json(run.options.picture.string())},
           {"evicted_modes", run.evicted_modes},
@@ -228,10 +235,13 @@ void print_summary(const SurfelsRun& run) {
   summary.line("tracking", to_string(run.frames.tracking));
   summary.line("surfels", std::to_string(run.fusion.map().size()) + ", of which " + std::to_string(run.written) +
                               " have a confidence of at least " + fixed(run.min_weight(), 1) + " and are written");
+  if (run.uncolored > 0) {
+    summary.line("left out", std::to_string(run.uncolored) + " surfels that no frame with colour saw");
+  }
   summary.line("per frame", fixed(median_of(run.times.associate), 1) + " ms associate, " +
                                 fixed(median_of(run.times.guided_filter), 1) + " ms guided filter, " +
                                 fixed(median_of(run.times.integrate), 1) + " ms integrate (medians)");
-  if (run.options.compensated()) {
+  if (!run.exposures.empty()) {
     const json exposure = exposure_json(run);
     summary.line("exposure", "gains of " + fixed(exposure["min"].get<double>(), 2) + " to " +
                                  fixed(exposure["max"].get<double>(), 2) + " of the first frame's");
@@ -261,17 +271,20 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
                  0,
                  0,
                  0,
+                 0,
                  {}};
   SACCADE_CHECK(check_color(run));
   const std::filesystem::path json_file = global.json_to_stdout() ? "" : global.json;
   SACCADE_CHECK(check_output(options.out, "--json", {json_file}));
   if (options.mode_filter == "both") SACCADE_CHECK(check_output(options.average_out(), "--json", {json_file}));
   if (!options.picture.empty()) SACCADE_CHECK(check_output(options.picture, "--picture", {options.out, json_file}));
+  SACCADE_CHECK(check_beside_frames(options, options.picture, "--picture"));
   SACCADE_CHECK(check_json_output(global));
   run.timings_ms["open"] = stopwatch.lap_ms();
   SACCADE_CHECK(fuse_surfels(run));
   run.timings_ms["frames"] = stopwatch.lap_ms();
   if (run.fusion.map().size() == 0) return nothing_fused("surfels", run.record, options.frames);
+  SACCADE_CHECK(check_color(run));
   SACCADE_CHECK(write_clouds(run));
   if (run.written == 0) return nothing_written(run);
   run.timings_ms["write"] = stopwatch.lap_ms();

@@ -2,6 +2,7 @@
 // saccade surfels as a user runs it: clouds, JSON, tracking, threads, what goes wrong, interrupting.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cmath>
 
 #include "cli/run_program.hpp"
@@ -220,11 +221,53 @@ TEST_F(Surfels, WithoutColourTheFilterSaysWhatItNeeds) {
   for (const std::string& name : names_in(frames())) {
     if (name.ends_with(".color.png")) fs::remove(frames() / name);
   }
-  expect_failure(run_program(surfels("cloud.ply")), 3, "surfels", {"no colour images", "--mode-filter off"});
+  expect_failure(run_program(surfels("cloud.ply")), 3, "surfels", {"no frame has a colour image", "--mode-filter off"});
   EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"frames"});
   const nlohmann::json off = result("cloud.ply", {"--mode-filter", "off"});
   EXPECT_EQ(off.at("frames_without_color"), 12);
   EXPECT_TRUE(cloud("cloud.ply").colors.empty());
+}
+
+TEST_F(Surfels, WhatNoFrameWithColourSawIsNotBlack) {
+  const auto without_color = [this](const auto& is_first) {
+    for (const std::string& name : names_in(frames())) {
+      if (name.ends_with(".color.png") && is_first(name)) fs::remove(frames() / name);
+    }
+  };
+  without_color([](const std::string& name) { return name >= "frame-000001"; });
+  const nlohmann::json some = result("some.ply", {"--mode-filter", "both"});
+  EXPECT_EQ(some.at("frames_without_color"), 11);
+  EXPECT_GT(some.at("uncolored").get<std::size_t>(), 100U);
+  for (const char* name : {"some.ply", "some.average.ply"}) {
+    const PointCloud written = cloud(name);
+    ASSERT_EQ(written.positions_m.size(), some.at("written").get<std::size_t>());
+    ASSERT_EQ(written.colors.size(), written.positions_m.size());
+    EXPECT_EQ(std::count(written.colors.begin(), written.colors.end(), Eigen::Vector3f::Zero()), 0) << name;
+  }
+  expect_failure(run_program(surfels("none.ply", {"--first", "1"})), 3, "surfels", {"no frame has a colour image"});
+  EXPECT_FALSE(fs::exists(folder_ / "none.ply"));
+  EXPECT_EQ(result("off.ply", {"--first", "1", "--mode-filter", "off"}).at("uncolored"), 0);
+}
+
+TEST_F(Surfels, WhatIsReadIsNotReplaced) {
+  const fs::path depth = frames() / "frame-000000.depth.png";
+  const fs::path mask = folder_ / "mask.png";
+  fs::copy_file(depth, mask);
+  const fs::path camera = folder_.write("camera.json", R"({"fx": 525, "fy": 525, "cx": 319.5, "cy": 239.5})");
+  const std::string before = text_of(depth) + text_of(mask) + text_of(camera);
+  const Arguments masked{"--mask", mask.string()};
+  expect_failure(run_program(surfels("a.ply", {"--picture", depth.string()})), 3, "surfels", {"--picture"});
+  expect_failure(run_program(surfels("a.ply", masked + Arguments{"--picture", mask.string()})), 3, "surfels",
+                 {"--picture"});
+  expect_failure(run_program(surfels("a.ply", {"--json", camera.string()})), 3, "surfels", {"something else"});
+  EXPECT_TRUE(text_of(depth) + text_of(mask) + text_of(camera) == before);
+  EXPECT_FALSE(fs::exists(folder_ / "a.ply"));
+  for (int again = 0; again < 2; ++again) {  // its own are
+    EXPECT_EQ(run_program(surfels("a.ply",
+                                  {"--json", (folder_ / "a.json").string(), "--picture", (folder_ / "a.png").string()}))
+                  .status,
+              0);
+  }
 }
 
 TEST_F(Surfels, WhatIsWrongIsSaidBeforeTheWork) {

@@ -8,12 +8,22 @@
 
 namespace saccade {
 
+std::vector<SurfelId> shown_surfels(const SurfelMap& map, double min_weight) {
+  std::vector<SurfelId> shown;
+  std::vector<SurfelId> colored;
+  for (SurfelId id = 0; id < map.size(); ++id) {
+    if (static_cast<double>(map.discs[id].weight) < min_weight) continue;
+    shown.push_back(id);
+    if (map.colors[id].weight > 0.0F) colored.push_back(id);
+  }
+  return colored.empty() ? shown : colored;
+}
+
 SurfelPoints surfel_points(const SurfelMap& map, std::span<const SurfelMode> modes, double min_weight) {
   SACCADE_EXPECTS(modes.empty() || modes.size() == map.size());
   SurfelPoints points;
-  for (SurfelId id = 0; id < map.size(); ++id) {
+  for (const SurfelId id : shown_surfels(map, min_weight)) {
     const Surfel surfel = map.surfel(id);
-    if (static_cast<double>(surfel.disc.weight) < min_weight) continue;
     const bool has_mode = !modes.empty() && modes[id].weight > 0.0F;
     points.positions_m.push_back(has_mode ? modes[id].position_m : surfel.disc.position_m);
     points.colors.push_back(has_mode ? modes[id].color : surfel.color.color);

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfelPoints, surfel_points: the surfels of a map that were seen often enough, as averages or as winning modes;
-// put_at_averages; byte_color.
+// shown_surfels, SurfelPoints, surfel_points: the surfels of a map that were seen often enough, as averages or as
+// winning modes; put_at_averages; byte_color.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -14,20 +14,24 @@
 
 namespace saccade {
 
+/// Ids of the surfels of w_s ≥ min_weight, in order. What was seen a few times only is often no surface: veil between
+/// near and far, or a surface at a place where a pose was wrong. Where any of them has a colour, those without are left
+/// out: no frame with colour saw them, and black is a colour like others.
+[[nodiscard]] std::vector<SurfelId> shown_surfels(const SurfelMap& map, double min_weight = 0.0);
+
 /// A row per surfel, in the order of their ids.
 struct SurfelPoints {
   std::vector<Eigen::Vector3f> positions_m;
   std::vector<Eigen::Vector3f> normals;
-  std::vector<Eigen::Vector3f> colors;  ///< in [0, 1]; black for a surfel without one
+  std::vector<Eigen::Vector3f> colors;  ///< in [0, 1]; black where none has a colour
   std::vector<float> radii_m;
   std::vector<float> weights;  ///< w_s
-  bool has_color{false};       ///< of any
+  bool has_color{false};       ///< of all, or of none
 
   [[nodiscard]] std::size_t size() const { return positions_m.size(); }
 };
 
-/// Surfels of w_s ≥ min_weight. What was seen a few times only is often no surface: veil between near and far, or a
-/// surface at a place where a pose was wrong.
+/// Of shown_surfels.
 /// @param modes  eq. 4.11 per surfel, whose positions and colours stand for the surfels' own where their weight is not
 ///               0; or none: the averages of eq. 4.12. Expects none, or one per surfel.
 [[nodiscard]] SurfelPoints surfel_points(const SurfelMap& map, std::span<const SurfelMode> modes = {},

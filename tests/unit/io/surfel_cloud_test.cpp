@@ -16,7 +16,7 @@ SurfelMap two_surfels() {
   map.discs[0] = {{1.0F, 2.0F, 3.0F}, 0.01F, {0.0F, 0.0F, 1.0F}, 5.0F};
   map.discs[1] = {{-1.0F, 0.5F, 0.25F}, 0.02F, {0.0F, -1.0F, 0.0F}, 0.5F};
   map.colors[0] = {{1.0F, 0.5F, 0.0F}, 4.0F};
-  map.colors[1] = {Eigen::Vector3f::Zero(), 0.0F};
+  map.colors[1] = {{0.0F, 0.0F, 1.0F}, 0.25F};
   return map;
 }
 
@@ -32,7 +32,7 @@ TEST(SurfelCloud, EveryColumnIsThere) {
     EXPECT_EQ(cloud.positions_m[1], two_surfels().discs[1].position_m);
     EXPECT_EQ(cloud.normals[1], two_surfels().discs[1].normal);
     EXPECT_EQ(cloud.colors[0], (Eigen::Vector3f{1.0F, 128.0F / 255.0F, 0.0F}));
-    EXPECT_EQ(cloud.colors[1], (Eigen::Vector3f{0.0F, 0.0F, 0.0F}));
+    EXPECT_EQ(cloud.colors[1], (Eigen::Vector3f{0.0F, 0.0F, 1.0F}));
   }
 }
 
@@ -59,13 +59,25 @@ TEST(SurfelCloud, SurfelsOfLessWeightAreLeftOut) {
   EXPECT_EQ(read_cloud(folder / "cloud.ply").value().fields().rows, 2U);
 }
 
+TEST(SurfelCloud, WhatHasNoColourIsNoBlackSurfel) {
+  const test::TempFolder folder;
+  SurfelMap map = two_surfels();
+  map.colors[1].weight = 0.0F;
+  for (const std::vector<SurfelMode>& modes : {std::vector<SurfelMode>{}, std::vector<SurfelMode>(2)}) {
+    ASSERT_TRUE(write_surfel_cloud(folder / "cloud.ply", map, modes));
+    EXPECT_EQ(read_cloud(folder / "cloud.ply").value().fields().find("confidence")->values<float>(),
+              (std::vector<float>{5.0F}));
+  }
+}
+
 TEST(SurfelCloud, WithoutAnyColourThereIsNone) {
   const test::TempFolder folder;
   SurfelMap map = two_surfels();
-  map.colors[0] = map.colors[1];
+  for (SurfelColor& color : map.colors) color.weight = 0.0F;
   ASSERT_TRUE(write_surfel_cloud(folder / "cloud.ply", map));
   const CloudFile file = read_cloud(folder / "cloud.ply").value();
   EXPECT_EQ(file.fields().find("red"), nullptr);
+  EXPECT_EQ(file.fields().rows, 2U);
   EXPECT_TRUE(cloud_from_fields(file.fields()).value().colors.empty());
 }
 
