@@ -204,6 +204,7 @@ Result<int> run_fuse(const FuseOptions& options, const GlobalOptions& global) {
   run.progress.finish();
   SACCADE_CHECK(write_json_output(global, document));
   if (!global.json_to_stdout()) print_summary(run, map);
+  warn_of_left_out("fuse", run.record);
   if (!interrupted()) return static_cast<int>(ExitStatus::done);
   print_error("fuse", "interrupted after " + std::to_string(run.record.fused.size()) +
                           " frames; what they gave is in " + options.out.string());

@@ -101,6 +101,17 @@ Result<int> nothing_fused(const std::string& command, const FuseRecord& record, 
   return static_cast<int>(ExitStatus::no_result);
 }
 
+void warn_of_left_out(const std::string& command, const FuseRecord& record) {
+  const std::size_t left_out = record.lost.size() + record.skipped.size();
+  if (left_out <= record.fused.size()) return;
+  const LeftOutFrame& first = record.lost.empty() ? record.skipped.front() : record.lost.front();
+  print_error(command, "warning: of " + std::to_string(record.fused.size() + left_out) + " frames only " +
+                           std::to_string(record.fused.size()) + " could be used, " +
+                           std::to_string(record.lost.size()) + " are lost and " +
+                           std::to_string(record.skipped.size()) + " skipped; the first, " + first.name + ": " +
+                           first.reason);
+}
+
 nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames) {
   nlohmann::json list = nlohmann::json::array();
   for (const LeftOutFrame& frame : frames) list.push_back({{"frame", frame.name}, {"reason", frame.reason}});

@@ -59,6 +59,9 @@ using FrameProcess = std::function<Result<FrameReport>(Frame&)>;
 [[nodiscard]] Result<int> nothing_fused(const std::string& command, const FuseRecord& record,
                                         const std::filesystem::path& frames);
 
+/// Says on standard error, whether --quiet or not, that most frames are not in the result, and why.
+void warn_of_left_out(const std::string& command, const FuseRecord& record);
+
 /// [{frame, reason}, …]
 [[nodiscard]] nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames);
 

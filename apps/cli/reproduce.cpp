@@ -47,6 +47,7 @@ json json_of(const std::string& number, const ReproducedTable& table) {
   entry["table"] = number;
   entry["caption"] = table.caption;
   entry["notes"] = table.notes;
+  entry["complete"] = table.complete;
   return entry;
 }
 
@@ -145,13 +146,14 @@ Result<int> run_reproduce(const std::vector<std::string>& numbers, const Reprodu
   SACCADE_CHECK(write_json_output(
       global, json_envelope("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}})));
   if (!markdown_status) return markdown_status.error();
-  if (status.ok()) return static_cast<int>(ExitStatus::done);
-  if (status.error().code != Errc::cancelled) return status.error();
+  const auto complete = std::count_if(done.begin(), done.end(), [](const auto& table) { return table.complete; });
+  if (complete == std::ssize(numbers)) return static_cast<int>(ExitStatus::done);
+  if (!status && status.error().code != Errc::cancelled) return status.error();
   std::string where = "on standard output";
   if (!global.json.empty() && !global.json_to_stdout()) where += ", in " + global.json;
   if (!markdown.empty()) where += ", in " + markdown.string();
-  print_error("reproduce", "interrupted after " + std::to_string(done.size()) + " of " +
-                               std::to_string(numbers.size()) + " tables; what is done is " + where);
+  print_error("reproduce", "interrupted after " + std::to_string(complete) + " of " + std::to_string(numbers.size()) +
+                               " tables; what is done is " + where);
   return interrupt_status();
 }
 

@@ -2,13 +2,11 @@
 // saccade surfels: RGB-D frames → surfel cloud, with or without the mode filter.
 #include <CLI/CLI.hpp>
 #include <algorithm>
-#include <cmath>
 #include <iostream>
 #include <memory>
 
 #include "command.hpp"
 #include "exit_status.hpp"
-#include "frame_options.hpp"
 #include "fuse_frames.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
@@ -17,45 +15,13 @@
 #include "saccade/io/surfel_cloud.hpp"
 #include "saccade/report/sheet.hpp"
 #include "saccade/report/surfel_picture.hpp"
-#include "saccade/surfel/mode_filter.hpp"
-#include "saccade/surfel/surfel_fusion.hpp"
 #include "summary.hpp"
+#include "surfels_options.hpp"
 
 namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-struct SurfelsOptions : FrameOptions {
-  std::filesystem::path out;
-  std::filesystem::path picture;
-  std::string mode_filter{"on"};
-  std::optional<double> min_confidence;  ///< default: min_weight
-  std::string exposure_compensation{"off"};
-  std::string choice{"sharpened"};
-  std::string places;  ///< average, modes, or empty: as the choice needs it
-  SurfelFusionConfig fusion;
-  ModeFilterConfig filter;
-
-  [[nodiscard]] bool filtered() const { return mode_filter != "off"; }
-  /// Guided depths go into the modes' places alone.
-  [[nodiscard]] bool places_of_modes() const { return places.empty() ? choice == "heaviest" : places == "modes"; }
-  [[nodiscard]] bool compensated() const { return exposure_compensation == "on"; }
-  /// Where the averages go: nowhere, to --out, or beside it.
-  [[nodiscard]] std::filesystem::path average_out() const {
-    if (mode_filter == "on") return {};
-    if (mode_filter == "off") return out;
-    std::filesystem::path beside = out;
-    return beside.replace_extension(".average" + out.extension().string());
-  }
-  /// Least w_s of what is written, of so many frames. ElasticFusion shows surfels of a confidence above 10; fewer than
-  /// 200 frames do not see things so often.
-  [[nodiscard]] double min_weight(std::size_t fused) const {
-    constexpr double kSeenOften{10.0};
-    constexpr double kShareOfFrames{0.05};
-    return min_confidence.value_or(std::min(kSeenOften, kShareOfFrames * static_cast<double>(fused)));
-  }
-};
 
 /// Milliseconds of each frame.
 struct SurfelTimes {
@@ -215,7 +181,7 @@ json result_json(const SurfelsRun& run) {
            {{"map", double(run.fusion.map().memory_bytes()) / double(run.fusion.map().size())},
             {"modes", double(run.filter.memory_bytes()) / double(run.fusion.map().size())}}},
           {"image_sigma", run.options.fusion.image_sigma},
-          {"choice", run.options.choice},
+          {"choice", run.options.filtered() ? json(run.options.choice) : json(nullptr)},
           {"places", run.options.places_of_modes() ? "modes" : "average"},
           {"exposure", exposure_json(run)},
           {"ms_per_frame",
@@ -293,40 +259,11 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
   SACCADE_CHECK(
       write_json_output(global, json_envelope("surfels", global, run.executor, run.timings_ms, result_json(run))));
   if (!global.json_to_stdout()) print_summary(run);
+  warn_of_left_out("surfels", run.record);
   if (!interrupted()) return static_cast<int>(ExitStatus::done);
   print_error("surfels", "interrupted after " + std::to_string(run.record.fused.size()) +
                              " frames; what they gave is in " + options.out.string());
   return interrupt_status();
-}
-
-void check_surfels_options(SurfelsOptions& options) {
-  check_frame_options(options);
-  const std::string extension = options.out.extension().string();
-  if (extension != ".ply" && extension != ".pcd") usage_error("--out", "must end in .ply or .pcd");
-  if (options.mode_filter != "on" && options.mode_filter != "off" && options.mode_filter != "both") {
-    usage_error("--mode-filter", "must be one of on|off|both, not '" + options.mode_filter + "'");
-  }
-  if (!options.picture.empty() && options.picture.extension() != ".png") {
-    usage_error("--picture", "needs a name that ends in .png, not '" + options.picture.string() + "'");
-  }
-  if (options.min_confidence && !(*options.min_confidence >= 0.0 && std::isfinite(*options.min_confidence))) {
-    usage_error("--min-confidence", "must be 0 or more");
-  }
-  if (options.exposure_compensation != "on" && options.exposure_compensation != "off") {
-    usage_error("--exposure-compensation", "must be on or off, not '" + options.exposure_compensation + "'");
-  }
-  require_ok(options.fusion.validate(), "--image-sigma");
-  if (!(options.filter.max_depth_change_m > 0.0)) usage_error("--max-depth-change", "must be positive");
-  if (options.choice != "sharpened" && options.choice != "densest" && options.choice != "heaviest") {
-    usage_error("--choice", "must be sharpened, densest or heaviest, not '" + options.choice + "'");
-  }
-  if (!options.places.empty() && options.places != "average" && options.places != "modes") {
-    usage_error("--places", "must be average or modes, not '" + options.places + "'");
-  }
-  options.filter.enhance_depth = options.places_of_modes();
-  if (options.choice != "sharpened") options.filter.sharpening.strength = 0.0;
-  if (options.choice == "heaviest") options.filter.choice_sigmas = 0.0;
-  require_ok(options.filter.validate(), "--max-modes");
 }
 
 }  // namespace
@@ -334,64 +271,9 @@ void check_surfels_options(SurfelsOptions& options) {
 void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("surfels", "RGB-D frames -> surfel cloud whose edges stay sharp");
   auto options = std::make_shared<SurfelsOptions>();
-  add_frame_options(*command, *options);
-  command
-      ->add_option("--out", options->out,
-                   "surfels with normals, radius, colour and confidence: PLY, or PCD for a name that ends in .pcd")
-      ->required()
-      ->type_name("CLOUD");
-  command
-      ->add_option("--mode-filter", options->mode_filter,
-                   "on: of each surfel's colours one that was seen, not a blend; off: averages; both: averages, too, "
-                   "in NAME.average.EXT beside --out")
-      ->type_name("on|off|both")
-      ->capture_default_str();
-  command
-      ->add_option("--image-sigma", options->fusion.image_sigma,
-                   "how fast pixels lose weight away from the image's centre: smaller for strong vignetting")
-      ->type_name("SIGMA")
-      ->capture_default_str();
-  command
-      ->add_option("--exposure-compensation", options->exposure_compensation,
-                   "on: for cameras with automatic gain or exposure: colours of each frame are brought to those of the "
-                   "first; vignetting must be corrected")
-      ->type_name("on|off")
-      ->capture_default_str();
-  command->add_option("--max-modes", options->filter.max_modes, "colours that a surfel remembers, 1 to 32")
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--choice", options->choice,
-          "what a surfel is in the end: the colour that is densest in its place more than around, where its own "
-          "colours are densest, or the heaviest one (thesis, eq. 4.11)")
-      ->type_name("sharpened|densest|heaviest")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--places", options->places,
-          "where a surfel is: at the average of what was measured, or where its modes are, with depths guided by "
-          "colour as in the thesis (default: average; with --choice heaviest modes)")
-      ->type_name("average|modes");
-  command
-      ->add_option(
-          "--max-depth-change", options->filter.max_depth_change_m,
-          "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: "
-          "all move, as in the thesis")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      ->add_option(
-          "--min-confidence", options->min_confidence,
-          "surfels that were seen less, by the sum of their observations' weights, are not written: often they "
-          "are no surfaces; 0: all are (default: 10, or a twentieth of the number of frames if that is less)")
-      ->type_name("W");
-  command
-      ->add_option("--picture", options->picture,
-                   "PNG of the surfels as the frame in the middle saw them; with --mode-filter both side by side")
-      ->type_name("FILE");
-  command->callback([options, &global, &action] {
-    check_surfels_options(*options);
+  add_surfels_options(*command, *options);
+  command->callback([command, options, &global, &action] {
+    check_surfels_options(*command, *options);
     action = [options, &global] { return run_surfels(*options, global); };
   });
 }

@@ -117,6 +117,28 @@ TEST(ReproduceSurfels, OneSceneAloneAsPrintedOrNot) {
   expect_failure(run_program({"reproduce", "4.1", "--scene", "table"}), 2, "reproduce", {"--scene", "workshop-1"});
 }
 
+/// Scenes that are done stay, in every table that was asked for.
+TEST(ReproduceSurfels, AnInterruptionKeepsTheScenesThatAreDone) {
+  if (kSanitized) GTEST_SKIP() << "a scene takes long under sanitizers";
+  const TempFolder folder;
+  const fs::path file = folder / "tables.json";
+  RunningProgram program{{"reproduce", "4.1", "4.10", "4.gain", "--frames", "12", "--image-width", "128",
+                          "--placements", "1", "--json", file.string()}};
+  ASSERT_TRUE(program.wait_for("surfels of workshop-2")) << program.err();
+  program.send(SIGINT);
+  const Outcome outcome = program.finish();
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("interrupted after 0 of 3 tables"), std::string::npos) << outcome.err;
+  EXPECT_NE(outcome.out.find("Interrupted: without workshop-2, desk"), std::string::npos) << outcome.out;
+  const json tables = json::parse(text_of(file), nullptr, false).at("result").at("tables");
+  ASSERT_EQ(tables.size(), 2U) << "no scene of the third is done";
+  for (const json& table : tables) {
+    EXPECT_EQ(table.at("complete"), false);
+    ASSERT_EQ(table.at("rows").size(), 1U);
+    EXPECT_EQ(table.at("rows").at(0).at("scene"), "workshop-1");
+  }
+}
+
 TEST(ReproduceSurfels, ExposureCompensationWinsBackWhatGainCosts) {
   if (kSanitized) GTEST_SKIP() << "three trials take long under sanitizers";
   const json table = tables_of(run_program({"reproduce", "4.gain", "--scene", "magazines-2", "--frames", "24",

@@ -273,18 +273,49 @@ TEST_F(Surfels, WhatIsReadIsNotReplaced) {
 TEST_F(Surfels, WhatIsWrongIsSaidBeforeTheWork) {
   expect_failure(run_program(surfels("cloud.txt")), 2, "surfels", {"--out", ".ply or .pcd"});
   expect_failure(run_program(surfels("cloud.ply", {"--mode-filter", "some"})), 2, "surfels", {"on|off|both", "some"});
-  expect_failure(run_program(surfels("cloud.ply", {"--image-sigma", "0"})), 2, "surfels", {"--image-sigma"});
+  for (const char* sigma : {"0", "inf"}) {
+    expect_failure(run_program(surfels("cloud.ply", {"--image-sigma", sigma})), 2, "surfels",
+                   {"--image-sigma", "positive, and finite"});
+  }
   expect_failure(run_program(surfels("cloud.ply", {"--max-modes", "33"})), 2, "surfels", {"--max-modes", "1 to 32"});
-  expect_failure(run_program(surfels("cloud.ply", {"--choice", "best"})), 2, "surfels",
-                 {"densest or heaviest", "best"});
-  expect_failure(run_program(surfels("cloud.ply", {"--places", "here"})), 2, "surfels",
-                 {"--places", "average or modes"});
+  expect_failure(run_program(surfels("cloud.ply", {"--choice", "best"})), 2, "surfels", {"densest|heaviest", "best"});
+  expect_failure(run_program(surfels("cloud.ply", {"--places", "here"})), 2, "surfels", {"--places", "average|modes"});
   expect_failure(run_program(surfels("cloud.ply", {"--max-depth-change", "0"})), 2, "surfels", {"--max-depth-change"});
   expect_failure(run_program(surfels("cloud.ply", {"--min-confidence", "-1"})), 2, "surfels", {"--min-confidence"});
   expect_failure(run_program(surfels("nowhere/cloud.ply")), 3, "surfels", {"nowhere"});
   expect_failure(run_program(surfels("cloud.ply", {"--max-range", "0.2", "--min-range", "0.1"})), 5, "surfels",
                  {"--max-range", "nothing was written"});
   EXPECT_EQ(names_in(folder_.path()), std::vector<std::string>{"frames"});
+}
+
+TEST_F(Surfels, WhatWouldHaveNoEffectIsRefused) {
+  for (const Arguments& option :
+       {Arguments{"--max-modes", "4"}, Arguments{"--choice", "densest"}, Arguments{"--places", "average"}}) {
+    expect_failure(run_program(surfels("cloud.ply", Arguments{"--mode-filter", "off"} + option)), 2, "surfels",
+                   {option.front(), "--mode-filter off"});
+  }
+  expect_failure(run_program(surfels("cloud.ply", {"--max-depth-change", "0.02"})), 2, "surfels",
+                 {"--max-depth-change", "--places modes"});
+  EXPECT_TRUE(result("cloud.ply", {"--mode-filter", "off"}).at("choice").is_null());
+}
+
+/// A cloud of few of many frames is not what was asked for, even if nobody looks at counts.
+TEST_F(Surfels, MostFramesLeftOutIsAWarning) {
+  for (int i = 0; i < 7; ++i) {
+    const std::string name = "frames/frame-" + std::to_string(1000005 + i).substr(1) + ".depth.png";
+    if (i == 6) {
+      const Outcome half = run_program(surfels("cloud.ply"));
+      EXPECT_EQ(half.status, 0);
+      EXPECT_EQ(half.err, "") << "six of twelve";
+    }
+    fs::remove(folder_ / name);
+    folder_.write(name, "no image");
+  }
+  const Outcome most = run_program(surfels("cloud.ply"));
+  EXPECT_EQ(most.status, 0);
+  for (const char* part : {"warning: of 12 frames only 5", "0 are lost and 7 skipped", "frame-000005", "depth.png"}) {
+    EXPECT_NE(most.err.find(part), std::string::npos) << part << ": " << most.err;
+  }
 }
 
 TEST_F(Surfels, InterruptingKeepsWhatWasDone) {

@@ -190,7 +190,7 @@ Result<ReproducedTable> reproduce_segments(const CloseUp& close_up, const Reprod
   table.notes = {
       "Segments are those at the threshold where the whole scene's BCE is least. What is in sight is what the "
       "picture shows; segments that are the same on both sides are coloured alike."};
-  add_surfel_notes(options, table);
+  add_surfel_notes(options, !close_up.by_flood_fill, table);
   table.figures = {{"rows", std::move(rows)}};
   table.pictures.push_back({close_up.file, compose(sheet)});
   return table;
@@ -219,7 +219,7 @@ Result<ReproducedTable> reproduce_positions(const CloseUp& close_up, const Repro
       "depths, which elsewhere are not used (decision 20). The gap between panel and wall, which the thesis shows to "
       "open, is "
       "open on both: depths that differ by more than 2 cm never meet in a surfel here."};
-  add_surfel_notes(options, table);
+  add_surfel_notes(options, false, table);
   table.figures = {{"rows", std::move(rows)}};
   table.pictures.push_back({close_up.file, compose(sheet)});
   return table;

@@ -5,6 +5,8 @@
 
 #include <array>
 #include <memory>
+#include <string>
+#include <vector>
 
 #include "tables/thesis_table.hpp"
 #include "thesis/surfel_trials.hpp"
@@ -21,7 +23,9 @@ struct SurfelExperiments {
                                                                               const Executor& executor,
                                                                               const Progress& progress);
 
-/// What all of these differ in from the thesis.
-void add_surfel_notes(const ReproduceOptions& options, ReproducedTable& table);
+/// What all of these differ in from the thesis; of SV-LCCP in how many places its grid lay, too.
+void add_surfel_notes(const ReproduceOptions& options, bool is_of_sv_lccp, ReproducedTable& table);
+/// Of a table that is interrupted, but not empty.
+void mark_missing(const std::vector<std::string>& scenes, ReproducedTable& table);
 
 }  // namespace saccade::cli

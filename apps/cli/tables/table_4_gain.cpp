@@ -4,8 +4,7 @@
 #include <algorithm>
 
 #include "summary.hpp"
-#include "tables/thesis_table.hpp"
-#include "thesis/surfel_trials.hpp"
+#include "tables/surfel_experiments.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -113,7 +112,13 @@ Result<ReproducedTable> reproduce_table_4_gain(const ReproduceOptions& options, 
   json rows = json::array();
   for (const std::string_view scene : kScenesWithGain) {
     if (!options.surfel_scene.empty() && options.surfel_scene != scene) continue;
-    SACCADE_TRY(const auto trials, trials_of(scene, options, executor, progress));
+    const auto done = trials_of(scene, options, executor, progress);
+    if (!done && (done.error().code != Errc::cancelled || rows.empty())) return done.error();
+    if (!done) {
+      mark_missing({std::string{scene}}, table);
+      break;
+    }
+    const std::array<SurfelTrial, 3>& trials = *done;
     json row{{"scene", scene}, {"frames", trials[0].frames}, {"gains", gains_json(trials[2])}};
     for (const bool by_flood_fill : {true, false}) {
       const GainCurves modes = curves_of(trials, by_flood_fill, SurfelColors::modes);

@@ -38,10 +38,12 @@ Result<std::shared_ptr<const SurfelTrial>> surfel_trial(const ReproduceOptions& 
   return trial;
 }
 
-void add_surfel_notes(const ReproduceOptions& options, ReproducedTable& table) {
+void add_surfel_notes(const ReproduceOptions& options, bool is_of_sv_lccp, ReproducedTable& table) {
+  if (is_of_sv_lccp) {
+    table.notes.push_back("SV-LCCP is done with the grid of seeds in " + std::to_string(options.placements) +
+                          (options.placements == 1 ? " place." : " places, and the figures are taken together."));
+  }
   table.notes.push_back(
-      "SV-LCCP is done with the grid of seeds in " + std::to_string(options.placements) +
-      (options.placements == 1 ? " place. " : " places, and the figures are taken together. ") +
       "Here scenes are rendered, with noise of depth, colours and poses (docs/surfel-scenes.md), and truth comes from "
       "the renderer; the thesis' were recorded and annotated by hand. Figures compare in kind.");
   if (options.as_printed) {
@@ -57,6 +59,14 @@ void add_surfel_notes(const ReproduceOptions& options, ReproducedTable& table) {
   }
 }
 
+void mark_missing(const std::vector<std::string>& scenes, ReproducedTable& table) {
+  if (scenes.empty()) return;
+  table.complete = false;
+  std::string names;
+  for (const std::string& scene : scenes) names += (names.empty() ? "" : ", ") + scene;
+  table.notes.push_back("Interrupted: without " + names + ".");
+}
+
 namespace {
 
 constexpr int kErrorDecimals{3};
@@ -70,13 +80,33 @@ std::vector<std::size_t> chosen_scenes(const ReproduceOptions& options) {
   return chosen;
 }
 
-/// The trials of the chosen scenes.
-Result<std::shared_ptr<const SurfelExperiments>> experiments_of(const ReproduceOptions& options,
-                                                                const Executor& executor, const Progress& progress) {
+struct DoneTrial {
+  std::size_t scene{0};  ///< of kSurfelScenes
+  std::shared_ptr<const SurfelTrial> trial;
+};
+
+/// The trials of the chosen scenes; after an interruption those that were done, if any, and what is missing.
+struct DoneTrials {
+  std::vector<DoneTrial> done;
+  std::vector<std::string> missing;
+};
+
+Result<DoneTrials> trials_of(const ReproduceOptions& options, const Executor& executor, const Progress& progress) {
+  DoneTrials trials;
+  Status interruption;
   for (const std::size_t scene : chosen_scenes(options)) {
-    SACCADE_CHECK(surfel_trial(options, scene, executor, progress));
+    const auto trial = surfel_trial(options, scene, executor, progress);
+    if (trial) {
+      trials.done.push_back({scene, *trial});
+    } else if (trial.error().code == Errc::cancelled) {
+      trials.missing.emplace_back(kSurfelScenes.at(scene));
+      interruption = trial.error();
+    } else {
+      return trial.error();
+    }
   }
-  return std::shared_ptr<const SurfelExperiments>{options.surfels};
+  if (trials.done.empty()) return interruption.error();
+  return trials;
 }
 
 std::string thousands(std::size_t count) { return fixed(static_cast<double>(count) / 1000.0, 0) + "k"; }
@@ -118,7 +148,7 @@ PlotSeries series_of(const std::string& name, const ScoreCurve& curve) {
 /// Precision over recall, a plot per scene.
 Result<ReproducedTable> reproduce_curves(const ReproduceOptions& options, const Executor& executor,
                                          const Progress& progress, bool by_flood_fill) {
-  SACCADE_TRY(const auto experiments, experiments_of(options, executor, progress));
+  SACCADE_TRY(const DoneTrials trials, trials_of(options, executor, progress));
   const std::string algorithm = by_flood_fill ? "flood fill" : "supervoxels and LCCP";
   ReproducedTable table;
   table.caption = std::string{by_flood_fill ? "Fig. 4.10" : "Fig. 4.11"} + ": boundary precision over recall, " +
@@ -127,8 +157,8 @@ Result<ReproducedTable> reproduce_curves(const ReproduceOptions& options, const 
                    "precision there", "recall there"};
   json rows = json::array();
   const std::size_t first_plot = by_flood_fill ? kFirstSurfelPlot : kFirstSurfelPlot + kSurfelScenes.size();
-  for (const std::size_t i : chosen_scenes(options)) {
-    const SurfelTrial& trial = *experiments->trials[i];
+  for (const auto& [i, done] : trials.done) {
+    const SurfelTrial& trial = *done;
     const ScoreCurve& average = trial.curve(by_flood_fill, SurfelColors::average);
     const ScoreCurve& modes = trial.curve(by_flood_fill, SurfelColors::modes);
     const ScoreCurve& truth = trial.curve(by_flood_fill, SurfelColors::truth);
@@ -170,7 +200,8 @@ Result<ReproducedTable> reproduce_curves(const ReproduceOptions& options, const 
       "greatest precision at each recall or beyond it.",
       "With true colours: places that are not enhanced, and every surfel in the one colour of the thing that it is on. "
       "Where that is less than without enhancement, the figure rewards blur."};
-  add_surfel_notes(options, table);
+  add_surfel_notes(options, !by_flood_fill, table);
+  mark_missing(trials.missing, table);
   table.figures = {{"rows", std::move(rows)}};
   return table;
 }
@@ -179,13 +210,13 @@ Result<ReproducedTable> reproduce_curves(const ReproduceOptions& options, const 
 
 Result<ReproducedTable> reproduce_table_4_1(const ReproduceOptions& options, const Executor& executor,
                                             const Progress& progress) {
-  SACCADE_TRY(const auto experiments, experiments_of(options, executor, progress));
+  SACCADE_TRY(const DoneTrials trials, trials_of(options, executor, progress));
   ReproducedTable table;
   table.caption = "Table 4.1: the scenes, thesis → here";
   table.columns = {"scene", "frames", "points", "true labels", "ms per frame, here"};
   json rows = json::array();
-  for (const std::size_t i : chosen_scenes(options)) {
-    const SurfelTrial& trial = *experiments->trials[i];
+  for (const auto& [i, done] : trials.done) {
+    const SurfelTrial& trial = *done;
     const thesis::SurfelDataset& printed = thesis::kTable4_1.at(i);
     table.rows.push_back({trial.scene, std::to_string(printed.frames) + " → " + std::to_string(trial.frames),
                           thousands(printed.points) + " → " + thousands(trial.surfels),
@@ -201,7 +232,8 @@ Result<ReproducedTable> reproduce_table_4_1(const ReproduceOptions& options, con
   table.notes = {
       "Labels are counted after parts that do not touch were split. Milliseconds are those of surfels and "
       "mode filter together, median; the thesis' took 100 ms on eight threads."};
-  add_surfel_notes(options, table);
+  add_surfel_notes(options, false, table);
+  mark_missing(trials.missing, table);
   table.figures = {{"rows", std::move(rows)}};
   return table;
 }
@@ -241,13 +273,13 @@ Result<ReproducedTable> reproduce_table_4_2(const ReproduceOptions& /*options*/,
 
 Result<ReproducedTable> reproduce_table_4_3(const ReproduceOptions& options, const Executor& executor,
                                             const Progress& progress) {
-  SACCADE_TRY(const auto experiments, experiments_of(options, executor, progress));
+  SACCADE_TRY(const DoneTrials trials, trials_of(options, executor, progress));
   ReproducedTable table;
   table.caption = "Table 4.3: least bidirectional consistency error, not enhanced → enhanced";
   table.columns = {"scene", "flood fill, thesis", "here", "SV-LCCP, thesis", "here"};
   json rows = json::array();
-  for (const std::size_t i : chosen_scenes(options)) {
-    const SurfelTrial& trial = *experiments->trials[i];
+  for (const auto& [i, done] : trials.done) {
+    const SurfelTrial& trial = *done;
     const thesis::LeastErrors& printed = thesis::kTable4_3.at(i);
     const auto thesis_pair = [](double average, double modes) {
       return fixed(average, kErrorDecimals) + " → " + fixed(modes, kErrorDecimals);
@@ -269,7 +301,8 @@ Result<ReproducedTable> reproduce_table_4_3(const ReproduceOptions& options, con
                      {{"not_enhanced", json_of(trial.curve(false, SurfelColors::average))},
                       {"enhanced", json_of(trial.curve(false, SurfelColors::modes))}}}});
   }
-  add_surfel_notes(options, table);
+  add_surfel_notes(options, true, table);
+  mark_missing(trials.missing, table);
   table.figures = {{"rows", std::move(rows)}};
   return table;
 }

@@ -73,6 +73,7 @@ struct ReproducedTable {
   nlohmann::json figures;
   std::vector<TablePlot> plots{};  ///< figures of the thesis that go with it
   std::vector<TablePicture> pictures{};
+  bool complete{true};  ///< false: interrupted; rows are missing, and a note says which
 };
 
 /// A table of the thesis, by its number.

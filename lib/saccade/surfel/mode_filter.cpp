@@ -204,7 +204,7 @@ void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, co
           [&](SurfelId id, std::span<const SeenPixel> pixels) {
             ModesOfSurfel surfel{store_, id, config_, limits, pixels.size(), count};
             const StoredModes& modes = surfel.modes();
-            for (std::size_t k = 0; k < pixels.size(); ++k) {
+            for (std::size_t k = 0; config_.enhance_depth && k < pixels.size(); ++k) {
               const std::optional<std::size_t> nearest = surfel.mode_for(answered[static_cast<std::ptrdiff_t>(k)]);
               if (!nearest) continue;
               const auto& [u, v] = pixels[k];
@@ -220,7 +220,7 @@ void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, co
               surfel.observe(k, answered->color, back_project(u, v, frame.depth(u, v)), seen.weight(u, v),
                              k == 0 ? surfel.mode_for(*answered) : surfel.mode_for(answered->color));
             }
-            for (std::size_t k = 0; k < pixels.size(); ++k) {
+            for (std::size_t k = 0; config_.enhance_depth && k < pixels.size(); ++k) {
               const auto& [u, v] = pixels[k];
               mode_of_pixel_[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] =
                   surfel.mode_of_pixel(k);
@@ -270,9 +270,11 @@ Result<ModeFilterReport> ModeFilter::add_frame(const Frame& frame, const SurfelA
   report.has_color = frame.color.has_value();
   if (!report.has_color) return report;
   Stopwatch stopwatch;
-  guidance_.resize(frame.depth.size());
-  used_.assign(frame.depth.size(), 0);
-  mode_of_pixel_.resize(frame.depth.size());
+  if (config_.enhance_depth) {
+    guidance_.resize(frame.depth.size());
+    used_.assign(frame.depth.size(), 0);
+    mode_of_pixel_.resize(frame.depth.size());
+  }
   integrate(frame, seen, executor, report);
   report.integrate_ms = stopwatch.lap_ms();
   if (!config_.enhance_depth) return report;

@@ -93,7 +93,7 @@ class ModeStore {
  private:
   void fetch(SurfelId id, std::size_t first_byte) const;
 
-  static constexpr std::size_t kPerChunk{8192};
+  static constexpr std::size_t kPerChunk{512};  ///< more would be much for a map of few surfels
   static constexpr std::size_t kBytesPerMode{sizeof(std::uint64_t) + 4 * sizeof(float)};
   /// Searches look at up to seven modes more than there are: so far they stay among a surfel's own bytes.
   [[nodiscard]] std::size_t stride() const { return std::max<std::size_t>(max_modes_, 4) * kBytesPerMode; }

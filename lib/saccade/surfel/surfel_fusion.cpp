@@ -17,6 +17,7 @@ constexpr std::size_t kRowsPerTask{16};
 constexpr std::size_t kSurfelsPerTask{4096};
 constexpr std::size_t kLandings{64};
 constexpr std::size_t kCellsAhead{16};  ///< that memory is asked for what fills a cell
+constexpr double kLeastFactor{1e-18};
 constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};
 /// A radius that is so much larger comes from too far away to say anything of this surfel's.
 constexpr float kComparableRadius{1.5F};
@@ -37,13 +38,13 @@ Status check_frame(const Frame& frame, const PinholeCamera& camera) {
   return {};
 }
 
-/// One factor of eq. 4.2.
+/// One factor of eq. 4.2, never so small that a product of two is 0.
 std::vector<float> axis_weights(int count, double squared_diagonal, double sigma) {
   std::vector<float> weights(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
     const double from_center = i - 0.5 * (count - 1);
-    weights[static_cast<std::size_t>(i)] =
-        static_cast<float>(std::exp(-from_center * from_center / squared_diagonal / (2.0 * sigma * sigma)));
+    const double factor = std::exp(-from_center * from_center / squared_diagonal / (2.0 * sigma * sigma));
+    weights[static_cast<std::size_t>(i)] = static_cast<float>(std::max(factor, kLeastFactor));
   }
   return weights;
 }
@@ -76,7 +77,8 @@ Eigen::Vector3f normal_at(const PointImage& points, int u, int v) {
 Status SurfelFusionConfig::validate() const {
   for (const double value : {image_sigma, depth_tolerance_m, max_normal_angle_rad, max_view_angle_rad, max_radius_m}) {
     if (!std::isfinite(value) || !(value > 0.0)) {
-      return Error{Errc::invalid_argument, "surfel fusion: σ, tolerance, angles and radius must be positive", {}};
+      return Error{
+          Errc::invalid_argument, "surfel fusion: σ, tolerance, angles and radius must be positive, and finite", {}};
     }
   }
   if (!std::isfinite(depth_tolerance_growth_per_m) || depth_tolerance_growth_per_m < 0.0) {

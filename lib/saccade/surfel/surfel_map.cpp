@@ -7,9 +7,9 @@ namespace saccade {
 
 void SurfelMap::resize(std::size_t surfels) {
   SACCADE_EXPECTS(surfels < kNoSurfel);
-  if (surfels > discs.capacity()) {  // by an eighth: there may be millions
-    discs.reserve(surfels + surfels / 8);
-    colors.reserve(surfels + surfels / 8);
+  if (surfels > discs.capacity()) {  // by a sixteenth: there may be millions
+    discs.reserve(surfels + surfels / 16);
+    colors.reserve(surfels + surfels / 16);
   }
   discs.resize(surfels);
   colors.resize(surfels);

@@ -168,6 +168,38 @@ TEST(SurfelFusion, PixelsWeighAsInEquation42) {
 }
 
 /// What lies at a surfel's depth, but turned, is another surface: nothing is averaged, and nothing made.
+/// Corners whose weight would be 0 are averaged like others.
+TEST(SurfelFusion, NoWeightIsZero) {
+  SurfelFusion fusion = SurfelFusion::create({.image_sigma = 0.01}).value();
+  ModeFilter filter = ModeFilter::create().value();
+  for (const Frame& frame : table_frames(3)) {
+    ASSERT_TRUE(fusion.add_frame(frame, kSurfelCamera, {}));
+    ASSERT_TRUE(filter.add_frame(frame, fusion.association(), {}));
+  }
+  ASSERT_GT(fusion.map().size(), 10000U);
+  const std::vector<SurfelMode> winners = filter.winners({});
+  for (SurfelId id = 0; id < fusion.map().size(); ++id) {
+    const auto& [disc, color] = fusion.map().surfel(id);
+    ASSERT_GT(disc.weight, 0.0F);
+    ASSERT_TRUE(disc.position_m.allFinite() && disc.normal.allFinite() && color.color.allFinite()) << id;
+    ASSERT_GT(winners[id].weight, 0.0F);
+    ASSERT_TRUE(winners[id].color.allFinite()) << id;
+  }
+}
+
+TEST(SurfelFusion, FewSurfelsTakeLittleMemoryToo) {
+  SurfelFusion fusion = SurfelFusion::create().value();
+  ModeFilter filter = ModeFilter::create().value();
+  for (const Frame& frame : table_frames(2)) {
+    ASSERT_TRUE(fusion.add_frame(frame, kSurfelCamera, {}));
+    ASSERT_TRUE(filter.add_frame(frame, fusion.association(), {}));
+  }
+  const std::size_t surfels = fusion.map().size();
+  ASSERT_GT(surfels, 10000U);
+  ASSERT_LT(surfels, 30000U);
+  EXPECT_LT(double(fusion.map().memory_bytes() + filter.memory_bytes()) / double(surfels), 305.0);
+}
+
 TEST(SurfelFusion, AnotherNormalAtTheSameDepthChangesNothing) {
   SurfelFusion fusion = SurfelFusion::create().value();
   Frame frame;

@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SurfelsOptions: the command line of `saccade surfels`, and what it means for the library.
+
+#include <algorithm>
+#include <filesystem>
+#include <optional>
+#include <string>
+
+#include "frame_options.hpp"
+#include "saccade/surfel/mode_filter.hpp"
+#include "saccade/surfel/surfel_fusion.hpp"
+
+namespace CLI {
+class App;
+}
+
+namespace saccade::cli {
+
+struct SurfelsOptions : FrameOptions {
+  std::filesystem::path out;
+  std::filesystem::path picture;
+  std::string mode_filter{"on"};
+  std::optional<double> min_confidence;  ///< default: min_weight
+  std::string exposure_compensation{"off"};
+  std::string choice{"sharpened"};
+  std::string places;  ///< average, modes, or empty: as the choice needs it
+  SurfelFusionConfig fusion;
+  ModeFilterConfig filter;
+
+  [[nodiscard]] bool filtered() const { return mode_filter != "off"; }
+  /// Guided depths go into the modes' places alone.
+  [[nodiscard]] bool places_of_modes() const { return places.empty() ? choice == "heaviest" : places == "modes"; }
+  [[nodiscard]] bool compensated() const { return exposure_compensation == "on"; }
+  /// Where the averages go: nowhere, to --out, or beside it.
+  [[nodiscard]] std::filesystem::path average_out() const {
+    if (mode_filter == "on") return {};
+    if (mode_filter == "off") return out;
+    std::filesystem::path beside = out;
+    return beside.replace_extension(".average" + out.extension().string());
+  }
+  /// Least w_s of what is written, of so many frames. ElasticFusion shows surfels of a confidence above 10; fewer than
+  /// 200 frames do not see things so often.
+  [[nodiscard]] double min_weight(std::size_t fused) const {
+    constexpr double kSeenOften{10.0};
+    constexpr double kShareOfFrames{0.05};
+    return min_confidence.value_or(std::min(kSeenOften, kShareOfFrames * static_cast<double>(fused)));
+  }
+};
+
+/// Adds the options to the subcommand; `options` outlives the parsing.
+void add_surfels_options(CLI::App& command, SurfelsOptions& options);
+/// What only shows when all options are known, and which of them were given; throws usage errors. Completes
+/// options.fusion and options.filter.
+void check_surfels_options(const CLI::App& command, SurfelsOptions& options);
+
+}  // namespace saccade::cli
