@@ -120,6 +120,11 @@ for scene in workshop-1 workshop-2 desk magazines-1 magazines-2; do
     --out "$out/surfels_$scene" --force --json "$out/surfels_$scene.json"
 done
 
+echo "Surfels with automatic gain and exposure compensation: all frames, three times over"
+for scene in magazines-1 magazines-2; do
+  step "surfels_gain_$scene" build/release/saccade --quiet reproduce 4.gain --scene "$scene" --json "$out/surfels_gain_$scene.json"
+done
+
 echo "Surfels: 100,000 frames of the same spot"
 step surfel_growth env SACCADE_SURFEL_FRAMES=100000 build/release/tests/unit_surfel '--gtest_filter=*FramesOfTheSameSpot*'
 

@@ -51,3 +51,29 @@ def section(folder, lines, command_of):
                          + " | ".join(cells) + " |")
     lines.append("")
     return held
+
+
+def gain_section(folder, lines, command_of):
+    """Table 4.gain. Whether compensation wins back half of every loss, or more."""
+    scenes = {scene: tables_of(folder, f"surfels_gain_{scene}") for scene in SCENES}
+    scenes = {scene: tables["4.gain"] for scene, tables in scenes.items() if tables}
+    if not scenes:
+        return True
+    lines += ["## Surfels with automatic gain", ""]
+    lines += [f"`{command_of(folder, f'surfels_gain_{scene}')}`\n" for scene in scenes]
+    lines += ["Enhanced by the mode filter, without gain, with it, and with exposure compensation (docs/surfel-exposure.md). Held to: "
+              "half of every loss is won back, or more.", "",
+              "| scene | frames | algorithm | figure | gain off | on | on, compensated | loss won back | held |",
+              "|---|---|---|---|---|---|---|---|---|"]
+    held = True
+    for scene, rows in scenes.items():
+        for key, _, algorithm in ALGORITHMS:
+            for figure in rows[0][key]:
+                won = figure["won_back"]
+                fits = won is None or won >= 0.5
+                held = held and fits
+                lines.append(f"| {scene} | {rows[0]['frames']} | {algorithm} | {figure['figure']} | {figure['off']:.3f} | {figure['on']:.3f} "
+                             f"| {figure['compensated']:.3f} | {'no loss' if won is None else f'{100 * won:.0f} %'} "
+                             f"| {'yes' if fits else 'no'} |")
+    lines.append("")
+    return held

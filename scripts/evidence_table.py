@@ -361,6 +361,7 @@ def main():
     arm_section(folder, lines)
     planning_section(folder, lines)
     held = evidence_surfels.section(folder, lines, command_of) and held
+    held = evidence_surfels.gain_section(folder, lines, command_of) and held
     log_section(folder, lines, "surfel_growth", "Surfels of the same spot", evidence_surfels.GROWTH_TEXT,
                 lambda line: line.startswith("growth: "))
     log_section(folder, lines, "surfel_sharpness", "Surfels on recorded frames", evidence_surfels.SHARPNESS_TEXT,
