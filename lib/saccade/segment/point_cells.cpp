@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/segment/point_cells.hpp"
 
+#include <sstream>
 #include <string>
 
 namespace saccade {
@@ -14,8 +15,9 @@ Result<PointCells> PointCells::create(std::span<const Eigen::Vector3f> positions
   for (std::size_t i = 0; i < points.size(); ++i) {
     const std::uint64_t key = cell_at(positions_m[points[i]], size_m);
     if (key == kFarCell) {
-      return Error{Errc::invalid_argument, "a point farther than a million cells of " + std::to_string(size_m) + " m",
-                   "point " + std::to_string(points[i])};
+      std::ostringstream what;
+      what << "a point farther than a million cells of " << size_m << " m";
+      return Error{Errc::invalid_argument, what.str(), "point " + std::to_string(points[i])};
     }
     cells[i] = made.index_.insert(key);
     if (cells[i] + 2 > made.starts_.size()) made.starts_.push_back(0);
