@@ -74,7 +74,8 @@ class AnnotationCrowdTest : public ::testing::Test {
 
 TEST_F(AnnotationCrowdTest, AGoodPageAmong63HostileOnes) {
   constexpr int kActions{10};
-  constexpr double kMostWork_ms{test::kSanitized ? 60'000.0 : 5'000.0};  // of the program's processor time
+  constexpr double kMostWork_ms{test::kSanitized ? 60'000.0 : 5'000.0};  // of the program's processor time, or
+  constexpr double kMostBrushes{16.0};                                   // of so many such brushes on a slow machine
   constexpr double kMost_ms{60'000.0};
   ServedAnnotation served{{"annotate", (folder_ / "many.bin").string(), "--no-browser"}};
   ASSERT_TRUE(served.is_served()) << served.program().err();
@@ -118,7 +119,7 @@ TEST_F(AnnotationCrowdTest, AGoodPageAmong63HostileOnes) {
   EXPECT_GE(answered, 2 * kOthers);
   EXPECT_GT(meanwhile, kActions / 2) << "they are served, too";
   EXPECT_GT(longest_work_ms, 0.0);
-  EXPECT_LT(longest_work_ms, kMostWork_ms);
+  EXPECT_LT(longest_work_ms, std::max(kMostWork_ms, kMostBrushes * brush_ms));
   EXPECT_LT(ms.back(), kMost_ms);
 }
 
