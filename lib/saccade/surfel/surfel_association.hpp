@@ -100,6 +100,26 @@ void for_each_seen_surfel(const SurfelAssociation& seen, int begin, int end, Fet
   }
 }
 
+/// A pixel, and the surfel that it saw.
+struct SurfelPixel {
+  SurfelId id;
+  std::uint16_t u, v;
+};
+
+/// The pixels that saw surfels, in rounds: the k-th has the k-th pixel, in row-major order, of each surfel that was
+/// seen by more than k, so that within a round no surfel comes twice.
+class SeenRounds {
+ public:
+  /// Of the surfels whose cells are in rows [begin, end), row by row.
+  void collect(const SurfelAssociation& seen, int begin, int end);
+  [[nodiscard]] const std::array<std::vector<SurfelPixel>, SurfelAssociation::kNewSurfel>& rounds() const {
+    return rounds_;
+  }
+
+ private:
+  std::array<std::vector<SurfelPixel>, SurfelAssociation::kNewSurfel> rounds_;
+};
+
 /// Weighted mean of eq. 4.1, 4.5 and 4.6.
 inline Eigen::Vector3f weighted_mean(const Eigen::Vector3f& a, float weight_a, const Eigen::Vector3f& b,
                                      float weight_b) {

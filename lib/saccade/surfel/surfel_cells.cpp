@@ -143,8 +143,6 @@ namespace {
 
 HWY_EXPORT(associate_row_kernel);
 
-constexpr float kNowhere{1e18F};  ///< its square is finite
-
 }  // namespace
 
 SurfelCells::SurfelCells(int width, int height)
@@ -153,26 +151,6 @@ SurfelCells::SurfelCells(int width, int height)
       plane_size_{stride_ * (static_cast<std::size_t>(height) + 2)},
       values_(kPlanes * plane_size_, kNowhere),
       ids_(plane_size_, kNoSurfel) {}
-
-void SurfelCells::set(int u, int v, SurfelId id, const Eigen::Vector3f& p_camera, float radius_m,
-                      const Eigen::Vector3f& n_camera) {
-  const std::size_t i = index(u, v);
-  ids_[i] = id;
-  float* const value = values_.data() + i;
-  value[kX * plane_size_] = p_camera.x();
-  value[kY * plane_size_] = p_camera.y();
-  value[kZ * plane_size_] = p_camera.z();
-  value[kSquaredRadius * plane_size_] = radius_m * radius_m;
-  value[kNx * plane_size_] = n_camera.x();
-  value[kNy * plane_size_] = n_camera.y();
-  value[kNz * plane_size_] = n_camera.z();
-}
-
-void SurfelCells::set_empty(int u, int v) {
-  const std::size_t i = index(u, v);
-  ids_[i] = kNoSurfel;
-  values_[kZ * plane_size_ + i] = kNowhere;
-}
 
 void associate_row(const SurfelCells& cells, const PointImage& points, const AssociationLimits& limits, int v,
                    SurfelId* of_pixel, RowCounts& counts) {

@@ -3,7 +3,6 @@
 // SurfelCells: what fills the cells of an index image, in planes; associate_row: which surfels a row of pixels sees.
 // For surfel_fusion.cpp.
 
-#include <Eigen/Core>
 #include <cstddef>
 #include <vector>
 
@@ -19,17 +18,18 @@ inline constexpr SurfelId kMakesSurfel{kNoSurfel - 1};
 class SurfelCells {
  public:
   static constexpr std::size_t kMargin{32};  ///< columns before and after a row, for whole vectors
+  static constexpr float kNowhere{1e18F};    ///< its square is finite
   enum Plane : std::size_t { kX, kY, kZ, kSquaredRadius, kNx, kNy, kNz, kPlanes };
 
   SurfelCells() = default;
   SurfelCells(int width, int height);
 
-  void set(int u, int v, SurfelId id, const Eigen::Vector3f& p_camera, float radius_m, const Eigen::Vector3f& n_camera);
-  void set_empty(int u, int v);
-  /// Cells (0, v) and on; v may be −1 or the height, u from −kMargin.
+  /// Cells (0, v) and on; v may be −1 or the height, u from −kMargin. Of an empty cell all is kNowhere.
+  [[nodiscard]] float* row(Plane plane, int v) { return values_.data() + plane * plane_size_ + index(0, v); }
   [[nodiscard]] const float* row(Plane plane, int v) const {
     return values_.data() + plane * plane_size_ + index(0, v);
   }
+  [[nodiscard]] SurfelId* ids(int v) { return ids_.data() + index(0, v); }
   [[nodiscard]] const SurfelId* ids(int v) const { return ids_.data() + index(0, v); }
   [[nodiscard]] int width() const { return width_; }
 

@@ -9,18 +9,17 @@
 #include <numeric>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/surfel/surfel_averages.hpp"
+#include "saccade/surfel/surfel_index.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kRowsPerTask{16};
+constexpr std::size_t kRowsAtOnce{4};  ///< whose surfels stay in a near cache while they are averaged
 constexpr std::size_t kSurfelsPerTask{4096};
-constexpr std::size_t kLandings{64};
-constexpr std::size_t kCellsAhead{16};  ///< that memory is asked for what fills a cell
 constexpr double kLeastFactor{1e-18};
-constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};
-/// A radius that is so much larger comes from too far away to say anything of this surfel's.
-constexpr float kComparableRadius{1.5F};
+constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};  ///< farther than any; its id is kNoSurfel
 
 Status check_frame(const Frame& frame, const PinholeCamera& camera) {
   SACCADE_CHECK(camera.validate());
@@ -47,29 +46,6 @@ std::vector<float> axis_weights(int count, double squared_diagonal, double sigma
     weights[static_cast<std::size_t>(i)] = static_cast<float>(std::max(factor, kLeastFactor));
   }
   return weights;
-}
-
-/// Camera and pose in single precision.
-struct FloatView {
-  explicit FloatView(const SurfelAssociation& seen)
-      : R_camera_world{seen.T_world_camera.linear().transpose().cast<float>()},
-        center_world{seen.T_world_camera.translation().cast<float>()},
-        fx{static_cast<float>(seen.camera.fx)},
-        fy{static_cast<float>(seen.camera.fy)},
-        cx{static_cast<float>(seen.camera.cx)},
-        cy{static_cast<float>(seen.camera.cy)} {}
-
-  [[nodiscard]] Eigen::Vector3f to_camera(const Eigen::Vector3f& p_world) const {
-    return R_camera_world * (p_world - center_world);
-  }
-
-  Eigen::Matrix3f R_camera_world;
-  Eigen::Vector3f center_world;
-  float fx, fy, cx, cy;
-};
-
-Eigen::Vector3f normal_at(const PointImage& points, int u, int v) {
-  return {points.nx(u, v), points.ny(u, v), points.nz(u, v)};
 }
 
 }  // namespace
@@ -115,14 +91,6 @@ void SurfelFusion::prepare(const PinholeCamera& camera, const Pose& T_world_came
 /// The index image: every surfel that faces the camera, in the cell that its centre projects into.
 void SurfelFusion::project(const PointImage& points, const Executor& executor) {
   const FloatView view{association_};
-  const PinholeCamera& camera = association_.camera;
-  const auto width = static_cast<float>(camera.width);
-  const auto height = static_cast<float>(camera.height);
-  struct Landing {
-    std::size_t cell;
-    float z;
-    SurfelId id;
-  };
   const auto enter = [&](const Landing& landing) {
     const float measured = points.z.data()[landing.cell];
     const float key = measured > 0.0F ? std::abs(landing.z - measured) : landing.z;
@@ -134,61 +102,39 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
   };
   executor.parallel_for(map_.size(), kSurfelsPerTask, [&](std::size_t begin, std::size_t end) {
     // Some at a time: an exchange waits for its cell, and lets nothing pass.
-    std::array<Landing, kLandings> landings;
-    std::size_t count{0};
-    for (std::size_t id = begin; id < end; ++id) {
-      const SurfelDisc& disc = map_.discs[id];
-      const Eigen::Vector3f p_from_camera = disc.position_m - view.center_world;
-      const float z = view.R_camera_world.row(2).dot(p_from_camera);
-      if (!(z > 0.0F)) continue;
-      const float inverse_z = 1.0F / z;
-      const float u = view.R_camera_world.row(0).dot(p_from_camera) * inverse_z * view.fx + view.cx + 0.5F;
-      const float v = view.R_camera_world.row(1).dot(p_from_camera) * inverse_z * view.fy + view.cy + 0.5F;
-      if (!(u >= 0.0F && u < width && v >= 0.0F && v < height)) continue;
-      if (disc.normal.dot(p_from_camera) >= 0.0F) continue;
-      const std::size_t cell =
-          static_cast<std::size_t>(v) * static_cast<std::size_t>(camera.width) + static_cast<std::size_t>(u);
-      __builtin_prefetch(&cells_[cell], 1);
-      __builtin_prefetch(points.z.data() + cell);
-      landings[count].cell = cell;
-      landings[count].z = z;
-      landings[count].id = static_cast<SurfelId>(id);
-      if (++count == kLandings) {
-        for (const Landing& landing : landings) enter(landing);
-        count = 0;
+    std::array<std::array<Landing, kMostLandings>, 2> landings;
+    std::array<std::size_t, 2> counts{};
+    std::size_t now{0};
+    const auto enter_all = [&](std::size_t which) {
+      for (std::size_t i = 0; i < counts[which]; ++i) enter(landings[which][i]);
+    };
+    for (std::size_t first = begin; first < end; first += kMostLandings, now = 1 - now) {
+      const std::size_t discs = std::min(kMostLandings, end - first);
+      counts[now] = project_discs(view, {&map_.discs[first], discs}, static_cast<SurfelId>(first), landings[now]);
+      for (std::size_t i = 0; i < counts[now]; ++i) {
+        __builtin_prefetch(&cells_[landings[now][i].cell], 1);
+        __builtin_prefetch(points.z.data() + landings[now][i].cell);
       }
+      enter_all(1 - now);
     }
-    for (std::size_t i = 0; i < count; ++i) enter(landings[i]);
+    enter_all(1 - now);
   });
   fill_cells(executor);
 }
 
-/// Brings what fills the cells together: what lies side by side in the image is far apart in the map.
 void SurfelFusion::fill_cells(const Executor& executor) {
   const FloatView view{association_};
   const auto width = static_cast<std::size_t>(association_.camera.width);
-  executor.parallel_for(
-      static_cast<std::size_t>(association_.camera.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-        for (std::size_t v = begin; v < end; ++v) {
-          std::uint64_t* keys = cells_.data() + v * width;
-          SurfelId* ids = association_.of_cell.row(static_cast<int>(v));
-          for (std::size_t u = 0; u < width; ++u) {
-            if (u + kCellsAhead < width && keys[u + kCellsAhead] != kEmptyCell) {
-              __builtin_prefetch(&map_.discs[static_cast<SurfelId>(keys[u + kCellsAhead])]);
-            }
-            if (keys[u] == kEmptyCell) {
-              ids[u] = kNoSurfel;
-              cell_discs_.set_empty(static_cast<int>(u), static_cast<int>(v));
-              continue;
-            }
-            ids[u] = static_cast<SurfelId>(keys[u]);
-            keys[u] = kEmptyCell;  // for the next frame
-            const SurfelDisc& disc = map_.discs[ids[u]];
-            cell_discs_.set(static_cast<int>(u), static_cast<int>(v), ids[u], view.to_camera(disc.position_m),
-                            disc.radius_m, view.R_camera_world * disc.normal);
-          }
-        }
-      });
+  const auto rows = static_cast<std::size_t>(association_.camera.height);
+  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t v = begin; v < end; ++v) {
+      std::uint64_t* keys = cells_.data() + v * width;
+      SurfelId* ids = association_.of_cell.row(static_cast<int>(v));
+      for (std::size_t u = 0; u < width; ++u) ids[u] = static_cast<SurfelId>(keys[u]);
+      std::fill_n(keys, width, kEmptyCell);  // for the next frame
+      fill_row(view, map_, ids, static_cast<int>(v), cell_discs_);
+    }
+  });
 }
 
 void SurfelFusion::associate(const PointImage& points, const Executor& executor, SurfelFusionReport& report) {
@@ -261,53 +207,16 @@ void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, c
 
 void SurfelFusion::integrate(const Frame& frame, const Executor& executor, SurfelFusionReport& report) {
   const Stopwatch stopwatch;
-  const SurfelAssociation& seen = association_;
-  const PointImage& points = points_;
-  const BackProjection back_project{seen};
-  const Eigen::Matrix3f& R_world_camera = back_project.R_world_camera;
-  const auto focal = static_cast<float>(std::sqrt(seen.camera.fx * seen.camera.fy));
-  const auto max_radius = static_cast<float>(config_.max_radius_m);
-  const auto fuse = [&](SurfelId id, std::span<const SeenPixel> pixels) {
-    SurfelDisc& disc = map_.discs[id];
-    SurfelColor& color = map_.colors[id];
-    if (id >= seen.first_new) {
-      disc.weight = 0.0F;
-      color = {Eigen::Vector3f::Zero(), 0.0F};
+  const ObservedFrame observed{association_, points_, frame.color ? &*frame.color : nullptr,
+                               static_cast<float>(config_.max_radius_m)};
+  const auto rows = static_cast<std::size_t>(association_.camera.height);
+  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    SeenRounds seen;
+    for (std::size_t v = begin; v < end; v += kRowsAtOnce) {
+      seen.collect(association_, static_cast<int>(v), static_cast<int>(std::min(v + kRowsAtOnce, end)));
+      for (const std::vector<SurfelPixel>& round : seen.rounds()) average_pixels(observed, round, map_);
     }
-    for (const auto& [u, v] : pixels) {
-      const float w = seen.weight(u, v);
-      const float z = points.z(u, v);
-      const Eigen::Vector3f n_camera = normal_at(points, u, v);
-      const Eigen::Vector3f n = R_world_camera * n_camera;
-      const Eigen::Vector3f p = back_project(u, v, z);
-      const float slope = std::max(std::abs(n_camera.z()), 1e-3F);
-      const float radius = std::min(std::numbers::sqrt2_v<float> * z / focal / slope, max_radius);
-      if (frame.color) {
-        color.color = weighted_mean(color.color, color.weight, unit_color((*frame.color)(u, v)), w);
-        color.weight += w;
-      }
-      if (disc.weight > 0.0F) {
-        disc.position_m = weighted_mean(disc.position_m, disc.weight, p, w);
-        disc.normal = weighted_mean(disc.normal, disc.weight, n, w).normalized();
-        if (radius < kComparableRadius * disc.radius_m) {
-          disc.radius_m += (radius - disc.radius_m) * (w / (disc.weight + w));
-        }
-      } else {
-        disc.position_m = p;
-        disc.normal = n;
-        disc.radius_m = radius;
-      }
-      disc.weight += w;
-    }
-  };
-  const auto fetch = [&](SurfelId id, int, int) {
-    __builtin_prefetch(&map_.discs[id], 1);
-    __builtin_prefetch(&map_.colors[id], 1);
-  };
-  executor.parallel_for(static_cast<std::size_t>(seen.camera.height), kRowsPerTask,
-                        [&](std::size_t begin, std::size_t end) {
-                          for_each_seen_surfel(seen, static_cast<int>(begin), static_cast<int>(end), fetch, fuse);
-                        });
+  });
   report.integrate_ms = stopwatch.elapsed_ms();
 }
 
