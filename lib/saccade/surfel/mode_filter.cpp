@@ -3,140 +3,20 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cmath>
-#include <numbers>
-#include <optional>
+#include <span>
 
 #include "saccade/core/clock.hpp"
 #include "saccade/surfel/mode_choice.hpp"
+#include "saccade/surfel/mode_update.hpp"
 
 namespace saccade {
 namespace {
 
-constexpr std::size_t kModeRowsPerTask{16};
+constexpr std::size_t kGroupsPerTask{4};
+constexpr std::size_t kMovesAtOnce{64};  ///< for which memory is asked before the first is made
 constexpr std::size_t kWinnersPerTask{4096};
-constexpr std::uint8_t kNoMode{255};
 constexpr int kMostModes{32};
-
-/// Algorithm 6's parameters, in units of ColorUnits.
-struct ColorLimits {
-  ColorLimits(const ModeFilterConfig& config, float lightest_pixel)
-      : sigma{config.guided.color_sigma * 255.0 * ColorUnits::kPerLevel},
-        squared_new{whole(std::pow(config.color_sigmas * sigma, 2.0))},
-        squared_per_octave{static_cast<float>(2.0 * sigma * sigma * std::numbers::ln2 * 1.0001)},
-        lightest{lightest_pixel} {}
-
-  static std::int64_t whole(double squared) {
-    constexpr std::int64_t kFarthest{std::int64_t{1} << 46};  // no colours are so far apart
-    return squared < static_cast<double>(kFarthest) ? static_cast<std::int64_t>(squared) : kFarthest;
-  }
-
-  double sigma;
-  std::int64_t squared_new;  ///< (K · σ_c)²
-  float squared_per_octave;  ///< 2σ_c² ln 2: line 22 holds within 2σ_c² ln(w_n / w_i)
-  float lightest;            ///< no mode is lighter
-};
-
-void merge(const StoredModes& modes, std::size_t n, const ColorUnits& color, const Eigen::Vector3f& position_m,
-           float weight) {
-  const float sum = modes.weights[n] + weight;
-  modes.colors[n] = mean_color(ColorUnits::unpacked(modes.colors[n]), color, weight / sum).packed();
-  modes.set_position(n, weighted_mean(modes.position_m(n), modes.weights[n], position_m, weight));
-  modes.weights[n] = sum;
-}
-
-/// Line 22: p_N(c_i, c_n, σ_c) · w_n > p_N(c_i, c_i, σ_c) · w_i; the common factor of the densities is left out.
-bool absorbs(const StoredModes& modes, std::size_t n, std::size_t i, double sigma) {
-  const auto squared = static_cast<double>(
-      squared_distance(ColorUnits::unpacked(modes.colors[n]), ColorUnits::unpacked(modes.colors[i])));
-  return std::exp(-squared / (2.0 * sigma * sigma)) * double{modes.weights[n]} > double{modes.weights[i]};
-}
-
-/// ⌊log₂ weight⌋ and a constant.
-float octave(float weight) { return static_cast<float>(std::bit_cast<std::int32_t>(weight) >> 23); }
-
-/// The modes of one surfel while a frame is taken in, and which of them its pixels went into.
-class ModesOfSurfel {
- public:
-  ModesOfSurfel(ModeStore& store, SurfelId id, const ModeFilterConfig& config, const ColorLimits& limits,
-                std::size_t pixels, ModeFilterReport& counts)
-      : modes_{store.modes(id)}, config_{config}, limits_{limits}, counts_{counts}, pixels_{pixels} {
-    std::fill_n(mode_of_pixel_.begin(), pixels, kNoMode);
-  }
-
-  [[nodiscard]] const StoredModes& modes() const { return modes_; }
-  [[nodiscard]] std::uint8_t mode_of_pixel(std::size_t k) const { return mode_of_pixel_[k]; }
-  /// Lines 6 and 8.
-  [[nodiscard]] std::optional<std::size_t> mode_for(const ColorQuery& answered) const {
-    if (answered.count == 0 || answered.nearest.squared_units > limits_.squared_new) return std::nullopt;
-    return answered.nearest.index;
-  }
-  [[nodiscard]] std::optional<std::size_t> mode_for(const ColorUnits& color) const {
-    ColorQuery query{modes_.colors, modes_.count(), color, {}};
-    find_nearest({&query, 1}, query.count);
-    return mode_for(query);
-  }
-
-  /// Lines 1–26 for the k-th pixel with its measured point.
-  void observe(std::size_t k, const ColorUnits& color, const Eigen::Vector3f& position_m, float weight,
-               std::optional<std::size_t> nearest) {
-    if (!nearest) {
-      if (modes_.count() >= static_cast<std::size_t>(config_.max_modes)) evict_lightest();
-      modes_.add(color, position_m, weight);
-      ++counts_.new_modes;
-      return;
-    }
-    merge(modes_, *nearest, color, position_m, weight);
-    mode_of_pixel_[k] = static_cast<std::uint8_t>(*nearest);
-    compress(*nearest);
-  }
-
- private:
-  /// Lines 21–26.
-  void compress(std::size_t n) {
-    if (near_enough(n) == 0) return;
-    for (std::size_t i = 0; i < modes_.count();) {
-      if (i == n || !absorbs(modes_, n, i, limits_.sigma)) {
-        ++i;
-        continue;
-      }
-      merge(modes_, n, ColorUnits::unpacked(modes_.colors[i]), modes_.position_m(i), modes_.weights[i]);
-      ++counts_.merged_modes;
-      remove(i, static_cast<std::uint8_t>(n));
-      if (i < n) --n;
-    }
-  }
-  /// Modes that n could absorb if they were as light as one pixel: almost always none.
-  [[nodiscard]] std::uint32_t near_enough(std::size_t n) const {
-    const float most_octaves = octave(modes_.weights[n]) - octave(limits_.lightest) + 1.0F;
-    const std::uint32_t all = colors_within(modes_.colors, modes_.count(), ColorUnits::unpacked(modes_.colors[n]),
-                                            static_cast<std::int64_t>(most_octaves * limits_.squared_per_octave) + 1);
-    return all & ~(1U << n);
-  }
-  void evict_lightest() {
-    const auto i =
-        static_cast<std::size_t>(std::min_element(modes_.weights, modes_.weights + modes_.count()) - modes_.weights);
-    counts_.evicted_weight += double{modes_.weights[i]};
-    ++counts_.evicted_modes;
-    remove(i, kNoMode);
-  }
-  void remove(std::size_t i, std::uint8_t heir) {
-    for (std::size_t k = 0; k < pixels_; ++k) {
-      std::uint8_t& mode = mode_of_pixel_[k];
-      if (mode == i) mode = heir;
-      if (mode != kNoMode && mode > i) --mode;
-    }
-    modes_.remove(i);
-  }
-
-  StoredModes modes_;
-  const ModeFilterConfig& config_;
-  const ColorLimits& limits_;
-  ModeFilterReport& counts_;
-  std::size_t pixels_;
-  std::array<std::uint8_t, SurfelAssociation::kNewSurfel> mode_of_pixel_;
-};
 
 void add_counts(ModeFilterReport& sum, const ModeFilterReport& counts) {
   sum.pixels += counts.pixels;
@@ -172,88 +52,51 @@ Result<ModeFilter> ModeFilter::create(const ModeFilterConfig& config) {
 
 void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, const Executor& executor,
                            ModeFilterReport& report) {
-  const auto rows = static_cast<std::size_t>(seen.camera.height);
-  const auto width = static_cast<std::size_t>(seen.camera.width);
   lightest_ = std::min(lightest_, *std::min_element(seen.column_weights.begin(), seen.column_weights.end()) *
                                       *std::min_element(seen.row_weights.begin(), seen.row_weights.end()));
   const ColorLimits limits{config_, lightest_};
-  const BackProjection back_project{seen};
-  const Eigen::Vector3f forward = back_project.R_world_camera.col(2);
-  std::vector<ModeFilterReport> counts((rows + kModeRowsPerTask - 1) / kModeRowsPerTask);
-  executor.parallel_for(rows, kModeRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    ModeFilterReport& count = counts[begin / kModeRowsPerTask];
-    std::vector<ColorQuery> queries;
-    for (int row = static_cast<int>(begin); row < static_cast<int>(end); ++row) {
-      // First the nearest modes of all pixels of a row's surfels, at the frame's beginning.
-      queries.clear();
-      const auto ask = [&](SurfelId id, std::span<const SeenPixel> pixels) {
-        const StoredModes modes = store_.modes(id);
-        for (const auto& [u, v] : pixels) {
-          ColorQuery& query = queries.emplace_back();  // member by member: what is stored in parts is slow to copy
-          query.packed = modes.colors;
-          query.count = modes.count();
-          query.color = color_units((*frame.color)(u, v));
-        }
-      };
-      for_each_seen_surfel(
-          seen, row, row + 1, [&](SurfelId id, int, int) { store_.fetch(id); }, ask);
-      find_nearest(queries, static_cast<std::size_t>(config_.max_modes));
-      auto answered = queries.cbegin();
-      for_each_seen_surfel(
-          seen, row, row + 1, [](SurfelId, int, int) {},
-          [&](SurfelId id, std::span<const SeenPixel> pixels) {
-            ModesOfSurfel surfel{store_, id, config_, limits, pixels.size(), count};
-            const StoredModes& modes = surfel.modes();
-            for (std::size_t k = 0; config_.enhance_depth && k < pixels.size(); ++k) {
-              const std::optional<std::size_t> nearest = surfel.mode_for(answered[static_cast<std::ptrdiff_t>(k)]);
-              if (!nearest) continue;
-              const auto& [u, v] = pixels[k];
-              const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
-              const Eigen::Vector3f color = unit_color(ColorUnits::unpacked(modes.colors[*nearest]));
-              guidance_[i] = {color.x(), color.y(), color.z(),
-                              forward.dot(modes.position_m(*nearest) - back_project.center_world)};
-              used_[i] = 1;
-              ++count.guided;
-            }
-            for (std::size_t k = 0; k < pixels.size(); ++k, ++answered) {
-              const auto& [u, v] = pixels[k];
-              surfel.observe(k, answered->color, back_project(u, v, frame.depth(u, v)), seen.weight(u, v),
-                             k == 0 ? surfel.mode_for(*answered) : surfel.mode_for(answered->color));
-            }
-            for (std::size_t k = 0; config_.enhance_depth && k < pixels.size(); ++k) {
-              const auto& [u, v] = pixels[k];
-              mode_of_pixel_[static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u)] =
-                  surfel.mode_of_pixel(k);
-            }
-            count.pixels += pixels.size();
-          });
-    }
+  std::vector<ModeFilterReport> counts(seen.groups.size());
+  executor.parallel_for(seen.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+    ModeUpdate update{config_, limits, frame, seen, store_, config_.enhance_depth ? &guidance_ : nullptr};
+    for (std::size_t g = begin; g < end; ++g) update.take(seen.groups[g], counts[g]);
   });
   for (const ModeFilterReport& count : counts) add_counts(report, count);
 }
 
 void ModeFilter::move_to_enhanced(const Frame& frame, const SurfelAssociation& seen, const Executor& executor) {
-  const auto rows = static_cast<std::size_t>(seen.camera.height);
   const auto width = static_cast<std::size_t>(seen.camera.width);
   const BackProjection back_project{seen};
-  executor.parallel_for(rows, kModeRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for_each_seen_surfel(
-        seen, static_cast<int>(begin), static_cast<int>(end), [&](SurfelId id, int, int) { store_.fetch_places(id); },
-        [&](SurfelId id, std::span<const SeenPixel> pixels) {
-          for (const auto& [u, v] : pixels) {
-            const std::size_t i = static_cast<std::size_t>(v) * width + static_cast<std::size_t>(u);
-            const float enhanced_m = enhanced_m_[i];
-            const float depth_m = frame.depth.data()[i];
-            if (used_[i] == 0 || mode_of_pixel_[i] == kNoMode || !(enhanced_m > 0.0F) || enhanced_m == depth_m ||
-                !(std::abs(double{enhanced_m} - double{depth_m}) <= config_.max_depth_change_m)) {
-              continue;
-            }
-            const StoredModes modes = store_.modes(id);
-            const std::size_t n = mode_of_pixel_[i];
-            const Eigen::Vector3f step = back_project(u, v, enhanced_m) - back_project(u, v, depth_m);
-            modes.set_position(n, modes.position_m(n) + step * (seen.weight(u, v) / modes.weights[n]));
-          }
-        });
+  const auto index = [width](const SurfelPixel& pixel) { return static_cast<std::size_t>(pixel.v) * width + pixel.u; };
+  const auto moves = [&](const SurfelPixel& pixel) {
+    const std::size_t i = index(pixel);
+    const float enhanced_m = enhanced_m_[i];
+    const float depth_m = frame.depth.data()[i];
+    return guidance_.used[i] != 0 && guidance_.mode_of_pixel[i] != ModeGuidance::kNoMode && enhanced_m > 0.0F &&
+           enhanced_m != depth_m && std::abs(double{enhanced_m} - double{depth_m}) <= config_.max_depth_change_m;
+  };
+  const auto move_round = [&](std::span<const SurfelPixel> round) {
+    std::array<SurfelPixel, kMovesAtOnce> moving;
+    for (std::size_t next = 0; next < round.size();) {
+      std::size_t count{0};
+      for (; next < round.size() && count < kMovesAtOnce; ++next) {
+        if (!moves(round[next])) continue;
+        moving[count++] = round[next];
+        store_.fetch_place(round[next].id, guidance_.mode_of_pixel[index(round[next])]);
+      }
+      for (const SurfelPixel& pixel : std::span{moving}.first(count)) {
+        const std::size_t i = index(pixel);
+        const StoredModes modes = store_.modes(pixel.id);
+        const std::size_t n = guidance_.mode_of_pixel[i];
+        const Eigen::Vector3f step =
+            back_project(pixel.u, pixel.v, enhanced_m_[i]) - back_project(pixel.u, pixel.v, frame.depth.data()[i]);
+        modes.set_position(n, modes.position_m(n) + step * (seen.weight(pixel.u, pixel.v) / modes.weights[n]));
+      }
+    }
+  };
+  executor.parallel_for(seen.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) {
+      for (const auto& round : seen.groups[g]) move_round(round);
+    }
   });
 }
 
@@ -271,15 +114,15 @@ Result<ModeFilterReport> ModeFilter::add_frame(const Frame& frame, const SurfelA
   if (!report.has_color) return report;
   Stopwatch stopwatch;
   if (config_.enhance_depth) {
-    guidance_.resize(frame.depth.size());
-    used_.assign(frame.depth.size(), 0);
-    mode_of_pixel_.resize(frame.depth.size());
+    guidance_.values.resize(frame.depth.size());
+    guidance_.used.assign(frame.depth.size(), 0);
+    guidance_.mode_of_pixel.resize(frame.depth.size());
   }
   integrate(frame, seen, executor, report);
   report.integrate_ms = stopwatch.lap_ms();
   if (!config_.enhance_depth) return report;
   enhanced_m_.resize(frame.depth.size());
-  guided_.apply(width, height, frame.depth.pixels(), guidance_, used_, executor, enhanced_m_);
+  guided_.apply(width, height, frame.depth.pixels(), guidance_.values, guidance_.used, executor, enhanced_m_);
   report.guided_filter_ms = stopwatch.lap_ms();
   move_to_enhanced(frame, seen, executor);
   report.move_ms = stopwatch.lap_ms();

@@ -48,6 +48,15 @@ struct ModeFilterReport {
   double move_ms{0.0};           ///< line 19: positions move to the enhanced depths
 };
 
+/// What modes say about the pixels of a frame.
+struct ModeGuidance {
+  static constexpr std::uint8_t kNoMode{255};
+
+  std::vector<Eigen::Vector4f> values;      ///< colour in [0, 1] and depth of the nearest mode
+  std::vector<std::uint8_t> used;           ///< 0: there is none
+  std::vector<std::uint8_t> mode_of_pixel;  ///< the mode that the pixel went into, or kNoMode; where it saw a surfel
+};
+
 /// Runs beside SurfelFusion, frame by frame. Guidance comes from the modes at the frame's beginning; then each pixel
 /// goes through Algorithm 6, several pixels of one surfel in row-major order. No line of it asks for a position but
 /// the averages of eq. 4.6, which are linear: so modes take the measured points first, in one pass through memory, and
@@ -83,9 +92,7 @@ class ModeFilter {
   GuidedFilter guided_;
   ModeStore store_;
   float lightest_{1.0F};  ///< weight of a pixel so far
-  std::vector<Eigen::Vector4f> guidance_;
-  std::vector<std::uint8_t> used_;
-  std::vector<std::uint8_t> mode_of_pixel_;  ///< the mode that a guided pixel went into, or kNoMode
+  ModeGuidance guidance_;
   std::vector<float> enhanced_m_;
 };
 

@@ -53,21 +53,22 @@ void nearest_kernel(std::span<ColorQuery> queries, std::size_t room) {
   }
 }
 
-std::uint32_t within_kernel(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
-                            std::int64_t squared_units) {
+void nearby_kernel(std::span<NearbyQuery> queries) {
   const Wide d;
-  const W r = hn::Set(d, color.r);
-  const W g = hn::Set(d, color.g);
-  const W b = hn::Set(d, color.b);
-  const W limit = hn::Set(d, squared_units + 1);
-  std::uint64_t bits{0};
-  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const auto inside = hn::Lt(squared_distances(packed + i, r, g, b), limit);
-    std::uint64_t here{0};
-    hn::StoreMaskBits(d, inside, reinterpret_cast<std::uint8_t*>(&here));
-    bits |= here << i;
+  for (NearbyQuery& query : queries) {
+    const W r = hn::Set(d, query.color.r);
+    const W g = hn::Set(d, query.color.g);
+    const W b = hn::Set(d, query.color.b);
+    const W limit = hn::Set(d, query.squared_units + 1);
+    std::uint64_t bits{0};
+    for (std::size_t i = 0; i < query.count; i += hn::Lanes(d)) {
+      const auto inside = hn::Lt(squared_distances(query.packed + i, r, g, b), limit);
+      std::uint64_t here{0};
+      hn::StoreMaskBits(d, inside, reinterpret_cast<std::uint8_t*>(&here));
+      bits |= here << i;
+    }
+    query.nearby = static_cast<std::uint32_t>(bits & ((std::uint64_t{1} << query.count) - 1));
   }
-  return static_cast<std::uint32_t>(bits & ((std::uint64_t{1} << count) - 1));
 }
 
 }  // namespace
@@ -79,7 +80,7 @@ namespace saccade {
 namespace {
 
 HWY_EXPORT(nearest_kernel);
-HWY_EXPORT(within_kernel);
+HWY_EXPORT(nearby_kernel);
 
 }  // namespace
 
@@ -87,10 +88,7 @@ void find_nearest(std::span<ColorQuery> queries, std::size_t room) {
   HWY_DYNAMIC_DISPATCH(nearest_kernel)(queries, room);
 }
 
-std::uint32_t colors_within(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
-                            std::int64_t squared_units) {
-  return HWY_DYNAMIC_DISPATCH(within_kernel)(packed, count, color, squared_units);
-}
+void find_nearby(std::span<NearbyQuery> queries) { HWY_DYNAMIC_DISPATCH(nearby_kernel)(queries); }
 
 }  // namespace saccade
 #endif  // HWY_ONCE

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ColorUnits: a colour in whole numbers; find_nearest and colors_within: searches in the colours of a surfel's modes.
+// ColorUnits: a colour in whole numbers; find_nearest and find_nearby: searches in the colours of a surfel's modes.
 
 #include <cmath>
 #include <cstddef>
@@ -56,8 +56,17 @@ struct ColorQuery {
 /// Answers queries. Of each query's packed colours `room`, and seven more, must be readable; those from its count on
 /// are ignored. One after the other is much quicker than one alone: searches overlap. simd_target() changes nothing.
 void find_nearest(std::span<ColorQuery> queries, std::size_t room);
-/// Bit i: ‖c_i − c‖² ≤ squared_units, for 1 to 32 packed colours; seven more must be readable. As find_nearest.
-[[nodiscard]] std::uint32_t colors_within(const std::uint64_t* packed, std::size_t count, const ColorUnits& color,
-                                          std::int64_t squared_units);
+
+/// Which colours are how near to a colour, and the answer.
+struct NearbyQuery {
+  const std::uint64_t* packed;
+  std::size_t count;  ///< 1 to 32
+  ColorUnits color;
+  std::int64_t squared_units;
+  std::uint32_t nearby;  ///< bit i: ‖c_i − c‖² ≤ squared_units
+};
+
+/// Answers queries; seven colours more must be readable. As find_nearest.
+void find_nearby(std::span<NearbyQuery> queries);
 
 }  // namespace saccade

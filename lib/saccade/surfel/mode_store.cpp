@@ -22,10 +22,19 @@ SurfelMode ModeStore::mode(SurfelId id, std::size_t i) const {
           reinterpret_cast<const float*>(weights)[i]};
 }
 
-void ModeStore::fetch(SurfelId id, std::size_t first_byte) const {
+void ModeStore::fetch_colors(SurfelId id) const {
   constexpr std::size_t kLine{64};
   const std::byte* const first = room(id);
-  for (std::size_t i = first_byte; i < stride(); i += kLine) __builtin_prefetch(first + i, 1);
+  __builtin_prefetch(&counts_[id], 1);
+  for (std::size_t i = 0; i < max_modes_ * sizeof(std::uint64_t); i += kLine) __builtin_prefetch(first + i, 1);
+}
+
+void ModeStore::fetch_place(SurfelId id, std::size_t i) const {
+  const std::byte* const weights = room(id) + max_modes_ * sizeof(std::uint64_t);
+  const std::byte* const position = weights + (max_modes_ + 3 * i) * sizeof(float);
+  __builtin_prefetch(weights + i * sizeof(float), 1);
+  __builtin_prefetch(position, 1);
+  __builtin_prefetch(position + 2 * sizeof(float), 1);
 }
 
 }  // namespace saccade

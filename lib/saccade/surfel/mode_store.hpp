@@ -86,13 +86,11 @@ class ModeStore {
             reinterpret_cast<float*>(positions), &counts_[id]};
   }
   [[nodiscard]] SurfelMode mode(SurfelId id, std::size_t i) const;
-  /// Asks memory for the modes; for their weights and positions alone.
-  void fetch(SurfelId id) const { fetch(id, 0); }
-  void fetch_places(SurfelId id) const { fetch(id, max_modes_ * sizeof(std::uint64_t)); }
+  /// Asks memory for how many modes there are, and their colours; for the weight and position of one of them.
+  void fetch_colors(SurfelId id) const;
+  void fetch_place(SurfelId id, std::size_t i) const;
 
  private:
-  void fetch(SurfelId id, std::size_t first_byte) const;
-
   static constexpr std::size_t kPerChunk{512};  ///< more would be much for a map of few surfels
   static constexpr std::size_t kBytesPerMode{sizeof(std::uint64_t) + 4 * sizeof(float)};
   /// Searches look at up to seven modes more than there are: so far they stay among a surfel's own bytes.

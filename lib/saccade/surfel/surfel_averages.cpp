@@ -10,6 +10,7 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "saccade/surfel/surfel_averages.cpp"
 #include "saccade/core/simd_kernels.hpp"
+#include "saccade/surfel/surfel_lanes-inl.hpp"
 
 #ifndef SACCADE_SURFEL_AVERAGES_BATCH
 #define SACCADE_SURFEL_AVERAGES_BATCH
@@ -39,39 +40,6 @@ HWY_BEFORE_NAMESPACE();
 namespace saccade::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-using Tag = hn::CappedTag<float, 16>;
-using V = hn::Vec<Tag>;
-
-HWY_INLINE V set(float value) { return hn::Set(Tag{}, value); }
-
-struct Vector {
-  V x, y, z;
-};
-
-/// Sums as Eigen makes them: x + (y + z).
-HWY_INLINE V dot(V ax, V ay, V az, const Vector& b) {
-  return hn::Add(hn::Mul(ax, b.x), hn::Add(hn::Mul(ay, b.y), hn::Mul(az, b.z)));
-}
-
-HWY_INLINE Vector turned(const Eigen::Matrix3f& R, const Vector& p) {
-  return {dot(set(R(0, 0)), set(R(0, 1)), set(R(0, 2)), p), dot(set(R(1, 0)), set(R(1, 1)), set(R(1, 2)), p),
-          dot(set(R(2, 0)), set(R(2, 1)), set(R(2, 2)), p)};
-}
-
-/// `share` of the way from a to b.
-HWY_INLINE V mean(V a, V b, V share) { return hn::Add(a, hn::Mul(hn::Sub(b, a), share)); }
-
-HWY_INLINE Vector mean(const Vector& a, const Vector& b, V share) {
-  return {mean(a.x, b.x, share), mean(a.y, b.y, share), mean(a.z, b.z, share)};
-}
-
-/// `yes` where the mask is true.
-template <class Mask>
-HWY_INLINE Vector choose(Mask mask, const Vector& yes, const Vector& no) {
-  return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};
-}
-
 /// What is the same for all pixels of a frame.
 struct View {
   BackProjection back_project;
@@ -81,18 +49,12 @@ struct View {
 
 HWY_INLINE void average_discs(const View& view, Batch& batch, std::size_t i) {
   const Tag d;
-  const BackProjection& to_world = view.back_project;
-  const V w = hn::LoadU(d, batch.w + i);
-  const V z = hn::LoadU(d, batch.z + i);
-  const V x = hn::Mul(hn::Sub(hn::LoadU(d, batch.u + i), set(to_world.cx)), set(to_world.inverse_fx));
-  const V y = hn::Mul(hn::Sub(hn::LoadU(d, batch.v + i), set(to_world.cy)), set(to_world.inverse_fy));
-  Vector p = turned(to_world.R_world_camera, {hn::Mul(x, z), hn::Mul(y, z), z});
-  p.x = hn::Add(set(to_world.center_world.x()), p.x);
-  p.y = hn::Add(set(to_world.center_world.y()), p.y);
-  p.z = hn::Add(set(to_world.center_world.z()), p.z);
-  const V nz_camera = hn::LoadU(d, batch.nz + i);
-  const Vector n = turned(to_world.R_world_camera, {hn::LoadU(d, batch.nx + i), hn::LoadU(d, batch.ny + i), nz_camera});
-  const V slope = hn::Max(hn::Abs(nz_camera), set(1e-3F));
+  const V w = load(batch.w + i);
+  const V z = load(batch.z + i);
+  const Vector p = back_projected(view.back_project, load(batch.u + i), load(batch.v + i), z);
+  const Vector n_camera{load(batch.nx + i), load(batch.ny + i), load(batch.nz + i)};
+  const Vector n = turned(view.back_project.R_world_camera, n_camera);
+  const V slope = hn::Max(hn::Abs(n_camera.z), set(1e-3F));
   const V across = hn::Div(hn::Div(hn::Mul(set(std::numbers::sqrt2_v<float>), z), set(view.focal)), slope);
   const V radius_seen = hn::Min(across, set(view.max_radius_m));
 
@@ -106,7 +68,7 @@ HWY_INLINE void average_discs(const View& view, Batch& batch, std::size_t i) {
   const V sum = hn::Add(weight, w);
   const V share = hn::Div(w, sum);
   const Vector mean_normal = mean(normal, n, share);
-  const V squared = dot(mean_normal.x, mean_normal.y, mean_normal.z, mean_normal);
+  const V squared = dot(mean_normal, mean_normal);
   const V length = hn::IfThenElse(hn::Gt(squared, hn::Zero(d)), hn::Sqrt(squared), set(1.0F));
   const Vector unit{hn::Div(mean_normal.x, length), hn::Div(mean_normal.y, length), hn::Div(mean_normal.z, length)};
   const auto comparable = hn::Lt(radius_seen, hn::Mul(set(kComparableRadius), radius));
@@ -121,9 +83,9 @@ HWY_INLINE void average_discs(const View& view, Batch& batch, std::size_t i) {
 HWY_INLINE void average_colors(Batch& batch, std::size_t i) {
   const Tag d;
   const V unit = set(255.0F);
-  const Vector seen{hn::Div(hn::LoadU(d, batch.r + i), unit), hn::Div(hn::LoadU(d, batch.g + i), unit),
-                    hn::Div(hn::LoadU(d, batch.b + i), unit)};
-  const V w = hn::LoadU(d, batch.w + i);
+  const Vector seen{hn::Div(load(batch.r + i), unit), hn::Div(load(batch.g + i), unit),
+                    hn::Div(load(batch.b + i), unit)};
+  const V w = load(batch.w + i);
   Vector color;
   V weight;
   hn::LoadInterleaved4(d, batch.colors + 4 * i, color.x, color.y, color.z, weight);

@@ -16,7 +16,7 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kRowsPerTask{16};
-constexpr std::size_t kRowsAtOnce{4};  ///< whose surfels stay in a near cache while they are averaged
+constexpr std::size_t kGroupsPerTask{4};
 constexpr std::size_t kSurfelsPerTask{4096};
 constexpr double kLeastFactor{1e-18};
 constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};  ///< farther than any; its id is kNoSurfel
@@ -79,7 +79,8 @@ void SurfelFusion::prepare(const PinholeCamera& camera, const Pose& T_world_came
     seen.row_weights = axis_weights(camera.height, squared_diagonal, config_.image_sigma);
     seen.of_pixel = Image<SurfelId>{camera.width, camera.height, kNoSurfel};
     seen.of_cell = Image<SurfelId>{camera.width, camera.height, kNoSurfel};
-    seen.seen_by = Image<std::uint16_t>{camera.width, camera.height};
+    seen.groups.resize((static_cast<std::size_t>(camera.height) + SurfelAssociation::kRowsAtOnce - 1) /
+                       SurfelAssociation::kRowsAtOnce);
     cell_discs_ = SurfelCells{camera.width, camera.height};
     cells_.assign(seen.of_pixel.size(), kEmptyCell);
   }
@@ -180,28 +181,8 @@ void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, c
       }
     }
   });
-  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    std::vector<std::uint32_t> bits(width);
-    for (std::size_t v = begin; v < end; ++v) {
-      const SurfelId* cells = seen.of_cell.row(static_cast<int>(v));
-      const SurfelId* own = seen.of_pixel.row(static_cast<int>(v));
-      for (std::size_t u = 0; u < width; ++u) {
-        const bool is_new = own[u] != kNoSurfel && own[u] >= seen.first_new;
-        bits[u] = is_new ? 1U << SurfelAssociation::kNewSurfel : 0U;
-      }
-      for (std::size_t i = 0; i < 9; ++i) {
-        if (v + i / 3 < 1 || v + i / 3 > rows) continue;
-        const SurfelId* pixels = seen.of_pixel.row(static_cast<int>(v + i / 3 - 1));
-        const std::size_t shift = i % 3;  // pixel u + shift − 1
-        const std::size_t last = shift == 2 ? width - 1 : width;
-        for (std::size_t u = shift == 0 ? 1 : 0; u < last; ++u) {
-          const bool here = pixels[u + shift - 1] == cells[u] && cells[u] != kNoSurfel;
-          bits[u] |= here ? 1U << i : 0U;
-        }
-      }
-      std::uint16_t* to = seen.seen_by.row(static_cast<int>(v));
-      for (std::size_t u = 0; u < width; ++u) to[u] = static_cast<std::uint16_t>(bits[u]);
-    }
+  executor.parallel_for(seen.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) seen.collect(g);
   });
 }
 
@@ -209,12 +190,9 @@ void SurfelFusion::integrate(const Frame& frame, const Executor& executor, Surfe
   const Stopwatch stopwatch;
   const ObservedFrame observed{association_, points_, frame.color ? &*frame.color : nullptr,
                                static_cast<float>(config_.max_radius_m)};
-  const auto rows = static_cast<std::size_t>(association_.camera.height);
-  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    SeenRounds seen;
-    for (std::size_t v = begin; v < end; v += kRowsAtOnce) {
-      seen.collect(association_, static_cast<int>(v), static_cast<int>(std::min(v + kRowsAtOnce, end)));
-      for (const std::vector<SurfelPixel>& round : seen.rounds()) average_pixels(observed, round, map_);
+  executor.parallel_for(association_.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t g = begin; g < end; ++g) {
+      for (const auto& round : association_.groups[g]) average_pixels(observed, round, map_);
     }
   });
   report.integrate_ms = stopwatch.elapsed_ms();

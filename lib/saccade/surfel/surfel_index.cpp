@@ -9,34 +9,13 @@
 #undef HWY_TARGET_INCLUDE
 #define HWY_TARGET_INCLUDE "saccade/surfel/surfel_index.cpp"
 #include "saccade/core/simd_kernels.hpp"
+#include "saccade/surfel/surfel_lanes-inl.hpp"
 
 HWY_BEFORE_NAMESPACE();
 namespace saccade::HWY_NAMESPACE {
 namespace {
 
-namespace hn = hwy::HWY_NAMESPACE;
-constexpr std::size_t kMostLanes{16};
-using Tag = hn::CappedTag<float, kMostLanes>;
 using IdTag = hn::RebindToUnsigned<Tag>;
-using V = hn::Vec<Tag>;
-
-HWY_INLINE V set(float value) { return hn::Set(Tag{}, value); }
-
-struct Vector {
-  V x, y, z;
-};
-
-/// Sums as Eigen makes them: x + (y + z).
-HWY_INLINE V dot(const Vector& a, const Vector& b) {
-  return hn::Add(hn::Mul(a.x, b.x), hn::Add(hn::Mul(a.y, b.y), hn::Mul(a.z, b.z)));
-}
-HWY_INLINE V row_dot(const Eigen::Matrix3f& R, Eigen::Index row, const Vector& p) {
-  return dot({set(R(row, 0)), set(R(row, 1)), set(R(row, 2))}, p);
-}
-HWY_INLINE Vector from_center(const FloatView& view, const Vector& p) {
-  return {hn::Sub(p.x, set(view.center_world.x())), hn::Sub(p.y, set(view.center_world.y())),
-          hn::Sub(p.z, set(view.center_world.z()))};
-}
 
 struct Discs {
   Vector position;
@@ -74,7 +53,7 @@ std::size_t project_kernel(const FloatView& view, std::span<const SurfelDisc> di
       from = rest[0].position_m.data();
     }
     const Discs here = load_discs(from);
-    const Vector p = from_center(view, here.position);
+    const Vector p = difference(here.position, set(view.center_world));
     const V z = row_dot(view.R_camera_world, 2, p);
     const V inverse_z = hn::Div(set(1.0F), z);
     const auto column = [&](Eigen::Index row, float focal, float center) HWY_ATTR {
@@ -131,7 +110,7 @@ void fill_row_kernel(const FloatView& view, const SurfelMap& map, const SurfelId
       const auto put = [&](SurfelCells::Plane plane, V value) HWY_ATTR {
         hn::StoreU(hn::IfThenElse(is_filled, value, set(SurfelCells::kNowhere)), d, cells.row(plane, v) + u);
       };
-      const Vector p = from_center(view, here.position);
+      const Vector p = difference(here.position, set(view.center_world));
       put(SurfelCells::kX, row_dot(view.R_camera_world, 0, p));
       put(SurfelCells::kY, row_dot(view.R_camera_world, 1, p));
       put(SurfelCells::kZ, row_dot(view.R_camera_world, 2, p));

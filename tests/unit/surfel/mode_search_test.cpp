@@ -58,7 +58,9 @@ TEST(ModeSearch, EqualsPlainLoopsOnEveryInstructionSet) {
         const std::int64_t limit = squared(rng() % count);
         std::uint32_t within{0};
         for (std::size_t k = 0; k < count; ++k) within |= squared(k) <= limit ? 1U << k : 0U;
-        ASSERT_EQ(colors_within(packed.data(), count, wanted, limit), within) << target << ", " << count << " colours";
+        std::array<NearbyQuery, 1> nearby{NearbyQuery{packed.data(), count, wanted, limit, 0}};
+        find_nearby(nearby);
+        ASSERT_EQ(nearby[0].nearby, within) << target << ", " << count << " colours";
         ++compared;
       }
     }

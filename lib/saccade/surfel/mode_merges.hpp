@@ -1,0 +1,33 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ModeMerges: modes and the pixels that go into them, side by side; merge_pixels.  Thesis §4.1.1, Algorithm 6, line 20
+// (eq. 4.4 to 4.6). For mode_update.cpp.
+
+#include <array>
+#include <cstddef>
+#include <cstdint>
+
+#include "saccade/surfel/surfel_association.hpp"
+
+namespace saccade {
+
+/// Colours in ColorUnits.
+struct ModeMerges {
+  static constexpr std::size_t kMost{64};
+  template <class T>
+  using Each = std::array<T, kMost>;
+
+  struct {
+    Each<std::int32_t> r{}, g{}, b{};
+    Each<float> x_m{}, y_m{}, z_m{}, weight{};
+  } mode;  ///< as they are; then as they become
+  struct {
+    Each<std::int32_t> r{}, g{}, b{};
+    Each<float> u{}, v{}, depth_m{}, weight{};
+  } pixel;
+};
+
+/// Weighted means of the first `count`, and sums of weights. Expects positive sums. simd_target() changes nothing.
+void merge_pixels(const BackProjection& back_project, std::size_t count, ModeMerges& merges);
+
+}  // namespace saccade
