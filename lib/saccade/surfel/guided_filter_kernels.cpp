@@ -173,7 +173,7 @@ HWY_INLINE bool any_used(const float* row, int first, int end) {
 }
 
 /// Columns on either side of a strip that its windows reach, in whole vectors.
-HWY_INLINE int reach_of(const Disc& disc) { return (disc.radius_px + kBlock - 2) / kBlock * kBlock; }
+HWY_INLINE int reach_of(const Disc& disc) { return (disc.radius_px + lanes() - 2) / lanes() * lanes(); }
 
 /// Calls group(first) with the first moment of each group, as a constant.
 template <class Group>

@@ -9,7 +9,6 @@
 #include <cstring>
 #include <iostream>
 #include <limits>
-#include <map>
 #include <optional>
 #include <random>
 #include <string>
@@ -167,7 +166,6 @@ TEST(SurfelFusion, PixelsWeighAsInEquation42) {
   EXPECT_GT(compared, 4U);
 }
 
-/// What lies at a surfel's depth, but turned, is another surface: nothing is averaged, and nothing made.
 /// Corners whose weight would be 0 are averaged like others.
 TEST(SurfelFusion, NoWeightIsZero) {
   SurfelFusion fusion = SurfelFusion::create({.image_sigma = 0.01}).value();
@@ -219,27 +217,6 @@ TEST(SurfelFusion, AnotherNormalAtTheSameDepthChangesNothing) {
   EXPECT_EQ(fusion.association().of_pixel(80, 60), kNoSurfel);
   EXPECT_EQ(fusion.map().discs[middle].weight, before.discs[middle].weight);
   EXPECT_EQ(report.associated, 0U);
-}
-
-TEST(SurfelFusion, EachPixelIsVisitedOnceWithItsSurfel) {
-  SurfelFusion fusion = SurfelFusion::create().value();
-  for (const Frame& frame : table_frames(3)) {
-    ASSERT_TRUE(fusion.add_frame(frame, kSurfelCamera, {}));
-    const SurfelAssociation& seen = fusion.association();
-    std::map<SurfelId, std::vector<int>> wanted;
-    for (int i = 0; i < kSurfelCamera.width * kSurfelCamera.height; ++i) {
-      const SurfelId id = seen.of_pixel.data()[i];
-      if (id != kNoSurfel) wanted[id].push_back(i);
-    }
-    std::map<SurfelId, std::vector<int>> visited;
-    const auto visit = [&](SurfelId id, std::span<const SeenPixel> pixels) {
-      ASSERT_FALSE(visited.contains(id));
-      for (const auto& [u, v] : pixels) visited[id].push_back(v * kSurfelCamera.width + u);
-    };
-    for_each_seen_surfel(
-        seen, 0, kSurfelCamera.height, [](SurfelId, int, int) {}, visit);
-    EXPECT_EQ(visited, wanted);  // row by row, too
-  }
 }
 
 TEST(SurfelFusion, ACameraAtRestAddsNothing) {
