@@ -17,16 +17,16 @@ Arguments short_run(const fs::path& out) {
 }
 
 /// The document's summary, and that it is served until it is interrupted.
-nlohmann::json shown(const fs::path& subject, const fs::path& json) {
-  RunningProgram program{{"show", subject.string(), "--no-browser", "--json", json.string()}};
-  const bool serves = wait_for_file(json);
+nlohmann::json shown(const fs::path& subject, const fs::path& results) {
+  RunningProgram program{{"show", subject.string(), "--no-browser", "--json", results.string()}};
+  const bool serves = wait_for_file(results);
   EXPECT_TRUE(serves) << program.err();
   std::this_thread::sleep_for(std::chrono::milliseconds{200});
   program.send(SIGINT);
   const Outcome outcome = program.finish();
   EXPECT_EQ(outcome.status, 0) << outcome.err;
   EXPECT_NE(outcome.out.find("http://localhost:"), std::string::npos) << outcome.out;
-  const auto document = read_json(json);
+  const auto document = read_json(results);
   EXPECT_TRUE(document);
   return document ? document->value("result", nlohmann::json::object()) : nlohmann::json::object();
 }

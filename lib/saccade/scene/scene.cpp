@@ -67,11 +67,11 @@ bool dark(const Texture& texture, const Vector3d& p_object) {
 
 Status check_workspace(const Box& workspace, const std::string& where) {
   if (!workspace.min.allFinite() || !workspace.max.allFinite()) return bad("the workspace is not finite", where);
-  constexpr std::array<const char*, 3> kAxes{"x", "y", "z"};
+  constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     if (workspace.min[axis] < workspace.max[axis]) continue;
     return bad(std::string{"the workspace is empty: its min is not below its max along "} +
-                   kAxes[static_cast<std::size_t>(axis)],
+                   kAxisNames[static_cast<std::size_t>(axis)],
                where);
   }
   return {};

@@ -13,7 +13,6 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kGroupsPerTask{4};
 constexpr std::size_t kMovesAtOnce{64};  ///< for which memory is asked before the first is made
 constexpr std::size_t kWinnersPerTask{4096};
 constexpr int kMostModes{32};
@@ -56,7 +55,7 @@ void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, co
                                       *std::min_element(seen.row_weights.begin(), seen.row_weights.end()));
   const ColorLimits limits{config_, lightest_};
   std::vector<ModeFilterReport> counts(seen.groups.size());
-  executor.parallel_for(seen.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(seen.groups.size(), SurfelAssociation::kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
     ModeUpdate update{config_, limits, frame, seen, store_, config_.enhance_depth ? &guidance_ : nullptr};
     for (std::size_t g = begin; g < end; ++g) update.take(seen.groups[g], counts[g]);
   });
@@ -93,7 +92,7 @@ void ModeFilter::move_to_enhanced(const Frame& frame, const SurfelAssociation& s
       }
     }
   };
-  executor.parallel_for(seen.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(seen.groups.size(), SurfelAssociation::kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) {
       for (const auto& round : seen.groups[g]) move_round(round);
     }

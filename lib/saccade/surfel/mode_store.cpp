@@ -22,6 +22,7 @@ SurfelMode ModeStore::mode(SurfelId id, std::size_t i) const {
           reinterpret_cast<const float*>(weights)[i]};
 }
 
+// Not in the header: g++ takes an inlined function that only prefetches for one without effect, and leaves it out.
 void ModeStore::fetch_colors(SurfelId id) const {
   constexpr std::size_t kLine{64};
   const std::byte* const first = room(id);

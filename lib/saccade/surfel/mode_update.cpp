@@ -121,13 +121,13 @@ void ModeUpdate::guide(Pixels pixels, ModeFilterReport& counts) {
 /// Lines 7–15 and 20–26, for each pixel.
 void ModeUpdate::observe(Pixels pixels, std::size_t round, ModeFilterReport& counts) {
   for (const std::uint8_t k : far()) add_mode(pixels[k], queries_[k].color, round, counts);
-  merge_into(pixels, near(), round, counts);
+  merge_near(pixels, round, counts);
   counts.pixels += pixels.size();
 }
 
-/// Lines 20–26 for pixels[which[…]], each with its nearest mode.
-void ModeUpdate::merge_into(Pixels pixels, std::span<const std::uint8_t> which, std::size_t round,
-                            ModeFilterReport& counts) {
+/// Lines 20–26 for the near ones, each with its nearest mode.
+void ModeUpdate::merge_near(Pixels pixels, std::size_t round, ModeFilterReport& counts) {
+  const std::span<const std::uint8_t> which = near();
   auto& mode = merges_.mode;
   auto& of_pixel = merges_.pixel;
   for (std::size_t j = 0; j < which.size(); ++j) {
@@ -173,9 +173,13 @@ void ModeUpdate::merge_into(Pixels pixels, std::span<const std::uint8_t> which, 
   for (std::size_t j = 0; j < which.size(); ++j) {
     const SurfelPixel& pixel = pixels[which[j]];
     std::size_t n = queries_[which[j]].nearest.index;
-    if (guidance_ != nullptr) guidance_->mode_of_pixel[index(pixel)] = static_cast<std::uint8_t>(n);
-    if ((nearby_[j].nearby & ~(1U << n)) != 0) n = compress(pixel, n, round, counts);
-    if (guidance_ != nullptr) guidance_->mode_of_pixel[index(pixel)] = static_cast<std::uint8_t>(n);
+    const auto remember = [&] {
+      if (guidance_ != nullptr) guidance_->mode_of_pixel[index(pixel)] = static_cast<std::uint8_t>(n);
+    };
+    remember();
+    if ((nearby_[j].nearby & ~(1U << n)) == 0) continue;
+    n = compress(pixel, n, round, counts);
+    remember();
   }
 }
 

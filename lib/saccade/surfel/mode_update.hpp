@@ -27,8 +27,9 @@ struct ColorLimits {
   float lightest;            ///< no mode is lighter
 };
 
-/// Lines 1–15 and 20–26 for the surfels of a group, with measured depths. The first pixels of all surfels
-/// come before the second ones, each as if its surfel were alone: many searches and means at a time.
+/// Lines 1–15 and 20–26 for the surfels of a group, with measured depths. The first pixels of all surfels come before
+/// the second ones, so that of each surfel's pixels one is worked on beside those of others: many searches and means at
+/// a time.
 class ModeUpdate {
  public:
   /// @param guidance  of all pixels: what the guided filter needs; or none.
@@ -47,7 +48,7 @@ class ModeUpdate {
   [[nodiscard]] std::span<const std::uint8_t> far() const { return std::span{far_}.first(far_count_); }
   void guide(Pixels pixels, ModeFilterReport& counts);
   void observe(Pixels pixels, std::size_t round, ModeFilterReport& counts);
-  void merge_into(Pixels pixels, std::span<const std::uint8_t> which, std::size_t round, ModeFilterReport& counts);
+  void merge_near(Pixels pixels, std::size_t round, ModeFilterReport& counts);
   [[nodiscard]] std::size_t compress(const SurfelPixel& pixel, std::size_t n, std::size_t round,
                                      ModeFilterReport& counts);
   void add_mode(const SurfelPixel& pixel, const ColorUnits& color, std::size_t round, ModeFilterReport& counts);
@@ -64,7 +65,7 @@ class ModeUpdate {
   ModeGuidance* guidance_;
   std::size_t width_;
   BackProjection back_project_;
-  std::vector<ColorQuery> queries_;                     ///< of a batch
+  std::vector<ColorQuery> queries_;                     ///< of a batch, with answers
   std::array<std::uint8_t, ModeMerges::kMost> near_{};  ///< pixels of the batch with a mode that is near enough
   std::array<std::uint8_t, ModeMerges::kMost> far_{};   ///< and without
   std::size_t near_count_{0};

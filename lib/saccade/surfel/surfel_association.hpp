@@ -38,8 +38,9 @@ struct SurfelAssociation {
   /// on. So different groups can be taken by different threads.
   std::vector<SeenRounds> groups;
   static constexpr int kRowsAtOnce{4};  ///< what a group needs stays in a near cache
-  std::size_t first_new{0};             ///< surfels from here on were made by this frame, each by its one pixel
-  std::size_t surfels{0};               ///< ids are below
+  static constexpr std::size_t kGroupsPerTask{4};
+  std::size_t first_new{0};  ///< surfels from here on were made by this frame, each by its one pixel
+  std::size_t surfels{0};    ///< ids are below
   std::vector<float> column_weights;
   std::vector<float> row_weights;
 

@@ -16,7 +16,6 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kRowsPerTask{16};
-constexpr std::size_t kGroupsPerTask{4};
 constexpr std::size_t kSurfelsPerTask{4096};
 constexpr double kLeastFactor{1e-18};
 constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};  ///< farther than any; its id is kNoSurfel
@@ -181,7 +180,7 @@ void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, c
       }
     }
   });
-  executor.parallel_for(seen.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(seen.groups.size(), SurfelAssociation::kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
     for (std::size_t g = begin; g < end; ++g) seen.collect(g);
   });
 }
@@ -190,11 +189,12 @@ void SurfelFusion::integrate(const Frame& frame, const Executor& executor, Surfe
   const Stopwatch stopwatch;
   const ObservedFrame observed{association_, points_, frame.color ? &*frame.color : nullptr,
                                static_cast<float>(config_.max_radius_m)};
-  executor.parallel_for(association_.groups.size(), kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin; g < end; ++g) {
-      for (const auto& round : association_.groups[g]) average_pixels(observed, round, map_);
-    }
-  });
+  executor.parallel_for(association_.groups.size(), SurfelAssociation::kGroupsPerTask,
+                        [&](std::size_t begin, std::size_t end) {
+                          for (std::size_t g = begin; g < end; ++g) {
+                            for (const auto& round : association_.groups[g]) average_pixels(observed, round, map_);
+                          }
+                        });
   report.integrate_ms = stopwatch.elapsed_ms();
 }
 

@@ -65,16 +65,16 @@ TEST(Png, FiltersAreThoseOfTheStandard) {
   const auto rows_of = [](const std::string& second) {
     return decode(make_png({.width = 3, .height = 2, .rows = std::string{"\0\x0A\x14\x1E", 4} + second}));
   };
-  using Bytes = std::vector<std::uint8_t>;
+  using Row = std::vector<std::uint8_t>;
   const auto second_row = [&](const std::string& row) {
     const auto pixels = rows_of(row);
-    return pixels ? Bytes{pixels->bytes.begin() + 3, pixels->bytes.end()} : Bytes{};
+    return pixels ? Row{pixels->bytes.begin() + 3, pixels->bytes.end()} : Row{};
   };
-  EXPECT_EQ(second_row(std::string{"\0\x01\x02\x03", 4}), (Bytes{1, 2, 3}));  // none
-  EXPECT_EQ(second_row("\x01\x01\x02\x03"), (Bytes{1, 3, 6}));                // sub
-  EXPECT_EQ(second_row("\x02\x01\x02\x03"), (Bytes{11, 22, 33}));             // up
-  EXPECT_EQ(second_row("\x03\x01\x02\x03"), (Bytes{6, 15, 25}));              // average, rounded down
-  EXPECT_EQ(second_row("\x04\x01\x02\x03"), (Bytes{11, 22, 33}));             // Paeth, here always up
+  EXPECT_EQ(second_row(std::string{"\0\x01\x02\x03", 4}), (Row{1, 2, 3}));  // none
+  EXPECT_EQ(second_row("\x01\x01\x02\x03"), (Row{1, 3, 6}));                // sub
+  EXPECT_EQ(second_row("\x02\x01\x02\x03"), (Row{11, 22, 33}));             // up
+  EXPECT_EQ(second_row("\x03\x01\x02\x03"), (Row{6, 15, 25}));              // average, rounded down
+  EXPECT_EQ(second_row("\x04\x01\x02\x03"), (Row{11, 22, 33}));             // Paeth, here always up
   EXPECT_TRUE(second_row("\x05\x01\x02\x03").empty());
 }
 

@@ -15,12 +15,12 @@ using Eigen::Vector3d;
 
 /// A wrist arm of about a metre, with limits and a thin body on its last link.
 ArmModel arm() {
-  constexpr double kPi{std::numbers::pi};
-  ArmDescription description = test::describe("small", {{1.0, 0.0, 0.3, 0.0, 0.5 * kPi, -2.0, 1.0},
-                                                        {1.0, 0.5 * kPi, 0.0, 0.45, 0.0, -1.5, 1.5},
-                                                        {1.0, 0.0, 0.0, 0.0, 0.5 * kPi, -2.0, 2.0},
-                                                        {1.0, 0.0, 0.4, 0.0, -0.5 * kPi},
-                                                        {1.0, 0.0, 0.0, 0.0, 0.5 * kPi, -2.0, 2.0},
+  constexpr double kRightAngle{0.5 * std::numbers::pi};
+  ArmDescription description = test::describe("small", {{1.0, 0.0, 0.3, 0.0, kRightAngle, -2.0, 1.0},
+                                                        {1.0, kRightAngle, 0.0, 0.45, 0.0, -1.5, 1.5},
+                                                        {1.0, 0.0, 0.0, 0.0, kRightAngle, -2.0, 2.0},
+                                                        {1.0, 0.0, 0.4, 0.0, -kRightAngle},
+                                                        {1.0, 0.0, 0.0, 0.0, kRightAngle, -2.0, 2.0},
                                                         {1.0, 0.0, 0.08, 0.0, 0.0}});
   description.links.back().bodies.push_back({"hand", Pose::Identity(), BoxBody{{0.1, 0.1, 0.05}}});
   description.links[3].bodies.push_back({"forearm", Pose::Identity(), BoxBody{{0.1, 0.1, 0.3}}});
