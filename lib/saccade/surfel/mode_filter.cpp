@@ -8,12 +8,12 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/surfel/mode_choice.hpp"
+#include "saccade/surfel/mode_merges.hpp"
 #include "saccade/surfel/mode_update.hpp"
 
 namespace saccade {
 namespace {
 
-constexpr std::size_t kMovesAtOnce{64};  ///< for which memory is asked before the first is made
 constexpr std::size_t kWinnersPerTask{4096};
 constexpr int kMostModes{32};
 
@@ -65,30 +65,38 @@ void ModeFilter::integrate(const Frame& frame, const SurfelAssociation& seen, co
 void ModeFilter::move_to_enhanced(const Frame& frame, const SurfelAssociation& seen, const Executor& executor) {
   const auto width = static_cast<std::size_t>(seen.camera.width);
   const BackProjection back_project{seen};
-  const auto index = [width](const SurfelPixel& pixel) { return static_cast<std::size_t>(pixel.v) * width + pixel.u; };
-  const auto moves = [&](const SurfelPixel& pixel) {
-    const std::size_t i = index(pixel);
+  const auto moves = [&](std::size_t i) {
     const float enhanced_m = enhanced_m_[i];
     const float depth_m = frame.depth.data()[i];
     return guidance_.used[i] != 0 && guidance_.mode_of_pixel[i] != ModeGuidance::kNoMode && enhanced_m > 0.0F &&
            enhanced_m != depth_m && std::abs(double{enhanced_m} - double{depth_m}) <= config_.max_depth_change_m;
   };
+  struct Move {
+    SurfelPixel pixel;
+    std::uint8_t mode;
+  };
   const auto move_round = [&](std::span<const SurfelPixel> round) {
-    std::array<SurfelPixel, kMovesAtOnce> moving;
+    std::array<Move, DepthSteps::kMost> moving;
+    DepthSteps steps;
     for (std::size_t next = 0; next < round.size();) {
       std::size_t count{0};
-      for (; next < round.size() && count < kMovesAtOnce; ++next) {
-        if (!moves(round[next])) continue;
-        moving[count++] = round[next];
-        store_.fetch_place(round[next].id, guidance_.mode_of_pixel[index(round[next])]);
+      for (; next < round.size() && count < moving.size(); ++next) {
+        const SurfelPixel& pixel = round[next];
+        const std::size_t i = static_cast<std::size_t>(pixel.v) * width + pixel.u;
+        if (!moves(i)) continue;
+        moving[count] = {pixel, guidance_.mode_of_pixel[i]};
+        store_.fetch_place(pixel.id, moving[count].mode);
+        steps.u[count] = static_cast<float>(pixel.u);
+        steps.v[count] = static_cast<float>(pixel.v);
+        steps.from_m[count] = frame.depth.data()[i];
+        steps.to_m[count++] = enhanced_m_[i];
       }
-      for (const SurfelPixel& pixel : std::span{moving}.first(count)) {
-        const std::size_t i = index(pixel);
+      find_ways(back_project, count, steps);
+      for (std::size_t k = 0; k < count; ++k) {
+        const auto& [pixel, n] = moving[k];
         const StoredModes modes = store_.modes(pixel.id);
-        const std::size_t n = guidance_.mode_of_pixel[i];
-        const Eigen::Vector3f step =
-            back_project(pixel.u, pixel.v, enhanced_m_[i]) - back_project(pixel.u, pixel.v, frame.depth.data()[i]);
-        modes.set_position(n, modes.position_m(n) + step * (seen.weight(pixel.u, pixel.v) / modes.weights[n]));
+        const Eigen::Vector3f way{steps.x_m[k], steps.y_m[k], steps.z_m[k]};
+        modes.set_position(n, modes.position_m(n) + way * (seen.weight(pixel.u, pixel.v) / modes.weights[n]));
       }
     }
   };

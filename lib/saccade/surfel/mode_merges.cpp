@@ -37,6 +37,19 @@ void merge_kernel(const BackProjection& back_project, std::size_t count, ModeMer
   }
 }
 
+void ways_kernel(const BackProjection& back_project, std::size_t count, DepthSteps& steps) {
+  const Tag d;
+  for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
+    const V u = load(&steps.u[i]);
+    const V v = load(&steps.v[i]);
+    const Vector way = difference(back_projected(back_project, u, v, load(&steps.to_m[i])),
+                                  back_projected(back_project, u, v, load(&steps.from_m[i])));
+    hn::StoreU(way.x, d, &steps.x_m[i]);
+    hn::StoreU(way.y, d, &steps.y_m[i]);
+    hn::StoreU(way.z, d, &steps.z_m[i]);
+  }
+}
+
 }  // namespace
 }  // namespace saccade::HWY_NAMESPACE
 HWY_AFTER_NAMESPACE();
@@ -46,11 +59,16 @@ namespace saccade {
 namespace {
 
 HWY_EXPORT(merge_kernel);
+HWY_EXPORT(ways_kernel);
 
 }  // namespace
 
 void merge_pixels(const BackProjection& back_project, std::size_t count, ModeMerges& merges) {
   HWY_DYNAMIC_DISPATCH(merge_kernel)(back_project, count, merges);
+}
+
+void find_ways(const BackProjection& back_project, std::size_t count, DepthSteps& steps) {
+  HWY_DYNAMIC_DISPATCH(ways_kernel)(back_project, count, steps);
 }
 
 }  // namespace saccade

@@ -3,13 +3,13 @@
 
 namespace saccade {
 
-std::size_t ModeStore::memory_bytes() const { return counts_.capacity() + chunks_.size() * kPerChunk * stride(); }
+std::size_t ModeStore::memory_bytes() const { return counts_.capacity() + chunks_.size() * kPerChunk * stride_; }
 
 void ModeStore::resize(std::size_t surfels) {
   if (surfels > counts_.capacity()) counts_.reserve(surfels + surfels / 8);
   counts_.resize(surfels);
   while (chunks_.size() * kPerChunk < surfels) {
-    chunks_.push_back(std::make_unique_for_overwrite<std::byte[]>(kPerChunk * stride()));
+    chunks_.push_back(std::make_unique_for_overwrite<std::byte[]>(kPerChunk * stride_));
   }
 }
 
@@ -20,22 +20,6 @@ SurfelMode ModeStore::mode(SurfelId id, std::size_t i) const {
   return {unit_color(ColorUnits::unpacked(reinterpret_cast<const std::uint64_t*>(colors)[i])),
           {position[0], position[1], position[2]},
           reinterpret_cast<const float*>(weights)[i]};
-}
-
-// Not in the header: g++ takes an inlined function that only prefetches for one without effect, and leaves it out.
-void ModeStore::fetch_colors(SurfelId id) const {
-  constexpr std::size_t kLine{64};
-  const std::byte* const first = room(id);
-  __builtin_prefetch(&counts_[id], 1);
-  for (std::size_t i = 0; i < max_modes_ * sizeof(std::uint64_t); i += kLine) __builtin_prefetch(first + i, 1);
-}
-
-void ModeStore::fetch_place(SurfelId id, std::size_t i) const {
-  const std::byte* const weights = room(id) + max_modes_ * sizeof(std::uint64_t);
-  const std::byte* const position = weights + (max_modes_ + 3 * i) * sizeof(float);
-  __builtin_prefetch(weights + i * sizeof(float), 1);
-  __builtin_prefetch(position, 1);
-  __builtin_prefetch(position + 2 * sizeof(float), 1);
 }
 
 }  // namespace saccade

@@ -71,7 +71,8 @@ struct StoredModes {
 /// most surfels soon have many. Different surfels may be changed by different threads.
 class ModeStore {
  public:
-  explicit ModeStore(std::size_t max_modes) : max_modes_{max_modes} {}
+  explicit ModeStore(std::size_t max_modes)
+      : max_modes_{max_modes}, stride_{std::max<std::size_t>(max_modes, 4) * kBytesPerMode} {}
 
   [[nodiscard]] std::size_t size() const { return counts_.size(); }
   [[nodiscard]] std::size_t memory_bytes() const;
@@ -86,18 +87,30 @@ class ModeStore {
             reinterpret_cast<float*>(positions), &counts_[id]};
   }
   [[nodiscard]] SurfelMode mode(SurfelId id, std::size_t i) const;
-  /// Asks memory for how many modes there are, and their colours; for the weight and position of one of them.
-  void fetch_colors(SurfelId id) const;
-  void fetch_place(SurfelId id, std::size_t i) const;
+  // Inlined at once: g++ takes a function that only prefetches for one without effect, and leaves its calls out.
+  /// Asks memory for how many modes there are, and their colours.
+  [[gnu::always_inline]] void fetch_colors(SurfelId id) const {
+    const std::byte* const first = room(id);
+    __builtin_prefetch(&counts_[id], 1);
+    for (std::size_t i = 0; i < max_modes_ * sizeof(std::uint64_t); i += kLine) __builtin_prefetch(first + i, 1);
+  }
+  /// Asks memory for the weight and position of one.
+  [[gnu::always_inline]] void fetch_place(SurfelId id, std::size_t i) const {
+    const std::byte* const weights = room(id) + max_modes_ * sizeof(std::uint64_t);
+    const std::byte* const position = weights + (max_modes_ + 3 * i) * sizeof(float);
+    __builtin_prefetch(weights + i * sizeof(float), 1);
+    __builtin_prefetch(position, 1);
+    __builtin_prefetch(position + 2 * sizeof(float), 1);
+  }
 
  private:
   static constexpr std::size_t kPerChunk{512};  ///< more would be much for a map of few surfels
   static constexpr std::size_t kBytesPerMode{sizeof(std::uint64_t) + 4 * sizeof(float)};
-  /// Searches look at up to seven modes more than there are: so far they stay among a surfel's own bytes.
-  [[nodiscard]] std::size_t stride() const { return std::max<std::size_t>(max_modes_, 4) * kBytesPerMode; }
-  [[nodiscard]] std::byte* room(SurfelId id) const { return chunks_[id / kPerChunk].get() + id % kPerChunk * stride(); }
+  static constexpr std::size_t kLine{64};
+  [[nodiscard]] std::byte* room(SurfelId id) const { return chunks_[id / kPerChunk].get() + id % kPerChunk * stride_; }
 
   std::size_t max_modes_;
+  std::size_t stride_;  ///< bytes; searches look at up to seven modes more than there are: so far they stay among them
   std::vector<std::uint8_t> counts_;
   std::vector<std::unique_ptr<std::byte[]>> chunks_;
 };

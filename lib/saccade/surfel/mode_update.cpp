@@ -82,13 +82,17 @@ void ModeUpdate::for_batches(Pixels round, const Visit& visit) {
 /// Lines 6 and 8, for each pixel.
 void ModeUpdate::ask(Pixels pixels, Pixels next) {
   queries_.resize(pixels.size());
-  for (std::size_t k = 0; k < pixels.size(); ++k) {
-    if (k < next.size()) store_.fetch_colors(next[k].id);
-    const StoredModes modes = store_.modes(pixels[k].id);
-    ColorQuery& query = queries_[k];  // member by member: what is stored in parts is slow to copy
-    query.packed = modes.colors;
-    query.count = modes.count();
-    query.color = color_units(frame_.color->data()[index(pixels[k])]);
+  const Rgb8* colors = frame_.color->data();
+  ColorQuery* query = queries_.data();
+  const SurfelPixel* ahead = next.data();
+  const SurfelPixel* const end = ahead + std::min(next.size(), pixels.size());
+  for (const SurfelPixel& pixel : pixels) {
+    if (ahead != end) store_.fetch_colors((ahead++)->id);
+    const StoredModes modes = store_.modes(pixel.id);
+    query->packed = modes.colors;  // member by member: what is stored in parts is slow to copy
+    query->count = modes.count();
+    query->color = color_units(colors[index(pixel)]);
+    ++query;
   }
   find_nearest(queries_, static_cast<std::size_t>(config_.max_modes));
   near_count_ = 0;
