@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// Points of surfels in vectors of lanes, one instruction set at a time: included by kernels after
-// saccade/core/simd_kernels.hpp. Sums are made as Eigen makes them, x + (y + z), so that plain code gives the same
+// No include guard of the usual kind: included once per instruction set, by files with vector kernels.
+//
+// Points of surfels in vectors of lanes. Sums are made as Eigen makes them, x + (y + z): plain code gives the same
 // bits.
 #if defined(SACCADE_SURFEL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SACCADE_SURFEL_LANES_INL
