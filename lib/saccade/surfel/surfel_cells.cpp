@@ -145,12 +145,29 @@ HWY_EXPORT(associate_row_kernel);
 
 }  // namespace
 
-SurfelCells::SurfelCells(int width, int height)
+SurfelCells::SurfelCells(int width, int begin, int end)
     : width_{width},
+      first_{begin - 1},
       stride_{static_cast<std::size_t>(width) + 2 * kMargin},
-      plane_size_{stride_ * (static_cast<std::size_t>(height) + 2)},
-      values_(kPlanes * plane_size_, kNowhere),
-      ids_(plane_size_, kNoSurfel) {}
+      plane_size_{stride_ * static_cast<std::size_t>(end - begin + 2)},
+      values_(kPlanes * plane_size_),
+      ids_(plane_size_) {
+  const auto empty_sides = [&](auto* row, auto value) {
+    std::fill_n(row - kMargin, kMargin, value);
+    std::fill_n(row + width, kMargin, value);
+  };
+  for (int v = first_; v <= end; ++v) {
+    for (std::size_t plane = 0; plane < kPlanes; ++plane) empty_sides(row(static_cast<Plane>(plane), v), kNowhere);
+    empty_sides(ids(v), kNoSurfel);
+  }
+}
+
+void SurfelCells::set_empty(int v) {
+  for (std::size_t plane = 0; plane < kPlanes; ++plane) {
+    std::fill_n(row(static_cast<Plane>(plane), v), width_, kNowhere);
+  }
+  std::fill_n(ids(v), width_, kNoSurfel);
+}
 
 void associate_row(const SurfelCells& cells, const PointImage& points, const AssociationLimits& limits, int v,
                    SurfelId* of_pixel, RowCounts& counts) {

@@ -4,8 +4,8 @@
 // For surfel_fusion.cpp.
 
 #include <cstddef>
-#include <vector>
 
+#include "saccade/core/unset_vector.hpp"
 #include "saccade/sensor/point_image.hpp"
 #include "saccade/surfel/surfel_map.hpp"
 
@@ -14,35 +14,34 @@ namespace saccade {
 /// What a pixel makes that sees no surfel.
 inline constexpr SurfelId kMakesSurfel{kNoSurfel - 1};
 
-/// The surfels of an index image in the camera's frame, with empty cells around the image.
+/// The surfels of some rows of an index image in the camera's frame, with those above and below and empty cells on
+/// either side: few enough to stay in a near cache.
 class SurfelCells {
  public:
   static constexpr std::size_t kMargin{32};  ///< columns before and after a row, for whole vectors
   static constexpr float kNowhere{1e18F};    ///< its square is finite
   enum Plane : std::size_t { kX, kY, kZ, kSquaredRadius, kNx, kNy, kNz, kPlanes };
 
-  SurfelCells() = default;
-  SurfelCells(int width, int height);
+  /// For rows [begin, end): rows begin − 1 to end have no value until they are written or emptied.
+  SurfelCells(int width, int begin, int end);
 
-  /// Cells (0, v) and on; v may be −1 or the height, u from −kMargin. Of an empty cell all is kNowhere.
-  [[nodiscard]] float* row(Plane plane, int v) { return values_.data() + plane * plane_size_ + index(0, v); }
-  [[nodiscard]] const float* row(Plane plane, int v) const {
-    return values_.data() + plane * plane_size_ + index(0, v);
-  }
-  [[nodiscard]] SurfelId* ids(int v) { return ids_.data() + index(0, v); }
-  [[nodiscard]] const SurfelId* ids(int v) const { return ids_.data() + index(0, v); }
+  void set_empty(int v);
+  /// Cells (0, v) and on; u from −kMargin. Of an empty cell all is kNowhere.
+  [[nodiscard]] float* row(Plane plane, int v) { return values_.data() + plane * plane_size_ + index(v); }
+  [[nodiscard]] const float* row(Plane plane, int v) const { return values_.data() + plane * plane_size_ + index(v); }
+  [[nodiscard]] SurfelId* ids(int v) { return ids_.data() + index(v); }
+  [[nodiscard]] const SurfelId* ids(int v) const { return ids_.data() + index(v); }
   [[nodiscard]] int width() const { return width_; }
 
  private:
-  [[nodiscard]] std::size_t index(int u, int v) const {
-    return static_cast<std::size_t>(v + 1) * stride_ + kMargin + static_cast<std::size_t>(u);
-  }
+  [[nodiscard]] std::size_t index(int v) const { return static_cast<std::size_t>(v - first_) * stride_ + kMargin; }
 
-  int width_{0};
-  std::size_t stride_{0};
-  std::size_t plane_size_{0};
-  std::vector<float> values_;
-  std::vector<SurfelId> ids_;
+  int width_;
+  int first_;  ///< row that is kept first
+  std::size_t stride_;
+  std::size_t plane_size_;
+  UnsetVector<float> values_;
+  UnsetVector<SurfelId> ids_;
 };
 
 /// How pixels and surfels fit together.

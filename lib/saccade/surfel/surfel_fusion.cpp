@@ -80,7 +80,6 @@ void SurfelFusion::prepare(const PinholeCamera& camera, const Pose& T_world_came
     seen.of_cell = Image<SurfelId>{camera.width, camera.height, kNoSurfel};
     seen.groups.resize((static_cast<std::size_t>(camera.height) + SurfelAssociation::kRowsAtOnce - 1) /
                        SurfelAssociation::kRowsAtOnce);
-    cell_discs_ = SurfelCells{camera.width, camera.height};
     cells_.assign(seen.of_pixel.size(), kEmptyCell);
   }
   seen.camera = camera;
@@ -119,21 +118,11 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
     }
     enter_all(1 - now);
   });
-  fill_cells(executor);
-}
-
-void SurfelFusion::fill_cells(const Executor& executor) {
-  const FloatView view{association_};
-  const auto width = static_cast<std::size_t>(association_.camera.width);
-  const auto rows = static_cast<std::size_t>(association_.camera.height);
-  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t v = begin; v < end; ++v) {
-      std::uint64_t* keys = cells_.data() + v * width;
-      SurfelId* ids = association_.of_cell.row(static_cast<int>(v));
-      for (std::size_t u = 0; u < width; ++u) ids[u] = static_cast<SurfelId>(keys[u]);
-      std::fill_n(keys, width, kEmptyCell);  // for the next frame
-      fill_row(view, map_, ids, static_cast<int>(v), cell_discs_);
-    }
+  const auto width = static_cast<std::size_t>(view.width);
+  executor.parallel_for(static_cast<std::size_t>(view.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    SurfelId* ids = association_.of_cell.data();
+    for (std::size_t i = begin * width; i < end * width; ++i) ids[i] = static_cast<SurfelId>(cells_[i]);
+    std::fill_n(cells_.data() + begin * width, (end - begin) * width, kEmptyCell);  // for the next frame
   });
 }
 
@@ -146,9 +135,19 @@ void SurfelFusion::associate(const PointImage& points, const Executor& executor,
   limits.view_cosine = static_cast<float>(std::cos(config_.max_view_angle_rad));
   const auto rows = static_cast<std::size_t>(association_.camera.height);
   std::vector<RowCounts> counts((rows + kRowsPerTask - 1) / kRowsPerTask);
-  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-      associate_row(cell_discs_, points, limits, v, association_.of_pixel.row(v), counts[begin / kRowsPerTask]);
+  executor.parallel_for(rows, kRowsPerTask, [&](std::size_t first, std::size_t last) {
+    const int begin = static_cast<int>(first);
+    const int end = static_cast<int>(last);
+    SurfelCells cells{view.width, begin, end};
+    for (int v = begin - 1; v <= end; ++v) {
+      if (v < 0 || v >= view.height) {
+        cells.set_empty(v);
+      } else {
+        fill_row(view, map_, association_.of_cell.row(v), v, cells);
+      }
+    }
+    for (int v = begin; v < end; ++v) {
+      associate_row(cells, points, limits, v, association_.of_pixel.row(v), counts[first / kRowsPerTask]);
     }
   });
   std::vector<std::size_t> created;

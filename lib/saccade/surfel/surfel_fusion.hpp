@@ -14,7 +14,6 @@
 #include "saccade/sensor/point_image.hpp"
 #include "saccade/surfel/exposure_compensation.hpp"
 #include "saccade/surfel/surfel_association.hpp"
-#include "saccade/surfel/surfel_cells.hpp"
 #include "saccade/surfel/surfel_map.hpp"
 
 namespace saccade {
@@ -82,7 +81,6 @@ class SurfelFusion {
                                                      const Executor& executor);
   void prepare(const PinholeCamera& camera, const Pose& T_world_camera);
   void project(const PointImage& points, const Executor& executor);
-  void fill_cells(const Executor& executor);
   void associate(const PointImage& points, const Executor& executor, SurfelFusionReport& report);
   void number_new_surfels(const std::vector<std::size_t>& created, const Executor& executor);
   void integrate(const Frame& frame, const Executor& executor, SurfelFusionReport& report);
@@ -92,7 +90,6 @@ class SurfelFusion {
   SurfelAssociation association_;
   PointImage points_;                 ///< of the last frame
   std::vector<std::uint64_t> cells_;  ///< (bits of the depth's difference, id): the least one fills the cell
-  SurfelCells cell_discs_;
 };
 
 }  // namespace saccade
