@@ -161,7 +161,7 @@ void SurfelFusion::associate(const PointImage& points, const Executor& executor,
   number_new_surfels(created, executor);
 }
 
-/// Ids for the pixels that make surfels, in row-major order, and which pixels saw what. `created`: how many per task.
+/// Ids for the pixels that make surfels, in row-major order. `created`: how many per task.
 void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, const Executor& executor) {
   SurfelAssociation& seen = association_;
   std::vector<std::size_t> first(created.size());
@@ -179,9 +179,6 @@ void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, c
       }
     }
   });
-  executor.parallel_for(seen.groups.size(), SurfelAssociation::kGroupsPerTask, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t g = begin; g < end; ++g) seen.collect(g);
-  });
 }
 
 void SurfelFusion::integrate(const Frame& frame, const Executor& executor, SurfelFusionReport& report) {
@@ -191,6 +188,7 @@ void SurfelFusion::integrate(const Frame& frame, const Executor& executor, Surfe
   executor.parallel_for(association_.groups.size(), SurfelAssociation::kGroupsPerTask,
                         [&](std::size_t begin, std::size_t end) {
                           for (std::size_t g = begin; g < end; ++g) {
+                            association_.collect(g);
                             for (const auto& round : association_.groups[g]) average_pixels(observed, round, map_);
                           }
                         });
