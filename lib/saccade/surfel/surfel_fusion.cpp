@@ -139,14 +139,14 @@ void SurfelFusion::associate(const PointImage& points, const Executor& executor,
     const int begin = static_cast<int>(first);
     const int end = static_cast<int>(last);
     SurfelCells cells{view.width, begin, end};
-    for (int v = begin - 1; v <= end; ++v) {
-      if (v < 0 || v >= view.height) {
-        cells.set_empty(v);
-      } else {
-        fill_row(view, map_, association_.of_cell.row(v), v, cells);
-      }
-    }
+    const auto fill = [&](int v) {
+      if (v < 0 || v >= view.height) return cells.set_empty(v);
+      fill_row(view, map_, association_.of_cell.row(v), v, cells);
+    };
+    fill(begin - 1);
+    fill(begin);
     for (int v = begin; v < end; ++v) {
+      fill(v + 1);
       associate_row(cells, points, limits, v, association_.of_pixel.row(v), counts[first / kRowsPerTask]);
     }
   });
