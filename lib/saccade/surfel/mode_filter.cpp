@@ -96,7 +96,7 @@ void ModeFilter::move_to_enhanced(const Frame& frame, const SurfelAssociation& s
         const auto& [pixel, n] = moving[k];
         const StoredModes modes = store_.modes(pixel.id);
         const Eigen::Vector3f way{steps.x_m[k], steps.y_m[k], steps.z_m[k]};
-        modes.set_position(n, modes.position_m(n) + way * (seen.weight(pixel.u, pixel.v) / modes.weights[n]));
+        modes.set_position(n, modes.position_m(n) + way * (seen.weight(pixel.u, pixel.v) / modes.weight(n)));
       }
     }
   };

@@ -16,7 +16,9 @@ void merge_kernel(const BackProjection& back_project, std::size_t count, ModeMer
   auto& mode = merges.mode;
   const auto& pixel = merges.pixel;
   for (std::size_t i = 0; i < count; i += hn::Lanes(d)) {
-    const V weight = load(&mode.weight[i]);
+    Vector position;
+    V weight;
+    hn::LoadInterleaved4(d, &mode.places[i].x_m, position.x, position.y, position.z, weight);
     const V w = load(&pixel.weight[i]);
     const V total = hn::Add(weight, w);
     const V share = hn::Div(w, total);
@@ -29,11 +31,8 @@ void merge_kernel(const BackProjection& back_project, std::size_t count, ModeMer
     mean_channel(&mode.g[i], &pixel.g[i]);
     mean_channel(&mode.b[i], &pixel.b[i]);
     const Vector p = back_projected(back_project, load(&pixel.u[i]), load(&pixel.v[i]), load(&pixel.depth_m[i]));
-    const Vector position = mean({load(&mode.x_m[i]), load(&mode.y_m[i]), load(&mode.z_m[i])}, p, share);
-    hn::StoreU(position.x, d, &mode.x_m[i]);
-    hn::StoreU(position.y, d, &mode.y_m[i]);
-    hn::StoreU(position.z, d, &mode.z_m[i]);
-    hn::StoreU(total, d, &mode.weight[i]);
+    position = mean(position, p, share);
+    hn::StoreInterleaved4(position.x, position.y, position.z, total, d, &mode.places[i].x_m);
   }
 }
 

@@ -7,6 +7,7 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "saccade/surfel/mode_store.hpp"
 #include "saccade/surfel/surfel_association.hpp"
 
 namespace saccade {
@@ -19,7 +20,7 @@ struct ModeMerges {
 
   struct {
     Each<std::int32_t> r{}, g{}, b{};
-    Each<float> x_m{}, y_m{}, z_m{}, weight{};
+    Each<ModePlace> places{};
   } mode;  ///< as they are; then as they become
   struct {
     Each<std::int32_t> r{}, g{}, b{};

@@ -15,11 +15,10 @@ void ModeStore::resize(std::size_t surfels) {
 
 SurfelMode ModeStore::mode(SurfelId id, std::size_t i) const {
   const std::byte* const colors = room(id);
-  const std::byte* const weights = colors + max_modes_ * sizeof(std::uint64_t);
-  const auto* position = reinterpret_cast<const float*>(weights + max_modes_ * sizeof(float)) + 3 * i;
+  const ModePlace& place = reinterpret_cast<const ModePlace*>(colors + max_modes_ * sizeof(std::uint64_t))[i];
   return {unit_color(ColorUnits::unpacked(reinterpret_cast<const std::uint64_t*>(colors)[i])),
-          {position[0], position[1], position[2]},
-          reinterpret_cast<const float*>(weights)[i]};
+          {place.x_m, place.y_m, place.z_m},
+          place.weight};
 }
 
 }  // namespace saccade

@@ -34,35 +34,39 @@ inline Eigen::Vector3f unit_color(const ColorUnits& units) {
           static_cast<float>(units.b) * kUnit};
 }
 
+/// A mode but for its colour, so that what is merged is in one line of cache.
+struct ModePlace {
+  float x_m, y_m, z_m;
+  float weight;
+};
+
 /// One surfel's modes in the memory of a ModeStore, in the order in which they came.
 struct StoredModes {
   std::uint64_t* colors;  ///< ColorUnits::packed()
-  float* weights;
-  float* positions_m;  ///< x, y, z
+  ModePlace* places;
   std::uint8_t* count_here;
 
   [[nodiscard]] std::size_t count() const { return *count_here; }
+  [[nodiscard]] float& weight(std::size_t i) const { return places[i].weight; }
   [[nodiscard]] Eigen::Vector3f position_m(std::size_t i) const {
-    return {positions_m[3 * i], positions_m[3 * i + 1], positions_m[3 * i + 2]};
+    return {places[i].x_m, places[i].y_m, places[i].z_m};
   }
   void set_position(std::size_t i, const Eigen::Vector3f& p_m) const {
-    for (std::size_t k = 0; k < 3; ++k) positions_m[3 * i + k] = p_m[static_cast<Eigen::Index>(k)];
+    places[i] = {p_m.x(), p_m.y(), p_m.z(), places[i].weight};
   }
   [[nodiscard]] SurfelMode mode(std::size_t i) const {
-    return {unit_color(ColorUnits::unpacked(colors[i])), position_m(i), weights[i]};
+    return {unit_color(ColorUnits::unpacked(colors[i])), position_m(i), weight(i)};
   }
   /// Needs room.
   void add(const ColorUnits& color, const Eigen::Vector3f& p_m, float weight) const {
     const std::size_t i = (*count_here)++;
     colors[i] = color.packed();
-    weights[i] = weight;
-    set_position(i, p_m);
+    places[i] = {p_m.x(), p_m.y(), p_m.z(), weight};
   }
   void remove(std::size_t i) const {
     const std::size_t end = count();
     std::copy(colors + i + 1, colors + end, colors + i);
-    std::copy(weights + i + 1, weights + end, weights + i);
-    std::copy(positions_m + 3 * i + 3, positions_m + 3 * end, positions_m + 3 * i);
+    std::copy(places + i + 1, places + end, places + i);
     --*count_here;
   }
 };
@@ -81,10 +85,8 @@ class ModeStore {
   [[nodiscard]] std::size_t count(SurfelId id) const { return counts_[id]; }
   [[nodiscard]] StoredModes modes(SurfelId id) {
     std::byte* const colors = room(id);  // plain memory, of which each part is always of one type
-    std::byte* const weights = colors + max_modes_ * sizeof(std::uint64_t);
-    std::byte* const positions = weights + max_modes_ * sizeof(float);
-    return {reinterpret_cast<std::uint64_t*>(colors), reinterpret_cast<float*>(weights),
-            reinterpret_cast<float*>(positions), &counts_[id]};
+    std::byte* const places = colors + max_modes_ * sizeof(std::uint64_t);
+    return {reinterpret_cast<std::uint64_t*>(colors), reinterpret_cast<ModePlace*>(places), &counts_[id]};
   }
   [[nodiscard]] SurfelMode mode(SurfelId id, std::size_t i) const;
   // Inlined at once: g++ takes a function that only prefetches for one without effect, and leaves its calls out.
@@ -96,16 +98,12 @@ class ModeStore {
   }
   /// Asks memory for the weight and position of one.
   [[gnu::always_inline]] void fetch_place(SurfelId id, std::size_t i) const {
-    const std::byte* const weights = room(id) + max_modes_ * sizeof(std::uint64_t);
-    const std::byte* const position = weights + (max_modes_ + 3 * i) * sizeof(float);
-    __builtin_prefetch(weights + i * sizeof(float), 1);
-    __builtin_prefetch(position, 1);
-    __builtin_prefetch(position + 2 * sizeof(float), 1);
+    __builtin_prefetch(room(id) + max_modes_ * sizeof(std::uint64_t) + i * sizeof(ModePlace), 1);
   }
 
  private:
   static constexpr std::size_t kPerChunk{512};  ///< more would be much for a map of few surfels
-  static constexpr std::size_t kBytesPerMode{sizeof(std::uint64_t) + 4 * sizeof(float)};
+  static constexpr std::size_t kBytesPerMode{sizeof(std::uint64_t) + sizeof(ModePlace)};
   static constexpr std::size_t kLine{64};
   [[nodiscard]] std::byte* room(SurfelId id) const { return chunks_[id / kPerChunk].get() + id % kPerChunk * stride_; }
 

@@ -18,19 +18,19 @@ std::int64_t whole(double squared) {
 }
 
 void merge(const StoredModes& modes, std::size_t n, std::size_t i) {
-  const float weight = modes.weights[i];
-  const float sum = modes.weights[n] + weight;
+  const float weight = modes.weight(i);
+  const float sum = modes.weight(n) + weight;
   modes.colors[n] =
       mean_color(ColorUnits::unpacked(modes.colors[n]), ColorUnits::unpacked(modes.colors[i]), weight / sum).packed();
-  modes.set_position(n, weighted_mean(modes.position_m(n), modes.weights[n], modes.position_m(i), weight));
-  modes.weights[n] = sum;
+  modes.set_position(n, weighted_mean(modes.position_m(n), modes.weight(n), modes.position_m(i), weight));
+  modes.weight(n) = sum;
 }
 
 /// Line 22: p_N(c_i, c_n, σ_c) · w_n > p_N(c_i, c_i, σ_c) · w_i; the common factor of the densities is left out.
 bool absorbs(const StoredModes& modes, std::size_t n, std::size_t i, double sigma) {
   const auto squared = static_cast<double>(
       squared_distance(ColorUnits::unpacked(modes.colors[n]), ColorUnits::unpacked(modes.colors[i])));
-  return std::exp(-squared / (2.0 * sigma * sigma)) * double{modes.weights[n]} > double{modes.weights[i]};
+  return std::exp(-squared / (2.0 * sigma * sigma)) * double{modes.weight(n)} > double{modes.weight(i)};
 }
 
 /// ⌊log₂ weight⌋ and a constant.
@@ -143,10 +143,7 @@ void ModeUpdate::merge_near(Pixels pixels, std::size_t round, ModeFilterReport& 
     mode.r[j] = color.r;
     mode.g[j] = color.g;
     mode.b[j] = color.b;
-    mode.x_m[j] = modes.positions_m[3 * n];
-    mode.y_m[j] = modes.positions_m[3 * n + 1];
-    mode.z_m[j] = modes.positions_m[3 * n + 2];
-    mode.weight[j] = modes.weights[n];
+    mode.places[j] = modes.places[n];
     of_pixel.r[j] = query.color.r;
     of_pixel.g[j] = query.color.g;
     of_pixel.b[j] = query.color.b;
@@ -163,10 +160,9 @@ void ModeUpdate::merge_near(Pixels pixels, std::size_t round, ModeFilterReport& 
     const StoredModes modes = store_.modes(pixel.id);
     const ColorUnits color{mode.r[j], mode.g[j], mode.b[j]};
     modes.colors[n] = color.packed();
-    modes.weights[n] = mode.weight[j];
-    modes.set_position(n, {mode.x_m[j], mode.y_m[j], mode.z_m[j]});
+    modes.places[n] = mode.places[j];
     // Modes that n could absorb if they were as light as one pixel: almost always none.
-    const float most_octaves = octave(mode.weight[j]) - octave(limits_.lightest) + 1.0F;
+    const float most_octaves = octave(mode.places[j].weight) - octave(limits_.lightest) + 1.0F;
     NearbyQuery& query = nearby_[j];
     query.packed = modes.colors;
     query.count = modes.count();
@@ -210,9 +206,10 @@ void ModeUpdate::add_mode(const SurfelPixel& pixel, const ColorUnits& color, std
   const std::size_t i = index(pixel);
   if (guidance_ != nullptr) guidance_->mode_of_pixel[i] = ModeGuidance::kNoMode;
   if (modes.count() >= static_cast<std::size_t>(config_.max_modes)) {
+    const auto lighter = [](const ModePlace& a, const ModePlace& b) { return a.weight < b.weight; };
     const auto lightest =
-        static_cast<std::size_t>(std::min_element(modes.weights, modes.weights + modes.count()) - modes.weights);
-    counts.evicted_weight += double{modes.weights[lightest]};
+        static_cast<std::size_t>(std::min_element(modes.places, modes.places + modes.count(), lighter) - modes.places);
+    counts.evicted_weight += double{modes.weight(lightest)};
     ++counts.evicted_modes;
     remove(pixel, lightest, ModeGuidance::kNoMode, round);
   }
