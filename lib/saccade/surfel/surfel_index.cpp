@@ -65,8 +65,8 @@ std::size_t project_kernel(const FloatView& view, std::span<const SurfelDisc> di
     const auto in_columns = hn::And(hn::Ge(u, zero), hn::Lt(u, set(static_cast<float>(view.width))));
     const auto in_rows = hn::And(hn::Ge(v, zero), hn::Lt(v, set(static_cast<float>(view.height))));
     const auto faces = hn::Not(hn::Ge(dot(here.normal, p), zero));
-    auto lands = hn::And(hn::And(hn::Gt(z, zero), hn::FirstN(d, discs.size() - i)),
-                         hn::And(faces, hn::And(in_columns, in_rows)));
+    const auto lands = hn::And(hn::And(hn::Gt(z, zero), hn::FirstN(d, discs.size() - i)),
+                               hn::And(faces, hn::And(in_columns, in_rows)));
     if (hn::AllFalse(d, lands)) continue;
     const hn::RebindToSigned<Tag> ds;
     const auto whole = [&](V value)

@@ -5,15 +5,21 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
 #include <cmath>
 #include <cstring>
+#include <limits>
 #include <map>
 #include <numbers>
+#include <random>
+#include <span>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "saccade/core/simd.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
+#include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 
 namespace saccade {
@@ -167,6 +173,54 @@ TEST(SurfelAverages, RoundsHaveEachPixelOnceWithItsSurfel) {
     EXPECT_EQ(visited, wanted);  // row by row, too
   }
   EXPECT_GE(rounds, 4U);
+}
+
+/// Smaller than a vector, just larger, and with depths and poses that no camera gives: nothing beyond the images is
+/// touched, and each surfel that was made is where a pixel was.
+TEST(SurfelAverages, TakeImagesOfAnySizeAndDepthsOfAnyValue) {
+  const AveragesTargetGuard guard;
+  constexpr std::array kDepths{1.0F,
+                               1.002F,
+                               0.0F,
+                               -1.0F,
+                               1e-30F,
+                               1e30F,
+                               std::numeric_limits<float>::quiet_NaN(),
+                               std::numeric_limits<float>::infinity()};
+  std::mt19937 random{3};
+  std::size_t made{0};
+  for (const std::string& target : simd_targets()) {
+    ASSERT_TRUE(use_simd_target(target).ok());
+    for (const auto& [width, height] :
+         std::vector<std::pair<int, int>>{{1, 1}, {3, 1}, {1, 5}, {9, 7}, {17, 9}, {65, 6}}) {
+      const PinholeCamera camera{width, height, 40.0, 40.0, 0.5 * (width - 1), 0.5 * (height - 1), 0.3, 6.0};
+      SurfelFusion fusion = SurfelFusion::create().value();
+      ModeFilter filter = ModeFilter::create().value();
+      for (int f = 0; f < 12; ++f) {
+        Frame frame;
+        frame.depth = DepthImage{width, height, 1.0F};
+        frame.color = ColorImage{width, height};
+        for (float& depth_m : std::span{frame.depth.data(), frame.depth.size()}) {
+          if (random() % 8 == 0) depth_m = kDepths[random() % kDepths.size()];
+        }
+        for (Rgb8& color : std::span{frame.color->data(), frame.color->size()}) {
+          color = {static_cast<std::uint8_t>(random()), 0, 255};
+        }
+        const double far_m = f % 4 == 3 ? 1e30 : 0.001 * f;
+        frame.T_world_camera = Pose{Eigen::Translation3d{0.001 * f, far_m, 0.0}};
+        ASSERT_TRUE(fusion.add_frame(frame, camera, Executor::with_threads(2)));
+        ASSERT_TRUE(filter.add_frame(frame, fusion.association(), Executor::with_threads(2)));
+      }
+      ASSERT_EQ(filter.size(), fusion.map().size());
+      for (const SurfelDisc& disc : fusion.map().discs) {
+        ASSERT_TRUE(disc.position_m.allFinite());
+        ASSERT_NEAR(disc.normal.norm(), 1.0F, 1e-4F);
+        ASSERT_GT(disc.weight, 0.0F);
+      }
+      made += fusion.map().size();
+    }
+  }
+  EXPECT_GT(made, 1000U);
 }
 
 }  // namespace
