@@ -4,8 +4,10 @@
 #include <hwy/aligned_allocator.h>
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <mutex>
 #include <utility>
 #include <vector>
@@ -16,7 +18,7 @@ namespace saccade {
 namespace {
 
 constexpr double kLeastSigma{1e-4};
-constexpr int kLeastRows{32};  // of a task: each fits 2R rows more, which its neighbours fit too
+constexpr std::size_t kGuidedRowsPerTask{32};  // even; who takes the next ones too goes on where it stopped
 
 template <class T>
 hwy::AlignedFreeUniquePtr<T[]> zeros(std::size_t count) {
@@ -40,33 +42,41 @@ struct Images {
 
 namespace guided {
 
-/// Runs the filter down some rows of an image: loads each row, fits the one R above it, and enhances the one R above
-/// that. The last 2R + 1 loaded rows and rows of fits are kept.
+/// Runs the filter down some rows of an image, two at a time: loads them, fits the two that are R or R + 1 above, and
+/// enhances the two as far above those. Where it stopped it can go on.
 class RowFilter {
  public:
   RowFilter(const guided::RowShape& shape, const guided::Disc& disc)
       : disc_{disc},
         shape_{shape},
-        kept_{2 * disc.radius_px + 1},
+        lag_{disc.radius_px + disc.radius_px % 2},
+        kept_{2 * lag_ + 2},
         rows_{zeros<float>(static_cast<std::size_t>(kept_) * guided::kChannels * shape.stride)},
         fits_{zeros<double>(static_cast<std::size_t>(kept_) * guided::kFits * shape.stride)},
         sums_{zeros<double>(guided::sums_of(disc))},
-        enhanced_{zeros<float>(shape.stride)},
-        row_window_(static_cast<std::size_t>(kept_)),
-        fit_window_(static_cast<std::size_t>(kept_)) {}
+        enhanced_{zeros<float>(2 * shape.stride)},
+        row_window_(static_cast<std::size_t>(2 * disc.radius_px + 2)),
+        fit_window_(static_cast<std::size_t>(2 * disc.radius_px + 2)) {}
 
-  /// Rows [begin, end) of the output.
+  /// Rows [begin, end) of the output; begin is even.
   void run(const Images& images, const guided::Variances& variances, int begin, int end) {
-    const int radius = disc_.radius_px;
-    for (int v = begin - 2 * radius; v < end + 2 * radius; ++v) {
+    int v = begin == next_ ? begin + 2 * lag_ : begin - 2 * lag_;
+    for (; v < end + 2 * lag_; v += 2) {
       load(images, v);
-      if (v >= begin) fit(images.height, v - radius, variances);
-      if (v >= begin + 2 * radius) enhance(images, v - 2 * radius);
+      load(images, v + 1);
+      if (v - lag_ >= begin - lag_) fit(v - lag_, variances);
+      if (v - 2 * lag_ >= begin) enhance(images, v - 2 * lag_);
     }
+    next_ = end;
   }
 
+  /// Where it goes on at little cost, or none.
+  [[nodiscard]] int next() const { return next_; }
+  void forget() { next_ = kNone; }
+
  private:
-  [[nodiscard]] std::size_t slot(int v) const { return static_cast<std::size_t>((v + kept_) % kept_); }
+  static constexpr int kNone{-1};
+  [[nodiscard]] std::size_t slot(int v) const { return static_cast<std::size_t>((v + 2 * kept_) % kept_); }
   [[nodiscard]] float* row(int v) const { return rows_.get() + slot(v) * guided::kChannels * shape_.stride; }
   [[nodiscard]] double* fits(int v) const { return fits_.get() + slot(v) * guided::kFits * shape_.stride; }
 
@@ -80,27 +90,37 @@ class RowFilter {
     guided::load_row(shape_, images.depth_m + first, images.guidance + 4 * first, images.used + first, row(v));
   }
 
-  void fit(int height, int v, const guided::Variances& variances) {
-    if (v < 0 || v >= height) {
-      std::fill_n(fits(v), guided::kFits * shape_.stride, 0.0);
-      return;
+  /// Rows v and v + 1.
+  void fit(int v, const guided::Variances& variances) {
+    for (int i = 0; i <= 2 * disc_.radius_px + 1; ++i) {
+      row_window_[static_cast<std::size_t>(i)] = row(v - disc_.radius_px + i);
     }
-    for (int i = 0; i < kept_; ++i) row_window_[static_cast<std::size_t>(i)] = row(v - disc_.radius_px + i);
-    guided::fit_row(shape_, disc_, variances, row_window_.data(), sums_.get(), fits(v));
+    const std::array<double*, 2> fitted{fits(v), fits(v + 1)};
+    guided::fit_rows(shape_, disc_, variances, row_window_.data(), sums_.get(), fitted.data());
   }
 
   void enhance(const Images& images, int v) {
-    for (int i = 0; i < kept_; ++i) fit_window_[static_cast<std::size_t>(i)] = fits(v - disc_.radius_px + i);
-    guided::enhance_row(shape_, disc_, row(v), fit_window_.data(), sums_.get(), enhanced_.get());
-    const std::size_t first = static_cast<std::size_t>(v) * static_cast<std::size_t>(shape_.width);
-    for (std::size_t u = 0; u < static_cast<std::size_t>(shape_.width); ++u) {
-      images.enhanced_m[first + u] = images.used[first + u] != 0 ? enhanced_[u] : images.depth_m[first + u];
+    for (int i = 0; i <= 2 * disc_.radius_px + 1; ++i) {
+      fit_window_[static_cast<std::size_t>(i)] = fits(v - disc_.radius_px + i);
+    }
+    const std::array<const float*, 2> guidance{row(v), row(v + 1)};
+    const std::array<float*, 2> enhanced{enhanced_.get(), enhanced_.get() + shape_.stride};
+    guided::enhance_rows(shape_, disc_, guidance.data(), fit_window_.data(), sums_.get(), enhanced.data());
+    const std::size_t width = static_cast<std::size_t>(shape_.width);
+    for (int i = 0; i < 2 && v + i < images.height; ++i) {
+      const std::size_t first = static_cast<std::size_t>(v + i) * width;
+      const float* const of_row = enhanced[static_cast<std::size_t>(i)];
+      for (std::size_t u = 0; u < width; ++u) {
+        images.enhanced_m[first + u] = images.used[first + u] != 0 ? of_row[u] : images.depth_m[first + u];
+      }
     }
   }
 
   guided::Disc disc_;
   guided::RowShape shape_;
+  int lag_;
   int kept_;
+  int next_{kNone};
   hwy::AlignedFreeUniquePtr<float[]> rows_;
   hwy::AlignedFreeUniquePtr<double[]> fits_;
   hwy::AlignedFreeUniquePtr<double[]> sums_;
@@ -127,10 +147,13 @@ struct GuidedFilter::Memory {
   std::mutex mutex;
   std::vector<std::unique_ptr<guided::RowFilter>> idle;
 
-  std::unique_ptr<guided::RowFilter> take() {
+  /// If there is one, the filter that has stopped at row `begin`.
+  std::unique_ptr<guided::RowFilter> take(int begin) {
     {
       const std::lock_guard lock{mutex};
       if (!idle.empty()) {
+        const auto stopped = std::find_if(idle.begin(), idle.end(), [&](const auto& f) { return f->next() == begin; });
+        if (stopped != idle.end()) std::iter_swap(stopped, std::prev(idle.end()));
         auto taken = std::move(idle.back());
         idle.pop_back();
         return taken;
@@ -179,11 +202,9 @@ void GuidedFilter::apply(int width, int height, std::span<const float> depth_m,
   const guided::Variances variances{config_.color_sigma * config_.color_sigma,
                                     config_.depth_sigma_m * config_.depth_sigma_m};
   const Images images{height, memory_->shape, depth_m.data(), guidance.front().data(), used.data(), enhanced_m.data()};
-  const std::size_t rows = static_cast<std::size_t>(height);
-  const std::size_t tasks = executor.threads() == 1 ? 1 : 4 * executor.threads();
-  const std::size_t grain = std::max<std::size_t>(kLeastRows, (rows + tasks - 1) / tasks);
-  executor.parallel_for(rows, grain, [&](std::size_t begin, std::size_t end) {
-    std::unique_ptr<guided::RowFilter> filter = memory_->take();
+  for (const auto& filter : memory_->idle) filter->forget();
+  executor.parallel_for(static_cast<std::size_t>(height), kGuidedRowsPerTask, [&](std::size_t begin, std::size_t end) {
+    std::unique_ptr<guided::RowFilter> filter = memory_->take(static_cast<int>(begin));
     filter->run(images, variances, static_cast<int>(begin), static_cast<int>(end));
     memory_->give_back(std::move(filter));
   });

@@ -16,138 +16,183 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// A sum is that of its columns, and a column's from the middle outwards, in the same order for every width of a vector:
-// every instruction set gives the same bits. Products of channels are exact in double precision, for these are floats:
-// there a fused multiply-add rounds no other way than product and sum. Elsewhere the two stay apart.
+// Two rows of an image share most of what their windows add up. A column's sum begins with the pixels of both rows, and
+// goes on with one above and one below; the sum of a window is that of its columns. The order is the same for every
+// width of a vector and whoever has the rows: no instruction set and no number of threads changes a bit. Products of
+// channels are exact in double precision, for these are floats: there a fused multiply-add rounds no other way than
+// product and sum. Elsewhere the two stay apart.
 using Doubles = hn::CappedTag<double, kBlock>;
 using Floats = hn::Rebind<float, Doubles>;
 using V = hn::Vec<Doubles>;
 
 HWY_INLINE int lanes() { return static_cast<int>(hn::Lanes(Doubles{})); }
 HWY_INLINE V set(double value) { return hn::Set(Doubles{}, value); }
+HWY_INLINE V load(const double* from) { return hn::LoadU(Doubles{}, from); }
 HWY_INLINE V load_floats(const float* from) { return hn::PromoteTo(Doubles{}, hn::LoadU(Floats{}, from)); }
 
-/// The two channels of each moment: those with the mask, which is 1 or 0, are the count and the sums.
-struct MomentChannels {
-  std::array<int, kMoments> first{};
-  std::array<int, kMoments> second{};
-};
-constexpr MomentChannels kMomentChannels = [] {
-  MomentChannels channels{};
-  std::size_t moment{0};
-  for (int i = 0; i < kChannels; ++i) {
-    for (int j = i; j < kChannels && moment < kMoments; ++j, ++moment) {
-      channels.first[moment] = i;
-      channels.second[moment] = j;
-    }
-  }
-  return channels;
-}();
+/// The two channels of each moment: those with the mask, which is 1 or 0, are the count and the sums. In the first half
+/// depth does not come: each half needs few channels.
+constexpr std::array<std::size_t, kMoments> kFirstChannel{0, 0, 0, 0, 1, 1, 1, 2, 2, 3, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4};
+constexpr std::array<std::size_t, kMoments> kOtherChannel{0, 1, 2, 3, 1, 2, 3, 2, 3, 3, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5};
 
 /// Sums of so many moments at a time stay in registers: AVX-512 has 32 of them.
-constexpr int kGroup{HWY_MAX_BYTES == 64 ? kMoments : kMoments / 2};
+constexpr std::size_t kGroup{HWY_MAX_BYTES == 64 ? kMoments : kMoments / 2};
+
+/// What is summed, of one vector of pixels: moments kFirst and on. `pixels` is where their masks are.
+template <std::size_t kFirst>
+struct MomentsOf {
+  static constexpr std::size_t kCount{kGroup};
+  V channel[kChannels];
+
+  HWY_INLINE MomentsOf(const float* pixels, std::size_t stride) {
+    for (std::size_t c = 0; c < kChannels; ++c) channel[c] = load_floats(pixels + c * stride);
+  }
+  template <std::size_t kSum>
+  HWY_INLINE V added_to(V sum) const {
+    constexpr std::size_t kOne{kFirstChannel[kFirst + kSum]};
+    constexpr std::size_t kOther{kOtherChannel[kFirst + kSum]};
+    if constexpr (kOne == 0) return hn::Add(sum, channel[kOther]);
+    return hn::MulAdd(channel[kOne], channel[kOther], sum);
+  }
+};
+
+/// And fits, of which the last is not summed.
+struct FitsOf {
+  static constexpr std::size_t kCount{kFits - 1};
+  const double* fits;
+  std::size_t stride;
+
+  template <std::size_t kSum>
+  HWY_INLINE V added_to(V sum) const {
+    return hn::Add(sum, load(fits + kSum * stride));
+  }
+};
 
 template <std::size_t kCount, std::size_t... kSum>
 HWY_INLINE void set_zero(V (&sum)[kCount], std::index_sequence<kSum...> /*all*/) {
   ((sum[kSum] = hn::Zero(Doubles{})), ...);
 }
 
+template <class Terms, std::size_t... kSum>
+HWY_INLINE void add(const Terms& terms, V (&sum)[Terms::kCount], std::index_sequence<kSum...> /*all*/) {
+  ((sum[kSum] = terms.template added_to<kSum>(sum[kSum])), ...);
+}
+
 template <std::size_t kCount, std::size_t... kSum>
-HWY_INLINE void add_loaded(const double* from, std::size_t stride, V (&sum)[kCount],
+HWY_INLINE void add_stored(const double* from, V (&sum)[kCount], std::index_sequence<kSum...> /*all*/) {
+  ((sum[kSum] = hn::Add(sum[kSum], load(from + kSum * kSumColumns))), ...);
+}
+
+template <class Terms, std::size_t... kSum>
+HWY_INLINE void store_sums(const Terms& terms, const V (&sum)[Terms::kCount], double* to,
                            std::index_sequence<kSum...> /*all*/) {
-  ((sum[kSum] = hn::Add(sum[kSum], hn::LoadU(Doubles{}, from + kSum * stride))), ...);
+  (hn::StoreU(terms.template added_to<kSum>(sum[kSum]), Doubles{}, to + kSum * kSumColumns), ...);
 }
 
-template <std::size_t kCount, std::size_t... kSum>
-HWY_INLINE void store(const V (&sum)[kCount], double* to, std::size_t stride, std::index_sequence<kSum...> /*all*/) {
-  (hn::StoreU(sum[kSum], Doubles{}, to + kSum * stride), ...);
+template <class Terms, std::size_t... kSum>
+HWY_INLINE void add_to_stored(const Terms& terms, const double* from, V (&sum)[Terms::kCount],
+                              std::index_sequence<kSum...> /*all*/) {
+  ((sum[kSum] = terms.template added_to<kSum>(load(from + kSum * kSumColumns))), ...);
 }
 
-/// Adds moments kFirst and on of one vector of pixels, whose mask is at `pixels`.
-template <std::size_t kFirst, std::size_t kCount, std::size_t... kSum>
-HWY_INLINE void add_products(const float* pixels, std::size_t stride, V (&sum)[kCount],
-                             std::index_sequence<kSum...> /*all*/) {
-  V channel[kChannels];
-  for (std::size_t c = 0; c < kChannels; ++c) channel[c] = load_floats(pixels + c * stride);
-  ((sum[kSum] = hn::MulAdd(channel[kMomentChannels.first[kFirst + kSum]],
-                           channel[kMomentChannels.second[kFirst + kSum]], sum[kSum])),
-   ...);
-}
+/// Where the sums of some columns are: levels of the upper one of two rows, and behind them those of the lower.
+struct ColumnSums {
+  double* upper;
+  std::ptrdiff_t per_level;
+  std::ptrdiff_t per_row;
 
-/// The sums of all levels of the columns of one vector. `sums` is where the first sum of level 0 goes; the sums of a
-/// level are kSumColumns apart and `per_level` in number. add_row(row, sum) adds those of a row of the window.
-template <std::size_t kCount, class AddRow>
-HWY_INLINE void sum_columns(const Disc& disc, int per_level, double* sums, const AddRow& add_row) {
+  ColumnSums(const Disc& disc, std::size_t planes, double* sums)
+      : upper{sums}, per_level{static_cast<std::ptrdiff_t>(planes * kSumColumns)}, per_row{disc.levels * per_level} {}
+};
+
+/// Sums of all levels, of the columns of one vector, for two rows: at `at`. terms(row) is of a row of the windows,
+/// whose middle ones are R and R + 1.
+template <std::size_t kCount, class TermsOf>
+HWY_INLINE void sum_columns(const Disc& disc, const ColumnSums& sums, std::ptrdiff_t at, const TermsOf& terms) {
   constexpr std::make_index_sequence<kCount> kAll;
-  V sum[kCount];
-  set_zero(sum, kAll);
-  add_row(disc.radius_px, sum);
-  for (int height = 1; height <= disc.radius_px; ++height) {
-    add_row(disc.radius_px - height, sum);
-    add_row(disc.radius_px + height, sum);
+  const int radius = disc.radius_px;
+  V both[kCount];
+  set_zero(both, kAll);
+  add(terms(radius), both, kAll);
+  add(terms(radius + 1), both, kAll);
+  for (int height = 1; height <= radius; ++height) {
     const int level = disc.level_of_height[static_cast<std::size_t>(height)];
-    if (level >= 0) store(sum, sums + static_cast<std::ptrdiff_t>(level) * per_level * kSumColumns, kSumColumns, kAll);
+    if (level < 0) {
+      add(terms(radius - height), both, kAll);
+      add(terms(radius + 1 + height), both, kAll);
+      continue;
+    }
+    double* const upper = sums.upper + level * sums.per_level + at;
+    store_sums(terms(radius - height), both, upper, kAll);
+    const auto below = terms(radius + 1 + height);
+    store_sums(below, both, upper + sums.per_row, kAll);
+    add_to_stored(below, upper, both, kAll);
   }
 }
 
-/// The sums over the window of one vector of pixels, from those of columns around them. Its first and its last column
-/// are single pixels: add_pixels(column, sum) adds those.
-template <std::size_t kCount, class AddPixels>
-HWY_INLINE void sum_window(const Disc& disc, int per_level, const double* sums, V (&sum)[kCount],
-                           const AddPixels& add_pixels) {
+/// The sums over the window of one vector of pixels, from those of columns around them: `columns` is where the sums of
+/// its own are. Its first and its last column are single pixels: terms(column).
+template <std::size_t kCount, class TermsOf>
+HWY_INLINE void sum_window(const Disc& disc, const double* columns, std::ptrdiff_t per_level, V (&sum)[kCount],
+                           const TermsOf& terms) {
   constexpr std::make_index_sequence<kCount> kAll;
   set_zero(sum, kAll);
-  add_pixels(-disc.radius_px, sum);
-  if (disc.radius_px > 0) add_pixels(disc.radius_px, sum);
+  add(terms(-disc.radius_px), sum, kAll);
+  if (disc.radius_px > 0) add(terms(disc.radius_px), sum, kAll);
   for (int column = 1 - disc.radius_px; column < disc.radius_px; ++column) {
     const int level = disc.level_of_column[static_cast<std::size_t>(std::abs(column))];
-    add_loaded(sums + static_cast<std::ptrdiff_t>(level) * per_level * kSumColumns + column, kSumColumns, sum, kAll);
+    add_stored(columns + level * per_level + column, sum, kAll);
   }
 }
 
 /// a · b, subtracted.
 HWY_INLINE V less(V from, V a, V b) { return hn::Sub(from, hn::Mul(a, b)); }
 
-/// Lines 1 to 8 of Algorithm 7, from the moments of one vector of pixels. Σ + Σ_E = L D Lᵀ; c_ij is L_ij D_j.
-HWY_INLINE void fit(const V (&moments)[kMoments / kGroup][kGroup], const Variances& variances, V (&fits)[kFits]) {
-  const auto moment = [&](int i) HWY_ATTR { return moments[i / kGroup][i % kGroup]; };
-  const V one = set(1.0);
-  const V share = hn::Div(one, moment(0));
-  const auto mean = [&](int i) HWY_ATTR { return hn::Mul(moment(i), share); };
-  const V mr = mean(1);
-  const V mg = mean(2);
-  const V mb = mean(3);
-  const V md = mean(4);
-  const V delta = mean(5);
-  const V color = set(variances.color);
-  const V d0 = hn::Add(less(mean(6), mr, mr), color);
-  const V c10 = less(mean(7), mr, mg);
-  const V c20 = less(mean(8), mr, mb);
-  const V c30 = less(mean(9), mr, md);
-  const V k0 = less(mean(10), mr, delta);
-  const V s11 = hn::Add(less(mean(11), mg, mg), color);
-  const V s21 = less(mean(12), mg, mb);
-  const V s31 = less(mean(13), mg, md);
-  const V k1 = less(mean(14), mg, delta);
-  const V s22 = hn::Add(less(mean(15), mb, mb), color);
-  const V s32 = less(mean(16), mb, md);
-  const V k2 = less(mean(17), mb, delta);
-  const V s33 = hn::Add(less(mean(18), md, md), set(variances.depth_m2));
-  const V k3 = less(mean(19), md, delta);
+/// a · b − c · d.
+HWY_INLINE V difference(V a, V b, V c, V d) { return hn::Sub(hn::Mul(a, b), hn::Mul(c, d)); }
 
-  const V r0 = hn::Div(one, d0);
-  const V l10 = hn::Mul(c10, r0);
-  const V l20 = hn::Mul(c20, r0);
-  const V l30 = hn::Mul(c30, r0);
-  const V r1 = hn::Div(one, less(s11, l10, c10));
-  const V c21 = less(s21, l20, c10);
-  const V c31 = less(s31, l30, c10);
-  const V l21 = hn::Mul(c21, r1);
-  const V l31 = hn::Mul(c31, r1);
-  const V r2 = hn::Div(one, less(less(s22, l20, c20), l21, c21));
-  const V c32 = less(less(s32, l30, c20), l31, c21);
-  const V l32 = hn::Mul(c32, r2);
-  const V r3 = hn::Div(one, less(less(less(s33, l30, c30), l31, c31), l32, c32));
+/// Lines 1 to 8 of Algorithm 7, from the moments of one vector of pixels. With n pixels in the window, a is the same
+/// for n²(Σ + Σ_E) = L D Lᵀ and n²κ as for Σ + Σ_E and κ. s_ij is what is left of that matrix's column j once those
+/// before it are eliminated, L_ij D_j.
+HWY_INLINE void fit(const V (&moments)[kMoments / kGroup][kGroup], const Variances& variances, V (&fits)[kFits]) {
+  const auto moment = [&](std::size_t i) HWY_ATTR { return moments[i / kGroup][i % kGroup]; };
+  const V n = moment(0);
+  const V r = moment(1);
+  const V g = moment(2);
+  const V b = moment(3);
+  const V d = moment(10);
+  const V depth = moment(15);
+  const V nn = hn::Mul(n, n);
+  const V color = hn::Mul(nn, set(variances.color));
+  const V s00 = hn::Add(difference(n, moment(4), r, r), color);
+  const V s10 = difference(n, moment(5), r, g);
+  const V s20 = difference(n, moment(6), r, b);
+  const V s30 = difference(n, moment(11), r, d);
+  const V all11 = hn::Add(difference(n, moment(7), g, g), color);
+  const V all21 = difference(n, moment(8), g, b);
+  const V all31 = difference(n, moment(12), g, d);
+  const V all22 = hn::Add(difference(n, moment(9), b, b), color);
+  const V all32 = difference(n, moment(13), b, d);
+  const V all33 = hn::Add(difference(n, moment(14), d, d), hn::Mul(nn, set(variances.depth_m2)));
+  const V k0 = difference(n, moment(16), r, depth);
+  const V k1 = difference(n, moment(17), g, depth);
+  const V k2 = difference(n, moment(18), b, depth);
+  const V k3 = difference(n, moment(19), d, depth);
+
+  const V one = set(1.0);
+  const V r0 = hn::Div(one, s00);
+  const V l10 = hn::Mul(s10, r0);
+  const V l20 = hn::Mul(s20, r0);
+  const V l30 = hn::Mul(s30, r0);
+  const V r1 = hn::Div(one, less(all11, l10, s10));
+  const V s21 = less(all21, l20, s10);
+  const V s31 = less(all31, l30, s10);
+  const V l21 = hn::Mul(s21, r1);
+  const V l31 = hn::Mul(s31, r1);
+  const V r2 = hn::Div(one, less(less(all22, l20, s20), l21, s21));
+  const V s32 = less(less(all32, l30, s20), l31, s21);
+  const V l32 = hn::Mul(s32, r2);
+  const V r3 = hn::Div(one, less(less(less(all33, l30, s30), l31, s31), l32, s32));
 
   const V y1 = less(k1, l10, k0);
   const V y2 = less(less(k2, l20, k0), l21, y1);
@@ -156,17 +201,17 @@ HWY_INLINE void fit(const V (&moments)[kMoments / kGroup][kGroup], const Varianc
   const V a2 = less(hn::Mul(y2, r2), l32, a3);
   const V a1 = less(less(hn::Mul(y1, r1), l21, a2), l31, a3);
   const V a0 = less(less(less(hn::Mul(k0, r0), l10, a1), l20, a2), l30, a3);
+  const V share = hn::Div(one, n);
   fits[0] = a0;
   fits[1] = a1;
   fits[2] = a2;
   fits[3] = a3;
-  fits[4] = less(less(less(less(delta, a0, mr), a1, mg), a2, mb), a3, md);
+  fits[4] = hn::Mul(less(less(less(less(depth, a0, r), a1, g), a2, b), a3, d), share);
   fits[5] = share;
 }
 
-/// Whether columns [first, end) of a loaded row have a pixel that is used.
-HWY_INLINE bool any_used(const float* row, int first, int end) {
-  const float* used = row + kMargin;
+/// Whether columns [first, end) of a loaded row, whose masks are at `used`, have a pixel that is used.
+HWY_INLINE bool any_used(const float* used, int first, int end) {
   V any = hn::Zero(Doubles{});
   for (int u = first; u < end; u += lanes()) any = hn::Or(any, load_floats(used + u));
   return !hn::AllTrue(Doubles{}, hn::Eq(any, hn::Zero(Doubles{})));
@@ -182,70 +227,85 @@ HWY_INLINE void for_groups(const Group& group) {
   if constexpr (kGroup < kMoments) group(std::integral_constant<std::size_t, kGroup>{});
 }
 
-void fit_row_kernel(const RowShape& shape, const Disc& disc, const Variances& variances, const float* const* rows,
-                    double* sums, double* fits) {
+/// Fits of one vector of pixels, whose masks are at `pixels`; `columns`: where the sums of their columns are.
+HWY_INLINE void fit_pixels(const Disc& disc, const Variances& variances, const float* pixels, std::size_t stride,
+                           const double* columns, std::ptrdiff_t per_level, double* fits) {
   const Doubles d;
-  constexpr std::make_index_sequence<kGroup> kAll;
-  const float* middle = rows[disc.radius_px];
+  const auto is_used = hn::Ne(load_floats(pixels), hn::Zero(d));
+  V fitted[kFits];
+  set_zero(fitted, std::make_index_sequence<kFits>{});
+  if (!hn::AllFalse(d, is_used)) {
+    V moments[kMoments / kGroup][kGroup];
+    for_groups([&](auto first) HWY_ATTR {
+      sum_window(disc, columns + first * kSumColumns, per_level, moments[first / kGroup], [&](int column) HWY_ATTR {
+        return MomentsOf<first>{pixels + column, stride};
+      });
+    });
+    fit(moments, variances, fitted);
+  }
+  for (std::size_t f = 0; f < kFits; ++f) {
+    hn::StoreU(hn::IfThenElseZero(is_used, fitted[f]), d, fits + f * stride);
+  }
+}
+
+void fit_rows_kernel(const RowShape& shape, const Disc& disc, const Variances& variances, const float* const* rows,
+                     double* sums, double* const* fits) {
+  const ColumnSums columns{disc, kMoments, sums};
+  const std::array<const float*, 2> middle{rows[disc.radius_px] + kMargin, rows[disc.radius_px + 1] + kMargin};
   const int reach = reach_of(disc);
   for (int strip = 0; strip < shape.padded_width; strip += kStrip) {
     const int end = std::min(strip + kStrip, shape.padded_width);
-    const bool used = any_used(middle, strip, end);
-    for (int u = strip - reach; used && u < end + reach; u += lanes()) {
-      for_groups([&](auto first) HWY_ATTR {
-        double* to = sums + first * kSumColumns + (kMargin + u - strip);
-        sum_columns<kGroup>(disc, kMoments, to, [&](int row, V(&sum)[kGroup]) HWY_ATTR {
-          add_products<first>(rows[row] + kMargin + u, shape.stride, sum, kAll);
-        });
-      });
-    }
-    for (int u = strip; u < end; u += lanes()) {
-      const auto is_used = hn::Ne(load_floats(middle + kMargin + u), hn::Zero(d));
-      V fitted[kFits];
-      set_zero(fitted, std::make_index_sequence<kFits>{});
-      if (!hn::AllFalse(d, is_used)) {
-        V moments[kMoments / kGroup][kGroup];
+    const bool used = any_used(middle[0], strip, end) || any_used(middle[1], strip, end);
+    for (int u = strip - reach; u < end + reach; u += lanes()) {
+      if (used) {
         for_groups([&](auto first) HWY_ATTR {
-          const double* from = sums + first * kSumColumns + (kMargin + u - strip);
-          sum_window(disc, kMoments, from, moments[first / kGroup], [&](int column, V(&all)[kGroup]) HWY_ATTR {
-            add_products<first>(middle + kMargin + u + column, shape.stride, all, kAll);
-          });
+          sum_columns<kGroup>(disc, columns, static_cast<std::ptrdiff_t>(first) * kSumColumns + kMargin + u - strip,
+                              [&](int row) HWY_ATTR {
+                                return MomentsOf<first>{rows[row] + kMargin + u, shape.stride};
+                              });
         });
-        fit(moments, variances, fitted);
       }
-      for (std::size_t f = 0; f < kFits; ++f) {
-        hn::StoreU(hn::IfThenElseZero(is_used, fitted[f]), d, fits + f * shape.stride + kMargin + u);
+      const int ready = u - reach;  // sums of all columns of its windows are there
+      for (std::size_t row = 0; row < 2 && ready >= strip; ++row) {
+        const double* const of_row = sums + static_cast<std::ptrdiff_t>(row) * columns.per_row + kMargin - strip;
+        fit_pixels(disc, variances, middle[row] + ready, shape.stride, of_row + ready, columns.per_level,
+                   fits[row] + kMargin + ready);
       }
     }
   }
 }
 
-void enhance_row_kernel(const RowShape& shape, const Disc& disc, const float* row, const double* const* fits,
-                        double* sums, float* enhanced_m) {
-  constexpr int kSummed{kFits - 1};
-  constexpr std::make_index_sequence<kSummed> kAll;
-  const double* middle = fits[disc.radius_px] + kMargin;
+/// Enhanced depth of one vector of pixels; arguments as of fit_pixels.
+HWY_INLINE void enhance_pixels(const Disc& disc, const float* pixels, std::size_t stride, const double* columns,
+                               std::ptrdiff_t per_level, const double* fits, float* enhanced_m) {
+  V sum[FitsOf::kCount];
+  sum_window(disc, columns, per_level, sum, [&](int column) HWY_ATTR { return FitsOf{fits + column, stride}; });
+  V total = sum[FitsOf::kCount - 1];
+  for (std::size_t c = 0; c + 1 < FitsOf::kCount; ++c) {
+    total = hn::Add(total, hn::Mul(sum[c], load_floats(pixels + (c + 1) * stride)));
+  }
+  const V depth = hn::Mul(total, load(fits + FitsOf::kCount * stride));
+  hn::StoreU(hn::DemoteTo(Floats{}, depth), Floats{}, enhanced_m);
+}
+
+void enhance_rows_kernel(const RowShape& shape, const Disc& disc, const float* const* rows, const double* const* fits,
+                         double* sums, float* const* enhanced_m) {
+  const ColumnSums columns{disc, FitsOf::kCount, sums};
+  const double* const* const middle = fits + disc.radius_px;
   const int reach = reach_of(disc);
   for (int strip = 0; strip < shape.padded_width; strip += kStrip) {
     const int end = std::min(strip + kStrip, shape.padded_width);
-    if (!any_used(row, strip, end)) continue;
+    if (!any_used(rows[0] + kMargin, strip, end) && !any_used(rows[1] + kMargin, strip, end)) continue;
     for (int u = strip - reach; u < end + reach; u += lanes()) {
-      sum_columns<kSummed>(disc, kSummed, sums + (kMargin + u - strip), [&](int r, V(&sum)[kSummed]) HWY_ATTR {
-        add_loaded(fits[r] + kMargin + u, shape.stride, sum, kAll);
+      sum_columns<FitsOf::kCount>(disc, columns, kMargin + u - strip, [&](int row) HWY_ATTR {
+        return FitsOf{fits[row] + kMargin + u, shape.stride};
       });
-    }
-    for (int u = strip; u < end; u += lanes()) {
-      V sum[kSummed];
-      sum_window(disc, kSummed, sums + (kMargin + u - strip), sum, [&](int column, V(&all)[kSummed]) HWY_ATTR {
-        add_loaded(middle + u + column, shape.stride, all, kAll);
-      });
-      const float* guidance = row + shape.stride + kMargin + u;
-      V total = sum[kSummed - 1];
-      for (std::size_t c = 0; c + 1 < kSummed; ++c) {
-        total = hn::Add(total, hn::Mul(sum[c], load_floats(guidance + c * shape.stride)));
+      const int ready = u - reach;
+      for (std::size_t row = 0; row < 2 && ready >= strip; ++row) {
+        const double* const of_row = sums + static_cast<std::ptrdiff_t>(row) * columns.per_row + kMargin - strip;
+        enhance_pixels(disc, rows[row] + kMargin + ready, shape.stride, of_row + ready, columns.per_level,
+                       middle[row] + kMargin + ready, enhanced_m[row] + ready);
       }
-      const V depth = hn::Mul(total, hn::LoadU(Doubles{}, middle + kSummed * shape.stride + u));
-      hn::StoreU(hn::DemoteTo(Floats{}, depth), Floats{}, enhanced_m + u);
     }
   }
 }
@@ -293,8 +353,8 @@ namespace saccade::guided {
 namespace {
 
 HWY_EXPORT(load_row_kernel);
-HWY_EXPORT(fit_row_kernel);
-HWY_EXPORT(enhance_row_kernel);
+HWY_EXPORT(fit_rows_kernel);
+HWY_EXPORT(enhance_rows_kernel);
 
 }  // namespace
 
@@ -316,14 +376,14 @@ void load_row(const RowShape& shape, const float* depth_m, const float* guidance
   HWY_DYNAMIC_DISPATCH(load_row_kernel)(shape, depth_m, guidance, used, row);
 }
 
-void fit_row(const RowShape& shape, const Disc& disc, const Variances& variances, const float* const* rows,
-             double* sums, double* fits) {
-  HWY_DYNAMIC_DISPATCH(fit_row_kernel)(shape, disc, variances, rows, sums, fits);
+void fit_rows(const RowShape& shape, const Disc& disc, const Variances& variances, const float* const* rows,
+              double* sums, double* const* fits) {
+  HWY_DYNAMIC_DISPATCH(fit_rows_kernel)(shape, disc, variances, rows, sums, fits);
 }
 
-void enhance_row(const RowShape& shape, const Disc& disc, const float* row, const double* const* fits, double* sums,
-                 float* enhanced_m) {
-  HWY_DYNAMIC_DISPATCH(enhance_row_kernel)(shape, disc, row, fits, sums, enhanced_m);
+void enhance_rows(const RowShape& shape, const Disc& disc, const float* const* rows, const double* const* fits,
+                  double* sums, float* const* enhanced_m) {
+  HWY_DYNAMIC_DISPATCH(enhance_rows_kernel)(shape, disc, rows, fits, sums, enhanced_m);
 }
 
 }  // namespace saccade::guided

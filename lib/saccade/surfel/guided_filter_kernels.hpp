@@ -28,9 +28,9 @@ struct Disc {
 };
 [[nodiscard]] Disc make_disc(int radius_px);
 
-/// Doubles that the sums of a strip take: fit_row's and enhance_row's `sums`.
+/// Doubles that the sums of a strip of two rows take: fit_rows' and enhance_rows' `sums`.
 [[nodiscard]] constexpr std::size_t sums_of(const Disc& disc) {
-  return static_cast<std::size_t>(disc.levels) * kMoments * kSumColumns;
+  return std::size_t{2} * static_cast<std::size_t>(disc.levels) * kMoments * kSumColumns;
 }
 
 /// A row's planes are `stride` apart, multiples of 8. Column 0 is at `kMargin`.
@@ -49,13 +49,13 @@ struct Variances {
 /// Depth, guidance (four floats to a pixel) and mask of one row into the planes of `row`, but for the margins.
 void load_row(const RowShape& shape, const float* depth_m, const float* guidance, const std::uint8_t* used, float* row);
 
-/// Fits of the pixels of rows[R], the middle one of 2R + 1 loaded rows.
-void fit_row(const RowShape& shape, const Disc& disc, const Variances& variances, const float* const* rows,
-             double* sums, double* fits);
+/// Fits of the pixels of rows[R] and rows[R + 1], the middle ones of 2R + 2 loaded rows.
+void fit_rows(const RowShape& shape, const Disc& disc, const Variances& variances, const float* const* rows,
+              double* sums, double* const* fits);
 
-/// F_m(a)ᵀγ + F_m(b) of the pixels of `row`, whose fits are in the middle one of 2R + 1 rows of fits; of whole vectors
-/// of pixels, and anything where a pixel is not used.
-void enhance_row(const RowShape& shape, const Disc& disc, const float* row, const double* const* fits, double* sums,
-                 float* enhanced_m);
+/// F_m(a)ᵀγ + F_m(b) of the pixels of two rows, whose fits are in the middle ones of 2R + 2 rows of fits; of whole
+/// vectors of pixels, and anything where a pixel is not used.
+void enhance_rows(const RowShape& shape, const Disc& disc, const float* const* rows, const double* const* fits,
+                  double* sums, float* const* enhanced_m);
 
 }  // namespace saccade::guided
