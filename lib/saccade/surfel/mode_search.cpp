@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/surfel/mode_search.hpp"
 
+#include <hwy/cache_control.h>
+
+#include <algorithm>
 #include <limits>
 
 #undef HWY_TARGET_INCLUDE
@@ -34,19 +37,29 @@ HWY_INLINE W squared_distances(const std::uint64_t* packed, W r, W g, W b) {
 
 constexpr int kIndexBits{5};
 
+HWY_INLINE void fetch(const ColorQuery& query, std::size_t room) {
+  constexpr std::size_t kPerLine{64 / sizeof(std::uint64_t)};
+  for (std::size_t i = 0; i < room; i += kPerLine) hwy::Prefetch(query.packed + i);
+}
+
 void nearest_kernel(std::span<ColorQuery> queries, std::size_t room) {
   const Wide d;
+  const W lane = hn::Iota(d, 0);
+  const std::size_t last = std::max(room, hn::Lanes(d)) - hn::Lanes(d);  // the last vector ends where the room does
+  const ColorQuery* ahead = queries.data() + std::min(kQueriesAhead, queries.size());
+  const ColorQuery* const end_of_queries = queries.data() + queries.size();
   for (ColorQuery& query : queries) {
+    if (ahead != end_of_queries) fetch(*ahead++, room);
     const W r = hn::Set(d, query.color.r);
     const W g = hn::Set(d, query.color.g);
     const W b = hn::Set(d, query.color.b);
     const W end = hn::Set(d, static_cast<std::int64_t>(query.count));
-    W index = hn::Iota(d, 0);
     W least = hn::Set(d, std::numeric_limits<std::int64_t>::max());
     for (std::size_t i = 0; i < room; i += hn::Lanes(d)) {  // always as often: nothing to guess
-      const W key = hn::Or(hn::ShiftLeft<kIndexBits>(squared_distances(query.packed + i, r, g, b)), index);
+      const std::size_t first = std::min(i, last);
+      const W index = hn::Add(lane, hn::Set(d, static_cast<std::int64_t>(first)));
+      const W key = hn::Or(hn::ShiftLeft<kIndexBits>(squared_distances(query.packed + first, r, g, b)), index);
       least = hn::IfThenElse(hn::And(hn::Lt(index, end), hn::Lt(key, least)), key, least);
-      index = hn::Add(index, hn::Set(d, static_cast<std::int64_t>(hn::Lanes(d))));
     }
     const std::int64_t key = hn::GetLane(hn::MinOfLanes(d, least));
     query.nearest = {static_cast<std::size_t>(key) & ((std::size_t{1} << kIndexBits) - 1), key >> kIndexBits};
@@ -61,11 +74,13 @@ void nearby_kernel(std::span<NearbyQuery> queries) {
     const W b = hn::Set(d, query.color.b);
     const W limit = hn::Set(d, query.squared_units + 1);
     std::uint64_t bits{0};
+    const std::size_t last = std::max(query.count, hn::Lanes(d)) - hn::Lanes(d);
     for (std::size_t i = 0; i < query.count; i += hn::Lanes(d)) {
-      const auto inside = hn::Lt(squared_distances(query.packed + i, r, g, b), limit);
+      const std::size_t first = std::min(i, last);
+      const auto inside = hn::Lt(squared_distances(query.packed + first, r, g, b), limit);
       std::uint64_t here{0};
       hn::StoreMaskBits(d, inside, reinterpret_cast<std::uint8_t*>(&here));
-      bits |= here << i;
+      bits |= here << first;
     }
     query.nearby = static_cast<std::uint32_t>(bits & ((std::uint64_t{1} << query.count) - 1));
   }

@@ -53,9 +53,12 @@ struct ColorQuery {
   NearestColor nearest;  ///< argmin_i ‖c_i − c‖, the first of those that are equally near; unset for no colours
 };
 
-/// Answers queries. Of each query's packed colours `room`, and seven more, must be readable; those from its count on
-/// are ignored. One after the other is much quicker than one alone: searches overlap. simd_target() changes nothing.
+/// Answers queries. Of each query's packed colours `room`, and at least eight, must be readable; those from its count
+/// on are ignored. One after the other is much quicker than one alone: searches overlap. simd_target() changes nothing.
+/// Memory is asked for the colours of later queries meanwhile, kQueriesAhead before they are read: much farther ahead
+/// they would be gone from the nearest cache by then. Those of the first so many the caller may ask for.
 void find_nearest(std::span<ColorQuery> queries, std::size_t room);
+constexpr std::size_t kQueriesAhead{14};
 
 /// Which colours are how near to a colour, and the answer.
 struct NearbyQuery {
@@ -66,7 +69,7 @@ struct NearbyQuery {
   std::uint32_t nearby;  ///< bit i: ‖c_i − c‖² ≤ squared_units
 };
 
-/// Answers queries; seven colours more must be readable. As find_nearest.
+/// Answers queries; at least eight colours must be readable. As find_nearest, but asks for no memory.
 void find_nearby(std::span<NearbyQuery> queries);
 
 }  // namespace saccade

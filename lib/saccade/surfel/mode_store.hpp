@@ -90,15 +90,21 @@ class ModeStore {
   }
   [[nodiscard]] SurfelMode mode(SurfelId id, std::size_t i) const;
   // Inlined at once: g++ takes a function that only prefetches for one without effect, and leaves its calls out.
-  /// Asks memory for how many modes there are, and their colours.
+  /// Asks memory for how many modes there are.
+  [[gnu::always_inline]] void fetch_count(SurfelId id) const { __builtin_prefetch(&counts_[id], 1); }
+  /// And for their colours.
   [[gnu::always_inline]] void fetch_colors(SurfelId id) const {
     const std::byte* const first = room(id);
-    __builtin_prefetch(&counts_[id], 1);
     for (std::size_t i = 0; i < max_modes_ * sizeof(std::uint64_t); i += kLine) __builtin_prefetch(first + i, 1);
   }
   /// Asks memory for the weight and position of one.
   [[gnu::always_inline]] void fetch_place(SurfelId id, std::size_t i) const {
     __builtin_prefetch(room(id) + max_modes_ * sizeof(std::uint64_t) + i * sizeof(ModePlace), 1);
+  }
+  /// And of all.
+  [[gnu::always_inline]] void fetch_places(SurfelId id) const {
+    const std::byte* const first = room(id) + max_modes_ * sizeof(std::uint64_t);
+    for (std::size_t i = 0; i < max_modes_ * sizeof(ModePlace); i += kLine) __builtin_prefetch(first + i, 1);
   }
 
  private:
@@ -108,7 +114,7 @@ class ModeStore {
   [[nodiscard]] std::byte* room(SurfelId id) const { return chunks_[id / kPerChunk].get() + id % kPerChunk * stride_; }
 
   std::size_t max_modes_;
-  std::size_t stride_;  ///< bytes; searches look at up to seven modes more than there are: so far they stay among them
+  std::size_t stride_;  ///< bytes; searches look at eight colours at least: that many bytes are there
   std::vector<std::uint8_t> counts_;
   std::vector<std::unique_ptr<std::byte[]>> chunks_;
 };

@@ -71,7 +71,7 @@ void ModeUpdate::take(const SeenRounds& rounds, ModeFilterReport& counts) {
 /// Calls visit for some pixels at a time, whose nearest modes are known, while memory is asked for the next ones.
 template <class Visit>
 void ModeUpdate::for_batches(Pixels round, const Visit& visit) {
-  for (const SurfelPixel& pixel : round.first(std::min(kBatch, round.size()))) store_.fetch_colors(pixel.id);
+  for (const SurfelPixel& pixel : round.first(std::min(kBatch, round.size()))) store_.fetch_count(pixel.id);
   for (std::size_t first = 0; first < round.size(); first += kBatch) {
     const std::size_t count = std::min(kBatch, round.size() - first);
     ask(round.subspan(first, count), round.subspan(first + count));
@@ -87,7 +87,8 @@ void ModeUpdate::ask(Pixels pixels, Pixels next) {
   const SurfelPixel* ahead = next.data();
   const SurfelPixel* const end = ahead + std::min(next.size(), pixels.size());
   for (const SurfelPixel& pixel : pixels) {
-    if (ahead != end) store_.fetch_colors((ahead++)->id);
+    if (ahead != end) store_.fetch_count((ahead++)->id);
+    if (query - queries_.data() < static_cast<std::ptrdiff_t>(kQueriesAhead)) store_.fetch_colors(pixel.id);
     const StoredModes modes = store_.modes(pixel.id);
     query->packed = modes.colors;  // member by member: what is stored in parts is slow to copy
     query->count = modes.count();
@@ -106,6 +107,7 @@ void ModeUpdate::ask(Pixels pixels, Pixels next) {
     far_count_ += is_near ? 0U : 1U;
   }
   for (const std::uint8_t k : near()) store_.fetch_place(pixels[k].id, queries_[k].nearest.index);
+  for (const std::uint8_t k : far()) store_.fetch_places(pixels[k].id);
 }
 
 void ModeUpdate::guide(Pixels pixels, ModeFilterReport& counts) {

@@ -17,7 +17,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kBatch{64};
+constexpr std::size_t kBatch{32};
 /// A radius that is so much larger comes from too far away to say anything of this surfel's.
 constexpr float kComparableRadius{1.5F};
 static_assert(sizeof(SurfelDisc) == 8 * sizeof(float) && sizeof(SurfelColor) == 4 * sizeof(float));

@@ -20,8 +20,8 @@ static_assert(SurfelCells::kMargin >= kMostLanes + kReach_px);
 
 /// Pixels of a row: as many as the widest vector has lanes.
 struct PixelBlock {
-  std::array<float, kMostLanes> z{}, nx{}, ny{}, nz{};
-  std::array<SurfelId, kMostLanes> of_pixel{};
+  const float *z, *nx, *ny, *nz;
+  SurfelId* of_pixel;
 };
 
 }  // namespace
@@ -51,14 +51,14 @@ HWY_INLINE V dot(const SurfelCells& cells, const Pixels& pixels, int u, int v) {
 }
 
 HWY_INLINE void associate_block(const SurfelCells& cells, const AssociationLimits& limits, int u, int v, int lane,
-                                PixelBlock& block, RowCounts& counts) {
+                                const PixelBlock& block, RowCounts& counts) {
   const Tag d;
   const IdTag di;
   Pixels pixels;
-  pixels.z = hn::LoadU(d, block.z.data() + lane);
-  pixels.nx = hn::LoadU(d, block.nx.data() + lane);
-  pixels.ny = hn::LoadU(d, block.ny.data() + lane);
-  pixels.nz = hn::LoadU(d, block.nz.data() + lane);
+  pixels.z = hn::LoadU(d, block.z + lane);
+  pixels.nx = hn::LoadU(d, block.nx + lane);
+  pixels.ny = hn::LoadU(d, block.ny + lane);
+  pixels.nz = hn::LoadU(d, block.nz + lane);
   pixels.ray_x = hn::Div(hn::Sub(hn::Iota(d, static_cast<float>(u)), hn::Set(d, limits.cx)), hn::Set(d, limits.fx));
   pixels.ray_y = hn::Set(d, (static_cast<float>(v) - limits.cy) / limits.fy);
   const V zero = hn::Zero(d);
@@ -110,7 +110,7 @@ HWY_INLINE void associate_block(const SurfelCells& cells, const AssociationLimit
   const auto created = hn::And(hn::And(is_point, faces), hn::Not(hn::Or(occupied, found)));
   best = hn::IfThenElse(hn::RebindMask(di, created), hn::Set(di, kMakesSurfel), best);
   best = hn::IfThenElse(hn::RebindMask(di, is_point), best, hn::Set(di, kNoSurfel));
-  hn::StoreU(best, di, block.of_pixel.data() + lane);
+  hn::StoreU(best, di, block.of_pixel + lane);
   counts.points += hn::CountTrue(d, is_point);
   counts.associated += hn::CountTrue(d, associated);
   counts.contradicted += hn::CountTrue(d, contradicted);
@@ -120,16 +120,23 @@ HWY_INLINE void associate_block(const SurfelCells& cells, const AssociationLimit
 void associate_row_kernel(const SurfelCells& cells, const PointImage& points, const AssociationLimits& limits, int v,
                           SurfelId* of_pixel, RowCounts& counts) {
   const int lanes = static_cast<int>(hn::Lanes(Tag{}));
-  PixelBlock block;
+  const PixelBlock row{points.z.row(v), points.nx.row(v), points.ny.row(v), points.nz.row(v), of_pixel};
   for (int u = 0; u < cells.width(); u += kMostLanes) {
     const int count = std::min(kMostLanes, cells.width() - u);
-    if (count < kMostLanes) block.z.fill(0.0F);
-    std::copy_n(points.z.row(v) + u, count, block.z.begin());
-    std::copy_n(points.nx.row(v) + u, count, block.nx.begin());
-    std::copy_n(points.ny.row(v) + u, count, block.ny.begin());
-    std::copy_n(points.nz.row(v) + u, count, block.nz.begin());
+    if (count == kMostLanes) {
+      const PixelBlock block{row.z + u, row.nx + u, row.ny + u, row.nz + u, of_pixel + u};
+      for (int lane = 0; lane < count; lane += lanes) associate_block(cells, limits, u + lane, v, lane, block, counts);
+      continue;
+    }
+    std::array<std::array<float, kMostLanes>, 4> rest{};
+    std::array<SurfelId, kMostLanes> of_rest{};
+    const PixelBlock block{rest[0].data(), rest[1].data(), rest[2].data(), rest[3].data(), of_rest.data()};
+    std::copy_n(row.z + u, count, rest[0].begin());
+    std::copy_n(row.nx + u, count, rest[1].begin());
+    std::copy_n(row.ny + u, count, rest[2].begin());
+    std::copy_n(row.nz + u, count, rest[3].begin());
     for (int lane = 0; lane < count; lane += lanes) associate_block(cells, limits, u + lane, v, lane, block, counts);
-    std::copy_n(block.of_pixel.begin(), count, of_pixel + u);
+    std::copy_n(of_rest.begin(), count, of_pixel + u);
   }
 }
 
