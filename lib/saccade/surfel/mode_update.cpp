@@ -5,6 +5,7 @@
 #include <array>
 #include <bit>
 #include <cmath>
+#include <limits>
 #include <numbers>
 
 namespace saccade {
@@ -31,6 +32,16 @@ bool absorbs(const StoredModes& modes, std::size_t n, std::size_t i, double sigm
   const auto squared = static_cast<double>(
       squared_distance(ColorUnits::unpacked(modes.colors[n]), ColorUnits::unpacked(modes.colors[i])));
   return std::exp(-squared / (2.0 * sigma * sigma)) * double{modes.weight(n)} > double{modes.weight(i)};
+}
+
+/// The first of those that are equally light. Which one it is nobody can guess: there is no branch.
+std::size_t lightest_mode(const StoredModes& modes) {
+  constexpr unsigned kIndexBits{8};
+  std::uint64_t least{std::numeric_limits<std::uint64_t>::max()};
+  for (std::size_t i = 0; i < modes.count(); ++i) {  // weights are positive: in the order of their bits
+    least = std::min(least, std::uint64_t{std::bit_cast<std::uint32_t>(modes.weight(i))} << kIndexBits | i);
+  }
+  return least & ((std::uint64_t{1} << kIndexBits) - 1);
 }
 
 /// ⌊log₂ weight⌋ and a constant.
@@ -208,9 +219,7 @@ void ModeUpdate::add_mode(const SurfelPixel& pixel, const ColorUnits& color, std
   const std::size_t i = index(pixel);
   if (guidance_ != nullptr) guidance_->mode_of_pixel[i] = ModeGuidance::kNoMode;
   if (modes.count() >= static_cast<std::size_t>(config_.max_modes)) {
-    const auto lighter = [](const ModePlace& a, const ModePlace& b) { return a.weight < b.weight; };
-    const auto lightest =
-        static_cast<std::size_t>(std::min_element(modes.places, modes.places + modes.count(), lighter) - modes.places);
+    const std::size_t lightest = lightest_mode(modes);
     counts.evicted_weight += double{modes.weight(lightest)};
     ++counts.evicted_modes;
     remove(pixel, lightest, ModeGuidance::kNoMode, round);
