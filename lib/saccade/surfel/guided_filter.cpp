@@ -64,7 +64,7 @@ class RowFilter {
     for (; v < end + 2 * lag_; v += 2) {
       load(images, v);
       load(images, v + 1);
-      if (v - lag_ >= begin - lag_) fit(v - lag_, variances);
+      if (v >= begin) fit(v - lag_, variances);
       if (v - 2 * lag_ >= begin) enhance(images, v - 2 * lag_);
     }
     next_ = end;
