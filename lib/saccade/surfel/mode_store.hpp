@@ -114,7 +114,7 @@ class ModeStore {
   [[nodiscard]] std::byte* room(SurfelId id) const { return chunks_[id / kPerChunk].get() + id % kPerChunk * stride_; }
 
   std::size_t max_modes_;
-  std::size_t stride_;  ///< bytes; searches look at eight colours at least: that many bytes are there
+  std::size_t stride_;  ///< bytes: of eight colours at least, as searches need
   std::vector<std::uint8_t> counts_;
   std::vector<std::unique_ptr<std::byte[]>> chunks_;
 };
