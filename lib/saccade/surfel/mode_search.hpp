@@ -58,7 +58,7 @@ struct ColorQuery {
 /// Memory is asked for the colours of later queries meanwhile, kQueriesAhead before they are read: much farther ahead
 /// they would be gone from the nearest cache by then. Those of the first so many the caller may ask for.
 void find_nearest(std::span<ColorQuery> queries, std::size_t room);
-constexpr std::size_t kQueriesAhead{14};
+constexpr std::size_t kQueriesAhead{32};
 
 /// Which colours are how near to a colour, and the answer.
 struct NearbyQuery {

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cstddef>
 #include <cstdint>
 #include <numeric>
 
@@ -23,6 +25,14 @@ TEST(UnsetVector, IsAVectorOtherwise) {
   numbers.emplace_back(4U);
   numbers.resize(3, 5);
   EXPECT_EQ(numbers, (UnsetVector<std::uint32_t>{3, 4, 5}));
+}
+
+TEST(UnsetVector, BeginsWhereALineOfCacheDoes) {
+  UnsetVector<std::array<float, 8>> halves;
+  for (std::size_t size = 1; size < 2000; size = size * 5 / 3 + 1) {
+    halves.resize(size);
+    EXPECT_EQ(reinterpret_cast<std::uintptr_t>(halves.data()) % 64, 0U) << size;
+  }
 }
 
 }  // namespace
