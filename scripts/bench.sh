@@ -5,6 +5,7 @@
 # Usage: scripts/bench.sh [options of Google Benchmark], for example --benchmark_filter=icp (then nothing is written)
 # SACCADE_BENCH_RESUME=1: programs that were measured since they were built are not measured again.
 # SACCADE_BENCH_REPETITIONS=2: fewer rounds than 7, for a quick look.
+# SACCADE_BENCH_SIMD=AVX2: our kernels on that instruction set, in place of the widest that is there.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/common.sh

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Writes docs/performance.md and its plots from what scripts/bench.sh left: performance_table.py RESULTS DOCUMENT."""
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -10,6 +11,7 @@ from performance import bounds, peers, phases, savings, scaling
 from performance.results import Results
 
 PROGRAM = "build/release/saccade"
+NOTES = pathlib.Path(__file__).parents[1] / "bench/notes.md"  # what other machines and other hours gave
 USUAL_REPETITIONS = 7  # of scripts/bench.sh
 PACKAGES = [("libbenchmark-dev", "Google Benchmark"), ("libembree-dev", "Embree"), ("libopen3d-dev", "Open3D"),
             ("libopencv-contrib-dev", "OpenCV"), ("libpcl-dev", "PCL")]
@@ -30,6 +32,13 @@ def system():
     return ", ".join([*names, kernel])
 
 
+def generation():
+    """Of the processor, which virtual machines leave out of its name."""
+    lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
+    of = dict(reversed([[part.strip() for part in line.split(":", 1)] for line in lines if ":" in line]))
+    return f" (family {of['cpu family']}, model {of['model']})" if "cpu family" in of else ""
+
+
 def machine(results, repetitions):
     command = "make bench" if repetitions == USUAL_REPETITIONS else f"SACCADE_BENCH_REPETITIONS={repetitions} make bench"
     asked = subprocess.run([PROGRAM, "info", "--json", "-"], capture_output=True, text=True, check=True)
@@ -38,8 +47,9 @@ def machine(results, repetitions):
                        if cache["type"] in ("Unified", "Data")) or "unknown"
     versions = ", ".join(f"{name} {version(package)}" for package, name in PACKAGES if version(package))
     load = ", ".join(f"{load:.1f}" for load in results.context.get("load_avg", [])) or "unknown"
+    simd = os.environ.get("SACCADE_BENCH_SIMD") or about["simd_target"]
     return [f"- Command: `{command}`, {results.context.get('date', 'undated')[:10]}; a Release build.",
-            f"- Machine: {about['processor']}, {about['cores']} cores, kernels on {about['simd_target']}; caches {caches}. "
+            f"- Machine: {about['processor']}{generation()}, {about['cores']} cores, kernels on {simd}; caches {caches}. "
             f"Load at the start: {load}.",
             f"- Versions: {about['compiler']}, oneTBB {about['dependencies']['onetbb']}, {versions}; {system()}.", ""]
 
@@ -57,7 +67,8 @@ def main(folder, document):
              "the peers run in one process, on the same data, warm, in random order. Frames are those of the 7-Scenes kitchen",
              "(`bench/frames.cpp`); views look at a table with clutter (`bench/table_map.cpp`). Results are compared before",
              "or while they are timed. Ratios must not fall below `bench/floors.json`, which `make bench` checks at its end",
-             "and the tests check loosely.", "", *machine(results, repetitions), *beside_peers, *savings.section(results, images),
+             "and the tests check loosely.", "", *machine(results, repetitions), *beside_peers, *NOTES.read_text().splitlines(), "",
+             *savings.section(results, images),
              *scaling.section(results, images), *phases.section(results), *bounds.section(results),
              *peers.everything(results)]
     document.write_text("\n".join(lines).rstrip() + "\n")
