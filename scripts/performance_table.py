@@ -4,6 +4,7 @@
 import json
 import os
 import pathlib
+import re
 import subprocess
 import sys
 
@@ -34,9 +35,9 @@ def system():
 
 def generation():
     """Of the processor, which virtual machines leave out of its name."""
-    lines = pathlib.Path("/proc/cpuinfo").read_text().splitlines()
-    of = dict(reversed([[part.strip() for part in line.split(":", 1)] for line in lines if ":" in line]))
-    return f" (family {of['cpu family']}, model {of['model']})" if "cpu family" in of else ""
+    about = pathlib.Path("/proc/cpuinfo")
+    family = re.search(r"^cpu family\s*: (\d+)\nmodel\s*: (\d+)$", about.read_text() if about.exists() else "", re.MULTILINE)
+    return f" (family {family[1]}, model {family[2]})" if family else ""
 
 
 def machine(results, repetitions):

@@ -20,6 +20,7 @@ struct UnsetAllocator : std::allocator<T> {
   static constexpr std::align_val_t kAlignment{64};
   /// Vectors ask for no more than there are addresses.
   [[nodiscard]] T* allocate(std::size_t count) {
+    static_assert(alignof(T) <= static_cast<std::size_t>(kAlignment));
     return static_cast<T*>(::operator new(count * sizeof(T), kAlignment));
   }
   void deallocate(T* memory, std::size_t count) noexcept { ::operator delete(memory, count * sizeof(T), kAlignment); }
