@@ -120,6 +120,12 @@ for scene in workshop-1 workshop-2 desk magazines-1 magazines-2; do
     --out "$out/surfels_$scene" --force --json "$out/surfels_$scene.json"
 done
 
+echo "The same with another way and noise"
+for scene in workshop-1 workshop-2 desk magazines-1 magazines-2; do
+  step "surfels_seed_2_$scene" build/release/saccade --quiet --seed 2 reproduce 4.1 4.10 4.11 --scene "$scene" \
+    --out "$out/surfels_seed_2_$scene" --force --json "$out/surfels_seed_2_$scene.json"
+done
+
 echo "Surfels with automatic gain and exposure compensation: all frames, three times over"
 for scene in magazines-1 magazines-2; do
   step "surfels_gain_$scene" build/release/saccade --quiet reproduce 4.gain --scene "$scene" --json "$out/surfels_gain_$scene.json"

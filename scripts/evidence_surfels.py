@@ -3,6 +3,7 @@
 import json
 
 SCENES = ("workshop-1", "workshop-2", "desk", "magazines-1", "magazines-2")
+SEEDS = ((1, "surfels_"), (2, "surfels_seed_2_"))  # and what the steps' names begin with
 SHARPNESS_TEXT = [
     "How steeply luminance rises where the camera's image has edges, in renderings of the averages and of the modes",
     "(docs/surfels.md). The step fails unless modes are half as steep again, in every frame a third, and cover as much."]
@@ -24,20 +25,20 @@ def tables_of(folder, name):
 
 def section(folder, lines, command_of):
     """Table 4.3 and Figs. 4.10 and 4.11 of all frames. Whether enhancement is better in every figure that is there."""
-    scenes = {scene: tables_of(folder, f"surfels_{scene}") for scene in SCENES}
-    scenes = {scene: tables for scene, tables in scenes.items() if tables}
-    if not scenes:
+    steps = {(scene, seed): prefix + scene for seed, prefix in SEEDS for scene in SCENES}
+    trials = {trial: tables for trial, name in steps.items() if (tables := tables_of(folder, name))}
+    if not trials:
         return True
     lines += ["## Surfels, segmented", ""]
-    lines += [f"`{command_of(folder, f'surfels_{scene}')}`\n" for scene in scenes]
+    lines += [f"`{command_of(folder, steps[trial])}`\n" for trial in trials]
     lines += ["Rendered scenes with noise, not enhanced → enhanced by the mode filter (docs/surfel-segmentation.md). Held to: better in "
               "every figure. In brackets that of true colours: each surfel not enhanced, but in the one colour of the thing that it is "
               "on. Where that is worse than not enhanced, the figure rewards blur. Times are with whatever else the machine did; "
-              "alone: docs/performance.md.", "", "| scene | frames | surfels | ms per frame | algorithm | "
+              "alone: docs/performance.md.", "", "| scene | seed | frames | surfels | ms per frame | algorithm | "
               + " | ".join(f"{title} | better" for _, title, _ in FIGURES) + " |",
-              "|---|---|---|---|---|" + "---|---|" * len(FIGURES)]
+              "|---|---|---|---|---|---|" + "---|---|" * len(FIGURES)]
     held = True
-    for scene, tables in scenes.items():
+    for (scene, seed), tables in trials.items():
         about = tables["4.1"][0]
         for algorithm, number, title in ALGORITHMS:
             curves = tables[number][0]
@@ -47,7 +48,7 @@ def section(folder, lines, command_of):
                 better = sense * (modes - average) > 0
                 held = held and better
                 cells.append(f"{average:.3f} → {modes:.3f} ({truth:.3f}) | {'yes' if better else 'NO'}")
-            lines.append(f"| {scene} | {about['frames']} | {about['points']} | {about['ms_per_frame']:.1f} | {title} | "
+            lines.append(f"| {scene} | {seed} | {about['frames']} | {about['points']} | {about['ms_per_frame']:.1f} | {title} | "
                          + " | ".join(cells) + " |")
     lines.append("")
     return held

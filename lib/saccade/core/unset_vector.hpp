@@ -23,7 +23,7 @@ struct UnsetAllocator : std::allocator<T> {
     static_assert(alignof(T) <= static_cast<std::size_t>(kAlignment));
     return static_cast<T*>(::operator new(count * sizeof(T), kAlignment));
   }
-  void deallocate(T* memory, std::size_t count) noexcept { ::operator delete(memory, count * sizeof(T), kAlignment); }
+  void deallocate(T* memory, std::size_t /*count*/) noexcept { ::operator delete(memory, kAlignment); }
   template <class U>
   void construct(U* place) noexcept(std::is_nothrow_default_constructible_v<U>) {
     ::new (static_cast<void*>(place)) U;
