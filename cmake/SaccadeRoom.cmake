@@ -10,7 +10,7 @@ add_library(saccade_flags INTERFACE)
 target_compile_features(saccade_flags INTERFACE cxx_std_20)
 target_compile_options(saccade_flags INTERFACE
   $<BUILD_INTERFACE:-Wall -Wextra -Wpedantic -Wshadow -Wconversion -Wnon-virtual-dtor -ffp-contract=off
-  -fno-math-errno -fno-trapping-math
+  -fno-math-errno -fno-trapping-math -ffile-prefix-map=${PROJECT_SOURCE_DIR}=.
   $<$<BOOL:${SACCADE_X86_64}>:-march=x86-64-v2>
   $<$<BOOL:${SACCADE_WARNINGS_AS_ERRORS}>:-Werror>>)
 if(SACCADE_SANITIZE)

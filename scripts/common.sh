@@ -1,9 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by the other scripts, in the root of the repository.
 
+# What one checkout compiled, another takes from the cache: paths below the root count as relative ones. CMake's
+# -ffile-prefix-map (SaccadeRoom.cmake) keeps the root out of the objects, so that they are the same ones, too.
 if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache
 fi
+export CCACHE_BASEDIR="${CCACHE_BASEDIR:-$PWD}" CCACHE_NOHASHDIR=1 CCACHE_MAXSIZE="${CCACHE_MAXSIZE:-10G}"
 
 # One compiler needs up to about 1.5 GB: use every core that has as much memory.
 jobs_here() {
