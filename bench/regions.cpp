@@ -56,9 +56,10 @@ Result<std::vector<Case>> cases_of(const std::string& name, const Executor& exec
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
   SACCADE_TRY(SimulatedCamera camera, simulated_camera(rays, config));
   SACCADE_TRY(FreeRobot robot, flying_camera(rays));
-  ExplorationCell cell{config.camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); },
-                       robot};
-  SACCADE_TRY(const ScanResult scanned, scan(map, cell, rays.scene().scan, config.exploration, executor));
+  FunctionCamera sensor{config.camera,
+                        [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); }};
+  Explorer explorer{{map, sensor, robot, executor}, config.exploration};
+  SACCADE_TRY(const ScanRecord scanned, explorer.scan(rays.scene().scan));
   SACCADE_EXPECTS(scanned.complete);
 
   const std::vector<Eigen::Vector3d> points = surface_points(map.content());
@@ -116,7 +117,7 @@ void all_poses(benchmark::State& state) {
 void best_pose(benchmark::State& state) {
   const bool again = state.range(0) != 0;
   const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(1)));
-  std::vector<RankedView> expected;
+  std::vector<OrderedView> expected;
   for (const Case& region : cases()) {
     const auto all = evaluate_views(map_of(region, again), region.region, region.poses, {}, executor);
     expected.push_back(order_views(all.value().gains, region.poses).front());

@@ -70,9 +70,10 @@ Result<std::vector<Case>> make_cases() {
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
   SACCADE_TRY(SimulatedCamera camera, simulated_camera(rays, config));
   SACCADE_TRY(FreeRobot robot, flying_camera(rays));
-  ExplorationCell cell{config.camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); },
-                       robot};
-  SACCADE_TRY(const ScanResult scanned, scan(map, cell, rays.scene().scan, config.exploration, executor));
+  FunctionCamera sensor{config.camera,
+                        [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); }};
+  Explorer explorer{{map, sensor, robot, executor}, config.exploration};
+  SACCADE_TRY(const ScanRecord scanned, explorer.scan(rays.scene().scan));
   SACCADE_EXPECTS(scanned.complete);
   std::vector<Case> cases;
   for (int view = 0; view <= kMostViews; ++view) {
@@ -97,12 +98,12 @@ bool finds_the_best(const Case& test, const std::vector<Pose>& poses, const Exec
   const auto all = evaluate_views(test.map, test.region, poses, gain_config(), executor);
   const auto best = best_views(test.map, test.region, poses, 1, gain_config(), executor);
   if (!all || !best) return false;
-  const RankedView expected = order_views(all->gains, poses).front();
+  const OrderedView expected = order_views(all->gains, poses).front();
   return best->views.front().index == expected.index && best->views.front().gain == expected.gain;
 }
 
 /// The gain of the best view, ray by ray without any saving.
-bool gains_what_it_says(const Case& test, const RankedView& view, const Executor& executor) {
+bool gains_what_it_says(const Case& test, const OrderedView& view, const Executor& executor) {
   GainConfig config = gain_config();
   config.savings = GainSavings::none();
   const auto gain = evaluate_views(test.map, test.region, std::span{&view.T_world_camera, 1}, config, executor);

@@ -64,7 +64,7 @@ void best_only(benchmark::State& state) {
   const TsdfSnapshot& map = map_of(state);
   const Executor executor = Executor::with_threads(static_cast<std::size_t>(state.range(1)));
   const auto all = evaluate_views(map, kRegion, all_poses(), {}, executor);
-  const RankedView expected = order_views(all->gains, all_poses()).front();
+  const OrderedView expected = order_views(all->gains, all_poses()).front();
   double evaluated{0.0};
   for (auto _ : state) {
     const auto best = best_views(map, kRegion, all_poses(), 1, {}, executor);

@@ -8,6 +8,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/explore/planners.hpp"
 
 namespace CLI {
 class App;
@@ -16,6 +17,7 @@ class App;
 namespace saccade::cli {
 
 struct GlobalOptions {
+  Planners planners{};     ///< strategies that have a name
   std::size_t threads{0};  ///< 0: all cores
   std::uint64_t seed{1};
   bool quiet{false};

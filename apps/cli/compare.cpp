@@ -29,7 +29,7 @@ json planned_json(const Comparison& comparison, const PlannedRun& run) {
   const ComparedScene& scene = comparison.scenes()[run.scene];
   return {{"scene", scene.name},
           {"scene_hash", scene.hash},
-          {"strategy", to_string(run.strategy)},
+          {"strategy", run.strategy.name},
           {"noise", run.noise},
           {"seed", run.seed},
           {"max_views", run.max_views ? json(*run.max_views) : json(nullptr)},
@@ -48,8 +48,8 @@ Result<int> list_runs(const Comparison& comparison, const GlobalOptions& global,
   for (const PlannedRun& run : runs) {
     rows.push_back(planned_json(comparison, run));
     if (global.json_to_stdout()) continue;
-    std::cout << std::left << std::setw(18) << comparison.scenes()[run.scene].name << std::setw(10)
-              << to_string(run.strategy) << ' ' << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed
+    std::cout << std::left << std::setw(18) << comparison.scenes()[run.scene].name << std::setw(10) << run.strategy.name
+              << ' ' << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed
               << (run.max_views ? std::to_string(*run.max_views) + " views at most" : "as many views as sphere takes")
               << (run.found ? ", done" : "") << '\n';
   }
@@ -86,7 +86,7 @@ Result<int> run_compare(const CompareOptions& options, const GlobalOptions& glob
 
   ProgressBar progress{global.quiet};
   SACCADE_TRY(const std::size_t now, run_missing(comparison, campaign, executor.threads(), progress));
-  SACCADE_TRY(std::vector<CampaignRun> runs, comparison.finished(campaign));
+  SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(campaign));
   const std::size_t done = runs.size();
   const std::size_t planned =
       comparison.scenes().size() * options.noises.size() * options.seeds.size() * options.strategies.size();
@@ -112,9 +112,9 @@ Result<int> run_compare(const CompareOptions& options, const GlobalOptions& glob
 void add_compare(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("compare", "strategies in scenes, with means and confidence intervals");
   auto options = std::make_shared<CompareOptions>();
-  add_compare_options(*command, *options);
+  add_compare_options(*command, *options, global.planners);
   command->callback([options, &global, &action] {
-    check_compare_options(*options);
+    check_compare_options(*options, global.planners);
     action = [options, &global] { return run_compare(*options, global); };
   });
 }

@@ -13,62 +13,6 @@
 namespace saccade::cli {
 namespace {
 
-CampaignFigures figures_of(const MeasuredMap& map) {
-  return {map.metrics.coverage,   map.unknown_left,      map.metrics.unknown_near_objects,
-          map.metrics.accuracy_m, map.metrics.chamfer_m, map.metrics.f_score};
-}
-
-/// The camera's way to a view: as the robot went, or straight from where it was before; nullptr: that is not known.
-double path_m(const ExploredView& view, const Pose* before) {
-  double sum_m = 0.0;
-  for (std::size_t i = 1; i < view.path.size(); ++i) sum_m += (view.path[i] - view.path[i - 1]).norm();
-  if (view.path.size() < 2 && before != nullptr)
-    sum_m = (view.T_world_camera.translation() - before->translation()).norm();
-  return sum_m;
-}
-
-CampaignView campaign_view(const MeasuredView& measured, const Pose* before) {
-  const ExploredView& view = measured.view;
-  CampaignView stored;
-  stored.region = view.region;
-  stored.gain = std::isnan(view.gain) ? std::nullopt : std::optional{view.gain};
-  stored.T_world_camera = view.T_world_camera;
-  stored.candidates = view.candidates;
-  stored.evaluated = view.evaluated;
-  stored.refused = view.refused;
-  stored.frames = view.frames;
-  stored.after = figures_of(measured.after);
-  stored.points_at_object = measured.newly_known.points_at_object();
-  stored.looks_at_object = measured.looks_at_object;
-  stored.path_m = path_m(view, before);
-  stored.motion_s = view.motion_s;
-  stored.phases_ms = {view.planner_map_ms, view.candidates_ms,   view.segmentation_ms,
-                      view.saliency_ms,    view.reachability_ms, view.evaluation_ms,
-                      view.planning_ms,    view.motion_ms,       view.fusion_ms};
-  return stored;
-}
-
-CampaignRun campaign_run(CampaignKey key, const SimulatedRun& simulated, const std::vector<Pose>& scan,
-                         double seconds) {
-  CampaignRun run;
-  run.key = std::move(key);
-  run.scan_views = simulated.scan.views;
-  run.scan_refused = simulated.scan.refused;
-  run.initial = figures_of(simulated.initial);
-  // A camera that flies is at the last pose of the scan, unless that was passed over.
-  const bool scanned = !scan.empty() && simulated.scan.refused.total() == 0;
-  const Pose* before = scanned ? &scan.back() : nullptr;
-  for (const MeasuredView& measured : simulated.views) {
-    run.views.push_back(campaign_view(measured, before));
-    before = &measured.view.T_world_camera;
-  }
-  run.stopped_because = to_string(simulated.stopped_because);
-  run.refused_at_end = simulated.refused_at_end;
-  run.seconds = seconds;
-  run.program_version = SACCADE_VERSION;
-  return run;
-}
-
 /// "40 s", "12 min", "3.5 h".
 std::string duration_text(double seconds) {
   constexpr double kMinute_s{60.0};
@@ -184,19 +128,20 @@ class Jobs {
     }
     const Stopwatch stopwatch;
     SACCADE_TRY(const Truth truth, truth_of(run.scene, executor));
-    SACCADE_TRY(const SimulatedRun simulated, run_simulated(truth, comparison_.config_of(run), executor, cancel_));
+    CampaignEntry entry{comparison_.key_of(run), {}, 0.0, SACCADE_VERSION, {}};
+    SACCADE_TRY(entry.run, run_simulated(truth, comparison_.config_of(run), executor, cancel_));
+    entry.seconds = 1e-3 * stopwatch.elapsed_ms();
     const std::lock_guard lock{mutex_};
     --at_work_;
-    if (simulated.stopped_because == StopReason::cancelled) return {};
-    const std::vector<Pose>& scan = comparison_.scenes()[run.scene].rays.scene().scan;
-    SACCADE_CHECK(campaign_.add(campaign_run(comparison_.key_of(run), simulated, scan, 1e-3 * stopwatch.elapsed_ms())));
+    if (entry.run.stopped_because == StopReason::cancelled) return {};
+    SACCADE_CHECK(campaign_.add(entry));
     ++done_;
     return {};
   }
 
   /// Of a run that begins. The caller holds mutex_.
   void report(const PlannedRun& run) {
-    std::string stage = comparison_.scenes()[run.scene].name + ", " + std::string{to_string(run.strategy)};
+    std::string stage = comparison_.scenes()[run.scene].name + ", " + run.strategy.name;
     if (comparison_.options().noises.size() > 1) stage += ", " + run.noise;
     stage += ", seed " + std::to_string(run.seed);
     if (at_work_ > 1) stage += " and " + std::to_string(at_work_ - 1) + " more";

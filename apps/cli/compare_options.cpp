@@ -74,15 +74,16 @@ std::vector<std::string> scenes_of(const std::string& text) {
   return names;
 }
 
-std::vector<StrategyKind> strategies_of(const CompareOptions& options) {
-  std::vector<StrategyKind> strategies;
+std::vector<NamedPlanner> strategies_of(const CompareOptions& options, const Planners& planners) {
+  std::vector<NamedPlanner> strategies;
   for (const std::string& name : parts_of("--strategies", options.strategy_list)) {
-    const auto strategy = strategy_kind(name);
+    const auto strategy = planners.find(name);
     if (!strategy) usage_error("--strategies", strategy.error().message);
     strategies.push_back(*strategy);
   }
   if (!options.equal_views) return strategies;
-  const auto sphere = std::find(strategies.begin(), strategies.end(), StrategyKind::sphere);
+  const auto sphere = std::find_if(strategies.begin(), strategies.end(),
+                                   [](const NamedPlanner& strategy) { return strategy.name == kEqualViewsOf; });
   if (sphere == strategies.end()) usage_error("--equal-views", "needs sphere among the strategies");
   std::rotate(strategies.begin(), sphere, sphere + 1);  // the others have to know how many views it took
   return strategies;
@@ -126,14 +127,14 @@ void set_noise(SimulatedRunConfig& run, const std::string& name) {
   if (run.noise) run.sensor = depth_sensor(name).value();
 }
 
-void add_compare_options(CLI::App& command, CompareOptions& options) {
+void add_compare_options(CLI::App& command, CompareOptions& options, const Planners& planners) {
   command
       .add_option("--scenes", options.scene_list,
                   "scenes, separated by commas: built-in ones or all of them (all), clutter:SEED, clutter:1-30, YAML "
                   "files, mesh files, and folders of meshes, each of which is put on a table")
       ->required()
       ->type_name("LIST");
-  command.add_option("--strategies", options.strategy_list, "strategies, separated by commas: " + strategy_names())
+  command.add_option("--strategies", options.strategy_list, "strategies, separated by commas: " + planners.names())
       ->type_name("LIST")
       ->capture_default_str();
   command.add_option("--seeds", options.seed_list, "seeds of noise and chance, each makes one run: 1-10,15")
@@ -171,9 +172,9 @@ void add_compare_options(CLI::App& command, CompareOptions& options) {
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
 
-void check_compare_options(CompareOptions& options) {
+void check_compare_options(CompareOptions& options, const Planners& planners) {
   options.scenes = scenes_of(options.scene_list);
-  options.strategies = strategies_of(options);
+  options.strategies = strategies_of(options, planners);
   options.noises = noises_of(options);
   options.seeds = parse_seeds(options.seed_list);
   require_ok(options.mesh.validate(), "--mesh-scale");

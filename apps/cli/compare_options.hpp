@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.hpp"
@@ -12,9 +13,12 @@
 
 namespace saccade::cli {
 
+/// The strategy that gives --equal-views their number.
+constexpr std::string_view kEqualViewsOf{"sphere"};
+
 struct CompareOptions {
   std::vector<std::string> scenes;  ///< as they were given, each once; ranges of clutter and "all" taken apart
-  std::vector<StrategyKind> strategies;
+  std::vector<NamedPlanner> strategies;
   std::vector<std::string> noises;   ///< names, each once
   std::vector<std::uint64_t> seeds;  ///< ascending
   std::filesystem::path out;
@@ -35,9 +39,9 @@ struct CompareOptions {
   std::string mesh_up;
 };
 
-void add_compare_options(CLI::App& command, CompareOptions& options);
+void add_compare_options(CLI::App& command, CompareOptions& options, const Planners& planners);
 /// After parsing: fills what was given as lists, and throws a usage error for what makes no sense.
-void check_compare_options(CompareOptions& options);
+void check_compare_options(CompareOptions& options, const Planners& planners);
 
 /// "1-10,15": seeds and ranges of them, sorted, each once. Throws a usage error of --seeds.
 [[nodiscard]] std::vector<std::uint64_t> parse_seeds(const std::string& text);

@@ -92,7 +92,7 @@ void print_gap(std::ostream& out, const StrategyGap& gap, const ComparedRuns& co
 
 }  // namespace
 
-ComparedRuns compared(std::vector<CampaignRun> runs, std::size_t budget) {
+ComparedRuns compared(std::vector<CampaignEntry> runs, std::size_t budget) {
   ComparedRuns compared{std::move(runs), budget, {}, {}};
   compared.summaries = summarize(compared.runs, budget);
   for (const CampaignSummary& b : compared.summaries) {
@@ -120,7 +120,7 @@ std::string gap_label(const StrategyGap& gap, const ComparedRuns& compared, cons
 
 Plot coverage_plot(const ComparedRuns& compared, const std::optional<std::string>& scene) {
   Plot plot = plot_of(
-      compared, scene, [](const CampaignFigures& map) { return map.coverage; }, 100.0);
+      compared, scene, [](const Measures& map) { return map.coverage.value_or(0.0); }, 100.0);
   plot.title = "Coverage: " + scene.value_or("mean over all scenes");
   plot.y_label = "coverage, %";
   const double lowest = std::min(90.0, extent_of(plot).first - 5.0);
@@ -130,7 +130,8 @@ Plot coverage_plot(const ComparedRuns& compared, const std::optional<std::string
 
 Plot unknown_plot(const ComparedRuns& compared, const std::optional<std::string>& scene) {
   Plot plot = plot_of(
-      compared, scene, [](const CampaignFigures& map) { return static_cast<double>(map.unknown_near_objects); }, 1.0);
+      compared, scene, [](const Measures& map) { return static_cast<double>(map.unknown_near_objects.value_or(0)); },
+      1.0);
   plot.title = "Unknown near objects: " + scene.value_or("mean over all scenes");
   plot.y_label = "voxels";
   plot.y_range = {0.0, std::max(1.0, 1.25 * extent_of(plot).second)};

@@ -28,12 +28,12 @@ struct StrategyGap {
 
 /// A comparison that is done, or as far as it is.
 struct ComparedRuns {
-  std::vector<CampaignRun> runs;
+  std::vector<CampaignEntry> runs;
   std::size_t budget{0};  ///< views that every run might have taken
   std::vector<CampaignSummary> summaries;
   std::vector<StrategyGap> gaps;  ///< the first strategy of each scene and noise against each other one
 };
-[[nodiscard]] ComparedRuns compared(std::vector<CampaignRun> runs, std::size_t budget);
+[[nodiscard]] ComparedRuns compared(std::vector<CampaignEntry> runs, std::size_t budget);
 
 /// "sphere", or "sphere, none" where several noises are compared.
 [[nodiscard]] std::string label_of(const CampaignGroup& group, const ComparedRuns& compared);

@@ -79,12 +79,12 @@ void add_marks(ComparisonSection& section, const ComparedRuns& compared, const S
     }
     section.shares.push_back(std::move(row));
     if (!summary->group.scene) continue;
-    for (const CampaignRun& run : compared.runs) {
+    for (const CampaignEntry& run : compared.runs) {
       const CampaignGroup group{run.key.scene, run.key.strategy, run.key.noise};
-      if (group != summary->group || run.views.empty()) continue;
+      if (group != summary->group || run.run.views.empty()) continue;
       ComparisonMarks marks{label, "seed " + std::to_string(run.key.seed), {}};
-      for (std::size_t k = 0; k < std::min(kFirstViews, run.views.size()); ++k) {
-        marks.marks.push_back(run.views[k].points_at_object);
+      for (std::size_t k = 0; k < std::min(kFirstViews, run.run.views.size()); ++k) {
+        marks.marks.push_back(run.run.views[k].reveals_object.value_or(false));
       }
       section.marks.push_back(std::move(marks));
     }
@@ -92,10 +92,10 @@ void add_marks(ComparisonSection& section, const ComparedRuns& compared, const S
 }
 
 void add_times(ComparisonSection& section, const ComparedRuns& compared, const Summaries& summaries) {
-  for (const std::string_view phase : kViewPhases) section.phases.push_back(spaced(phase));
+  for (const PhaseName& phase : kPhases) section.phases.push_back(spaced(phase.key));
   for (const CampaignSummary* summary : summaries) {
     ComparisonTimes times{label_of(summary->group, compared), {}};
-    for (const std::string_view phase : kViewPhases) times.ms.push_back(summary->of(std::string{phase} + "_ms").mean);
+    for (const PhaseName& phase : kPhases) times.ms.push_back(summary->of(std::string{phase.key} + "_ms").mean);
     section.times.push_back(std::move(times));
   }
 }
@@ -154,7 +154,7 @@ ComparisonReport comparison_report(const Comparison& comparison, const ComparedR
   report.title = "Strategies compared";
   report.version = SACCADE_VERSION;
   std::vector<std::string> strategies;
-  for (const StrategyKind strategy : options.strategies) strategies.emplace_back(to_string(strategy));
+  for (const NamedPlanner& strategy : options.strategies) strategies.push_back(strategy.name);
   report.settings = {{"strategies", joined(strategies)},
                      {"robot", comparison.robot_name()},
                      {"noise", joined(options.noises)},

@@ -38,14 +38,14 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
                 {"latitude_max_rad", sphere.latitude_max_rad},
                 {"roll_step_rad", sphere.roll_step_rad},
                 {"gain_width_px", config.gain_width_px},
-                {"min_gain", config.exploration.min_gain},
+                {"min_gain", config.planner.min_gain},
                 {"good_enough", config.exploration.good_enough},
                 {"max_views", config.exploration.max_views},
                 {"oscillation_rad", config.exploration.oscillation_rad},
                 {"oscillation_frames", config.exploration.oscillation_frames},
                 {"robot", config.arm ? config.arm->name() : "free"}};
   if (map.clearing_percent != 100) settings["clearing_percent"] = map.clearing_percent;
-  if (config.strategy == StrategyKind::attention) settings["rival_share"] = config.attention.rival_share;
+  if (config.strategy.name == attention_planner().name) settings["rival_share"] = config.planner.rival_share;
   if (config.arm) {
     settings["robot_hash"] = arm_hash;
     settings["planner"] = config.arm_robot.planner.planner;
@@ -124,18 +124,18 @@ SimulatedRunConfig Comparison::config_of(const PlannedRun& run) const {
 
 CampaignKey Comparison::key_of(const PlannedRun& run) const {
   const ComparedScene& scene = scenes_[run.scene];
-  return {scene.name, scene.hash, std::string{to_string(run.strategy)},
-          run.noise,  run.seed,   settings_of(config_of(run), arm_hash_)};
+  return {scene.name, scene.hash, run.strategy.name, run.noise, run.seed, settings_of(config_of(run), arm_hash_)};
 }
 
 Result<PlannedRun> Comparison::plan_again(const Campaign& campaign, const PlannedRun& run) const {
   PlannedRun now = run;
-  if (options_.equal_views && run.strategy != StrategyKind::sphere) {
+  if (options_.equal_views && run.strategy.name != kEqualViewsOf) {
     PlannedRun sphere = run;
-    sphere.strategy = StrategyKind::sphere;
+    sphere.strategy = *std::find_if(options_.strategies.begin(), options_.strategies.end(),
+                                    [](const NamedPlanner& strategy) { return strategy.name == kEqualViewsOf; });
     sphere.max_views = options_.run.run.exploration.max_views;
-    SACCADE_TRY(const std::optional<CampaignRun> taken, campaign.find(key_of(sphere)));
-    now.max_views = taken ? std::optional{static_cast<int>(taken->views.size())} : std::nullopt;
+    SACCADE_TRY(const std::optional<CampaignEntry> taken, campaign.find(key_of(sphere)));
+    now.max_views = taken ? std::optional{static_cast<int>(taken->run.views.size())} : std::nullopt;
   }
   if (now.max_views) {
     SACCADE_TRY(now.found, campaign.has(key_of(now)));
@@ -148,9 +148,9 @@ Result<std::vector<PlannedRun>> Comparison::plan(const Campaign* campaign) const
   for (std::size_t scene = 0; scene < scenes_.size(); ++scene) {
     for (const std::string& noise : options_.noises) {
       for (const std::uint64_t seed : options_.seeds) {
-        for (const StrategyKind strategy : options_.strategies) {
+        for (const NamedPlanner& strategy : options_.strategies) {
           PlannedRun run{scene, strategy, noise, seed, options_.run.run.exploration.max_views, false};
-          if (options_.equal_views && strategy != StrategyKind::sphere) run.max_views.reset();
+          if (options_.equal_views && strategy.name != kEqualViewsOf) run.max_views.reset();
           if (campaign != nullptr) {
             SACCADE_TRY(run, plan_again(*campaign, run));
           }
@@ -162,12 +162,12 @@ Result<std::vector<PlannedRun>> Comparison::plan(const Campaign* campaign) const
   return runs;
 }
 
-Result<std::vector<CampaignRun>> Comparison::finished(const Campaign& campaign) const {
+Result<std::vector<CampaignEntry>> Comparison::finished(const Campaign& campaign) const {
   SACCADE_TRY(const std::vector<PlannedRun> runs, plan(&campaign));
-  std::vector<CampaignRun> finished;
+  std::vector<CampaignEntry> finished;
   for (const PlannedRun& run : runs) {
     if (!run.found) continue;
-    SACCADE_TRY(std::optional<CampaignRun> stored, campaign.find(key_of(run)));
+    SACCADE_TRY(std::optional<CampaignEntry> stored, campaign.find(key_of(run)));
     if (stored) finished.push_back(std::move(*stored));
   }
   return finished;

@@ -22,7 +22,7 @@ struct ComparedScene {
 /// One run of the comparison.
 struct PlannedRun {
   std::size_t scene{0};  ///< index into Comparison::scenes()
-  StrategyKind strategy{StrategyKind::sphere};
+  NamedPlanner strategy;
   std::string noise;  ///< noise_key
   std::uint64_t seed{1};
   std::optional<int> max_views;  ///< nullopt: as many as a run that is still to be done will take
@@ -52,7 +52,7 @@ class Comparison {
   [[nodiscard]] CampaignKey key_of(const PlannedRun& run) const;
 
   /// The runs of this comparison that the campaign has, in their order.
-  [[nodiscard]] Result<std::vector<CampaignRun>> finished(const Campaign& campaign) const;
+  [[nodiscard]] Result<std::vector<CampaignEntry>> finished(const Campaign& campaign) const;
 
  private:
   explicit Comparison(const CompareOptions& options) : options_{options} {}

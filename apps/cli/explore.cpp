@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade explore: a camera looks, fuses and decides where to look next, until a scene is known.
 #include <CLI/CLI.hpp>
-#include <array>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -17,6 +16,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/ply_io.hpp"
+#include "saccade/io/run_json.hpp"
 #include "saccade/io/sacmap.hpp"
 #include "saccade/io/ternary_export.hpp"
 #include "saccade/map/mesh.hpp"
@@ -54,56 +54,40 @@ Status make_room(const ExploreOptions& options, const RunFolder& out) {
 }
 
 std::string phases_text(const json& phases) {
-  constexpr std::array<std::pair<const char*, const char*>, 9> kPhases{{{"candidates", "candidates"},
-                                                                        {"segmentation", "segmentation"},
-                                                                        {"saliency", "saliency"},
-                                                                        {"reachability", "reachability"},
-                                                                        {"evaluation", "evaluation"},
-                                                                        {"planner_map", "planner's map"},
-                                                                        {"planning", "motion planning"},
-                                                                        {"fusion", "fusion"},
-                                                                        {"robot", "robot's motion (simulated)"}}};
   std::string text;
-  for (const auto& [key, name] : kPhases) {
-    const double s = phases.value(key, 0.0);
-    if (s <= 0.0) continue;
+  const auto add = [&](std::string_view key, std::string_view name) {
+    const double s = phases.value(std::string{key}, 0.0);
+    if (s <= 0.0) return;
     text += (text.empty() ? "" : ", ") + std::string{name} + " " + fixed(s, s < 10.0 ? 2 : 1) + " s";
+  };
+  for (const PhaseName& phase : kPhases) {
+    if (phase.phase != Phase::motion) add(phase.key, phase.text);
   }
+  add("robot", "robot's motion (simulated)");
   return text.empty() ? "-" : text;
 }
 
-/// Poses of the scan that were passed over; empty: none.
-std::string scan_text(const json& initial) {
-  if (initial.is_null() || initial["refused"].empty()) return "";
-  return std::to_string(initial["views"].get<std::size_t>()) +
-         " taken, passed over: " + refused_text(initial["refused"]);
-}
-
 /// Why views were not taken, over all views; empty: none was refused.
-std::string refused_in(const json& views) {
-  json counts = json::object();
+std::string refused_in(const std::vector<ViewRecord>& views) {
+  RefusalCounts refused;
   std::size_t candidates = 0;
-  for (const json& view : views) {
-    candidates += view["candidates"].get<std::size_t>();
-    for (const auto& [reason, count] : view["refused"].items()) {
-      counts[reason] = counts.value(reason, std::size_t{0}) + count.get<std::size_t>();
-    }
+  for (const ViewRecord& view : views) {
+    candidates += view.candidates;
+    refused.add(view.refused);
   }
-  const std::string text = refused_text(counts);
+  const std::string text = refused_text(refused);
   return text.empty() ? "" : text + " of " + std::to_string(candidates) + " candidates";
 }
 
 /// Views at which the arm could not tilt the camera all the way; empty: it could everywhere.
-std::string tilts_text(const json& views, const ExplorationConfig& config) {
+std::string tilts_text(const std::vector<ViewRecord>& views, const ExplorerConfig& config) {
   if (config.oscillation_frames < 2) return "";
   std::size_t narrow = 0;
   std::size_t left_out = 0;
-  for (const json& view : views) {
-    left_out += static_cast<std::size_t>(config.oscillation_frames) - view["frames"].get<std::size_t>();
-    if (!view.contains("tilt_rad")) continue;  // a run that an older version began
-    const double least_rad = view["tilt_rad"][0].get<double>();
-    const double greatest_rad = view["tilt_rad"][1].get<double>();
-    narrow += least_rad > -config.oscillation_rad || greatest_rad < config.oscillation_rad ? 1 : 0;
+  for (const ViewRecord& view : views) {
+    left_out += static_cast<std::size_t>(config.oscillation_frames) - view.frames;
+    if (view.tilt == Tilt{}) continue;  // a run that an older version began
+    narrow += view.tilt.least_rad > -config.oscillation_rad || view.tilt.greatest_rad < config.oscillation_rad ? 1 : 0;
   }
   if (narrow + left_out == 0) return "";
   return std::to_string(narrow) + " of " + std::to_string(views.size()) + " views tilted less than ±" +
@@ -111,67 +95,65 @@ std::string tilts_text(const json& views, const ExplorationConfig& config) {
          " frames left out";
 }
 
-void print_summary(const ExploreOptions& options, const json& result) {
-  const auto percent = [](const json& coverage) { return 100.0 * coverage.get<double>(); };
+void print_views(const std::vector<ViewRecord>& views) {
+  for (std::size_t i = 0; i < views.size(); ++i) {
+    const ViewRecord& view = views[i];
+    std::cout << "view " << std::setw(2) << i + 1 << "  gain " << std::setw(7)
+              << view_to_json(view, i).at("gain").dump();
+    if (view.measures.coverage) std::cout << "  coverage " << 100.0 * *view.measures.coverage << " %";
+    std::cout << "  unknown " << view.measures.unknown_left << '\n';
+  }
+}
+
+void print_measures(const RunRecord& run, bool scanned, const Measures& final) {
+  if (final.coverage && scanned) {
+    std::cout << "coverage  " << 100.0 * run.scan.measures.coverage.value_or(0.0) << " % after the scan, "
+              << 100.0 * *final.coverage << " % at the end\n";
+  }
+  if (final.f_score) {
+    std::cout << "accuracy  " << 1e3 * final.accuracy_m.value_or(0.0) << " mm, Chamfer "
+              << 1e3 * final.chamfer_m.value_or(0.0) << " mm, F-score at 5 mm " << std::setprecision(3)
+              << *final.f_score << '\n';
+  }
+}
+
+void print_summary(const ExploreOptions& options, const ExploreRun& explored, const Measures& final) {
+  const RunRecord& run = explored.record();
   std::cout << std::fixed << std::setprecision(1);
-  if (const std::string scan = scan_text(result["initial"]); !scan.empty()) std::cout << "scan      " << scan << '\n';
-  for (const json& view : result["views"]) {
-    std::cout << "view " << std::setw(2) << view["index"].get<std::size_t>() + 1 << "  gain " << std::setw(7)
-              << view["gain"].dump();
-    if (!view["coverage"].is_null()) std::cout << "  coverage " << percent(view["coverage"]) << " %";
-    std::cout << "  unknown " << view["unknown_left"].get<std::size_t>() << '\n';
+  if (run.scan.refused.total() > 0) {
+    std::cout << "scan      " << run.scan.views << " taken, passed over: " << refused_text(run.scan.refused) << '\n';
   }
-  const json& final = result["final"];
-  if (!final["coverage"].is_null() && !result["initial"].is_null()) {
-    std::cout << "coverage  " << percent(result["initial"]["coverage"]) << " % after the scan, "
-              << percent(final["coverage"]) << " % at the end\n";
-  }
-  if (!final["f_score"].is_null()) {
-    std::cout << "accuracy  " << 1e3 * final["accuracy_m"].get<double>() << " mm, Chamfer "
-              << 1e3 * final["chamfer_m"].get<double>() << " mm, F-score at 5 mm " << std::setprecision(3)
-              << final["f_score"].get<double>() << '\n';
-  }
-  const std::string refused = refused_in(result["views"]);
+  print_views(run.views);
+  print_measures(run, explored.scanned(), final);
+  const std::string refused = refused_in(run.views);
   if (!refused.empty()) std::cout << "refused   " << refused << '\n';
-  const std::string tilts = tilts_text(result["views"], options.run.exploration);
+  const std::string tilts = tilts_text(run.views, options.run.exploration);
   if (!tilts.empty()) std::cout << "tilts     " << tilts << '\n';
-  const std::string at_end = refused_text(result["refused_at_end"]);
-  std::cout << "time      " << phases_text(result["phases_s"]) << '\n'
-            << "stopped   " << result["stopped_because"].get<std::string>() << (at_end.empty() ? "" : ": " + at_end)
-            << '\n'
+  const std::string at_end = refused_text(run.refused_at_end);
+  std::cout << "time      " << phases_text(phases_to_json(run.views)) << '\n'
+            << "stopped   " << to_string(run.stopped_because) << (at_end.empty() ? "" : ": " + at_end) << '\n'
             << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
 }
 
-/// Seconds of all views per phase, as in Table 3.1 of the thesis.
-json phases_json(const json& views) {
-  json phases = json::object();
-  for (const json& view : views) {
-    for (const auto& [phase, ms] : view["ms"].items()) {
-      phases[phase] = phases.value(phase, 0.0) + 1e-3 * ms.get<double>();
-    }
-    phases["robot"] = phases.value("robot", 0.0) + view["motion_s"].get<double>();
-  }
-  return phases;
-}
-
 json result_json(const ExploreOptions& options, const ExploreCase& subject, const ExploreDevices& devices,
-                 const ExploreRun& run, StopReason reason) {
+                 const ExploreRun& explored, const Measures& final) {
+  const RunRecord& run = explored.record();
   return {{"scene", subject.scene.name},
           {"out", options.out.string()},
           {"robot", options.robot_command.empty() ? options.robot : "external"},
-          {"strategy", to_string(options.run.strategy)},
+          {"strategy", options.run.strategy.name},
           {"noise", options.run.noise && options.camera_command.empty()},
           {"sensor", options.camera_command.empty() ? json(to_string(options.run.sensor)) : json(nullptr)},
-          {"camera", camera_to_json(devices.camera())},
+          {"camera", camera_to_json(devices.intrinsics())},
           {"voxel_size_m", options.run.voxel_size_m},
           {"truth_spacing_m", subject.truth ? json(subject.truth->spacing_m()) : json(nullptr)},
-          {"interrupted", reason == StopReason::cancelled},
-          {"initial", run.initial()},
-          {"views", run.views()},
-          {"phases_s", phases_json(run.views())},
-          {"final", run.final()},
-          {"refused_at_end", run.refused_at_end()},
-          {"stopped_because", to_string(reason)}};
+          {"interrupted", run.stopped_because == StopReason::cancelled},
+          {"initial", explored.scanned() ? scan_to_json(run.scan) : json(nullptr)},
+          {"views", views_to_json(run.views)},
+          {"phases_s", phases_to_json(run.views)},
+          {"final", measures_to_json(final)},
+          {"refused_at_end", refusals_to_json(run.refused_at_end)},
+          {"stopped_because", to_string(run.stopped_because)}};
 }
 
 /// Where there is a journal, an error loses nothing.
@@ -205,38 +187,41 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   }
   SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
   SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
-  SACCADE_TRY(ExploreRun run, ExploreRun::create(options, subject, devices, out, executor, progress));
-  if (saved) SACCADE_CHECK(run.resume(std::move(*saved)));
+  SACCADE_TRY(const std::unique_ptr<ExploreRun> run,
+              ExploreRun::create(options, subject, devices, out, executor, progress));
+  if (saved) SACCADE_CHECK(run->resume(std::move(*saved)));
 
   std::unique_ptr<ExploreShow> show;
   if (options.show) {
     SACCADE_TRY(show, ExploreShow::start(options.serve, global, subject.scene, out.path()));
     if (options.resume) show->changed();
   }
-  const auto ended = run.run([&show] {
+  const Status ended = run->run([&show] {
     if (show) show->changed();
   });
   if (!ended) return kept(ended.error(), out);
-  const StopReason reason = *ended;
-  const Status written = write_map(out, run, subject.scene.workspace, executor);
+  const StopReason reason = run->record().stopped_because;
+  const Status written = write_map(out, *run, subject.scene.workspace, executor);
   if (!written) return kept(written.error(), out);
-  const json result = result_json(options, subject, devices, run, reason);
+  const Measures final = run->measure_now();
+  const json result = result_json(options, subject, devices, *run, final);
   progress.finish();
   const json document = json_envelope("explore", global, executor, {{"total", total.elapsed_ms()}}, result);
   SACCADE_CHECK(write_json(out / "run.json", document));
   if (options.write_pictures) SACCADE_CHECK(write_report(out, document, options));
   SACCADE_CHECK(write_json_output(global, document));
-  if (!global.json_to_stdout()) print_summary(options, result);
+  if (!global.json_to_stdout()) print_summary(options, *run, final);
   if (reason != StopReason::cancelled) {
     SACCADE_CHECK(remove_journal(out.path()));
     if (show) show->finish();
-    if (!run.views().empty() || reason != StopReason::no_candidate) return static_cast<int>(ExitStatus::done);
-    print_error("explore", "not one view could be taken (" + refused_text(run.refused_at_end()) +
+    if (!run->record().views.empty() || reason != StopReason::no_candidate) return static_cast<int>(ExitStatus::done);
+    print_error("explore", "not one view could be taken (" + refused_text(run->record().refused_at_end) +
                                "); does the robot stand where it should?");
     return static_cast<int>(ExitStatus::no_result);
   }
-  print_error("explore", "stopped after " + std::to_string(run.views().size()) + " views; what they gave is in " +
-                             options.out.string() + (run.initial().is_null() ? "" : "; to go on, add --resume"));
+  print_error("explore", "stopped after " + std::to_string(run->record().views.size()) +
+                             " views; what they gave is in " + options.out.string() +
+                             (!run->scanned() ? "" : "; to go on, add --resume"));
   return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
 }
 
@@ -245,7 +230,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
 void add_explore(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("explore", "a camera explores a scene, view by view");
   auto options = std::make_shared<ExploreOptions>();
-  add_explore_options(*command, *options);
+  add_explore_options(*command, *options, global.planners);
   command->callback([options, &global, &action] {
     check_explore_options(*options, global);
     action = [options, &global] { return run_explore(*options, global); };

@@ -50,31 +50,22 @@ Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const
   const ArmModel* const own = arm ? &*arm : nullptr;
   if (options.camera_command.empty()) {
     SACCADE_TRY(SimulatedCamera camera, simulated_camera(*subject.rays, options.run));
-    SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::move(camera), std::move(robot), own));
-    return ExploreDevices{std::move(carried), executor};
+    SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::move(camera), std::move(robot), own, executor));
+    return ExploreDevices{std::move(carried)};
   }
   ExternalCameraConfig config;
   config.command = options.camera_command;
   config.start_timeout_s = config.capture_timeout_s = options.process_timeout_s;
   SACCADE_TRY(ExternalCamera started, ExternalCamera::start(config));
-  const auto camera = std::make_shared<ExternalCamera>(std::move(started));
-  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(
-                                         camera->camera(), [camera](const Pose& pose) { return camera->capture(pose); },
-                                         std::move(robot), own));
-  return ExploreDevices{std::move(carried), executor};
-}
-
-Result<Frame> ExploreDevices::observe(const Pose& T_world_camera) {
-  SACCADE_TRY(Frame frame, camera_.capture(T_world_camera, executor_));
-  ++frames_;
-  seen_.push_back(frame);
-  return frame;
+  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::make_unique<ExternalCamera>(std::move(started)),
+                                                           std::move(robot), own, executor));
+  return ExploreDevices{std::move(carried)};
 }
 
 Status ExploreDevices::change_scene(const RayScene& scene, const SimulatedRunConfig& config) {
   SACCADE_EXPECTS(camera_.simulated() != nullptr);
   SACCADE_TRY(SimulatedCamera camera, simulated_camera(scene, config));
-  camera.resume_at(frames_);
+  camera.resume_at(camera_.simulated()->frames());
   *camera_.simulated() = std::move(camera);
   return {};
 }
@@ -86,7 +77,6 @@ Status ExploreDevices::place_arm(const Configuration& q) {
 }
 
 void ExploreDevices::resume_at(std::size_t frames) {
-  frames_ = frames;
   if (SimulatedCamera* simulated = camera_.simulated()) simulated->resume_at(frames);
 }
 

@@ -4,7 +4,6 @@
 
 #include <memory>
 #include <optional>
-#include <vector>
 
 #include "explore_options.hpp"
 #include "saccade/explore/carried_camera.hpp"
@@ -31,7 +30,9 @@ class ExploreDevices {
   [[nodiscard]] static Result<ExploreDevices> open(const ExploreOptions& options, const ExploreCase& subject,
                                                    const std::optional<ArmModel>& arm, const Executor& executor);
 
-  [[nodiscard]] const PinholeCamera& camera() const { return camera_.camera(); }
+  /// Takes frames without the arm where that stands in its own picture.
+  [[nodiscard]] CarriedCamera& camera() { return camera_; }
+  [[nodiscard]] const PinholeCamera& intrinsics() const { return camera_.intrinsics(); }
   [[nodiscard]] Robot& robot() { return camera_.robot(); }
   /// The same, as it moves in simulation.
   [[nodiscard]] const SimulatedRobot* simulated_arm() const {
@@ -42,23 +43,15 @@ class ExploreDevices {
   [[nodiscard]] Status change_scene(const RayScene& scene, const SimulatedRunConfig& config);
   /// The arm, if it is one that we move ourselves.
   [[nodiscard]] const ArmModel* arm() const { return camera_.arm(); }
-  /// Takes a frame, without the arm where that stands in its own picture, and remembers it.
-  [[nodiscard]] Result<Frame> observe(const Pose& T_world_camera);
-  [[nodiscard]] std::size_t frames() const { return frames_; }
-  /// Goes on as if so many frames had been taken.
+  /// A simulated camera goes on as if so many frames had been taken.
   void resume_at(std::size_t frames);
   /// The arm stands as in the interrupted run. invalid_argument.
   [[nodiscard]] Status place_arm(const Configuration& q);
-  /// The frames since the last call.
-  std::vector<Frame> take_frames() { return std::exchange(seen_, {}); }
 
  private:
-  ExploreDevices(CarriedCamera camera, const Executor& executor) : camera_{std::move(camera)}, executor_{executor} {}
+  explicit ExploreDevices(CarriedCamera camera) : camera_{std::move(camera)} {}
 
   CarriedCamera camera_;
-  Executor executor_;
-  std::size_t frames_{0};
-  std::vector<Frame> seen_;
 };
 
 }  // namespace saccade::cli

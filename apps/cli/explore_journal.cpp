@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "saccade/io/json_io.hpp"
+#include "saccade/io/run_json.hpp"
 #include "saccade/io/sacmap.hpp"
 
 namespace saccade::cli {
@@ -47,15 +48,41 @@ Status name_too(const fs::path& file, const fs::path& name) {
   return code ? Status{Error{Errc::io_failure, "cannot be written: " + code.message(), name.string()}} : Status{};
 }
 
+Result<ExploreJournal> journal_from(const json& document) {
+  ExploreJournal journal;
+  journal.settings = document.at("settings");
+  journal.scanned = !document.at("initial").is_null();
+  if (journal.scanned) {
+    SACCADE_TRY(journal.run.scan, scan_from_json(document.at("initial")));
+  }
+  SACCADE_TRY(journal.run.views, views_from_json(document.at("views")));
+  SACCADE_TRY(journal.q, configuration_from_json(document.value("arm", json(nullptr))));
+  const auto frames = document.at("frames").get<std::size_t>();
+  if (frames < journal.frames()) return Error{Errc::corrupt_data, "views have more frames than the run", ""};
+  journal.run.scan.frames = frames - journal.frames();
+  return journal;
+}
+
 }  // namespace
+
+std::size_t ExploreJournal::frames() const {
+  std::size_t frames = run.scan.frames;
+  for (const ViewRecord& view : run.views) frames += view.frames + view.frames_on_way;
+  return frames;
+}
 
 Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, const Executor& executor,
                             const std::string& keep_as) const {
-  const std::string checkpoint = "checkpoint-" + std::to_string(views.size()) + ".sacmap";
+  const std::string checkpoint = "checkpoint-" + std::to_string(run.views.size()) + ".sacmap";
   SACCADE_CHECK(save_map(map, folder / checkpoint, executor));
   if (!keep_as.empty()) SACCADE_CHECK(name_too(folder / checkpoint, folder / keep_as));
-  json document{{"schema", kSchema},  {"settings", settings}, {"map", checkpoint}, {"frames", frames},
-                {"initial", initial}, {"views", views},       {"arm", arm}};
+  json document{{"schema", kSchema},
+                {"settings", settings},
+                {"map", checkpoint},
+                {"frames", frames()},
+                {"initial", scanned ? scan_to_json(run.scan) : json(nullptr)},
+                {"views", views_to_json(run.views)},
+                {"arm", configuration_to_json(q)}};
   document["crc32"] = checksum_of(document);
   SACCADE_CHECK(write_json(folder / kFile, document));
   return remove_checkpoints(folder, checkpoint);
@@ -77,10 +104,10 @@ Result<SavedExploration> load_journal(const fs::path& folder, const Executor& ex
     }
     if (document.at("crc32") != checksum_of(document)) throw std::runtime_error{"its checksum is another"};
     const auto checkpoint = document.at("map").get<std::string>();
-    ExploreJournal journal{document.at("settings"), document.at("initial"), document.at("views"),
-                           document.at("frames").get<std::size_t>(), document.value("arm", json(nullptr))};
+    auto journal = journal_from(document);
+    if (!journal) throw std::runtime_error{journal.error().message};
     SACCADE_TRY(TsdfSnapshot map, load_map(folder / checkpoint, executor));
-    return SavedExploration{std::move(journal), std::move(map)};
+    return SavedExploration{std::move(*journal), std::move(map)};
   } catch (const std::exception& e) {
     return Error{Errc::corrupt_data, std::string{"the journal is damaged ("} + e.what() + "); start anew with --force",
                  (folder / kFile).string()};

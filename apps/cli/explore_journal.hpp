@@ -7,16 +7,19 @@
 
 #include "run_folder.hpp"
 #include "saccade/core/executor.hpp"
+#include "saccade/explore/run_record.hpp"
 #include "saccade/map/tsdf_map.hpp"
 
 namespace saccade::cli {
 
 struct ExploreJournal {
-  nlohmann::json settings;  ///< all that decides how the run goes on; another run's are not its own
-  nlohmann::json initial;   ///< as in the result
-  nlohmann::json views = nlohmann::json::array();
-  std::size_t frames{0};  ///< that the camera has taken
-  nlohmann::json arm;     ///< joint values as it stands; null for what is no arm
+  nlohmann::json settings;           ///< all that decides how the run goes on; another run's are not its own
+  bool scanned{false};               ///< the initial scan is done
+  RunRecord run;                     ///< so far
+  std::optional<Configuration> q{};  ///< of the arm as it stands; nullopt for what is no arm
+
+  /// Frames that the camera has taken.
+  [[nodiscard]] std::size_t frames() const;
 
   /// Writes the map and then the journal that names it, and removes the map of the last time: whatever happens in
   /// between, one complete pair is there. With `keep_as` the map stays under that name, too. io_failure.

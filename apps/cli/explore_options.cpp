@@ -6,6 +6,18 @@
 #include "robot_options.hpp"
 
 namespace saccade::cli {
+namespace {
+
+/// "attention: views of …; standard: …"
+std::string strategy_help(const Planners& planners) {
+  std::string text;
+  for (const NamedPlanner& planner : planners.all()) {
+    text += (text.empty() ? "" : "; ") + planner.name + (planner.text.empty() ? "" : ": " + planner.text);
+  }
+  return text;
+}
+
+}  // namespace
 
 void add_arm_options(CLI::App& command, ExploreOptions& options) {
   command
@@ -47,21 +59,14 @@ std::vector<Box> ExploreOptions::free_boxes() const {
   return boxes;
 }
 
-void add_explore_options(CLI::App& command, ExploreOptions& options) {
+void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners) {
   command.add_option("scene", options.scene, "name of a built-in scene, clutter:SEED, or a YAML file")
       ->required()
       ->type_name("SCENE");
   command.add_option("--out", options.out, "folder for the results; made if it is not there")
       ->required()
       ->type_name("RUN");
-  command
-      .add_option("--strategy", options.strategy,
-                  "attention: views of the contours of what looks like an object, the most salient first; standard: "
-                  "of all contours, the view of most unknown space; sphere: best gain on the view sphere around each "
-                  "region; random, random-contours: poses of sphere and of standard in random order; oracle: what one "
-                  "would choose who knew the scene")
-      ->type_name("NAME")
-      ->capture_default_str();
+  command.add_option("--strategy", options.strategy, strategy_help(planners))->type_name("NAME")->capture_default_str();
   add_saliency_options(command, options.saliency);
   add_run_options(command, options, min_gain_by_strategy());
 
@@ -97,11 +102,11 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   if (!options.show && !options.serve.given.empty()) usage_error(options.serve.given, "is for --show");
   require_positive(options.process_timeout_s, "--process-timeout");
   check_run_options(options);
-  const auto strategy = strategy_kind(options.strategy);
+  const auto strategy = global.planners.find(options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
   choose_strategy(options, *strategy);
-  if (*strategy == StrategyKind::oracle && !options.camera_command.empty()) {
-    usage_error("--strategy", "oracle knows the true scene, which there is not with --camera-command");
+  if (strategy->needs_truth && !options.camera_command.empty()) {
+    usage_error("--strategy", strategy->name + " knows the true scene, which there is not with --camera-command");
   }
   check_saliency_options(options.saliency, false);
   options.run.attention.saliency = options.saliency.heuristic;

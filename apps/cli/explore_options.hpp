@@ -47,7 +47,7 @@ void add_arm_options(CLI::App& command, ExploreOptions& options);
 void check_arm_options(ExploreOptions& options, const GlobalOptions& global);
 
 /// Adds the options to the command.
-void add_explore_options(CLI::App& command, ExploreOptions& options);
+void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners);
 /// After parsing: fills `run`, and throws a usage error for what makes no sense.
 void check_explore_options(ExploreOptions& options, const GlobalOptions& global);
 

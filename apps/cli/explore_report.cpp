@@ -1,17 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "explore_report.hpp"
 
-#include <array>
 #include <cstddef>
 #include <iomanip>
 #include <sstream>
 #include <utility>
 
 #include "saccade/attention/nearest_segment.hpp"
-#include "saccade/explore/object_attention.hpp"
+#include "saccade/attention/salient_objects.hpp"
 #include "saccade/io/atomic_file.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
+#include "saccade/io/json_io.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/run_report.hpp"
 #include "saccade/report/saliency_picture.hpp"
@@ -77,22 +77,19 @@ std::vector<std::uint32_t> segments_of(const TriangleMesh& mesh, const Segmented
 }
 
 Status draw_saliency(const RunFolder& out, const ViewScenes& scenes, const Executor& executor) {
-  if (!scenes.proposals.attention) return {};
-  const ObjectAttention& attention = *scenes.proposals.attention;
+  const ViewChoice& choice = *scenes.view.choice;
+  if (!choice.surface) return {};
   const TriangleMesh mesh = extract_mesh(scenes.before, executor);
-  const std::vector<std::uint32_t> labels = segments_of(mesh, attention.surface, scenes.workspace, executor);
-  std::vector<double> saliency;
-  for (const Saliency& of_segment : attention.saliency) saliency.push_back(of_segment.value);
+  const std::vector<std::uint32_t> labels = segments_of(mesh, choice.surface->points, scenes.workspace, executor);
   std::vector<DrawnContour> contours;
-  for (std::size_t i = 0; i < attention.contours.size(); ++i) {
-    const ContourPoint& contour = attention.contours[i];
-    const bool chosen = scenes.proposals.segment == attention.segment_of_contour[i];
-    contours.push_back({contour.position_m, contour.normal, chosen});
+  for (std::size_t i = 0; choice.contours && i < choice.contours->points.size(); ++i) {
+    const ContourPoint& contour = choice.contours->points[i];
+    contours.push_back({contour.position_m, contour.normal, choice.segment == choice.contours->segment_of_point[i]});
   }
-  return write_png(
-      out / picture_name(scenes.number, "saliency"),
-      saliency_picture({mesh, labels, saliency, contours, scenes.workspace, scenes.view.T_world_camera, scenes.camera},
-                       executor));
+  return write_png(out / picture_name(scenes.number, "saliency"),
+                   saliency_picture({mesh, labels, choice.saliency, contours, scenes.workspace,
+                                     scenes.view.T_world_camera, scenes.camera},
+                                    executor));
 }
 
 }  // namespace
@@ -106,16 +103,9 @@ ReportView report_view(const RunFolder& out, const json& view) {
   shown.unknown_left = view.at("unknown_left").get<std::size_t>();
   shown.unknown_near_objects = optional_of<std::size_t>(view.at("unknown_near_objects"));
   shown.points_at_object = optional_of<bool>(view.at("points_at_object"));
-  constexpr std::array<std::pair<const char*, const char*>, 9> kPhases{{{"planner_map", "planner's map"},
-                                                                        {"candidates", "candidates"},
-                                                                        {"segmentation", "segmentation"},
-                                                                        {"saliency", "saliency"},
-                                                                        {"reachability", "reachability"},
-                                                                        {"evaluation", "evaluation"},
-                                                                        {"planning", "motion planning"},
-                                                                        {"motion", "motion"},
-                                                                        {"fusion", "fusion"}}};
-  for (const auto& [key, name] : kPhases) shown.phases.push_back({name, view.at("ms").value(key, 0.0)});
+  for (const PhaseName& phase : kPhases) {
+    shown.phases.push_back({std::string{phase.text}, view.at("ms").value(std::string{phase.key}, 0.0)});
+  }
   if (const json attention = view.value("attention", json(nullptr)); !attention.is_null()) {
     shown.facts.emplace_back("attention", attention_text(attention));
   }
@@ -150,15 +140,13 @@ std::string camera_text(const json& camera) {
 
 Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor& executor) {
   std::vector<ScoredPose> candidates;
-  candidates.reserve(scenes.proposals.views.size());
-  for (const Proposal& proposal : scenes.proposals.views)
-    candidates.push_back({proposal.T_world_camera, proposal.gain});
+  for (const RankedView& view : scenes.view.choice->candidates) candidates.push_back({view.T_world_camera, view.gain});
   SACCADE_CHECK(draw_saliency(out, scenes, executor));
   CandidatesPictureConfig config;
   config.sensor = scenes.camera;
   SACCADE_CHECK(write_png(out / picture_name(scenes.number, "choice"),
-                          candidates_picture({scenes.before, scenes.region, candidates, scenes.view.T_world_camera,
-                                              scenes.T_world_earlier, scenes.robot},
+                          candidates_picture({scenes.before, scenes.view.choice->region, candidates,
+                                              scenes.view.T_world_camera, scenes.T_world_earlier, scenes.robot},
                                              executor, config)));
   if (!scenes.frames.empty()) {
     const Frame& middle = scenes.frames[scenes.frames.size() / 2];
@@ -178,7 +166,7 @@ Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& works
   return write_png(out / picture_name(0, "map"), map_picture(map, workspace, executor, config));
 }
 
-std::string refused_text(const json& refused) {
+std::string refused_text(const RefusalCounts& refused) {
   const auto says = [](Refusal reason) {
     switch (reason) {
       case Refusal::no_ik: return "out of reach";
@@ -191,11 +179,15 @@ std::string refused_text(const json& refused) {
   };
   std::string text;
   for (const Refusal reason : kRefusals) {
-    const auto found = refused.find(to_string(reason));
-    if (found == refused.end()) continue;
-    text += (text.empty() ? "" : ", ") + std::to_string(found->get<std::size_t>()) + " " + says(reason);
+    if (refused.of(reason) == 0) continue;
+    text += (text.empty() ? "" : ", ") + std::to_string(refused.of(reason)) + " " + says(reason);
   }
   return text;
+}
+
+std::string refused_text(const json& refused) {
+  const Result<RefusalCounts> counts = refusals_from_json(refused);
+  return counts ? refused_text(*counts) : "";
 }
 
 bool is_view_file(const std::string& file_name) {
@@ -221,7 +213,7 @@ Status write_report(const RunFolder& out, const json& document, const ExploreOpt
   report.facts = {{"voxel size", voxel.str()},
                   {"camera", camera_text(result.at("camera"))},
                   {"back end", document.at("backend").get<std::string>()}};
-  report.min_gain = options.run.exploration.min_gain;
+  report.min_gain = options.run.planner.min_gain;
   report.stop_reason = result.at("stopped_because").get<std::string>();
   if (const json& initial = result.at("initial"); !initial.is_null()) {
     report.initial.coverage = optional_of<double>(initial.at("coverage"));

@@ -17,11 +17,9 @@ struct ViewScenes {
   std::size_t number{1};  ///< 1 for the first view
   const TsdfSnapshot& before;
   const TsdfSnapshot& after;
-  const Region& region;
-  const ExploredView& view;
-  const Proposals& proposals;
+  const ViewRecord& view;  ///< with its choice
   std::vector<Pose> T_world_earlier;
-  const std::vector<Frame>& frames;  ///< of the oscillation
+  std::span<const Frame> frames;  ///< of the oscillation
   const Box& workspace;
   PinholeCamera camera;
   const RobotDrawing* robot{nullptr};  ///< drawn at the view; none: the camera flies
@@ -42,7 +40,9 @@ struct ViewScenes {
 /// "640 × 480, f = 525 px, 0.5–2 m", from the document.
 [[nodiscard]] std::string camera_text(const nlohmann::json& camera);
 
-/// "2 out of reach, 1 without a path": the counts of `refused` in the document; empty: none.
+/// "2 out of reach, 1 without a path"; empty: none.
+[[nodiscard]] std::string refused_text(const RefusalCounts& refused);
+/// The same of `refused` in the document.
 [[nodiscard]] std::string refused_text(const nlohmann::json& refused);
 
 /// Writes report.html from the document that goes to run.json and the pictures in the folder; pictures that are not

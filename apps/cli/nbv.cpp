@@ -104,7 +104,7 @@ json region_json(const NbvOptions& options) {
       {"kind", "sphere"}, {"center_m", point(*options.poi)}, {"radius_m", options.radius_m.value_or(kDefaultRadius_m)}};
 }
 
-json view_json(const RankedView& view, const Candidates& candidates) {
+json view_json(const OrderedView& view, const Candidates& candidates) {
   json entry{{"gain", view.gain}, {"index", view.index}, {"T_world_camera", pose_to_json(view.T_world_camera)}};
   if (!candidates.sphere.empty()) {
     const ViewCandidate& on_sphere = candidates.sphere[view.index];
@@ -117,7 +117,7 @@ json view_json(const RankedView& view, const Candidates& candidates) {
 }
 
 json result_json(const NbvOptions& options, const Candidates& candidates, const GainResult& gains,
-                 const std::vector<RankedView>& ranked, std::size_t shown) {
+                 const std::vector<OrderedView>& ranked, std::size_t shown) {
   json views = json::array();
   for (std::size_t i = 0; i < shown; ++i) views.push_back(view_json(ranked[i], candidates));
   return {{"map", options.map.string()},
@@ -136,12 +136,12 @@ json result_json(const NbvOptions& options, const Candidates& candidates, const 
 }
 
 void print_table(const NbvOptions& options, const Candidates& candidates, const GainResult& gains,
-                 const std::vector<RankedView>& ranked, std::size_t shown) {
+                 const std::vector<OrderedView>& ranked, std::size_t shown) {
   std::cout << "rank      gain  ";
   if (!candidates.sphere.empty()) std::cout << "longitude  latitude   roll  ";
   std::cout << "position (m)\n";
   for (std::size_t i = 0; i < shown; ++i) {
-    const RankedView& view = ranked[i];
+    const OrderedView& view = ranked[i];
     std::cout << std::right << std::setw(4) << i + 1 << std::setw(10) << view.gain << "  ";
     if (!candidates.sphere.empty()) {
       const ViewCandidate& on_sphere = candidates.sphere[view.index];
@@ -160,10 +160,10 @@ void print_table(const NbvOptions& options, const Candidates& candidates, const 
 }
 
 Status write_outputs(const NbvOptions& options, const RunFolder& out, const TsdfSnapshot& map,
-                     const std::vector<RankedView>& ranked, const json& document, const Executor& executor) {
+                     const std::vector<OrderedView>& ranked, const json& document, const Executor& executor) {
   SACCADE_CHECK(out.remove(std::span{kViewFiles}.first(1)));
   std::vector<ScoredPose> scored;
-  for (const RankedView& view : ranked) scored.push_back({view.T_world_camera, static_cast<double>(view.gain)});
+  for (const OrderedView& view : ranked) scored.push_back({view.T_world_camera, static_cast<double>(view.gain)});
   ViewPictureConfig picture;
   picture.sensor = options.gain.sensor;
   picture.overview.up = options.up.value_or(Eigen::Vector3d::UnitZ());
@@ -201,7 +201,7 @@ Result<int> run_nbv(const NbvOptions& options, const GlobalOptions& global) {
   const CancelOnInterrupt cancel{progress};
   SACCADE_TRY(const GainResult gains,
               evaluate_views(map, options.region(), candidates.poses, options.gain, executor, progress));
-  const std::vector<RankedView> ranked = order_views(gains.gains, candidates.poses);
+  const std::vector<OrderedView> ranked = order_views(gains.gains, candidates.poses);
   timings_ms["evaluate"] = stopwatch.lap_ms();
 
   const std::size_t shown = options.all ? ranked.size() : std::min(options.top, ranked.size());

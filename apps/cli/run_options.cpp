@@ -33,7 +33,7 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
       ->type_name("SHARE")
       ->capture_default_str();
   command
-      .add_option("--rivals", options.run.attention.rival_share,
+      .add_option("--rivals", options.run.planner.rival_share,
                   "attention: the view of most gain is looked for among segments at least so salient, as a share of "
                   "the most salient; 1: of the most salient alone, as in the thesis")
       ->type_name("SHARE")
@@ -78,19 +78,19 @@ void check_run_options(RunOptions& options) {
   options.run.sphere.radii_m = parse_distances(options.distances);
   options.run.contour_views.distances_m = options.run.sphere.radii_m;
   options.run.camera = options.camera.camera(options.run.camera);
-  require_ok(options.run.attention.validate(), "--rivals");
+  require_ok(options.run.planner.validate(), "--rivals");
   require_ok(options.run.validate(), "the exploration");
 }
 
 std::string min_gain_by_strategy() {
-  return fixed(min_gain_of(StrategyKind::attention), 0) + " for attention, " +
-         fixed(min_gain_of(StrategyKind::sphere), 0) + " for the others";
+  return fixed(attention_planner().min_gain, 0) + " for attention, " + fixed(NamedPlanner{}.min_gain, 0) +
+         " for the others";
 }
 
-void choose_strategy(RunOptions& options, StrategyKind strategy) {
+void choose_strategy(RunOptions& options, const NamedPlanner& strategy) {
   options.run = options.run.with(strategy);
-  if (options.min_gain) options.run.exploration.min_gain = *options.min_gain;
-  require_ok(options.run.exploration.validate(), "--min-gain");
+  if (options.min_gain) options.run.planner.min_gain = *options.min_gain;
+  require_ok(options.run.planner.validate(), "--min-gain");
 }
 
 std::string noise_name(const SimulatedRunConfig& run) {

@@ -30,7 +30,7 @@ void check_run_options(RunOptions& options);
 /// "50 for attention, …"
 [[nodiscard]] std::string min_gain_by_strategy();
 /// Sets the strategy of `run`, and the threshold that goes with it unless one was given.
-void choose_strategy(RunOptions& options, StrategyKind strategy);
+void choose_strategy(RunOptions& options, const NamedPlanner& strategy);
 /// Of the simulated camera's depth, for people.
 [[nodiscard]] std::string noise_name(const SimulatedRunConfig& run);
 

@@ -18,7 +18,6 @@
 #include "saccade/io/sacmap.hpp"
 #include "saccade/map/mesh.hpp"
 #include "update_report.hpp"
-#include "view_json.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -37,13 +36,13 @@ Status write_maps(const RunFolder& out, const UpdateFigures& figures, const Watc
 std::optional<std::string> without_result(const WatchedTask& task, const UpdateFigures& figures) {
   if (task.trajectory.empty()) return "the trajectory is empty; nothing was updated";
   if (task.regions.empty()) return "the hand did not act anywhere; nothing was updated";
-  const ExplorationResult& explored = figures.update.exploration;
+  const RunRecord& explored = figures.run;
   if (!explored.views.empty()) return std::nullopt;
-  const UnknownOfRegions& unknown = figures.update.unknown_after_task;
+  const UnknownOfRegions& unknown = figures.unknown_after_task;
   if (std::all_of(unknown.begin(), unknown.end(), [](std::size_t count) { return count == 0; })) {
     return "the hand acted outside the workspace; nothing was updated";
   }
-  return "not one view of a region could be taken (" + refused_text(refused_json(explored.refused_at_end)) +
+  return "not one view of a region could be taken (" + refused_text(explored.refused_at_end) +
          "); does the hand's trajectory lie in the scene's frame, within the robot's reach?";
 }
 
@@ -60,10 +59,9 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));
   SACCADE_CHECK(remove_update_pictures(out));
 
-  const UpdatePictures pictures{options, subject, task, devices, out, executor};
-  std::function<Status(const TakenView&)> draw_view;
-  if (options.write_pictures) draw_view = [&](const TakenView& view) { return pictures.draw_view(view); };
-  SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress, draw_view));
+  UpdatePictures pictures{options, subject, task, devices, out, executor};
+  SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress,
+                                                      options.write_pictures ? &pictures : nullptr));
   SACCADE_CHECK(write_maps(out, figures, task, executor));
   SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor, progress));
   const json document = json_envelope("update", global, executor, {{"total", total.elapsed_ms()}}, result);
@@ -76,7 +74,7 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   SACCADE_CHECK(write_json_output(global, document));
   if (!global.json_to_stdout()) print_update(options, task, result);
   if (figures.interrupted || progress.cancelled()) {
-    print_error("update", "stopped after " + std::to_string(figures.update.exploration.views.size()) +
+    print_error("update", "stopped after " + std::to_string(figures.run.views.size()) +
                               " views; what they gave is in " + options.out.string());
     return interrupt_status();
   }

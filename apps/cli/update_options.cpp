@@ -26,9 +26,9 @@ void add_hand_options(CLI::App& command, UpdateOptions& options) {
 }  // namespace
 
 UpdateOptions::UpdateOptions() {
-  run.strategy = StrategyKind::sphere;
+  run.strategy = builtin_planners().find("sphere").value();
   run.exploration.max_views = kUpdateMaxViews;
-  run.exploration.min_gain = kUpdateMinGain;
+  run.planner.min_gain = kUpdateMinGain;
   robot = "comau";
   method = &attend_methods().front();
 }
@@ -64,8 +64,8 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
 
 void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
   check_run_options(options);
-  if (options.min_gain) options.run.exploration.min_gain = *options.min_gain;
-  require_ok(options.run.exploration.validate(), "--min-gain");
+  if (options.min_gain) options.run.planner.min_gain = *options.min_gain;
+  require_ok(options.run.planner.validate(), "--min-gain");
   check_arm_options(options, global);
   require_positive(options.region_radius_m, "--region-radius");
   options.run.seed = global.seed;

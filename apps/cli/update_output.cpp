@@ -7,10 +7,12 @@
 #include "attend.hpp"
 #include "explore_report.hpp"
 #include "saccade/io/camera_io.hpp"
+#include "saccade/io/json_io.hpp"
+#include "saccade/io/run_json.hpp"
+#include "saccade/map/count_unknown.hpp"
 #include "saccade/map/mesh.hpp"
 #include "summary.hpp"
 #include "update.hpp"
-#include "view_json.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -29,14 +31,14 @@ json task_json(const UpdateOptions& options, const WatchedTask& task) {
           {"actions", std::move(actions)},    {"true_places_m", std::move(places)}};
 }
 
-json return_json(const Return& back) {
+json return_json(const StandByResult& back) {
   return {{"at_stand_by", back.at_stand_by},
           {"refused", back.refusal ? json(to_string(*back.refusal)) : json(nullptr)},
           {"motion_s", back.motion_s}};
 }
 
 /// Unknown voxels of one region: after the task, and after each view.
-json unknown_json(const UpdateResult& update, std::size_t region) {
+json unknown_json(const UpdateFigures& update, std::size_t region) {
   json counts = json::array();
   if (region < update.unknown_after_task.size()) counts.push_back(update.unknown_after_task[region]);
   for (const UnknownOfRegions& after : update.unknown_after_view) counts.push_back(after.at(region));
@@ -44,17 +46,17 @@ json unknown_json(const UpdateResult& update, std::size_t region) {
 }
 
 /// Where the map ends there is nothing to look at again, whatever the robot reaches.
-std::string_view end_of(const UpdateResult& update, std::size_t region) {
-  const auto& outcomes = update.exploration.regions;
-  if (region >= outcomes.size()) return to_string(RegionEnd::not_begun);
-  return update.unknown_after_task.at(region) == 0 ? "outside_workspace" : to_string(outcomes[region].end);
+std::string_view end_of(const UpdateFigures& update, std::size_t region) {
+  const auto& outcomes = update.run.regions;
+  if (region >= outcomes.size()) return to_string(RegionStatus::not_begun);
+  return update.unknown_after_task.at(region) == 0 ? "outside_workspace" : to_string(outcomes[region].status);
 }
 
 /// What the mesh has of the surface in a region; nulls where nothing was forgotten, or there is nothing to be seen.
 Result<json> coverage_json(const UpdateCase& subject, const UpdateFigures& figures, const Region& region,
                            const MeshDistance* mesh, const Progress& progress, const Executor& executor) {
   RegionCoverage coverage;
-  if (!figures.update.unknown_after_task.empty() && !progress.cancelled()) {
+  if (!figures.unknown_after_task.empty() && !progress.cancelled()) {
     SACCADE_TRY(const RegionSurface surface, observable_in(*subject.after.rays, region, kTruthSpacing_m, executor));
     coverage = measure_coverage(surface, mesh, figures.after.config.voxel_size_m, executor);
   }
@@ -64,20 +66,20 @@ Result<json> coverage_json(const UpdateCase& subject, const UpdateFigures& figur
 json region_json(const WatchedTask& task, const UpdateFigures& figures, std::size_t i) {
   const RegionOfInterest& region = task.regions[i];
   const auto& sphere = std::get<Sphere>(region.bounds);
-  const auto& outcomes = figures.update.exploration.regions;
-  const RegionOutcome outcome = i < outcomes.size() ? outcomes[i] : RegionOutcome{};
-  const auto& views = figures.update.exploration.views;
+  const auto& outcomes = figures.run.regions;
+  const RegionResult outcome = i < outcomes.size() ? outcomes[i] : RegionResult{};
+  const auto& views = figures.run.views;
   const auto taken =
-      std::count_if(views.begin(), views.end(), [i](const ExploredView& view) { return view.region == i; });
+      std::count_if(views.begin(), views.end(), [i](const ViewRecord& view) { return view.region == i; });
   return {{"center_m", point_json(sphere.center)},
           {"radius_m", sphere.radius_m},
           {"saliency", region.saliency},
           {"why", region.why},
-          {"end", end_of(figures.update, i)},
+          {"end", end_of(figures, i)},
           {"views", taken},
           {"gain_left", outcome.gain_left},
-          {"refused", refused_json(outcome.refused)},
-          {"unknown", unknown_json(figures.update, i)}};
+          {"refused", refusals_to_json(outcome.refused)},
+          {"unknown", unknown_json(figures, i)}};
 }
 
 json shape_json(const ObjectShape& shape) {
@@ -105,17 +107,11 @@ Result<json> objects_json(const UpdateCase& subject, const TriangleMesh& mesh, c
 }
 
 /// Seconds of all views per phase, as in Table 2.8.
-json phases_json(const UpdateResult& update) {
+json phases_json(const UpdateFigures& update) {
   json phases{{"forgetting", 1e-3 * update.forgetting_ms}};
-  double robot_s = update.back.motion_s;
-  for (const ExploredView& view : update.exploration.views) {
-    const json record = view_json(view, 0);
-    for (const auto& [phase, ms] : record.at("ms").items()) {
-      phases[phase] = phases.value(phase, 0.0) + 1e-3 * ms.get<double>();
-    }
-    robot_s += view.motion_s;
-  }
-  phases["robot"] = robot_s;
+  const json of_views = phases_to_json(update.run.views);
+  phases.update(of_views);
+  phases["robot"] = update.back.motion_s + of_views.value("robot", 0.0);
   return phases;
 }
 
@@ -169,12 +165,6 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
     regions.push_back(std::move(region));
   }
   SACCADE_TRY(json objects, objects_json(subject, mesh, executor));
-  json views = json::array();
-  for (const ExploredView& view : figures.update.exploration.views) {
-    json record = view_json(view, views.size());
-    record["unknown_left"] = figures.unknown_left.at(views.size());
-    views.push_back(std::move(record));
-  }
   return json{{"scene", subject.after.scene.name},
               {"before", subject.before.scene.name},
               {"out", options.out.string()},
@@ -182,23 +172,23 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"fuse_when", to_string(options.fuse_when)},
               {"noise", options.run.noise},
               {"sensor", to_string(options.run.sensor)},
-              {"camera", camera_to_json(devices.camera())},
+              {"camera", camera_to_json(devices.intrinsics())},
               {"voxel_size_m", options.run.voxel_size_m},
               {"scan",
                {{"views", figures.scan.views},
-                {"refused", refused_json(figures.scan.refused)},
+                {"refused", refusals_to_json(figures.scan.refused)},
                 {"at_stand_by", figures.after_scan.at_stand_by},
                 {"unknown_left", count_unknown(figures.before, subject.before.scene.workspace)}}},
               {"task", task_json(options, task)},
               {"unknown_after_task", count_unknown(figures.forgotten, subject.before.scene.workspace)},
               {"regions", std::move(regions)},
-              {"views", std::move(views)},
+              {"views", views_to_json(figures.run.views)},
               {"objects", std::move(objects)},
-              {"back", options.has_arm() ? return_json(figures.update.back) : json(nullptr)},
+              {"back", options.has_arm() ? return_json(figures.back) : json(nullptr)},
               {"contacts", {{"instants", figures.instants}, {"touching", figures.contacts}}},
-              {"phases_s", phases_json(figures.update)},
+              {"phases_s", phases_json(figures)},
               {"interrupted", figures.interrupted || progress.cancelled()},
-              {"stopped_because", to_string(figures.update.exploration.stopped_because)}};
+              {"stopped_because", to_string(figures.run.stopped_because)}};
 }
 
 void print_update(const UpdateOptions& options, const WatchedTask& task, const json& result) {

@@ -82,23 +82,31 @@ void fill_head(UpdateReport& report, const UpdateOptions& options, const json& d
   report.facts = {{"voxel size", millimetres(options.run.voxel_size_m)},
                   {"camera", camera_text(result.at("camera"))},
                   {"back end", document.at("backend").get<std::string>()}};
-  report.min_gain = options.run.exploration.min_gain;
+  report.min_gain = options.run.planner.min_gain;
 }
 
 }  // namespace
 
-Status UpdatePictures::draw_view(const TakenView& view) const {
-  const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.view.q, view.view.path);
-  return cli::draw_view(
-      out_,
-      {view.number, view.before, view.after, task_.regions.at(view.view.region).bounds, view.view, view.proposals,
-       view.T_world_earlier, view.frames, subject_.after.scene.workspace, devices_.camera(), robot ? &*robot : nullptr},
-      executor_);
+Status UpdatePictures::scanned(ScanRecord& /*scan*/, const TsdfSnapshot& map) {
+  before_ = map;
+  return {};
+}
+
+Status UpdatePictures::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) {
+  const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.q, view.path);
+  SACCADE_CHECK(draw_view(out_,
+                          {T_world_earlier_.size() + 1, before_, map, view, T_world_earlier_, frames,
+                           subject_.after.scene.workspace, devices_.intrinsics(), robot ? &*robot : nullptr},
+                          executor_));
+  before_ = map;
+  T_world_earlier_.push_back(view.T_world_camera);
+  return {};
 }
 
 Status UpdatePictures::draw_maps(const UpdateFigures& figures) const {
   const Box& workspace = subject_.after.scene.workspace;
-  const std::vector<Region> regions = bounds_of(task_.regions);
+  std::vector<Region> regions;
+  for (const RegionOfInterest& region : task_.regions) regions.push_back(region.bounds);
   const TaskScene task{workspace, task_.trajectory, task_.findings, regions};
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), figures.stand_by, {});
   const std::optional<RobotDrawing> robot_at_end = drawing_of(devices_.arm(), figures.at_end, {});

@@ -9,15 +9,16 @@
 
 namespace saccade::cli {
 
-/// Draws into the folder of a run. The references outlive it.
-class UpdatePictures {
+/// Draws into the folder of a run: view-NN-choice.png, view-NN-seen.png and view-NN-map.png after each view. The
+/// references outlive it.
+class UpdatePictures final : public Recorder {
  public:
   UpdatePictures(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
                  const ExploreDevices& devices, const RunFolder& out, const Executor& executor)
       : options_{options}, subject_{subject}, task_{task}, devices_{devices}, out_{out}, executor_{executor} {}
 
-  /// view-NN-choice.png, view-NN-seen.png and view-NN-map.png. io_failure.
-  [[nodiscard]] Status draw_view(const TakenView& view) const;
+  [[nodiscard]] Status scanned(ScanRecord& scan, const TsdfSnapshot& map) override;
+  [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) override;
   /// before.png, hand.png, regions.png and after.png. io_failure.
   [[nodiscard]] Status draw_maps(const UpdateFigures& figures) const;
 
@@ -28,6 +29,8 @@ class UpdatePictures {
   const ExploreDevices& devices_;
   const RunFolder& out_;
   Executor executor_;
+  TsdfSnapshot before_;  // the map as it was before the view that is being taken
+  std::vector<Pose> T_world_earlier_;
 };
 
 /// What an earlier run drew. io_failure.

@@ -4,6 +4,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/explore/true_contacts.hpp"
 #include "saccade/io/scene_yaml.hpp"
+#include "saccade/map/count_unknown.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -59,7 +60,9 @@ Result<WatchedTask> watch_task(const UpdateOptions& options, const UpdateCase& s
   SACCADE_TRY(task.regions, regions_of_interest(task.findings.actions, options.region_radius_m));
   // A region that no map can hold is found here, before the robot moves.
   SACCADE_TRY(TsdfMap empty, TsdfMap::create(options.run.map()));
-  if (const Status forgotten = forget_around(empty, task.regions); !forgotten) {
+  for (const RegionOfInterest& region : task.regions) {
+    const Status forgotten = empty.forget(region.bounds);
+    if (forgotten) continue;
     return Error{forgotten.error().code, forgotten.error().message, "regions of the hand in " + options.trajectory};
   }
   return task;
@@ -72,26 +75,68 @@ Result<ExploreDevices> open_update_devices(const UpdateOptions& options, const U
   return ExploreDevices::open(options, subject.before, arm, executor);
 }
 
+namespace {
+
+/// Scans the scene as it was, and takes the robot out of the user's way.
+Status scan_before(const UpdateOptions& options, const UpdateCase& subject, TsdfMap& map, Explorer& explorer,
+                   UpdateFigures& figures) {
+  for (const Box& box : options.free_boxes()) SACCADE_CHECK(map.free(box));
+  SACCADE_TRY(figures.scan, explorer.scan(subject.before.scene.scan));
+  figures.interrupted = !figures.scan.complete;
+  if (figures.interrupted) {
+    figures.run.stopped_because = StopReason::cancelled;
+    return {};
+  }
+  SACCADE_TRY(figures.after_scan, explorer.return_to_stand_by());
+  figures.back = figures.after_scan;
+  return {};
+}
+
+/// Explorer::update, with its measures.
+Status update_regions(const WatchedTask& task, const RegionMeter& meter, TsdfMap& map, Explorer& explorer,
+                      ViewPlanner& planner, UpdateFigures& figures) {
+  const Stopwatch stopwatch;
+  SACCADE_CHECK(explorer.forget(task.regions));
+  figures.forgetting_ms = stopwatch.elapsed_ms();
+  figures.unknown_after_task = count_unknown(map.content(), task.regions);
+  SACCADE_TRY(figures.run, explorer.explore(planner));
+  figures.run.regions.resize(task.regions.size());
+  figures.unknown_after_view = meter.unknown();
+  figures.interrupted = figures.run.stopped_because == StopReason::cancelled;
+  if (figures.interrupted) return {};
+  SACCADE_TRY(figures.back, explorer.return_to_stand_by());
+  return {};
+}
+
+/// Counts the unknown voxels of the workspace after each view.
+class UnknownMeter final : public Recorder {
+ public:
+  explicit UnknownMeter(const Box& workspace) : workspace_{workspace} {}
+  [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> /*frames*/) override {
+    view.measures.unknown_left = count_unknown(map, workspace_);
+    return {};
+  }
+
+ private:
+  Box workspace_;
+};
+
+}  // namespace
+
 Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
                                  ExploreDevices& devices, const Executor& executor, const Progress& progress,
-                                 const std::function<Status(const TakenView& view)>& after_view) {
+                                 Recorder* pictures) {
   TsdfConfig map_config = options.run.map();
   map_config.workspace = subject.before.scene.workspace;
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
-  ExplorationCell cell{devices.camera(), [&](const Pose& pose) { return devices.observe(pose); }, devices.robot()};
-  const ExplorationConfig& config = options.run.exploration;
+  Recorder silent;
+  UnknownMeter unknown{subject.after.scene.workspace};
+  RegionMeter of_regions{task.regions};
+  Recorders recorders{&unknown, &of_regions, pictures != nullptr ? pictures : &silent};
+  Explorer explorer{{map, devices.camera(), devices.robot(), executor, &recorders, nullptr, {}, &progress},
+                    options.run.exploration};
   UpdateFigures figures;
-
-  // The scene as it was, and the robot out of the user's way.
-  for (const Box& box : options.free_boxes()) SACCADE_CHECK(map.free(box));
-  SACCADE_TRY(figures.scan, scan(map, cell, subject.before.scene.scan, config, executor, {}, progress));
-  figures.interrupted = !figures.scan.complete;
-  if (figures.interrupted) {
-    figures.update.exploration.stopped_because = StopReason::cancelled;
-  } else {
-    SACCADE_TRY(figures.after_scan, return_to_stand_by(map, devices.robot(), executor));
-    figures.update.back = figures.after_scan;
-  }
+  SACCADE_CHECK(scan_before(options, subject, map, explorer, figures));
   figures.stand_by = devices.robot().configuration();
   figures.before = map.snapshot();
   const SimulatedRobot* arm = devices.simulated_arm();
@@ -100,32 +145,16 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
   // The user's task: the scene changes, and the map does not know.
   SACCADE_CHECK(devices.change_scene(*subject.after.rays, options.run));
   TsdfMap forgotten{map.snapshot()};
-  SACCADE_CHECK(forget_around(forgotten, task.regions));
+  for (const RegionOfInterest& region : task.regions) SACCADE_CHECK(forgotten.forget(region.bounds));
   figures.forgotten = forgotten.snapshot();
-  devices.take_frames();
 
   if (!figures.interrupted && !task.regions.empty()) {
-    Status drawn;
-    TsdfSnapshot before = figures.forgotten;
-    std::vector<Pose> earlier;
-    std::size_t taken = 0;
-    ExplorationHooks hooks;
-    hooks.after_view = [&](const ExploredView& view, const Proposals& proposals) {
-      ++taken;
-      figures.unknown_left.push_back(count_unknown(map.content(), subject.after.scene.workspace));
-      const TsdfSnapshot after = map.snapshot();
-      std::vector<Frame> frames = devices.take_frames();
-      frames.erase(frames.begin(), frames.end() - static_cast<std::ptrdiff_t>(view.frames));  // those on the way
-      if (after_view) drawn = after_view({taken, before, after, view, proposals, earlier, std::move(frames)});
-      before = after;
-      earlier.push_back(view.T_world_camera);
-      return drawn.ok();
-    };
-    const std::unique_ptr<Strategy> strategy = make_strategy(options.run, devices.camera(), task.regions.size());
-    SACCADE_TRY(figures.update,
-                update_environment(map, cell, task.regions, *strategy, config, executor, hooks, progress));
-    if (!drawn.ok()) return drawn.error();
-    figures.interrupted = figures.update.exploration.stopped_because == StopReason::cancelled;
+    ScanRecord ready = figures.scan;
+    SACCADE_CHECK(recorders.scanned(ready, figures.forgotten));
+    RegionsInTurn in_turn{task.regions};
+    const std::vector<Region> whole{subject.after.scene.workspace};
+    ViewPlanner planner = make_planner(options.run, devices.intrinsics(), whole).with(in_turn);
+    SACCADE_CHECK(update_regions(task, of_regions, map, explorer, planner, figures));
   }
   figures.after = map.snapshot();
   figures.at_end = devices.robot().configuration();

@@ -34,12 +34,15 @@ struct WatchedTask {
 /// An update as far as it came.
 struct UpdateFigures {
   TsdfSnapshot before;  ///< after the scan
-  ScanResult scan;
-  Return after_scan;
-  std::optional<Configuration> stand_by{};  ///< of an arm, in which it waits
-  TsdfSnapshot forgotten;                   ///< the regions are unknown
-  UpdateResult update;                      ///< without regions the robot came back from the scan
-  std::vector<std::size_t> unknown_left;    ///< in the workspace, after each view
+  ScanRecord scan;
+  StandByResult after_scan;
+  std::optional<Configuration> stand_by{};           ///< of an arm, in which it waits
+  TsdfSnapshot forgotten;                            ///< the regions are unknown
+  double forgetting_ms{0.0};                         ///< of all regions
+  UnknownOfRegions unknown_after_task;               ///< as soon as they were forgotten
+  std::vector<UnknownOfRegions> unknown_after_view;  ///< one for each view
+  RunRecord run;
+  StandByResult back;  ///< without regions the robot came back from the scan
   TsdfSnapshot after;
   std::optional<Configuration> at_end{};  ///< of an arm; an interrupted one stands elsewhere than at its stand-by
   bool interrupted{false};
@@ -47,23 +50,12 @@ struct UpdateFigures {
   std::size_t contacts{0};  ///< with what was really there
 };
 
-/// What there is of a view that was just taken, to be drawn.
-struct TakenView {
-  std::size_t number{1};  ///< 1 for the first
-  const TsdfSnapshot& before;
-  const TsdfSnapshot& after;
-  const ExploredView& view;
-  const Proposals& proposals;
-  std::vector<Pose> T_world_earlier;
-  std::vector<Frame> frames;  ///< of the oscillation
-};
-
 /// Scans the scene before the task, returns to stand-by, lets the user change the scene, and runs Algorithm 1.
-/// @param after_view  may be empty; an error of it ends the run
+/// @param pictures  told of the views after the task, and before that of the map as it is then; may be nullptr
 [[nodiscard]] Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase& subject,
                                                const WatchedTask& task, ExploreDevices& devices,
                                                const Executor& executor, const Progress& progress,
-                                               const std::function<Status(const TakenView& view)>& after_view = {});
+                                               Recorder* pictures = nullptr);
 
 /// The devices of the case, as they are before the task.
 [[nodiscard]] Result<ExploreDevices> open_update_devices(const UpdateOptions& options, const UpdateCase& subject,

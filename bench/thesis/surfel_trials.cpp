@@ -8,11 +8,11 @@
 #include <utility>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/explore/strategy.hpp"
 #include "saccade/scene/rendered_sequence.hpp"
 #include "saccade/scene/truth_labels.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
+#include "saccade/view/gain.hpp"
 #include "thesis/surfel_figures.hpp"
 
 namespace saccade::thesis {

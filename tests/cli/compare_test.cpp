@@ -30,12 +30,12 @@ Arguments once(const fs::path& out, const std::string& scenes, const Arguments& 
   return compare_scenes(out, scenes, Arguments{"--seeds", "1", "--strategies", "sphere", "--quiet"} + more);
 }
 
-std::vector<CampaignRun> runs_in(const fs::path& out) {
+std::vector<CampaignEntry> runs_in(const fs::path& out) {
   const auto campaign = Campaign::open(out / "campaign.sqlite");
   EXPECT_TRUE(campaign);
-  const auto runs = campaign ? campaign->runs() : Result<std::vector<CampaignRun>>{campaign.error()};
+  const auto runs = campaign ? campaign->runs() : Result<std::vector<CampaignEntry>>{campaign.error()};
   EXPECT_TRUE(runs);
-  return runs ? *runs : std::vector<CampaignRun>{};
+  return runs ? *runs : std::vector<CampaignEntry>{};
 }
 
 std::ptrdiff_t lines_of(const fs::path& path) {
@@ -50,7 +50,7 @@ TEST(CompareCommand, GoesOnWhereItStopped) {
   ASSERT_EQ(first.status, 0) << first.err;
   expect_envelope(first.json(), "compare");
   EXPECT_EQ(first.json().at("result").at("runs").dump(), R"({"done":2,"done_now":2,"planned":2})");
-  const std::vector<CampaignRun> before = runs_in(out);
+  const std::vector<CampaignEntry> before = runs_in(out);
   ASSERT_EQ(before.size(), 2U);
 
   const Outcome second = run_program(compare(out, {"--seeds", "1-2", "--json", (folder / "result.json").string()}));
@@ -58,7 +58,7 @@ TEST(CompareCommand, GoesOnWhereItStopped) {
   EXPECT_NE(second.err.find("2 of 4 runs found"), std::string::npos) << second.err;
   EXPECT_NE(second.out.find("2 done now, 2 found"), std::string::npos) << second.out;
   EXPECT_NE(second.out.find("sphere - random: "), std::string::npos) << second.out;
-  const std::vector<CampaignRun> after = runs_in(out);
+  const std::vector<CampaignEntry> after = runs_in(out);
   ASSERT_EQ(after.size(), 4U);
   for (std::size_t i = 0; i < 2; ++i) {
     EXPECT_EQ(after[i].key, before[i].key);
@@ -69,7 +69,8 @@ TEST(CompareCommand, GoesOnWhereItStopped) {
   const nlohmann::json& sphere = result.at("summaries")[0].at("coverage");
   EXPECT_EQ(sphere.at("n"), 2);
   double sum = 0.0;  // runs that were done at once are stored in any order
-  for (const CampaignRun& run : after) sum += run.key.strategy == "sphere" ? run.final().coverage : 0.0;
+  for (const CampaignEntry& run : after)
+    sum += run.key.strategy == "sphere" ? run.run.final().coverage.value_or(0.0) : 0.0;
   EXPECT_NEAR(sphere.at("mean").get<double>(), 0.5 * sum, 1e-12);
   EXPECT_LT(sphere.at("low").get<double>(), sphere.at("mean").get<double>());
   EXPECT_EQ(result.at("gaps").at(0).at("coverage").at("n"), 2);
@@ -98,7 +99,7 @@ TEST(CompareCommand, AnInterruptionKeepsWhatIsDone) {
   const Outcome outcome = program.finish();
   EXPECT_EQ(outcome.status, 130) << outcome.err;
   EXPECT_NE(outcome.err.find("the same command goes on"), std::string::npos) << outcome.err;
-  const std::vector<CampaignRun> runs = runs_in(out);
+  const std::vector<CampaignEntry> runs = runs_in(out);
   EXPECT_GE(runs.size(), 2U);
   EXPECT_LT(runs.size(), 40U);
   EXPECT_EQ(lines_of(out / "runs.csv"), static_cast<std::ptrdiff_t>(runs.size()) + 1);
@@ -113,7 +114,7 @@ TEST(CompareCommand, HasTheFiguresOfExplore) {
     const Outcome compared = run_program(compare(
         folder / "out", {"--seeds", "3", "--strategies", "random", "--robot", robot, "--quiet", "--threads", "1"}));
     ASSERT_EQ(compared.status, 0) << compared.err;
-    const std::vector<CampaignRun> runs = runs_in(folder / "out");
+    const std::vector<CampaignEntry> runs = runs_in(folder / "out");
     ASSERT_EQ(runs.size(), 1U);
     const Outcome explored = run_program(
         Arguments{"explore", "clutter:5", "--out", (folder / "run").string(), "--quiet", "--robot", robot, "--seed",
@@ -121,18 +122,18 @@ TEST(CompareCommand, HasTheFiguresOfExplore) {
         kCoarse);
     ASSERT_EQ(explored.status, 0) << explored.err;
     const nlohmann::json result = explored.json().at("result");
-    EXPECT_EQ(runs[0].initial.coverage, result.at("initial").at("coverage").get<double>());
-    EXPECT_EQ(runs[0].scan_views, result.at("initial").at("views").get<std::size_t>());
-    EXPECT_EQ(runs[0].stopped_because, result.at("stopped_because").get<std::string>());
-    ASSERT_EQ(runs[0].views.size(), 1U);
+    EXPECT_EQ(runs[0].run.scan.measures.coverage, result.at("initial").at("coverage").get<double>());
+    EXPECT_EQ(runs[0].run.scan.views, result.at("initial").at("views").get<std::size_t>());
+    EXPECT_EQ(to_string(runs[0].run.stopped_because), result.at("stopped_because").get<std::string>());
+    ASSERT_EQ(runs[0].run.views.size(), 1U);
     ASSERT_EQ(result.at("views").size(), 1U);
-    const CampaignView& view = runs[0].views[0];
+    const ViewRecord& view = runs[0].run.views[0];
     const nlohmann::json& told = result.at("views")[0];
     const auto T_world_camera = pose_from_json(told.at("T_world_camera"));
     ASSERT_TRUE(T_world_camera);
     EXPECT_LT((view.T_world_camera.matrix() - T_world_camera->matrix()).norm(), 1e-12);
-    EXPECT_EQ(view.after.unknown_left, told.at("unknown_left").get<std::size_t>());
-    EXPECT_EQ(view.points_at_object, told.at("points_at_object").get<bool>());
+    EXPECT_EQ(view.measures.unknown_left, told.at("unknown_left").get<std::size_t>());
+    EXPECT_EQ(view.reveals_object, told.at("points_at_object").get<bool>());
     EXPECT_EQ(refusals_to_json(view.refused), told.at("refused"));
     EXPECT_EQ(view.motion_s, told.at("motion_s").get<double>());
     if (view.motion_s > 0.0) {
@@ -141,21 +142,21 @@ TEST(CompareCommand, HasTheFiguresOfExplore) {
     EXPECT_EQ(view.motion_s > 0.0, std::string{robot} == "comau");
     EXPECT_GT(view.path_m, 0.0);
     const nlohmann::json& final = result.at("final");
-    EXPECT_EQ(runs[0].final().coverage, final.at("coverage").get<double>());
-    EXPECT_EQ(runs[0].final().unknown_near_objects, final.at("unknown_near_objects").get<std::size_t>());
-    EXPECT_EQ(runs[0].final().f_score.value(), final.at("f_score").get<double>());
-    EXPECT_EQ(runs[0].final().accuracy_m.value(), final.at("accuracy_m").get<double>());
+    EXPECT_EQ(runs[0].run.final().coverage, final.at("coverage").get<double>());
+    EXPECT_EQ(runs[0].run.final().unknown_near_objects, final.at("unknown_near_objects").get<std::size_t>());
+    EXPECT_EQ(runs[0].run.final().f_score.value(), final.at("f_score").get<double>());
+    EXPECT_EQ(runs[0].run.final().accuracy_m.value(), final.at("accuracy_m").get<double>());
   }
 }
 
 /// The runs' figures, without times, in the order of their keys.
 std::vector<std::string> figures_in(const fs::path& out) {
   std::vector<std::string> all;
-  for (CampaignRun run : runs_in(out)) {
+  for (CampaignEntry run : runs_in(out)) {
     std::string text = run.key.scene + run.key.strategy + run.key.noise + std::to_string(run.key.seed) + ' ' +
-                       run.key.settings + ' ' + run.stopped_because;
+                       run.key.settings + ' ' + std::string{to_string(run.run.stopped_because)};
     run.seconds = 0.0;
-    for (CampaignView& view : run.views) view.phases_ms = {};
+    for (ViewRecord& view : run.run.views) view.times = {};
     for (const RunFigure& figure : run_figures()) text += ' ' + std::to_string(figure.of(run, 2).value_or(-1.0));
     all.push_back(std::move(text));
   }
@@ -203,10 +204,10 @@ TEST(CompareCommand, RandomGetsAsManyViewsAsSphereTook) {
   // Nothing gains that much: sphere takes no view.
   const Arguments choosy{"--seeds", "1", "--min-gain", "1e9", "--quiet", "--no-noise"};
   ASSERT_EQ(run_program(compare(out, choosy + Arguments{"--equal-views"})).status, 0);
-  std::vector<CampaignRun> runs = runs_in(out);
+  std::vector<CampaignEntry> runs = runs_in(out);
   ASSERT_EQ(runs.size(), 2U);
   EXPECT_EQ(runs[0].key.strategy, "sphere");
-  EXPECT_TRUE(runs[0].views.empty() && runs[1].views.empty());
+  EXPECT_TRUE(runs[0].run.views.empty() && runs[1].run.views.empty());
   ASSERT_EQ(run_program(compare(out, choosy)).status, 0);
   runs = runs_in(out);
   ASSERT_EQ(runs.size(), 3U);
@@ -335,7 +336,7 @@ TEST(CompareCommand, ThereIsNoViewWhereEverythingIsKnownOrNothingCanBeReached) {
   ASSERT_EQ(far.status, 0) << far.err;
   row = far.json().at("result").at("summaries").at(0);
   EXPECT_EQ(row.at("stopped_because"), (nlohmann::json{{"no_candidate", 1}}));
-  EXPECT_GT(runs_in(folder / "far").at(0).refused_at_end.total(), 0U);
+  EXPECT_GT(runs_in(folder / "far").at(0).run.refused_at_end.total(), 0U);
 }
 
 }  // namespace

@@ -99,18 +99,18 @@ TEST(Defaults, OfArmsAreDocumented) {
 }
 
 TEST(Defaults, OfExplorationsAreDocumented) {
-  expect_documented("min_gain_of(StrategyKind::attention)", {min_gain_of(StrategyKind::attention)});
-  expect_documented("ObjectAttentionConfig::scrap_length_m", {ObjectAttentionConfig{}.scrap_length_m});
-  expect_documented("ObjectAttentionConfig::reach_m", {ObjectAttentionConfig{}.reach_m});
-  expect_documented("ObjectAttentionConfig::rival_share", {ObjectAttentionConfig{}.rival_share});
+  expect_documented("attention_planner().min_gain", {attention_planner().min_gain});
+  expect_documented("SalientObjectsConfig::scrap_length_m", {SalientObjectsConfig{}.scrap_length_m});
+  expect_documented("SalientObjectsConfig::reach_m", {SalientObjectsConfig{}.reach_m});
+  expect_documented("ViewPlannerConfig::rival_share", {ViewPlannerConfig{}.rival_share});
   const SimulatedRunConfig run;
   expect_documented("SimulatedRunConfig::truncation_vox", {run.truncation_vox});
   expect_documented("SimulatedRunConfig::gain_width_px", {static_cast<double>(run.gain_width_px)});
-  expect_documented("ExplorationConfig::min_gain", {ExplorationConfig{}.min_gain});
-  expect_documented("ExplorationConfig::good_enough", {run.exploration.good_enough});
-  expect_documented("ExplorationConfig::max_views", {static_cast<double>(run.exploration.max_views)});
-  expect_documented("ExplorationConfig::oscillation_frames", {static_cast<double>(run.exploration.oscillation_frames)});
-  expect_documented("ExplorationConfig::oscillation_rad", {degrees(run.exploration.oscillation_rad)});
+  expect_documented("ViewPlannerConfig::min_gain", {ViewPlannerConfig{}.min_gain});
+  expect_documented("ExplorerConfig::good_enough", {run.exploration.good_enough});
+  expect_documented("ExplorerConfig::max_views", {static_cast<double>(run.exploration.max_views)});
+  expect_documented("ExplorerConfig::oscillation_frames", {static_cast<double>(run.exploration.oscillation_frames)});
+  expect_documented("ExplorerConfig::oscillation_rad", {degrees(run.exploration.oscillation_rad)});
   expect_documented("kCameraClearance_m", {kCameraClearance_m});
   expect_documented("kUpdateMinGain", {kUpdateMinGain});
   expect_documented("kUpdateMaxViews", {static_cast<double>(kUpdateMaxViews)});

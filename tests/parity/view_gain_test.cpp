@@ -253,7 +253,7 @@ TEST(ViewGainParity, TheBestViewsAreTheFirstOfAllWithoutEvaluatingAll) {
     const RandomCase test{kSeed + 1000 + static_cast<std::uint32_t>(i)};
     const auto all = evaluate_views(test.map, test.region, test.poses, test.config, Executor{});
     ASSERT_TRUE(all.ok());
-    const std::vector<RankedView> expected = order_views(all->gains, test.poses);
+    const std::vector<OrderedView> expected = order_views(all->gains, test.poses);
     for (const std::size_t count : {std::size_t{1}, std::size_t{3}, test.poses.size() + 5}) {
       const auto best = best_views(test.map, test.region, test.poses, count, test.config, Executor{});
       const auto again = best_views(test.map, test.region, test.poses, count, test.config, Executor::with_threads(7));

@@ -88,7 +88,7 @@ TEST(BestViewsProperty, AreTheFirstOfBruteForceInTheWholeWorkspace) {
     std::vector<std::uint64_t> gains;
     for (const Pose& pose : test.poses) gains.push_back(brute_force(pose));
     nonzero += kPoses - static_cast<std::size_t>(std::count(gains.begin(), gains.end(), std::uint64_t{0}));
-    const std::vector<RankedView> expected = order_views(gains, test.poses);
+    const std::vector<OrderedView> expected = order_views(gains, test.poses);
     ASSERT_TRUE(use_simd_target(targets[static_cast<std::size_t>(i) % targets.size()]).ok());
     for (const std::size_t count : {std::size_t{1}, std::size_t{20}, kPoses}) {
       const auto best = best_views(test.map, test.region, test.poses, count, test.gain, Executor{});

@@ -10,7 +10,6 @@
 #include "saccade/view/view_gain.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/ray_hits.hpp"
-#include "server/show/view_record.hpp"
 #include "support/effort.hpp"
 #include "support/random_map.hpp"
 #include "support/temp_folder.hpp"
@@ -150,37 +149,6 @@ TEST(ShowDocuments, SaysWhatIsNothingToShow) {
       Errc::corrupt_data);
   EXPECT_EQ(code_of(folder.write("run/run.json", R"({"command": "explore", "result": {"views": [7]}})").parent_path()),
             Errc::corrupt_data);
-}
-
-TEST(ShowDocuments, AViewRecordIsReadAsItWasWritten) {
-  const TempFolder folder;
-  ViewRecord record;
-  record.view = 3;
-  record.region = Cylinder{{0.0, 0.0, 0.1}, {0.0, 0.0, 0.5}, 0.2};
-  record.sensor = PinholeCamera{40, 30, 33.0, 33.5, 19.0, 14.0, 0.5, 2.0};
-  record.T_world_candidates = {look_at({1.0, 0.2, 0.5}, {0.0, 0.0, 0.0}), look_at({0.0, 1.0, 0.5}, {0.0, 0.0, 0.0})};
-  record.gains = {7.0, std::nan("")};
-  record.saliency = {0.25, 0.5};
-  record.segment = 1;
-  record.path = {{0.0, 0.0, 1.0}, {1.0, 0.2, 0.5}};
-  ASSERT_TRUE(write_view_record(folder.path(), record));
-  const auto read = read_view_record(folder.path(), 3);
-  ASSERT_TRUE(read) << read.error().to_string();
-  EXPECT_EQ(read->view, 3U);
-  EXPECT_EQ(std::get<Cylinder>(read->region).top, Eigen::Vector3d(0.0, 0.0, 0.5));
-  EXPECT_EQ(read->sensor, record.sensor);
-  ASSERT_EQ(read->T_world_candidates.size(), 2U);
-  EXPECT_LT((read->T_world_candidates[0].matrix() - record.T_world_candidates[0].matrix()).norm(), 1e-12);
-  EXPECT_EQ(read->gains[0], 7.0);
-  EXPECT_TRUE(std::isnan(read->gains[1]));
-  EXPECT_EQ(read->saliency, record.saliency);
-  EXPECT_EQ(read->segment, record.segment);
-  EXPECT_EQ(read->path, record.path);
-  EXPECT_EQ(read_view_record(folder.path(), 4).error().code, Errc::not_found);
-  folder.write("view-05.json", R"({"schema": "saccade-view/1"})");
-  EXPECT_EQ(read_view_record(folder.path(), 5).error().code, Errc::corrupt_data);
-  folder.write("view-06.json", R"({"schema": "saccade-view/9"})");
-  EXPECT_EQ(read_view_record(folder.path(), 6).error().code, Errc::unsupported);
 }
 
 TEST(ShowDocuments, RaysThatGainAreThoseOfTheGain) {

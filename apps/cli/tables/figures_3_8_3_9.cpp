@@ -54,10 +54,10 @@ Result<TsdfSnapshot> scan_table(const RayScene& scene, const ReproduceOptions& o
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
   SACCADE_TRY(SimulatedCamera camera, simulated_camera(scene, config));
   SACCADE_TRY(FreeRobot robot, flying_camera(scene));
-  ExplorationCell cell{config.camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); },
-                       robot};
-  SACCADE_TRY(const ScanResult scanned,
-              scan(map, cell, scene.scene().scan, config.exploration, executor, {}, progress));
+  FunctionCamera sensor{config.camera,
+                        [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); }};
+  Explorer explorer{{map, sensor, robot, executor, nullptr, nullptr, {}, &progress}, config.exploration};
+  SACCADE_TRY(const ScanRecord scanned, explorer.scan(scene.scene().scan));
   if (!scanned.complete) return Error{Errc::cancelled, "cancelled", "the scan"};
   return map.snapshot();
 }

@@ -6,7 +6,6 @@
 #include <limits>
 #include <map>
 
-#include "saccade/explore/attention_strategy.hpp"
 #include "saccade/explore/simulated_run.hpp"
 #include "saccade/explore/statistics.hpp"
 #include "saccade/io/scene_yaml.hpp"
@@ -17,21 +16,15 @@
 
 namespace saccade::cli {
 
-struct ExplorationExperiment {
-  SimulatedRun run;
-  std::vector<Proposals> proposals;  ///< one per view, and one more where no view was left
-};
-
-/// Of the strategies, one experiment per scene.
+/// Of the strategies, one run per scene.
 struct ExplorationExperiments {
-  std::vector<ExplorationExperiment> attention;
-  std::vector<ExplorationExperiment> standard;
+  std::vector<RunRecord> attention;
+  std::vector<RunRecord> standard;
 };
 
 namespace {
 
 using nlohmann::json;
-using Experiment = ExplorationExperiment;
 using Experiments = ExplorationExperiments;
 
 constexpr std::array<const char*, 4> kScenes{"tabletop-1", "tabletop-2", "tabletop-3", "tabletop-4"};
@@ -39,26 +32,8 @@ constexpr int kViews{5};
 constexpr double kMost_m{2.0};  // beyond, depth is too coarse for things on a table
 constexpr int kUsualWidth_px{160};
 
-/// What strategies proposed, with what had drawn their attention.
-class Recorded final : public Strategy {
- public:
-  explicit Recorded(const Strategy& strategy) : strategy_{strategy} {}
-  [[nodiscard]] Result<Proposals> propose(const Situation& situation) const override {
-    SACCADE_TRY(Proposals proposals, strategy_.propose(situation));
-    // Asked again where no view of a segment could be reached: the last answer is that of the view.
-    if (!all_.empty() && situation.views_of_region + 1 == all_.size()) all_.pop_back();
-    all_.push_back(proposals);
-    return proposals;
-  }
-  [[nodiscard]] const std::vector<Proposals>& all() const { return all_; }
-
- private:
-  const Strategy& strategy_;
-  mutable std::vector<Proposals> all_;
-};
-
 /// As the thesis': a Kinect v2 on the Comau arm, all of whose rays count.
-Result<SimulatedRunConfig> config_of(StrategyKind strategy, const ReproduceOptions& options) {
+Result<SimulatedRunConfig> config_of(const NamedPlanner& strategy, const ReproduceOptions& options) {
   SimulatedRunConfig config = SimulatedRunConfig{}.with(strategy);
   SACCADE_TRY(config.camera, camera_preset("kinect-v2"));
   config.camera.max_range_m = kMost_m;
@@ -68,7 +43,7 @@ Result<SimulatedRunConfig> config_of(StrategyKind strategy, const ReproduceOptio
   config.sensor = DepthSensor::kinect_v2;
   config.gain_width_px = config.camera.width;
   const double scale = static_cast<double>(config.gain_width_px) / kUsualWidth_px;
-  config.exploration.min_gain *= scale * scale;
+  config.planner.min_gain *= scale * scale;
   config.exploration.max_views = kViews;
   config.seed = options.seed;
   SACCADE_TRY(UrdfArm arm, find_robot("comau"));
@@ -76,17 +51,16 @@ Result<SimulatedRunConfig> config_of(StrategyKind strategy, const ReproduceOptio
   return config;
 }
 
-Result<Experiment> carry_out(const char* scene, StrategyKind kind, const ReproduceOptions& options,
-                             const Executor& executor, const Progress& progress) {
+Result<RunRecord> carry_out(const char* scene, const char* strategy, const ReproduceOptions& options,
+                            const Executor& executor, const Progress& progress) {
   SACCADE_TRY(Scene found, find_scene(scene));
   SACCADE_TRY(const RayScene rays, RayScene::build(std::move(found)));
   SACCADE_TRY(const Truth truth, Truth::build(rays, kTruthSpacing_m, executor));
-  SACCADE_TRY(const SimulatedRunConfig config, config_of(kind, options));
-  const std::unique_ptr<Strategy> strategy = make_strategy(config, config.camera, 1);
-  const Recorded recorded{*strategy};
-  SACCADE_TRY(SimulatedRun run, run_simulated(truth, config, recorded, executor, progress));
+  SACCADE_TRY(const NamedPlanner planner, builtin_planners().find(strategy));
+  SACCADE_TRY(const SimulatedRunConfig config, config_of(planner, options));
+  SACCADE_TRY(RunRecord run, run_simulated(truth, config, executor, progress));
   if (run.stopped_because == StopReason::cancelled) return Error{Errc::cancelled, "cancelled", scene};
-  return Experiment{std::move(run), recorded.all()};
+  return run;
 }
 
 Status carry_out_explorations(const ReproduceOptions& options, const Executor& executor, const Progress& progress) {
@@ -94,10 +68,10 @@ Status carry_out_explorations(const ReproduceOptions& options, const Executor& e
   auto all = std::make_shared<Experiments>();
   std::size_t done = 0;
   for (const char* scene : kScenes) {
-    for (const StrategyKind kind : {StrategyKind::attention, StrategyKind::standard}) {
+    for (const char* strategy : {"attention", "standard"}) {
       progress.report("experiments", done++, 2 * kScenes.size());
-      SACCADE_TRY(Experiment experiment, carry_out(scene, kind, options, executor, {}));
-      (kind == StrategyKind::attention ? all->attention : all->standard).push_back(std::move(experiment));
+      SACCADE_TRY(RunRecord run, carry_out(scene, strategy, options, executor, {}));
+      (std::string{"attention"} == strategy ? all->attention : all->standard).push_back(std::move(run));
       if (progress.cancelled()) return Error{Errc::cancelled, "cancelled", scene};
     }
   }
@@ -120,37 +94,47 @@ struct TimedPhase {
   const char* name;
   const char* thesis_attention;
   const char* thesis_standard;
-  double (*seconds)(const ExploredView&);
+  double (*seconds)(const ViewRecord&);
 };
 
-constexpr std::array<TimedPhase, 8> kPhases{
+double seconds_of(const ViewRecord& view, std::initializer_list<saccade::Phase> phases) {
+  double ms = 0.0;
+  for (const saccade::Phase phase : phases) ms += view.times.ms(phase);
+  return 1e-3 * ms;
+}
+
+double next_best_view_s(const ViewRecord& view) {
+  return seconds_of(view, {saccade::Phase::segmentation, saccade::Phase::saliency, saccade::Phase::candidates,
+                           saccade::Phase::reachability, saccade::Phase::gain});
+}
+
+const std::array<TimedPhase, 8> kTimedPhases{
     {{"segmentation + saliency", "46.1 ± 2.5", "-",
-      [](const ExploredView& view) { return 1e-3 * (view.segmentation_ms + view.saliency_ms); }},
-     {"views generation", "2.1 ± 0.1", "2.1 ± 0.1",
-      [](const ExploredView& view) { return 1e-3 * (view.candidates_ms + view.reachability_ms); }},
-     {"views evaluation", "26.0 ± 4.1", "288.5 ± 39.0",
-      [](const ExploredView& view) { return 1e-3 * view.evaluation_ms; }},
-     {"subtotal", "74.2 ± 4.8", "290.6 ± 39.0",
-      [](const ExploredView& view) {
-        return 1e-3 * (view.segmentation_ms + view.saliency_ms + view.candidates_ms + view.reachability_ms +
-                       view.evaluation_ms);
+      [](const ViewRecord& view) {
+        return seconds_of(view, {saccade::Phase::segmentation, saccade::Phase::saliency});
       }},
+     {"views generation", "2.1 ± 0.1", "2.1 ± 0.1",
+      [](const ViewRecord& view) {
+        return seconds_of(view, {saccade::Phase::candidates, saccade::Phase::reachability});
+      }},
+     {"views evaluation", "26.0 ± 4.1", "288.5 ± 39.0",
+      [](const ViewRecord& view) { return seconds_of(view, {saccade::Phase::gain}); }},
+     {"subtotal", "74.2 ± 4.8", "290.6 ± 39.0", next_best_view_s},
      {"planner map update", "46.0 ± 1.6", "44.6 ± 0.4",
-      [](const ExploredView& view) { return 1e-3 * view.planner_map_ms; }},
+      [](const ViewRecord& view) { return seconds_of(view, {saccade::Phase::obstacles}); }},
      {"motion planning", "88.1 ± 17.9", "78.3 ± 13.8",
-      [](const ExploredView& view) { return 1e-3 * view.planning_ms; }},
-     {"robot motion", "110.5 ± 3.9", "108.5 ± 7.7", [](const ExploredView& view) { return view.motion_s; }},
-     {"total", "318.7 ± 19.1", "522.0 ± 42.0", [](const ExploredView& view) {
-        return view.motion_s +
-               1e-3 * (view.segmentation_ms + view.saliency_ms + view.candidates_ms + view.reachability_ms +
-                       view.evaluation_ms + view.planner_map_ms + view.planning_ms);
+      [](const ViewRecord& view) { return seconds_of(view, {saccade::Phase::planning}); }},
+     {"robot motion", "110.5 ± 3.9", "108.5 ± 7.7", [](const ViewRecord& view) { return view.motion_s; }},
+     {"total", "318.7 ± 19.1", "522.0 ± 42.0", [](const ViewRecord& view) {
+        return view.motion_s + next_best_view_s(view) +
+               seconds_of(view, {saccade::Phase::obstacles, saccade::Phase::planning});
       }}}};
 
-MeanEstimate seconds_of(const std::vector<Experiment>& experiments, const TimedPhase& phase) {
+MeanEstimate seconds_of(const std::vector<RunRecord>& experiments, const TimedPhase& phase) {
   std::vector<double> sums;
-  for (const Experiment& experiment : experiments) {
+  for (const RunRecord& experiment : experiments) {
     double sum = 0.0;
-    for (const MeasuredView& measured : experiment.run.views) sum += phase.seconds(measured.view);
+    for (const ViewRecord& view : experiment.views) sum += phase.seconds(view);
     sums.push_back(sum);
   }
   return estimate_mean(sums);
@@ -162,13 +146,13 @@ std::string seconds_text(const MeanEstimate& seconds) {
 
 /// "400 to 14000".
 template <class Of>
-std::string range_text(const std::vector<Experiment>& experiments, Of of) {
+std::string range_text(const std::vector<RunRecord>& experiments, Of of) {
   std::size_t least = std::numeric_limits<std::size_t>::max();
   std::size_t most = 0;
-  for (const Experiment& experiment : experiments) {
-    for (const MeasuredView& measured : experiment.run.views) {
-      least = std::min(least, of(measured.view));
-      most = std::max(most, of(measured.view));
+  for (const RunRecord& experiment : experiments) {
+    for (const ViewRecord& view : experiment.views) {
+      least = std::min(least, of(view));
+      most = std::max(most, of(view));
     }
   }
   return most < least ? std::string{"none"} : std::to_string(least) + " to " + std::to_string(most);
@@ -193,10 +177,9 @@ std::string name_of_object(const Truth& truth, const RayScene& rays, std::span<c
       ->first;
 }
 
-std::string mark(const std::vector<MeasuredView>& views, std::size_t k, bool MeasuredView::*looks) {
+std::string mark(const std::vector<ViewRecord>& views, std::size_t k, std::optional<bool> ViewRecord::*points) {
   if (k >= views.size()) return "-";
-  const bool points = looks != nullptr ? views[k].*looks : views[k].newly_known.points_at_object();
-  return points ? "✓" : "×";
+  return (views[k].*points).value_or(false) ? "✓" : "×";
 }
 
 json experiments_json(const Experiments& all) {
@@ -205,22 +188,20 @@ json experiments_json(const Experiments& all) {
        {std::pair{"attention", &all.attention}, std::pair{"standard", &all.standard}}) {
     for (std::size_t i = 0; i < experiments->size(); ++i) {
       json views = json::array();
-      for (const MeasuredView& measured : (*experiments)[i].run.views) {
-        const ExploredView& view = measured.view;
+      for (const ViewRecord& view : (*experiments)[i].views) {
         views.push_back({{"candidates", view.candidates},
                          {"evaluated", view.evaluated},
-                         {"gain", view.gain},
-                         {"coverage", measured.after.metrics.coverage},
-                         {"unknown_near_objects", measured.after.metrics.unknown_near_objects},
-                         {"points_at_object", measured.newly_known.points_at_object()},
-                         {"looks_at_object", measured.looks_at_object},
-                         {"nbv_ms", view.candidates_ms + view.segmentation_ms + view.saliency_ms +
-                                        view.reachability_ms + view.evaluation_ms},
+                         {"gain", view.gain_predicted},
+                         {"coverage", *view.measures.coverage},
+                         {"unknown_near_objects", *view.measures.unknown_near_objects},
+                         {"points_at_object", *view.reveals_object},
+                         {"looks_at_object", *view.looks_at_object},
+                         {"nbv_ms", 1e3 * next_best_view_s(view)},
                          {"motion_s", view.motion_s}});
       }
       rows.push_back({{"scene", kScenes.at(i)},
                       {"strategy", name},
-                      {"unknown_near_objects", (*experiments)[i].run.initial.metrics.unknown_near_objects},
+                      {"unknown_near_objects", (*experiments)[i].scan.measures.unknown_near_objects.value_or(0)},
                       {"views", std::move(views)}});
     }
   }
@@ -237,16 +218,16 @@ Result<ReproducedTable> reproduce_table_3_1(const ReproduceOptions& options, con
   table.caption = "Table 3.1: seconds of each phase of five views, mean and standard deviation of four experiments";
   table.columns = {"phase", "proposed, thesis", "attention", "standard, thesis", "standard"};
   json rows = json::array();
-  for (const TimedPhase& phase : kPhases) {
+  for (const TimedPhase& phase : kTimedPhases) {
     const MeanEstimate attention = seconds_of(all.attention, phase);
     const MeanEstimate standard = seconds_of(all.standard, phase);
     table.rows.push_back(
         {phase.name, phase.thesis_attention, seconds_text(attention), phase.thesis_standard, seconds_text(standard)});
     rows.push_back({{"phase", phase.name}, {"attention_s", attention.mean}, {"standard_s", standard.mean}});
   }
-  const auto candidates = [](const ExploredView& view) { return view.candidates; };
-  const auto evaluated = [](const ExploredView& view) { return view.evaluated; };
-  const double ratio = seconds_of(all.standard, kPhases[3]).mean / seconds_of(all.attention, kPhases[3]).mean;
+  const auto candidates = [](const ViewRecord& view) { return view.candidates; };
+  const auto evaluated = [](const ViewRecord& view) { return view.evaluated; };
+  const double ratio = seconds_of(all.standard, kTimedPhases[3]).mean / seconds_of(all.attention, kTimedPhases[3]).mean;
   table.notes = {
       "Subtotal: the computation of the views. Standard over attention: thesis 3.9, here " + fixed(ratio, 1) + ".",
       "The thesis names \"thousands\" of candidates of the standard method, and 91,960 in one view. Here a view has " +
@@ -268,8 +249,8 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
   SACCADE_TRY(Scene scene, find_scene(kScenes[0]));
   SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
   SACCADE_TRY(const Truth truth, Truth::build(rays, kTruthSpacing_m, executor));
-  SACCADE_TRY(const Experiment experiment, carry_out(kScenes[0], StrategyKind::attention, options, executor, progress));
-  if (experiment.proposals.size() <= kThird || !experiment.proposals[kThird].attention) {
+  SACCADE_TRY(const RunRecord experiment, carry_out(kScenes[0], "attention", options, executor, progress));
+  if (experiment.views.size() <= kThird || !experiment.views[kThird].choice->surface) {
     return Error{Errc::unavailable, "the exploration ended before its third view", kScenes[0]};
   }
   std::vector<MeshDistance> distances;
@@ -277,10 +258,11 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
     SACCADE_TRY(MeshDistance distance, MeshDistance::build(object.mesh));
     distances.push_back(std::move(distance));
   }
-  const Proposals& proposals = experiment.proposals[kThird];
-  const ObjectAttention& seen = *proposals.attention;
+  const ViewRecord& third = experiment.views[kThird];
+  const ViewChoice& choice = *third.choice;
+  const SalientSurface& seen = *choice.surface;
   const std::size_t per_point = ContourViewConfig{}.views_per_point();
-  const auto contours_of = seen.contours_of_segments();
+  const auto contours_of = choice.contours->points_of_segments(seen.points.segments());
   ReproducedTable table;
   table.caption =
       "Table 3.2: saliency and view poses of the segments before the third view of experiment 1, up to the first one "
@@ -290,7 +272,7 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
   std::size_t of_objects = 0;
   for (const std::uint32_t segment : seen.order) {
     if (contours_of[segment].empty()) continue;
-    const std::string name = name_of_object(truth, rays, seen.surface.points_of(segment), distances);
+    const std::string name = name_of_object(truth, rays, seen.points.points_of(segment), distances);
     const std::size_t poses = per_point * contours_of[segment].size();
     const double saliency = seen.saliency[segment].value;
     table.rows.push_back({fixed(saliency, 3), std::to_string(poses), name});
@@ -298,21 +280,21 @@ Result<ReproducedTable> reproduce_table_3_2(const ReproduceOptions& options, con
     if (name == "part of the table") break;
     of_objects += poses;
   }
-  const std::size_t chosen = proposals.segment ? per_point * contours_of[*proposals.segment].size() : 0;
+  const std::size_t chosen = choice.segment ? per_point * contours_of[*choice.segment].size() : 0;
   table.notes = {
       "Thesis: 0.589 (960 poses, top of a jug) down to 0.177 for nine segments of objects, then 0.172 (7720 "
       "poses) for a part of the table; 10,480 poses point at objects, 91,960 in all, 960 were evaluated.",
       "Here: " + std::to_string(of_objects) + " poses of the segments before the first that is no object's, " +
-          std::to_string(proposals.candidates) + " in all; the segment that was chosen has " + std::to_string(chosen) +
-          ", of which the arm can take " + std::to_string(proposals.views.size()) +
+          std::to_string(third.candidates) + " in all; the segment that was chosen has " + std::to_string(chosen) +
+          ", of which the arm can take " + std::to_string(choice.candidates.size()) +
           ". Segments without contour points are left out.",
       "A segment is of the object that most of its points are nearest to."};
   add_exploration_notes(options, table);
   table.figures = {{"rows", std::move(rows)},
-                   {"candidates", proposals.candidates},
+                   {"candidates", third.candidates},
                    {"of_objects", of_objects},
                    {"of_chosen", chosen},
-                   {"evaluated", proposals.evaluated}};
+                   {"evaluated", third.evaluated}};
   return table;
 }
 
@@ -324,22 +306,22 @@ Result<ReproducedTable> reproduce_table_3_3(const ReproduceOptions& options, con
   ReproducedTable table;
   table.caption = "Table 3.3: views that point towards the objects (✓) or not (×)";
   table.columns = {"method", "experiment", "thesis", "by the axis", "by what became known"};
-  const auto marks = [](const Experiment& experiment, bool MeasuredView::*looks) {
+  const auto marks = [](const RunRecord& experiment, std::optional<bool> ViewRecord::*looks) {
     std::string text;
-    for (std::size_t k = 0; k < kViews; ++k) text += mark(experiment.run.views, k, looks);
+    for (std::size_t k = 0; k < kViews; ++k) text += mark(experiment.views, k, looks);
     return text;
   };
   std::size_t row = 0;
   std::array<std::array<std::size_t, 2>, 2> counts{};
   for (const bool attention : {true, false}) {
-    const std::vector<Experiment>& experiments = attention ? all.attention : all.standard;
+    const std::vector<RunRecord>& experiments = attention ? all.attention : all.standard;
     for (std::size_t i = 0; i < experiments.size(); ++i) {
       table.rows.push_back({attention ? "attention" : "standard", std::to_string(i + 1) + ", " + kScenes.at(i),
-                            kThesis.at(row++), marks(experiments[i], &MeasuredView::looks_at_object),
+                            kThesis.at(row++), marks(experiments[i], &ViewRecord::looks_at_object),
                             marks(experiments[i], nullptr)});
-      for (const MeasuredView& view : experiments[i].run.views) {
-        counts[attention ? 0 : 1][0] += view.looks_at_object ? 1 : 0;
-        counts[attention ? 0 : 1][1] += view.newly_known.points_at_object() ? 1 : 0;
+      for (const ViewRecord& view : experiments[i].views) {
+        counts[attention ? 0 : 1][0] += view.looks_at_object.value_or(false) ? 1 : 0;
+        counts[attention ? 0 : 1][1] += view.reveals_object.value_or(false) ? 1 : 0;
       }
     }
   }
@@ -373,18 +355,19 @@ Result<ReproducedTable> reproduce_figure_3_17(const ReproduceOptions& options, c
     std::vector<std::string> row{std::to_string(i + 1) + ", " + kScenes.at(i)};
     row.resize(table.columns.size());
     for (const bool attention : {true, false}) {
-      const SimulatedRun& run = (attention ? all.attention : all.standard)[i].run;
+      const RunRecord& run = (attention ? all.attention : all.standard)[i];
       PlotSeries series{attention ? "attention" : "standard", {}, {}};
       for (std::size_t k = 0; k <= kViews; ++k) {
         const std::size_t taken = std::min(k, run.views.size());
-        const MeasuredMap& map = taken == 0 ? run.initial : run.views[taken - 1].after;
+        const Measures& map = taken == 0 ? run.scan.measures : run.views[taken - 1].measures;
+        const std::size_t unknown = map.unknown_near_objects.value_or(0);
         series.x.push_back(static_cast<double>(k));
-        series.y.push_back(static_cast<double>(map.metrics.unknown_near_objects));
-        row[k + 1] += (attention ? "" : " / ") + std::to_string(map.metrics.unknown_near_objects);
+        series.y.push_back(static_cast<double>(unknown));
+        row[k + 1] += (attention ? "" : " / ") + std::to_string(unknown);
       }
       plot.series.push_back(std::move(series));
     }
-    plot.y_range = {0.0, static_cast<double>(all.attention[i].run.initial.metrics.unknown_near_objects)};
+    plot.y_range = {0.0, static_cast<double>(all.attention[i].scan.measures.unknown_near_objects.value_or(0))};
     table.rows.push_back(std::move(row));
     table.plots.push_back({kTablePlotFiles.at(3 + i), plot_svg(plot)});
   }

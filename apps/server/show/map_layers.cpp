@@ -77,17 +77,17 @@ Layer saliency_layer(const TsdfSnapshot& map, const TriangleMesh& mesh, const Se
   return layer;
 }
 
-std::optional<Layer> contours_layer(const ObjectAttention& seen, std::optional<std::uint32_t> segment,
+std::optional<Layer> contours_layer(const ContourSet& contours, std::optional<std::uint32_t> segment,
                                     const LayerPlace& place) {
   constexpr double kNormal_m{0.03};
-  if (seen.contours.empty()) return std::nullopt;
+  if (contours.points.empty()) return std::nullopt;
   std::vector<Eigen::Vector3f> ends;
   std::vector<Rgb8> colors;
-  for (std::size_t i = 0; i < seen.contours.size(); ++i) {
-    const ContourPoint& contour = seen.contours[i];
+  for (std::size_t i = 0; i < contours.points.size(); ++i) {
+    const ContourPoint& contour = contours.points[i];
     ends.emplace_back(contour.position_m.cast<float>());
     ends.emplace_back((contour.position_m + kNormal_m * contour.normal).cast<float>());
-    const bool chosen = segment && seen.segment_of_contour[i] == *segment;
+    const bool chosen = segment && contours.segment_of_point[i] == *segment;
     colors.insert(colors.end(), 2, chosen ? kChosenContour : kOtherContour);
   }
   Layer layer = lines_layer("contours", kContoursName, ends, colors);
@@ -104,16 +104,22 @@ Result<std::vector<Layer>> layers_of_map(const TsdfSnapshot& map, const Triangle
     frontier->opacity = kFrontierOpacity;
     layers.push_back(std::move(*frontier));
   }
-  SACCADE_TRY(LiveObjectAttention attention, LiveObjectAttention::create());
-  SACCADE_TRY(const ObjectAttention seen, attention.look(map, executor));
+  SACCADE_TRY(const SeenAttention seen, AttentionLook{}.look(map, executor));
   std::vector<double> saliency;
-  for (const Saliency& of_segment : seen.saliency) saliency.push_back(of_segment.value);
-  if (!saliency.empty()) layers.push_back(saliency_layer(map, mesh, seen.surface, saliency, always, executor));
-  if (std::optional<Layer> contours = contours_layer(seen, std::nullopt, always)) {
+  for (const Saliency& of_segment : seen.surface->saliency) saliency.push_back(of_segment.value);
+  if (!saliency.empty()) layers.push_back(saliency_layer(map, mesh, seen.surface->points, saliency, always, executor));
+  if (std::optional<Layer> contours = contours_layer(seen.contours, std::nullopt, always)) {
     layers.push_back(std::move(*contours));
   }
   if (map.config.workspace) layers.push_back(box_layer("workspace", "Workspace", *map.config.workspace));
   return layers;
+}
+
+Result<SeenAttention> AttentionLook::look(const TsdfSnapshot& map, const Executor& executor) {
+  SACCADE_TRY(std::shared_ptr<const SalientSurface> surface, objects_.look({map, executor}));
+  contours_.update(map, executor);
+  ContourSet contours = contours_of(contours_.points(), *surface, executor);
+  return SeenAttention{std::move(surface), std::move(contours)};
 }
 
 Facts facts_of_map(const TsdfSnapshot& map, const TriangleMesh& mesh) {

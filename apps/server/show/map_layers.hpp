@@ -5,8 +5,9 @@
 #include <string>
 #include <vector>
 
+#include "saccade/attention/salient_objects.hpp"
 #include "saccade/core/executor.hpp"
-#include "saccade/explore/object_attention.hpp"
+#include "saccade/view/view_generator.hpp"
 #include "server/show/scene_document.hpp"
 
 namespace saccade::server {
@@ -35,7 +36,7 @@ struct LayerPlace {
 
 /// Places at the border of what is known with the direction to look at them from, those of one segment apart from the
 /// others; hidden at first. nullopt where there is none.
-[[nodiscard]] std::optional<Layer> contours_layer(const ObjectAttention& seen, std::optional<std::uint32_t> segment,
+[[nodiscard]] std::optional<Layer> contours_layer(const ContourSet& contours, std::optional<std::uint32_t> segment,
                                                   const LayerPlace& place);
 
 /// Surface, frontier, saliency by `objectness` and contours of a map that is shown for itself.
@@ -46,5 +47,22 @@ struct LayerPlace {
 [[nodiscard]] Facts facts_of_map(const TsdfSnapshot& map, const TriangleMesh& mesh);
 /// The workspace, or all of the surface.
 [[nodiscard]] Box bounds_of_map(const TsdfSnapshot& map, const TriangleMesh& mesh);
+
+/// What draws attention in a map.
+struct SeenAttention {
+  std::shared_ptr<const SalientSurface> surface;
+  ContourSet contours;
+};
+
+/// Follows a map from call to call.
+class AttentionLook {
+ public:
+  /// Errors of SalientObjects::look.
+  [[nodiscard]] Result<SeenAttention> look(const TsdfSnapshot& map, const Executor& executor);
+
+ private:
+  SalientObjects objects_;
+  LiveContours contours_{LiveContours::create().value()};
+};
 
 }  // namespace saccade::server

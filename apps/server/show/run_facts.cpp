@@ -6,8 +6,8 @@
 #include <cmath>
 #include <string_view>
 
+#include "saccade/io/view_choice.hpp"
 #include "server/show/figures.hpp"
-#include "server/show/view_record.hpp"
 
 namespace saccade::server {
 namespace {

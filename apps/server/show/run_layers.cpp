@@ -61,16 +61,22 @@ std::vector<Eigen::Vector3f> outline_of(const Cylinder& cylinder) {
 
 }  // namespace
 
-Layer candidates_layer(const ViewRecord& record, const std::array<double, 2>& fov_rad, std::size_t step) {
-  return placed(views_layer("candidates", "Candidates", record.T_world_candidates, record.gains, fov_rad), step);
+Layer candidates_layer(std::span<const RankedView> candidates, const std::array<double, 2>& fov_rad, std::size_t step) {
+  std::vector<Pose> T_world_candidates;
+  std::vector<double> gains;
+  for (const RankedView& candidate : candidates) {
+    T_world_candidates.push_back(candidate.T_world_camera);
+    gains.push_back(candidate.gain);
+  }
+  return placed(views_layer("candidates", "Candidates", T_world_candidates, gains, fov_rad), step);
 }
 
-Layer hits_layer(const TsdfSnapshot& before, const ViewRecord& record, const Pose& T_world_camera, std::size_t step,
+Layer hits_layer(const TsdfSnapshot& before, const ViewChoice& choice, const Pose& T_world_camera, std::size_t step,
                  const Executor& executor) {
   std::vector<Eigen::Vector3f> points;
   std::vector<Rgb8> colors;
   std::array<std::size_t, 3> counts{};
-  for (const RayHit& hit : ray_hits(before, record.region, record.sensor, T_world_camera, executor)) {
+  for (const RayHit& hit : ray_hits(before, choice.region, choice.sensor, T_world_camera, executor)) {
     constexpr std::array<Rgb8, 3> kColors{kGained, kUnknownElsewhere, kSurfaceHit};
     points.push_back(hit.center_m);
     colors.push_back(kColors[static_cast<std::size_t>(hit.end)]);

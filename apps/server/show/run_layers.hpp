@@ -2,16 +2,17 @@
 #pragma once
 // Layers of one view of an exploration: what it was chosen from and what came of it.
 
+#include "saccade/explore/view_record.hpp"
 #include "saccade/robot/arm_model.hpp"
 #include "server/show/map_layers.hpp"
-#include "server/show/view_record.hpp"
 
 namespace saccade::server {
 
 /// Poses and their gains.
-[[nodiscard]] Layer candidates_layer(const ViewRecord& record, const std::array<double, 2>& fov_rad, std::size_t step);
+[[nodiscard]] Layer candidates_layer(std::span<const RankedView> candidates, const std::array<double, 2>& fov_rad,
+                                     std::size_t step);
 /// Where the rays of the view end in the map as it was before, by what they count for.
-[[nodiscard]] Layer hits_layer(const TsdfSnapshot& before, const ViewRecord& record, const Pose& T_world_camera,
+[[nodiscard]] Layer hits_layer(const TsdfSnapshot& before, const ViewChoice& choice, const Pose& T_world_camera,
                                std::size_t step, const Executor& executor);
 /// Edges of the region that the gain is of; hidden at first.
 [[nodiscard]] Layer region_layer(const Region& region, std::size_t step);

@@ -6,6 +6,7 @@
 #include "saccade/io/sacmap.hpp"
 #include "saccade/io/trajectory_io.hpp"
 #include "saccade/io/urdf.hpp"
+#include "saccade/io/view_choice.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
 #include "server/show/run_layers.hpp"
@@ -151,31 +152,29 @@ Status RunReader::read_step(const json& result, const json& view, std::size_t nu
 }
 
 Status RunReader::add_choice(const json& result, std::size_t number, ReadStep& out) {
-  auto record = read_view_record(folder_, number);
-  if (!record) return record.error().code == Errc::not_found ? Status{} : Status{record.error()};
+  const auto read = read_view_choice(folder_, number);
+  if (!read) return read.error().code == Errc::not_found ? Status{} : Status{read.error()};
+  const ViewChoice& choice = *read->choice;
   const std::size_t step = steps_.size();
-  if (!record->T_world_candidates.empty()) out.layers.push_back(candidates_layer(*record, fov_in(result), step));
+  if (!choice.candidates.empty()) out.layers.push_back(candidates_layer(choice.candidates, fov_in(result), step));
   if (last_map_ && last_map_->step + 1 == number) {
-    out.layers.push_back(hits_layer(last_map_->map, *record, *out.step.T_world_camera, step, executor_));
-    SACCADE_CHECK(add_attention(*last_map_, record->saliency, record->segment, step, out.layers));
+    out.layers.push_back(hits_layer(last_map_->map, choice, *out.step.T_world_camera, step, executor_));
+    SACCADE_CHECK(add_attention(*last_map_, choice, step, out.layers));
   }
-  out.layers.push_back(region_layer(record->region, step));
-  if (record->path.size() > 1) out.layers.push_back(path_layer(record->path, step));
+  out.layers.push_back(region_layer(choice.region, step));
+  if (read->path.size() > 1) out.layers.push_back(path_layer(read->path, step));
   return {};
 }
 
-Status RunReader::add_attention(const StepMap& before, const std::vector<double>& saliency,
-                                std::optional<std::uint32_t> segment, std::size_t step, std::vector<Layer>& layers) {
-  if (!attention_) {
-    SACCADE_TRY(attention_, LiveObjectAttention::create());
-  }
-  SACCADE_TRY(const ObjectAttention seen, attention_->look(before.map, executor_));
+Status RunReader::add_attention(const StepMap& before, const ViewChoice& choice, std::size_t step,
+                                std::vector<Layer>& layers) {
+  SACCADE_TRY(const SeenAttention seen, attention_.look(before.map, executor_));
   const LayerPlace place{"-" + std::to_string(step), step};
-  const bool same_segments = !saliency.empty() && saliency.size() == seen.surface.segments();
+  const bool same_segments = !choice.saliency.empty() && choice.saliency.size() == seen.surface->points.segments();
   if (same_segments) {
-    layers.push_back(saliency_layer(before.map, before.mesh, seen.surface, saliency, place, executor_));
+    layers.push_back(saliency_layer(before.map, before.mesh, seen.surface->points, choice.saliency, place, executor_));
   }
-  if (auto contours = contours_layer(seen, same_segments ? segment : std::nullopt, place)) {
+  if (auto contours = contours_layer(seen.contours, same_segments ? choice.segment : std::nullopt, place)) {
     layers.push_back(std::move(*contours));
   }
   return {};

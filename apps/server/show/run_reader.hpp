@@ -8,8 +8,9 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
-#include "saccade/explore/object_attention.hpp"
+#include "saccade/explore/view_record.hpp"
 #include "saccade/robot/arm_model.hpp"
+#include "server/show/map_layers.hpp"
 #include "server/show/scene_document.hpp"
 
 namespace saccade::server {
@@ -41,8 +42,7 @@ class RunReader {
   [[nodiscard]] Status read_steps(const nlohmann::json& result);
   [[nodiscard]] Status read_step(const nlohmann::json& result, const nlohmann::json& view, std::size_t number);
   [[nodiscard]] Status add_choice(const nlohmann::json& result, std::size_t number, ReadStep& out);
-  [[nodiscard]] Status add_attention(const StepMap& before, const std::vector<double>& saliency,
-                                     std::optional<std::uint32_t> segment, std::size_t step,
+  [[nodiscard]] Status add_attention(const StepMap& before, const ViewChoice& choice, std::size_t step,
                                      std::vector<Layer>& layers);
   void add_arm(const nlohmann::json& result, const nlohmann::json& view, ReadStep& out);
   [[nodiscard]] Status add_map(std::size_t number, ReadStep& out);
@@ -53,7 +53,7 @@ class RunReader {
   Executor executor_;
   std::vector<ReadStep> steps_;
   std::optional<StepMap> last_map_;  ///< of the last step that has one
-  std::optional<LiveObjectAttention> attention_;
+  AttentionLook attention_;
   std::string arm_name_;
   std::optional<ArmModel> arm_;  ///< of that name; nullopt: none could be read
   std::string why_no_arm_;       ///< it is not shown; empty: it is

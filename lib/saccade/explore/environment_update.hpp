@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// update_environment: what a user may have changed is forgotten and looked at again. Thesis §2.2, Algorithm 1.
+// Updates of an environment that a user has changed (Explorer::update): their defaults, and RegionMeter, which follows
+// how much of each region is unknown. Thesis §2.2.
 
-#include <optional>
 #include <span>
+#include <string_view>
 #include <vector>
 
 #include "saccade/attention/region_of_interest.hpp"
-#include "saccade/explore/exploration.hpp"
+#include "saccade/explore/recorder.hpp"
 
 namespace saccade {
 
@@ -31,42 +32,20 @@ constexpr int kUpdateMaxViews{30};
 
 /// Unknown voxels of each region.
 using UnknownOfRegions = std::vector<std::size_t>;
-
-/// How the robot came back to its stand-by.
-struct Return {
-  bool at_stand_by{false};
-  std::optional<Refusal> refusal{};  ///< why not, where there was no way
-  double motion_s{0.0};              ///< what the way takes a real arm
-};
-
-struct UpdateResult {
-  double forgetting_ms{0.0};            ///< of all regions
-  UnknownOfRegions unknown_after_task;  ///< as soon as they were forgotten
-  ExplorationResult exploration;
-  std::vector<UnknownOfRegions> unknown_after_view;
-  Return back;
-};
-
-/// As explore() takes them.
-[[nodiscard]] std::vector<Region> bounds_of(std::span<const RegionOfInterest> regions);
-
-/// Of every region. O(their voxels).
+/// O(voxels of the regions).
 [[nodiscard]] UnknownOfRegions count_unknown(const TsdfSnapshot& map, std::span<const RegionOfInterest> regions);
 
-/// Lines 1 to 3 of Algorithm 1. Errors: invalid_argument for a bad region; those before it were forgotten then.
-[[nodiscard]] Status forget_around(TsdfMap& map, std::span<const RegionOfInterest> regions);
+/// Counts the unknown voxels of regions after each view.
+class RegionMeter final : public Recorder {
+ public:
+  explicit RegionMeter(std::span<const RegionOfInterest> regions) : regions_{regions.begin(), regions.end()} {}
+  [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) override;
+  /// One for each view so far.
+  [[nodiscard]] const std::vector<UnknownOfRegions>& unknown() const { return unknown_; }
 
-/// Robots without a stand-by stay where they are. Errors: those of the robot.
-[[nodiscard]] Result<Return> return_to_stand_by(const TsdfMap& map, Robot& robot, const Executor& executor);
-
-/// Algorithm 1: forgets around every region, explores one after the other, and returns to stand-by. What was seen of a
-/// region on the way to others is not looked at again. An update that a hook or progress stops leaves the robot where
-/// it stands.
-/// @return errors of explore() and of the robot; invalid_argument for a bad region.
-[[nodiscard]] Result<UpdateResult> update_environment(TsdfMap& map, ExplorationCell& cell,
-                                                      std::span<const RegionOfInterest> regions,
-                                                      const Strategy& strategy, const ExplorationConfig& config,
-                                                      const Executor& executor, const ExplorationHooks& hooks = {},
-                                                      const Progress& progress = {});
+ private:
+  std::vector<RegionOfInterest> regions_;
+  std::vector<UnknownOfRegions> unknown_;
+};
 
 }  // namespace saccade

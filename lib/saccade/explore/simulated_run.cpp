@@ -3,8 +3,8 @@
 
 #include <limits>
 
-#include "saccade/explore/attention_strategy.hpp"
-#include "saccade/explore/oracle_strategy.hpp"
+#include "saccade/explore/oracle_gain.hpp"
+#include "saccade/map/count_unknown.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/scene/fixture_boxes.hpp"
 
@@ -25,6 +25,18 @@ Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRun
   return std::unique_ptr<Robot>{std::make_unique<SimulatedRobot>(std::move(robot))};
 }
 
+/// Fills in the straight ways of a camera that flies. It begins at the last pose of the scan, unless one was passed
+/// over.
+void measure_flights(RunRecord& run, const std::vector<Pose>& scan) {
+  std::optional<Eigen::Vector3d> last;
+  if (!scan.empty() && run.scan.refused.total() == 0) last = scan.back().translation();
+  for (ViewRecord& view : run.views) {
+    const Eigen::Vector3d here = view.T_world_camera.translation();
+    if (view.path.size() < 2 && last) view.path_m = (here - *last).norm();
+    last = here;
+  }
+}
+
 }  // namespace
 
 std::string_view to_string(DepthSensor sensor) { return sensor == DepthSensor::kinect_v1 ? "kinect-v1" : "kinect-v2"; }
@@ -40,7 +52,9 @@ Result<DepthSensor> depth_sensor(std::string_view name) {
 Status SimulatedRunConfig::validate() const {
   SACCADE_CHECK(camera.validate());
   SACCADE_CHECK(sphere.validate());
+  SACCADE_CHECK(contours.validate());
   SACCADE_CHECK(attention.validate());
+  SACCADE_CHECK(planner.validate());
   SACCADE_CHECK(contour_views.validate());
   SACCADE_CHECK(exploration.validate());
   SACCADE_CHECK(map().validate());
@@ -51,10 +65,10 @@ Status SimulatedRunConfig::validate() const {
   return {};
 }
 
-SimulatedRunConfig SimulatedRunConfig::with(StrategyKind kind) const {
+SimulatedRunConfig SimulatedRunConfig::with(const NamedPlanner& named) const {
   SimulatedRunConfig config = *this;
-  config.strategy = kind;
-  config.exploration.min_gain = min_gain_of(kind);
+  config.strategy = named;
+  config.planner.min_gain = named.min_gain;
   return config;
 }
 
@@ -66,33 +80,34 @@ TsdfConfig SimulatedRunConfig::map() const {
   return config;
 }
 
-std::vector<Region> regions_of(const Scene& scene, StrategyKind strategy) {
-  if (!looks_at_regions(strategy) || scene.regions.empty()) return {scene.workspace};
+Planners trial_planners() {
+  Planners planners = builtin_planners();
+  planners.add(oracle_planner());
+  return planners;
+}
+
+std::vector<Region> regions_of(const Scene& scene, const NamedPlanner& planner) {
+  if (!planner.looks_at_regions || scene.regions.empty()) return {scene.workspace};
   return scene.regions;
 }
 
-std::unique_ptr<Strategy> make_strategy(const SimulatedRunConfig& config, const PinholeCamera& camera,
-                                        std::size_t regions, const Truth* truth) {
-  SACCADE_EXPECTS(regions > 0);
-  GainConfig gain;
-  gain.sensor = coarser(camera, std::min(config.gain_width_px, camera.width));
-  gain.tilt_rad = config.exploration.oscillation_rad;
-  const ContourConfig& contours = config.attention.contours;
-  const auto max_views = static_cast<std::size_t>(config.exploration.max_views);
-  const std::size_t views_per_region = (max_views + regions - 1) / regions;
-  switch (config.strategy) {
-    case StrategyKind::attention:
-      return std::make_unique<AttentionStrategy>(config.attention, config.contour_views, gain);
-    case StrategyKind::standard: return std::make_unique<StandardStrategy>(contours, config.contour_views, gain);
-    case StrategyKind::sphere: return std::make_unique<SphereStrategy>(config.sphere, ray_gain(gain));
-    case StrategyKind::random:
-      return std::make_unique<RandomStrategy>(config.sphere, ray_gain(gain), views_per_region, config.seed);
-    case StrategyKind::random_contours:
-      return std::make_unique<RandomContourStrategy>(contours, config.contour_views, ray_gain(gain), config.seed);
-    default:
-      SACCADE_EXPECTS(truth != nullptr);
-      return std::make_unique<OracleStrategy>(*truth, camera, gain.tilt_rad, contours, config.contour_views);
-  }
+ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& camera, std::span<const Region> regions,
+                         const Truth* truth) {
+  SACCADE_EXPECTS(!regions.empty() && (truth != nullptr || !config.strategy.needs_truth));
+  PlannerSetup setup;
+  setup.gain.sensor = coarser(camera, std::min(config.gain_width_px, camera.width));
+  setup.gain.tilt_rad = config.exploration.oscillation_rad;
+  setup.sphere = config.sphere;
+  setup.contours = config.contours;
+  setup.contour_views = config.contour_views;
+  setup.attention = config.attention;
+  setup.planner = config.planner;
+  setup.regions = {regions.begin(), regions.end()};
+  setup.max_views = static_cast<std::size_t>(config.exploration.max_views);
+  setup.seed = config.seed;
+  setup.camera = camera;
+  setup.truth = truth;
+  return ViewPlanner{config.strategy.make(setup)};
 }
 
 Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedRunConfig& config) {
@@ -125,20 +140,39 @@ Result<SimulatedRobot> simulated_arm(const ArmModel& arm, const Scene& scene, co
   return SimulatedRobot::create(arm, map, robot);
 }
 
-MeasuredMap measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
-  return {measure(truth, map, extract_mesh(map, executor), executor),
-          count_unknown(map, truth.scene().scene().workspace)};
+Measures measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+  const Metrics metrics = measure(truth, map, extract_mesh(map, executor), executor);
+  return {metrics.coverage,
+          count_unknown(map, truth.scene().scene().workspace),
+          metrics.unknown_near_objects,
+          metrics.accuracy_m,
+          metrics.chamfer_m,
+          metrics.f_score};
 }
 
-Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Executor& executor,
-                                   const Progress& progress) {
+Status TruthMeter::scanned(ScanRecord& scan, const TsdfSnapshot& map) {
+  scan.measures = measure_map(truth_, map, executor_);
+  before_ = map;
+  return {};
+}
+
+Status TruthMeter::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> /*frames*/) {
+  view.measures = measure_map(truth_, map, executor_);
+  view.reveals_object = newly_known(truth_, before_, map, executor_).points_at_object();
+  view.looks_at_object = looks_at_object(truth_, view.T_world_camera);
+  before_ = map;
+  return {};
+}
+
+Result<RunRecord> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Executor& executor,
+                                const Progress& progress) {
   SACCADE_CHECK(config.validate());
-  const std::size_t regions = regions_of(truth.scene().scene(), config.strategy).size();
-  return run_simulated(truth, config, *make_strategy(config, config.camera, regions, &truth), executor, progress);
+  ViewPlanner planner = make_planner(config, config.camera, regions_of(truth.scene().scene(), config.strategy), &truth);
+  return run_simulated(truth, config, planner, executor, progress);
 }
 
-Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Strategy& strategy,
-                                   const Executor& executor, const Progress& progress) {
+Result<RunRecord> run_simulated(const Truth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
+                                const Executor& executor, const Progress& progress) {
   SACCADE_CHECK(config.validate());
   const Scene& scene = truth.scene().scene();
   TsdfConfig map_config = config.map();
@@ -146,29 +180,19 @@ Result<SimulatedRun> run_simulated(const Truth& truth, const SimulatedRunConfig&
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
   SACCADE_TRY(SimulatedCamera sensor, simulated_camera(truth.scene(), config));
   SACCADE_TRY(std::unique_ptr<Robot> robot, carrier(truth.scene(), config));
-  SACCADE_TRY(CarriedCamera camera, CarriedCamera::create(std::move(sensor), std::move(robot), config.arm.get()));
-  ExplorationCell cell{config.camera, [&](const Pose& pose) { return camera.capture(pose, executor); }, camera.robot()};
-
-  SimulatedRun run;
-  SACCADE_TRY(run.scan, scan(map, cell, scene.scan, config.exploration, executor, {}, progress));
-  run.initial = measure_map(truth, map.content(), executor);
+  SACCADE_TRY(CarriedCamera camera,
+              CarriedCamera::create(std::move(sensor), std::move(robot), config.arm.get(), executor));
+  TruthMeter meter{truth, executor};
+  Explorer explorer{{map, camera, camera.robot(), executor, &meter, nullptr, {}, &progress}, config.exploration};
+  RunRecord run;
+  SACCADE_TRY(run.scan, explorer.scan(scene.scan));
   if (!run.scan.complete) {
+    run.scan.measures = measure_map(truth, map.content(), executor);
     run.stopped_because = StopReason::cancelled;
     return run;
   }
-  TsdfSnapshot before = map.snapshot();
-  ExplorationHooks hooks;
-  hooks.after_view = [&](const ExploredView& view, const Proposals&) {
-    run.views.push_back({view, measure_map(truth, map.content(), executor),
-                         newly_known(truth, before, map.content(), executor),
-                         looks_at_object(truth, view.T_world_camera)});
-    before = map.snapshot();
-    return true;
-  };
-  SACCADE_TRY(const ExplorationResult explored, explore(map, cell, regions_of(scene, config.strategy), strategy,
-                                                        config.exploration, executor, hooks, progress));
-  run.stopped_because = explored.stopped_because;
-  run.refused_at_end = explored.refused_at_end;
+  SACCADE_TRY(run, explorer.explore(planner, std::move(run)));
+  measure_flights(run, scene.scan);
   return run;
 }
 

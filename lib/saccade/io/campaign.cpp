@@ -53,24 +53,25 @@ void bind(SqliteStatement& statement, const CampaignKey& key) {
   statement.bind(key.settings);
 }
 
-void bind(SqliteStatement& statement, const CampaignFigures& figures) {
-  statement.bind(figures.coverage);
-  statement.bind(whole(figures.unknown_left));
-  statement.bind(whole(figures.unknown_near_objects));
-  statement.bind(figures.accuracy_m);
-  statement.bind(figures.chamfer_m);
-  statement.bind(figures.f_score);
+/// Binds measures against a truth, which every run of a campaign has.
+void bind(SqliteStatement& statement, const Measures& measures) {
+  statement.bind(measures.coverage.value_or(0.0));
+  statement.bind(whole(measures.unknown_left));
+  statement.bind(whole(measures.unknown_near_objects.value_or(0)));
+  statement.bind(measures.accuracy_m);
+  statement.bind(measures.chamfer_m);
+  statement.bind(measures.f_score);
 }
 
-CampaignFigures figures_of(SqliteStatement& row) {
-  CampaignFigures figures;
-  figures.coverage = row.real();
-  figures.unknown_left = static_cast<std::size_t>(row.integer());
-  figures.unknown_near_objects = static_cast<std::size_t>(row.integer());
-  figures.accuracy_m = row.optional_real();
-  figures.chamfer_m = row.optional_real();
-  figures.f_score = row.optional_real();
-  return figures;
+Measures measures_of(SqliteStatement& row) {
+  Measures measures;
+  measures.coverage = row.real();
+  measures.unknown_left = static_cast<std::size_t>(row.integer());
+  measures.unknown_near_objects = static_cast<std::size_t>(row.integer());
+  measures.accuracy_m = row.optional_real();
+  measures.chamfer_m = row.optional_real();
+  measures.f_score = row.optional_real();
+  return measures;
 }
 
 Result<RefusalCounts> refusals_of(SqliteStatement& row) {
@@ -78,11 +79,11 @@ Result<RefusalCounts> refusals_of(SqliteStatement& row) {
   return refusals_from_json(counts);
 }
 
-bool is_finite(const CampaignFigures& figures) {
-  for (const auto& figure : {figures.accuracy_m, figures.chamfer_m, figures.f_score}) {
-    if (figure && !std::isfinite(*figure)) return false;
+bool is_finite(const Measures& measures) {
+  for (const auto& measure : {measures.coverage, measures.accuracy_m, measures.chamfer_m, measures.f_score}) {
+    if (measure && !std::isfinite(*measure)) return false;
   }
-  return std::isfinite(figures.coverage);
+  return true;
 }
 
 Status check(const CampaignKey& key, const std::filesystem::path& path) {
@@ -90,88 +91,90 @@ Status check(const CampaignKey& key, const std::filesystem::path& path) {
   return Error{Errc::invalid_argument, "the seed of a run must be below 2^63", path.string()};
 }
 
-Status check(const CampaignRun& run, const std::filesystem::path& path) {
-  SACCADE_CHECK(check(run.key, path));
-  bool finite = is_finite(run.initial) && std::isfinite(run.seconds);
-  for (const CampaignView& view : run.views) {
-    finite = finite && is_finite(view.after) && std::isfinite(view.gain.value_or(0.0)) &&
+Status check(const CampaignEntry& entry, const std::filesystem::path& path) {
+  SACCADE_CHECK(check(entry.key, path));
+  bool finite = is_finite(entry.run.scan.measures) && std::isfinite(entry.seconds);
+  for (const ViewRecord& view : entry.run.views) {
+    finite = finite && is_finite(view.measures) && !std::isinf(view.gain_predicted) &&
              view.T_world_camera.matrix().allFinite() && std::isfinite(view.path_m) && std::isfinite(view.motion_s);
   }
   if (finite) return {};
-  return Error{Errc::invalid_argument, "a figure of the run is not finite", path.string()};
+  return Error{Errc::invalid_argument, "a measure of the run is not finite", path.string()};
 }
 
-Status insert_views(const SqliteFile& file, const std::vector<CampaignView>& views) {
+std::int64_t flag(const std::optional<bool>& value) { return value.value_or(false) ? 1 : 0; }
+
+Status insert_views(const SqliteFile& file, const std::vector<ViewRecord>& views) {
   const std::int64_t run = file.last_row_id();
   SACCADE_TRY(SqliteStatement statement, SqliteStatement::prepare(file, kInsertView));
   for (std::size_t i = 0; i < views.size(); ++i) {
-    const CampaignView& view = views[i];
+    const ViewRecord& view = views[i];
     statement.bind(run);
     statement.bind(whole(i + 1));
     statement.bind(whole(view.region));
-    statement.bind(view.gain);
+    statement.bind(std::isnan(view.gain_predicted) ? std::nullopt : std::optional{view.gain_predicted});
     statement.bind(pose_to_json(view.T_world_camera).dump());
     statement.bind(whole(view.candidates));
     statement.bind(whole(view.evaluated));
     statement.bind(refusals_to_json(view.refused).dump());
     statement.bind(whole(view.frames));
-    statement.bind(std::int64_t{view.points_at_object ? 1 : 0});
-    statement.bind(std::int64_t{view.looks_at_object ? 1 : 0});
+    statement.bind(flag(view.reveals_object));
+    statement.bind(flag(view.looks_at_object));
     statement.bind(view.path_m);
     statement.bind(view.motion_s);
-    for (const double ms : view.phases_ms) statement.bind(ms);
-    bind(statement, view.after);
+    for (const PhaseName& phase : kPhases) statement.bind(view.times.ms(phase.phase));
+    bind(statement, view.measures);
     SACCADE_CHECK(statement.run());
   }
   return {};
 }
 
-Result<std::vector<CampaignView>> views_of(const SqliteFile& file, std::int64_t run) {
-  std::vector<CampaignView> views;
+Result<std::vector<ViewRecord>> views_of(const SqliteFile& file, std::int64_t run) {
+  std::vector<ViewRecord> views;
   SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file, kSelectViews));
   row.bind(run);
   while (true) {
     SACCADE_TRY(const bool more, row.step());
     if (!more) return views;
-    CampaignView view;
+    ViewRecord view;
     view.region = static_cast<std::size_t>(row.integer());
-    view.gain = row.optional_real();
+    view.gain_predicted = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
     SACCADE_TRY(const nlohmann::json pose, parse_json(row.text()));
     SACCADE_TRY(view.T_world_camera, pose_from_json(pose));
     view.candidates = static_cast<std::size_t>(row.integer());
     view.evaluated = static_cast<std::size_t>(row.integer());
     SACCADE_TRY(view.refused, refusals_of(row));
     view.frames = static_cast<std::size_t>(row.integer());
-    view.points_at_object = row.integer() != 0;
+    view.reveals_object = row.integer() != 0;
     view.looks_at_object = row.integer() != 0;
     view.path_m = row.real();
     view.motion_s = row.real();
-    for (double& ms : view.phases_ms) ms = row.real();
-    view.after = figures_of(row);
-    views.push_back(view);
+    for (const PhaseName& phase : kPhases) view.times.add(phase.phase, row.real());
+    view.measures = measures_of(row);
+    views.push_back(std::move(view));
   }
 }
 
-/// The run of the statement's row.
-Result<CampaignRun> run_of(const SqliteFile& file, SqliteStatement& row) {
-  CampaignRun run;
+/// Reads the run of the statement's row.
+Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
+  CampaignEntry entry;
   const std::int64_t id = row.integer();
-  run.key.scene = row.text();
-  run.key.scene_hash = row.text();
-  run.key.strategy = row.text();
-  run.key.noise = row.text();
-  run.key.seed = static_cast<std::uint64_t>(row.integer());
-  run.key.settings = row.text();
-  run.stopped_because = row.text();
-  run.seconds = row.real();
-  run.program_version = row.text();
-  run.finished_at = row.text();
-  run.scan_views = static_cast<std::size_t>(row.integer());
-  SACCADE_TRY(run.scan_refused, refusals_of(row));
-  SACCADE_TRY(run.refused_at_end, refusals_of(row));
-  run.initial = figures_of(row);
-  SACCADE_TRY(run.views, views_of(file, id));
-  return run;
+  entry.key.scene = row.text();
+  entry.key.scene_hash = row.text();
+  entry.key.strategy = row.text();
+  entry.key.noise = row.text();
+  entry.key.seed = static_cast<std::uint64_t>(row.integer());
+  entry.key.settings = row.text();
+  SACCADE_TRY(entry.run.stopped_because, stop_reason(row.text()));
+  entry.seconds = row.real();
+  entry.program_version = row.text();
+  entry.finished_at = row.text();
+  entry.run.scan.views = static_cast<std::size_t>(row.integer());
+  SACCADE_TRY(entry.run.scan.refused, refusals_of(row));
+  SACCADE_TRY(entry.run.refused_at_end, refusals_of(row));
+  entry.run.scan.measures = measures_of(row);
+  SACCADE_TRY(entry.run.views, views_of(file, id));
+  return entry;
 }
 
 }  // namespace
@@ -195,19 +198,20 @@ Result<bool> Campaign::has(const CampaignKey& key) const {
   return statement.step();
 }
 
-Result<bool> Campaign::add(const CampaignRun& run) const {
-  SACCADE_CHECK(check(run, path()));
+Result<bool> Campaign::add(const CampaignEntry& entry) const {
+  SACCADE_CHECK(check(entry, path()));
+  const RunRecord& run = entry.run;
   SACCADE_TRY(SqliteTransaction transaction, SqliteTransaction::begin(file_));
   SACCADE_TRY(SqliteStatement statement, SqliteStatement::prepare(file_, kInsertRun));
-  bind(statement, run.key);
+  bind(statement, entry.key);
   statement.bind(whole(run.views.size()));
-  statement.bind(run.stopped_because);
-  statement.bind(run.seconds);
-  statement.bind(run.program_version);
-  statement.bind(whole(run.scan_views));
-  statement.bind(refusals_to_json(run.scan_refused).dump());
+  statement.bind(std::string{to_string(run.stopped_because)});
+  statement.bind(entry.seconds);
+  statement.bind(entry.program_version);
+  statement.bind(whole(run.scan.views));
+  statement.bind(refusals_to_json(run.scan.refused).dump());
   statement.bind(refusals_to_json(run.refused_at_end).dump());
-  bind(statement, run.initial);
+  bind(statement, run.scan.measures);
   bind(statement, run.final());
   SACCADE_CHECK(statement.run());
   if (file_.changed_rows() == 0) return false;
@@ -216,24 +220,24 @@ Result<bool> Campaign::add(const CampaignRun& run) const {
   return true;
 }
 
-Result<std::optional<CampaignRun>> Campaign::find(const CampaignKey& key) const {
+Result<std::optional<CampaignEntry>> Campaign::find(const CampaignKey& key) const {
   SACCADE_CHECK(check(key, path()));
   SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file_, std::string{kSelectRuns} + kWhereKey));
   bind(row, key);
   SACCADE_TRY(const bool found, row.step());
-  if (!found) return std::optional<CampaignRun>{};
-  SACCADE_TRY(CampaignRun run, run_of(file_, row));
-  return std::optional{std::move(run)};
+  if (!found) return std::optional<CampaignEntry>{};
+  SACCADE_TRY(CampaignEntry entry, entry_of(file_, row));
+  return std::optional{std::move(entry)};
 }
 
-Result<std::vector<CampaignRun>> Campaign::runs() const {
-  std::vector<CampaignRun> runs;
+Result<std::vector<CampaignEntry>> Campaign::runs() const {
+  std::vector<CampaignEntry> runs;
   SACCADE_TRY(SqliteStatement row, SqliteStatement::prepare(file_, std::string{kSelectRuns} + "ORDER BY id"));
   while (true) {
     SACCADE_TRY(const bool more, row.step());
     if (!more) return runs;
-    SACCADE_TRY(CampaignRun run, run_of(file_, row));
-    runs.push_back(std::move(run));
+    SACCADE_TRY(CampaignEntry entry, entry_of(file_, row));
+    runs.push_back(std::move(entry));
   }
 }
 

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/campaign_csv.hpp"
 
+#include <array>
+#include <cmath>
+
 namespace saccade {
 namespace {
 
@@ -16,58 +19,61 @@ void add_key(CsvTable& table, const CampaignKey& key) {
   table.add(key.scene).add(key.scene_hash).add(key.strategy).add(key.noise).add(key.seed);
 }
 
-void add_map(CsvTable& table, const CampaignFigures& figures) {
-  table.add(figures.coverage).add(std::uint64_t{figures.unknown_left}).add(std::uint64_t{figures.unknown_near_objects});
-  table.add(figures.accuracy_m).add(figures.chamfer_m).add(figures.f_score);
+void add_map(CsvTable& table, const Measures& measures) {
+  table.add(measures.coverage).add(std::uint64_t{measures.unknown_left});
+  table.add(std::uint64_t{measures.unknown_near_objects.value_or(0)});
+  table.add(measures.accuracy_m).add(measures.chamfer_m).add(measures.f_score);
 }
 
-void add_view(CsvTable& table, const CampaignView& view) {
-  table.add(std::uint64_t{view.region}).add(view.gain).add(std::uint64_t{view.candidates});
+void add_view(CsvTable& table, const ViewRecord& view) {
+  table.add(std::uint64_t{view.region});
+  table.add(std::isnan(view.gain_predicted) ? std::nullopt : std::optional{view.gain_predicted});
+  table.add(std::uint64_t{view.candidates});
   table.add(std::uint64_t{view.evaluated}).add(std::uint64_t{view.refused.total()});
-  table.add(std::uint64_t{view.frames}).add(std::uint64_t{view.points_at_object ? 1U : 0U});
-  table.add(std::uint64_t{view.looks_at_object ? 1U : 0U}).add(view.path_m).add(view.motion_s);
-  for (const double ms : view.phases_ms) table.add(ms);
-  add_map(table, view.after);
+  table.add(std::uint64_t{view.frames}).add(std::uint64_t{view.reveals_object.value_or(false) ? 1U : 0U});
+  table.add(std::uint64_t{view.looks_at_object.value_or(false) ? 1U : 0U}).add(view.path_m).add(view.motion_s);
+  for (const PhaseName& phase : kPhases) table.add(view.times.ms(phase.phase));
+  add_map(table, view.measures);
 }
 
 }  // namespace
 
-CsvTable runs_csv(std::span<const CampaignRun> runs, std::size_t budget) {
+CsvTable runs_csv(std::span<const CampaignEntry> runs, std::size_t budget) {
   std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
   columns.emplace_back("stopped_because");
   for (const RunFigure& figure : run_figures()) columns.push_back(figure.name);
   columns.insert(columns.end(), {"program_version", "finished_at", "settings"});
   CsvTable table{columns};
-  for (const CampaignRun& run : runs) {
-    add_key(table, run.key);
-    table.add(run.stopped_because);
-    for (const RunFigure& figure : run_figures()) table.add(figure.of(run, budget));
-    table.add(run.program_version).add(run.finished_at).add(run.key.settings);
+  for (const CampaignEntry& entry : runs) {
+    add_key(table, entry.key);
+    table.add(to_string(entry.run.stopped_because));
+    for (const RunFigure& figure : run_figures()) table.add(figure.of(entry, budget));
+    table.add(entry.program_version).add(entry.finished_at).add(entry.key.settings);
     table.end_row();
   }
   return table;
 }
 
-CsvTable views_csv(std::span<const CampaignRun> runs) {
+CsvTable views_csv(std::span<const CampaignEntry> runs) {
   std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
   columns.emplace_back("number");
   columns.insert(columns.end(), kViewColumns.begin(), kViewColumns.end());
   std::vector<std::string> phases;
-  for (const std::string_view phase : kViewPhases) phases.push_back(std::string{phase} + "_ms");
+  for (const PhaseName& phase : kPhases) phases.push_back(std::string{phase.key} + "_ms");
   columns.insert(columns.end(), phases.begin(), phases.end());
   columns.insert(columns.end(), kMapColumns.begin(), kMapColumns.end());
   CsvTable table{columns};
-  for (const CampaignRun& run : runs) {
-    add_key(table, run.key);
+  for (const CampaignEntry& entry : runs) {
+    add_key(table, entry.key);
     table.add(std::uint64_t{0});
     // What a scan does not have.
-    for (std::size_t i = 0; i < kViewColumns.size() + kViewPhases.size(); ++i) table.add(std::nullopt);
-    add_map(table, run.initial);
+    for (std::size_t i = 0; i < kViewColumns.size() + kPhases.size(); ++i) table.add(std::nullopt);
+    add_map(table, entry.run.scan.measures);
     table.end_row();
-    for (std::size_t i = 0; i < run.views.size(); ++i) {
-      add_key(table, run.key);
+    for (std::size_t i = 0; i < entry.run.views.size(); ++i) {
+      add_key(table, entry.key);
       table.add(std::uint64_t{i + 1});
-      add_view(table, run.views[i]);
+      add_view(table, entry.run.views[i]);
       table.end_row();
     }
   }

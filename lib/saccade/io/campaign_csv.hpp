@@ -8,9 +8,9 @@
 namespace saccade {
 
 /// A row per run: its key, why it stopped, and run_figures().
-[[nodiscard]] CsvTable runs_csv(std::span<const CampaignRun> runs, std::size_t budget);
+[[nodiscard]] CsvTable runs_csv(std::span<const CampaignEntry> runs, std::size_t budget);
 /// A row per view, and one with number 0 for the initial scan of each run.
-[[nodiscard]] CsvTable views_csv(std::span<const CampaignRun> runs);
+[[nodiscard]] CsvTable views_csv(std::span<const CampaignEntry> runs);
 /// A row per group and figure: how many runs (or scenes) have it, mean, low and high end. The scene of a group over all
 /// scenes is empty.
 [[nodiscard]] CsvTable summary_csv(std::span<const CampaignSummary> summaries);

@@ -17,19 +17,19 @@ namespace saccade {
 constexpr std::size_t kFirstViews{5};
 
 /// The map after `taken` views; of a run that ended earlier, as it was left.
-[[nodiscard]] const CampaignFigures& figures_after(const CampaignRun& run, std::size_t taken);
+[[nodiscard]] const Measures& figures_after(const CampaignEntry& run, std::size_t taken);
 
 /// Views after which the coverage is at least `share`, 0: after the scan already; nullopt: never.
-[[nodiscard]] std::optional<std::size_t> views_to_coverage(const CampaignRun& run, double share);
+[[nodiscard]] std::optional<std::size_t> views_to_coverage(const CampaignEntry& run, double share);
 
 /// Mean coverage after 0, 1, …, `budget` views.
-[[nodiscard]] double coverage_area(const CampaignRun& run, std::size_t budget);
+[[nodiscard]] double coverage_area(const CampaignEntry& run, std::size_t budget);
 
 /// Of the first kFirstViews views, those that point at an object.
-[[nodiscard]] std::size_t object_views(const CampaignRun& run);
+[[nodiscard]] std::size_t object_views(const CampaignEntry& run);
 
 /// Whether, of these, each that points at an object comes before each that does not. nullopt without views.
-[[nodiscard]] std::optional<bool> objects_come_first(const CampaignRun& run);
+[[nodiscard]] std::optional<bool> objects_come_first(const CampaignEntry& run);
 
 /// For people: a value is shown times `scale`, with so many decimals and the unit.
 struct RunFigure {
@@ -39,7 +39,7 @@ struct RunFigure {
   double scale{1.0};
   int decimals{0};
   /// nullopt where the run does not have it. @param budget views that every run might have taken
-  std::function<std::optional<double>(const CampaignRun& run, std::size_t budget)> of;
+  std::function<std::optional<double>(const CampaignEntry& run, std::size_t budget)> of;
 };
 
 /// All of them, in the order of the tables.

@@ -36,23 +36,23 @@ struct CampaignSummary {
 /// One summary per group, in the order in which they first occur; those over all scenes follow where there are several.
 /// Runs with other settings are not told apart: give it the runs of one comparison.
 /// @param budget views that every run might have taken
-[[nodiscard]] std::vector<CampaignSummary> summarize(std::span<const CampaignRun> runs, std::size_t budget);
+[[nodiscard]] std::vector<CampaignSummary> summarize(std::span<const CampaignEntry> runs, std::size_t budget);
 
 /// A figure of the map.
-using MapFigure = double (*)(const CampaignFigures& map);
+using MapFigure = double (*)(const Measures& map);
 
 /// The mean of it after 0, 1, …, `budget` views. A run that ended earlier counts on with its last map, which stays as
 /// it is. Empty without runs.
-[[nodiscard]] std::vector<MeanEstimate> over_views(std::span<const CampaignRun> runs, const CampaignGroup& group,
+[[nodiscard]] std::vector<MeanEstimate> over_views(std::span<const CampaignEntry> runs, const CampaignGroup& group,
                                                    std::size_t budget, MapFigure figure);
 
 /// Views k = 1, …, kFirstViews: share of the group's runs whose k-th view points at an object, of those that took it.
-[[nodiscard]] std::vector<MeanEstimate> object_view_shares(std::span<const CampaignRun> runs,
+[[nodiscard]] std::vector<MeanEstimate> object_view_shares(std::span<const CampaignEntry> runs,
                                                            const CampaignGroup& group);
 
 /// run_figures() of `a` minus those of `b` in each seed of a scene that both have, as means. What a seed does to both
 /// cancels out, so that this tells more than two intervals side by side. Expects groups of one scene, or of all.
-[[nodiscard]] std::vector<MeanEstimate> paired_gaps(std::span<const CampaignRun> runs, const CampaignGroup& a,
+[[nodiscard]] std::vector<MeanEstimate> paired_gaps(std::span<const CampaignEntry> runs, const CampaignGroup& a,
                                                     const CampaignGroup& b, std::size_t budget);
 
 }  // namespace saccade

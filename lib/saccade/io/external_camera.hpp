@@ -7,6 +7,7 @@
 
 #include "saccade/io/external_process.hpp"
 #include "saccade/io/process_messages.hpp"
+#include "saccade/sensor/camera.hpp"
 
 namespace saccade {
 
@@ -19,20 +20,20 @@ struct ExternalCameraConfig {
 };
 
 /// One caller at a time. Destroying it ends the program, as ExternalProcess does.
-class ExternalCamera {
+class ExternalCamera final : public Camera {
  public:
   /// Starts the program and asks what it is. unavailable: it reports an error itself; else the errors of
   /// ExternalProcess and parse_camera_hello(). Each names the command and quotes what the program wrote to stderr.
   [[nodiscard]] static Result<ExternalCamera> start(const ExternalCameraConfig& config);
 
-  [[nodiscard]] const PinholeCamera& camera() const { return format_.camera; }
+  [[nodiscard]] const PinholeCamera& intrinsics() const override { return format_.camera; }
   [[nodiscard]] const ExternalCameraFormat& format() const { return format_; }
 
   /// Takes one frame. Its T_world_camera is the one given, or the camera's own where that knows better; its index
   /// counts from 0.
   /// @param T_world_camera where the robot says the camera is
   /// @return unavailable: the camera reports an error, and may be asked again. Any other error is final.
-  [[nodiscard]] Result<Frame> capture(const Pose& T_world_camera);
+  [[nodiscard]] Result<Frame> capture(const Pose& T_world_camera) override;
 
  private:
   ExternalCamera(ExternalCameraConfig config, std::unique_ptr<ExternalProcess> process, ExternalCameraFormat format)

@@ -2,7 +2,6 @@
 #include "saccade/robot/arm_robot.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "saccade/robot/swept_cells.hpp"
 
@@ -163,18 +162,17 @@ Result<SimulatedRobot> SimulatedRobot::create(const ArmModel& arm, const TsdfCon
 
 Result<std::optional<Arrival>> SimulatedRobot::execute(const Motion& motion, const OnWay& on_way) {
   SACCADE_CHECK(check_start(motion));
-  const Trajectory& trajectory = motion.trajectory;
+  JointObserver observer;
   if (on_way) {
-    const auto samples = static_cast<int>(std::ceil(trajectory.duration_s() / kSample_s));
-    for (int i = 0; i <= samples; ++i) {
-      const double t_s = std::min(i * kSample_s, trajectory.duration_s());
-      pass(trajectory.at(t_s).q);
-      on_way({t_s, T_world_camera()});
-    }
+    observer = [&](const JointSample& sample) {
+      pass(sample.q);
+      on_way({sample.t_s, T_world_camera()});
+    };
   }
-  arrive(motion, trajectory.end());
-  motions_.push_back(trajectory);
-  return std::optional{Arrival{T_world_camera(), trajectory.duration_s()}};
+  SACCADE_TRY(const Configuration q, joints_.execute(motion.trajectory, observer));
+  arrive(motion, q);
+  motions_.push_back(motion.trajectory);
+  return std::optional{Arrival{T_world_camera(), motion.trajectory.duration_s()}};
 }
 
 }  // namespace saccade

@@ -3,6 +3,7 @@
 // ArmRobot: an arm that finds its own way through the map; SimulatedRobot: one that moves in simulated time.
 
 #include "saccade/robot/driven_way.hpp"
+#include "saccade/robot/joint_controller.hpp"
 #include "saccade/robot/motion_planner.hpp"
 #include "saccade/robot/reachability.hpp"
 #include "saccade/robot/robot.hpp"
@@ -94,7 +95,7 @@ class ArmRobot : public Robot {
 /// Moves exactly as planned, in no time, and says how long the real arm would take.
 class SimulatedRobot final : public ArmRobot {
  public:
-  static constexpr double kSample_s{0.02};
+  static constexpr double kSample_s{SimulatedJoints::kSample_s};
 
   /// invalid_argument: a bad configuration, a map without a workspace, a start outside the limits or of another number
   /// of joints, or one that touches a fixture or itself; errors of ArmCollision, InverseKinematics and ObstacleMap.
@@ -108,7 +109,8 @@ class SimulatedRobot final : public ArmRobot {
   [[nodiscard]] const std::vector<Trajectory>& motions() const { return motions_; }
 
  private:
-  explicit SimulatedRobot(Parts parts) : ArmRobot{std::move(parts)} {}
+  explicit SimulatedRobot(Parts parts) : ArmRobot{std::move(parts)}, joints_{configuration().value()} {}
+  SimulatedJoints joints_;
   std::vector<Trajectory> motions_;
 };
 

@@ -17,7 +17,9 @@ constexpr std::size_t kLatticeGrain{4};  // lattices
 constexpr std::size_t kLeastBatch{4};    // jobs before bounds are compared with a new best; fixed: see best_views
 constexpr std::size_t kMostBatch{64};
 
-bool better(const RankedView& a, const RankedView& b) { return a.gain != b.gain ? a.gain > b.gain : a.index < b.index; }
+bool better(const OrderedView& a, const OrderedView& b) {
+  return a.gain != b.gain ? a.gain > b.gain : a.index < b.index;
+}
 
 /// The best so many views that were evaluated.
 class Podium {
@@ -25,7 +27,7 @@ class Podium {
   Podium(std::size_t places, std::span<const Pose> poses) : places_{places}, poses_{poses} {}
 
   void add(std::size_t pose, std::uint64_t gain) {
-    const RankedView view{pose, gain, poses_[pose]};
+    const OrderedView view{pose, gain, poses_[pose]};
     views_.insert(std::upper_bound(views_.begin(), views_.end(), view, better), view);
     if (views_.size() > places_) views_.pop_back();
   }
@@ -33,12 +35,12 @@ class Podium {
   [[nodiscard]] std::uint64_t entry(std::size_t pose) const {
     return views_.size() < places_ ? 0 : views_.back().gain + (pose > views_.back().index ? 1 : 0);
   }
-  [[nodiscard]] std::vector<RankedView> take() { return std::move(views_); }
+  [[nodiscard]] std::vector<OrderedView> take() { return std::move(views_); }
 
  private:
   std::size_t places_;
   std::span<const Pose> poses_;
-  std::vector<RankedView> views_;
+  std::vector<OrderedView> views_;
 };
 
 Result<BestViews> evaluate_all(const TsdfSnapshot& map, const Region& region, std::span<const Pose> T_world_camera,

@@ -10,7 +10,7 @@
 namespace saccade {
 
 struct BestViews {
-  std::vector<RankedView> views;   ///< in the order of order_views
+  std::vector<OrderedView> views;  ///< in the order of order_views
   std::size_t poses_evaluated{0};  ///< poses whose gain was determined to the ray
   std::uint64_t rays_cast{0};      ///< rays walked one by one
   double prepare_ms{0.0};

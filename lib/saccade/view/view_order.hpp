@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RankedView and order_views: view poses by decreasing gain.
+// OrderedView and order_views: view poses by decreasing gain.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,7 +12,7 @@
 namespace saccade {
 
 /// A view pose, its gain, and its index among the candidates.
-struct RankedView {
+struct OrderedView {
   std::size_t index{0};
   std::uint64_t gain{0};
   Pose T_world_camera{Pose::Identity()};
@@ -20,7 +20,7 @@ struct RankedView {
 
 /// All poses by decreasing gain, ties by increasing index (OrderViewpointsAndGains, thesis Algorithm 2 line 13).
 /// `gains` and `T_world_camera` have the same length. O(n log n).
-[[nodiscard]] std::vector<RankedView> order_views(std::span<const std::uint64_t> gains,
-                                                  std::span<const Pose> T_world_camera);
+[[nodiscard]] std::vector<OrderedView> order_views(std::span<const std::uint64_t> gains,
+                                                   std::span<const Pose> T_world_camera);
 
 }  // namespace saccade

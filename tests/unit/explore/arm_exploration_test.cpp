@@ -2,11 +2,12 @@
 // An arm in the loop: what it plans with is what it has seen, and it touches nothing that is really there.
 #include <gtest/gtest.h>
 
-#include "saccade/explore/exploration.hpp"
+#include "saccade/explore/explorer.hpp"
 #include "saccade/explore/simulated_run.hpp"
 #include "saccade/explore/true_contacts.hpp"
 #include "saccade/io/scene_yaml.hpp"
 #include "saccade/io/urdf.hpp"
+#include "saccade/map/count_unknown.hpp"
 #include "saccade/scene/random_clutter.hpp"
 #include "support/effort.hpp"
 
@@ -14,8 +15,8 @@ namespace saccade {
 namespace {
 
 struct Explored {
-  ExplorationResult result;
-  ScanResult scan;
+  RunRecord result;
+  ScanRecord scan;
   std::vector<Trajectory> motions;
   TsdfSnapshot map;
 };
@@ -25,10 +26,10 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
   SimulatedRunConfig config;
   config.voxel_size_m = 0.01;
   config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.5, 2.0};
-  config.strategy = StrategyKind::sphere;
+  config.strategy = builtin_planners().find("sphere").value();
   config.gain_width_px = 80;
   config.sphere.roll_step_rad = 1.5707963267948966;
-  config.exploration.min_gain = 20;
+  config.planner.min_gain = 20;
   config.exploration.max_views = max_views;
   config.exploration.oscillation_frames = 3;
   config.exploration.good_enough = good_enough;
@@ -41,14 +42,13 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
   arm.planner.seed = seed;
   SimulatedRobot robot = simulated_arm(find_robot("comau").value().arm, rays.scene(), config, arm).value();
   const Executor executor = Executor::with_threads(threads);
-  ExplorationCell cell{config.camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); },
-                       robot};
+  FunctionCamera sensor{config.camera,
+                        [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); }};
+  Explorer explorer{{map, sensor, robot, executor}, config.exploration};
   Explored explored;
-  explored.scan = scan(map, cell, rays.scene().scan, config.exploration, executor).value();
-  const std::vector<Region> regions = regions_of(rays.scene(), config.strategy);
-  explored.result =
-      explore(map, cell, regions, *make_strategy(config, config.camera, regions.size()), config.exploration, executor)
-          .value();
+  explored.scan = explorer.scan(rays.scene().scan).value();
+  ViewPlanner planner = make_planner(config, config.camera, regions_of(rays.scene(), config.strategy));
+  explored.result = explorer.explore(planner).value();
   explored.motions = robot.motions();
   explored.map = map.content();
   return explored;
@@ -56,7 +56,7 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
 
 double coverage_of(const Explored& explored, const RayScene& rays) {
   const Executor executor = Executor::with_threads(2);
-  return measure_map(Truth::build(rays, 0.008, executor).value(), explored.map, executor).metrics.coverage;
+  return measure_map(Truth::build(rays, 0.008, executor).value(), explored.map, executor).coverage.value();
 }
 
 const RayScene& clutter() {
@@ -110,12 +110,12 @@ TEST(ArmExploration, TheScanBeforeATaskShowsTheTableAndTouchesNothing) {
 TEST(ArmExploration, SaysWhatItRefusedAndHowItMoved) {
   const Explored explored = explore_with_arm(clutter(), 1, 2);
   EXPECT_EQ(explored.scan.views + explored.scan.refused.total(), clutter().scene().scan.size());
-  for (const ExploredView& view : explored.result.views) {
+  for (const ViewRecord& view : explored.result.views) {
     EXPECT_EQ(view.candidates, 480U);
     EXPECT_GT(view.refused.of(Refusal::no_ik) + view.refused.of(Refusal::outside_limits), 0U);
     EXPECT_LT(view.refused.total(), view.candidates);
     EXPECT_EQ(view.frames, 3U);
-    EXPECT_GE(view.tilt.greatest_rad - view.tilt.least_rad, ExplorationConfig{}.oscillation_rad);
+    EXPECT_GE(view.tilt.greatest_rad - view.tilt.least_rad, ExplorerConfig{}.oscillation_rad);
     ASSERT_TRUE(view.q);
     EXPECT_LT((camera_pose(find_robot("comau").value().arm, *view.q).matrix() - view.T_world_camera.matrix()).norm(),
               1e-6);
@@ -134,7 +134,7 @@ TEST(ArmExploration, IsTheSameForEveryThreadCount) {
     EXPECT_EQ(one.motions[i].duration_s(), two.motions[i].duration_s());
     EXPECT_EQ(one.motions[i].end(), two.motions[i].end());
   }
-  for (const Region& region : regions_of(clutter().scene(), StrategyKind::sphere)) {
+  for (const Region& region : clutter().scene().regions) {
     EXPECT_EQ(count_unknown(one.map, region), count_unknown(two.map, region));
   }
 }
@@ -145,7 +145,7 @@ TEST(ArmExploration, AmongViewsThatAreAsGoodTheSoonestIsTaken) {
   const Explored near = explore_with_arm(clutter(), 1, 2, 1, 0.7);
   ASSERT_FALSE(best.result.views.empty());
   ASSERT_FALSE(near.result.views.empty());
-  EXPECT_GE(near.result.views[0].gain, 0.7 * best.result.views[0].gain);
+  EXPECT_GE(near.result.views[0].gain_predicted, 0.7 * best.result.views[0].gain_predicted);
   EXPECT_LE(near.motions.front().duration_s(), best.motions.front().duration_s() + 1e-9);
   EXPECT_LE(near.result.views[0].motion_s, best.result.views[0].motion_s + 1.0);
 }

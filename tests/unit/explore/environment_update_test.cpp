@@ -8,6 +8,7 @@
 
 #include "saccade/explore/simulated_run.hpp"
 #include "saccade/io/urdf.hpp"
+#include "saccade/map/count_unknown.hpp"
 #include "saccade/scene/random_clutter.hpp"
 #include "support/effort.hpp"
 
@@ -52,7 +53,7 @@ class EnvironmentUpdate : public ::testing::Test {
     sphere_.latitude_step_rad = 0.52359877559829887;
     sphere_.roll_step_rad = 1.5707963267948966;
     gain_.sensor = config.camera;
-    exploration_.min_gain = 30;
+    planner_.min_gain = 30;
     exploration_.max_views = 12;
     exploration_.oscillation_frames = 3;
   }
@@ -68,36 +69,55 @@ class EnvironmentUpdate : public ::testing::Test {
     return config;
   }
 
-  ExplorationCell cell(Robot& robot) {
-    return {camera_->camera(),
-            [this](const Pose& pose) -> Result<Frame> {
-              seen_from_.push_back(pose);
-              return camera_->capture(pose);
-            },
-            robot};
+  FunctionCamera camera() {
+    return FunctionCamera{camera_->camera(), [this](const Pose& pose) -> Result<Frame> {
+                            seen_from_.push_back(pose);
+                            return camera_->capture(pose);
+                          }};
   }
-  SphereStrategy strategy() const { return {sphere_, ray_gain(gain_)}; }
+  ViewPlanner planner() const {
+    PlannerSetup setup;
+    setup.sphere = sphere_;
+    setup.gain = gain_;
+    setup.planner = planner_;
+    return ViewPlanner{builtin_planners().find("sphere")->make(setup)};
+  }
 
   TsdfMap scanned() {
     TsdfMap map = *TsdfMap::create(map_config());
     FreeRobot robot;
-    ExplorationCell here = cell(robot);
     std::vector<Pose> around;
     for (const double x : {-0.8, 0.0, 0.8}) {
       for (const double y : {-0.7, 0.7})
         around.push_back(look_at(Eigen::Vector3d{x, y, 0.9}, Eigen::Vector3d{0, 0, 0}));
     }
-    EXPECT_TRUE(scan(map, here, around, exploration_, Executor{})->complete);
+    FunctionCamera camera = this->camera();
+    const Executor executor;
+    EXPECT_TRUE((Explorer{{map, camera, robot, executor}, exploration_}.scan(around)->complete));
     seen_from_.clear();
     return map;
   }
 
-  UpdateResult update(TsdfMap& map, Robot& robot, std::span<const RegionOfInterest> regions,
-                      const ExplorationHooks& hooks = {}) {
-    ExplorationCell here = cell(robot);
-    auto result = update_environment(map, here, regions, strategy(), exploration_, Executor{}, hooks);
-    EXPECT_TRUE(result) << result.error().to_string();
-    return *result;
+  /// Explorer::update, with what is unknown of the regions.
+  struct Updated {
+    RunRecord run;
+    UnknownOfRegions unknown_after_task;
+    std::vector<UnknownOfRegions> unknown_after_view;
+  };
+  Updated update(TsdfMap& map, Robot& robot, std::span<const RegionOfInterest> regions, Recorder* also = nullptr,
+                 const Progress* progress = nullptr) {
+    FunctionCamera camera = this->camera();
+    const Executor executor;
+    RegionMeter meter{regions};
+    Recorder silent;
+    Recorders recorders{&meter, also != nullptr ? also : &silent};
+    Explorer explorer{{map, camera, robot, executor, &recorders, nullptr, {}, progress}, exploration_};
+    TsdfMap forgotten{map.snapshot()};
+    for (const RegionOfInterest& region : regions) EXPECT_TRUE(forgotten.forget(region.bounds).ok());
+    auto run = explorer.update(regions, planner());
+    EXPECT_TRUE(run) << run.error().to_string();
+    run->regions.resize(regions.size());
+    return {*run, count_unknown(forgotten.content(), regions), meter.unknown()};
   }
 
   /// Whether some frame could have said something about a point.
@@ -114,7 +134,8 @@ class EnvironmentUpdate : public ::testing::Test {
 
   ViewSphereConfig sphere_;
   GainConfig gain_;
-  ExplorationConfig exploration_;
+  ViewPlannerConfig planner_;
+  ExplorerConfig exploration_;
   std::optional<SimulatedCamera> camera_;
   std::vector<Pose> seen_from_;
 };
@@ -124,19 +145,12 @@ TEST_F(EnvironmentUpdate, EveryRegionIsForgottenAndLookedAtUntilItIsKnown) {
   FreeRobot robot;
   const std::vector<RegionOfInterest> regions = spheres({{-0.3, 0.0, 0.1}, {0.3, 0.1, 0.1}});
   const UnknownOfRegions before = count_unknown(map.content(), regions);
-  std::vector<std::size_t> left;
-  ExplorationHooks hooks;
-  hooks.after_region = [&](std::size_t region, const RegionOutcome& outcome) {
-    left.push_back(region);
-    EXPECT_EQ(outcome.end, RegionEnd::done);
-  };
-  const UpdateResult result = update(map, robot, regions, hooks);
-  EXPECT_EQ(left, (std::vector<std::size_t>{0, 1}));
-  ASSERT_EQ(result.exploration.regions.size(), 2U);
-  EXPECT_EQ(result.exploration.stopped_because, StopReason::regions_done);
-  ASSERT_EQ(result.unknown_after_view.size(), result.exploration.views.size());
+  const Updated result = update(map, robot, regions);
+  ASSERT_EQ(result.run.regions.size(), 2U);
+  EXPECT_EQ(result.run.stopped_because, StopReason::regions_done);
+  ASSERT_EQ(result.unknown_after_view.size(), result.run.views.size());
   for (std::size_t i = 0; i < regions.size(); ++i) {
-    EXPECT_LT(result.exploration.regions[i].gain_left, exploration_.min_gain);
+    EXPECT_LT(result.run.regions[i].gain_left, planner_.min_gain);
     EXPECT_GT(result.unknown_after_task[i], 4 * before[i]);
     EXPECT_LT(result.unknown_after_view.back()[i], result.unknown_after_task[i] / 4);
   }
@@ -148,11 +162,11 @@ TEST_F(EnvironmentUpdate, EveryRegionIsForgottenAndLookedAtUntilItIsKnown) {
 TEST_F(EnvironmentUpdate, ARegionThatWasSeenOnTheWayIsNotLookedAtAgain) {
   TsdfMap map = scanned();
   FreeRobot robot;
-  const UpdateResult result = update(map, robot, spheres({{0.3, 0.1, 0.1}, {0.31, 0.11, 0.1}}));
-  EXPECT_EQ(result.exploration.regions[1].end, RegionEnd::done);
-  const auto& views = result.exploration.views;
-  EXPECT_GT(std::count_if(views.begin(), views.end(), [](const ExploredView& view) { return view.region == 0; }),
-            std::count_if(views.begin(), views.end(), [](const ExploredView& view) { return view.region == 1; }));
+  const Updated result = update(map, robot, spheres({{0.3, 0.1, 0.1}, {0.31, 0.11, 0.1}}));
+  EXPECT_EQ(result.run.regions[1].status, RegionStatus::done);
+  const auto& views = result.run.views;
+  EXPECT_GT(std::count_if(views.begin(), views.end(), [](const ViewRecord& view) { return view.region == 0; }),
+            std::count_if(views.begin(), views.end(), [](const ViewRecord& view) { return view.region == 1; }));
   EXPECT_LT(result.unknown_after_view.front()[1], result.unknown_after_task[1]);
 }
 
@@ -202,26 +216,29 @@ TEST_F(EnvironmentUpdate, WhatIsOutOfReachIsSaidAndTheRestIsDone) {
   TsdfMap map = scanned();
   OneSidedRobot robot{0.45};
   sphere_.radii_m = {0.5};
-  const UpdateResult result = update(map, robot, spheres({{-0.45, 0.0, 0.1}, {0.4, 0.0, 0.1}}));
-  const auto& outcomes = result.exploration.regions;
-  EXPECT_EQ(outcomes[0].end, RegionEnd::out_of_reach);
+  const Updated result = update(map, robot, spheres({{-0.45, 0.0, 0.1}, {0.4, 0.0, 0.1}}));
+  const auto& outcomes = result.run.regions;
+  EXPECT_EQ(outcomes[0].status, RegionStatus::out_of_reach);
   EXPECT_GT(outcomes[0].refused.of(Refusal::no_path), 0U);
   EXPECT_GE(outcomes[0].gain_left, 0.0);
-  EXPECT_NE(outcomes[1].end, RegionEnd::not_begun);
-  EXPECT_EQ(result.exploration.stopped_because, StopReason::no_candidate);
-  ASSERT_FALSE(result.exploration.views.empty());
-  for (const ExploredView& view : result.exploration.views) EXPECT_EQ(view.region, 1U);
-  EXPECT_FALSE(result.back.at_stand_by);
-  EXPECT_EQ(result.back.refusal, Refusal::declined);
+  EXPECT_NE(outcomes[1].status, RegionStatus::not_begun);
+  EXPECT_EQ(result.run.stopped_because, StopReason::no_candidate);
+  ASSERT_FALSE(result.run.views.empty());
+  for (const ViewRecord& view : result.run.views) EXPECT_EQ(view.region, 1U);
+  FunctionCamera camera = this->camera();
+  const Executor executor;
+  const StandByResult back = Explorer{{map, camera, robot, executor}, exploration_}.return_to_stand_by().value();
+  EXPECT_FALSE(back.at_stand_by);
+  EXPECT_EQ(back.refusal, Refusal::declined);
 }
 
 TEST_F(EnvironmentUpdate, WithoutRegionsNothingChanges) {
   TsdfMap map = scanned();
   const TsdfSnapshot before = map.snapshot();
   FreeRobot robot;
-  const UpdateResult result = update(map, robot, {});
-  EXPECT_TRUE(result.exploration.views.empty());
-  EXPECT_EQ(result.exploration.stopped_because, StopReason::regions_done);
+  const Updated result = update(map, robot, {});
+  EXPECT_TRUE(result.run.views.empty());
+  EXPECT_EQ(result.run.stopped_because, StopReason::regions_done);
   EXPECT_TRUE(map.content().grid == before.grid);
   EXPECT_TRUE(seen_from_.empty());
 }
@@ -229,53 +246,79 @@ TEST_F(EnvironmentUpdate, WithoutRegionsNothingChanges) {
 TEST_F(EnvironmentUpdate, ABadRegionIsRefused) {
   TsdfMap map = scanned();
   FreeRobot robot;
-  ExplorationCell here = cell(robot);
+  FunctionCamera camera = this->camera();
+  const Executor executor;
+  Explorer explorer{{map, camera, robot, executor}, exploration_};
   const std::vector<RegionOfInterest> bad{{Sphere{{0, 0, 0}, -1.0}, 1.0, AttentionOrigin::hand_action, ""}};
-  const auto result = update_environment(map, here, bad, strategy(), exploration_, Executor{});
+  const auto result = explorer.update(bad, planner());
   ASSERT_FALSE(result);
   EXPECT_EQ(result.error().code, Errc::invalid_argument);
 }
 
 TEST_F(EnvironmentUpdate, WhenItIsStoppedTheRobotStaysAndTheRestIsNotBegun) {
+  class StopAfterView final : public Recorder {
+   public:
+    explicit StopAfterView(Progress& progress) : progress_{progress} {}
+    [[nodiscard]] Status viewed(ViewRecord& /*view*/, const TsdfSnapshot& /*map*/,
+                                std::span<const Frame> /*frames*/) override {
+      progress_.request_cancel();
+      return {};
+    }
+
+   private:
+    Progress& progress_;
+  };
   TsdfMap map = scanned();
   FreeRobot robot;
-  ExplorationHooks hooks;
-  hooks.after_view = [](const ExploredView& /*view*/, const Proposals& /*proposals*/) { return false; };
-  const UpdateResult result = update(map, robot, spheres({{-0.3, 0.0, 0.1}, {0.3, 0.1, 0.1}}), hooks);
-  EXPECT_EQ(result.exploration.views.size(), 1U);
-  EXPECT_EQ(result.exploration.stopped_because, StopReason::cancelled);
-  EXPECT_EQ(result.exploration.regions[0].end, RegionEnd::interrupted);
-  EXPECT_EQ(result.exploration.regions[1].end, RegionEnd::not_begun);
-  EXPECT_FALSE(result.back.at_stand_by);
+  Progress progress;
+  StopAfterView stop{progress};
+  const Updated result = update(map, robot, spheres({{-0.3, 0.0, 0.1}, {0.3, 0.1, 0.1}}), &stop, &progress);
+  EXPECT_EQ(result.run.views.size(), 1U);
+  EXPECT_EQ(result.run.stopped_because, StopReason::cancelled);
+  EXPECT_EQ(result.run.regions[0].status, RegionStatus::interrupted);
+  EXPECT_EQ(result.run.regions[1].status, RegionStatus::not_begun);
+  EXPECT_EQ(robot.T_world_camera().translation(), seen_from_.back().translation());
 }
 
+struct ArmUpdate {
+  RunRecord run;
+  std::vector<UnknownOfRegions> unknown_after_view;
+  StandByResult back;
+};
+
 /// The same with the Comau, which fuses on its way or not.
-UpdateResult update_with_arm(FuseWhen when, const Executor& executor, SimulatedRobot& robot, const RayScene& rays) {
+ArmUpdate update_with_arm(FuseWhen when, const Executor& executor, SimulatedRobot& robot, const RayScene& rays) {
   SimulatedRunConfig config;
   config.voxel_size_m = kVoxelOfUpdate_m;
   config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.5, 2.0};
   config.gain_width_px = 80;
-  config.exploration.min_gain = 20;
+  config.planner.min_gain = 20;
   config.exploration.max_views = 3;
   config.exploration.oscillation_frames = 3;
   if (when == FuseWhen::motion) config.exploration.frame_on_way_s = kFrameOnWay_s;
   TsdfConfig map_config = config.map();
   map_config.workspace = rays.scene().workspace;
   TsdfMap map = TsdfMap::create(map_config).value();
-  config.strategy = StrategyKind::sphere;
-  SimulatedCamera camera = simulated_camera(rays, config).value();
-  std::optional<Configuration> q;
-  ExplorationCell cell{config.camera,
-                       [&](const Pose& pose) -> Result<Frame> {
-                         q = robot.configuration();
-                         EXPECT_LT((camera_pose(robot.arm(), *q).matrix() - pose.matrix()).norm(), 1e-9);
-                         return camera.capture(pose, executor);
-                       },
-                       robot};
-  EXPECT_TRUE(scan(map, cell, rays.scene().scan, config.exploration, executor)->complete);
-  return update_environment(map, cell, spheres({{-0.3, 0.0, 0.1}}), *make_strategy(config, config.camera, 1),
-                            config.exploration, executor)
-      .value();
+  config.strategy = builtin_planners().find("sphere").value();
+  SimulatedCamera simulated = simulated_camera(rays, config).value();
+  FunctionCamera camera{config.camera, [&](const Pose& pose) -> Result<Frame> {
+                          const std::optional<Configuration> q = robot.configuration();
+                          EXPECT_LT((camera_pose(robot.arm(), *q).matrix() - pose.matrix()).norm(), 1e-9);
+                          return simulated.capture(pose, executor);
+                        }};
+  const std::vector<RegionOfInterest> regions = spheres({{-0.3, 0.0, 0.1}});
+  RegionMeter meter{regions};
+  Explorer explorer{{map, camera, robot, executor, &meter}, config.exploration};
+  EXPECT_TRUE(explorer.scan(rays.scene().scan)->complete);
+  EXPECT_TRUE(explorer.forget(regions).ok());
+  RegionsInTurn in_turn{regions};
+  const std::vector<Region> whole{rays.scene().workspace};
+  ViewPlanner planner = make_planner(config, config.camera, whole).with(in_turn);
+  ArmUpdate update;
+  update.run = explorer.explore(planner).value();
+  update.unknown_after_view = meter.unknown();
+  update.back = explorer.return_to_stand_by().value();
+  return update;
 }
 
 TEST(EnvironmentUpdateWithArm, ReturnsToItsStandByAndSeesMoreWhenItLooksOnItsWay) {
@@ -289,17 +332,17 @@ TEST(EnvironmentUpdateWithArm, ReturnsToItsStandByAndSeesMoreWhenItLooksOnItsWay
   SimulatedRobot stopping = simulated_arm(fast, rays.scene(), config).value();
   SimulatedRobot looking = simulated_arm(slow, rays.scene(), config).value();
   const Configuration start = *looking.configuration();
-  const UpdateResult at_views = update_with_arm(FuseWhen::viewpoints, executor, stopping, rays);
-  const UpdateResult on_way = update_with_arm(FuseWhen::motion, executor, looking, rays);
-  ASSERT_FALSE(at_views.exploration.views.empty());
-  ASSERT_FALSE(on_way.exploration.views.empty());
-  for (const UpdateResult* result : {&at_views, &on_way}) {
+  const ArmUpdate at_views = update_with_arm(FuseWhen::viewpoints, executor, stopping, rays);
+  const ArmUpdate on_way = update_with_arm(FuseWhen::motion, executor, looking, rays);
+  ASSERT_FALSE(at_views.run.views.empty());
+  ASSERT_FALSE(on_way.run.views.empty());
+  for (const ArmUpdate* result : {&at_views, &on_way}) {
     EXPECT_TRUE(result->back.at_stand_by);
     EXPECT_GT(result->back.motion_s, 0.1);
   }
   EXPECT_LT((*looking.configuration() - start).lpNorm<Eigen::Infinity>(), 1e-6);
-  const ExploredView& first = at_views.exploration.views.front();
-  const ExploredView& first_slow = on_way.exploration.views.front();
+  const ViewRecord& first = at_views.run.views.front();
+  const ViewRecord& first_slow = on_way.run.views.front();
   EXPECT_EQ(first.frames_on_way, 0U);
   EXPECT_GE(first_slow.frames_on_way, 5U);
   EXPECT_LE(static_cast<double>(first_slow.frames_on_way), first_slow.motion_s / kFrameOnWay_s + 1.0);

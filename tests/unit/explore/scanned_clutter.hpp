@@ -1,14 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ScannedClutter: what tests of strategies share.
+// ScannedClutter: what tests of planners share.
 
 #include <gtest/gtest.h>
 
-#include "saccade/explore/attention_strategy.hpp"
+#include <algorithm>
+
+#include "saccade/explore/oracle_gain.hpp"
 #include "saccade/explore/simulated_run.hpp"
 #include "saccade/scene/random_clutter.hpp"
 
 namespace saccade::test {
+
+/// Whether gains never rise.
+inline bool falls(std::span<const RankedView> views) {
+  return std::is_sorted(views.begin(), views.end(),
+                        [](const RankedView& a, const RankedView& b) { return a.gain > b.gain; });
+}
 
 /// A clutter of four objects after its initial scan by a small camera.
 class ScannedClutter : public ::testing::Test {
@@ -26,7 +34,7 @@ class ScannedClutter : public ::testing::Test {
     config.voxel_size_m = 0.012;
     config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.4, 3.0};
     config.gain_width_px = 80;
-    config.exploration.min_gain = 10.0;
+    config.planner.min_gain = 10.0;
     config.exploration.oscillation_frames = 3;
     return config;
   }
@@ -46,9 +54,10 @@ class ScannedClutter : public ::testing::Test {
       TsdfMap map = empty_map();
       SimulatedCamera camera = *simulated_camera(rays(), config());
       FreeRobot robot;
-      ExplorationCell cell{config().camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose); },
-                           robot};
-      EXPECT_TRUE(scan(map, cell, rays().scene().scan, config().exploration, Executor{})->complete);
+      FunctionCamera sensor{config().camera, [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose); }};
+      const Executor executor;
+      Explorer explorer{{map, sensor, robot, executor}, config().exploration};
+      EXPECT_TRUE(explorer.scan(rays().scene().scan)->complete);
       return map.snapshot();
     }();
     return after_scan;
@@ -58,18 +67,23 @@ class ScannedClutter : public ::testing::Test {
     static const Region region = rays().scene().workspace;
     return region;
   }
-  static Situation situation(const TsdfSnapshot& map) {
+  static PlanningScene scene(const TsdfSnapshot& map, const Attempts* attempts = nullptr,
+                             const Robot* robot = nullptr) {
     static const Executor executor;
-    Situation situation{map, workspace(), 0, 0, executor};
-    situation.min_gain = config().exploration.min_gain;
-    return situation;
+    return {map, executor, nullptr, robot, attempts, 0};
   }
-  static Proposals proposed(const Strategy& strategy, const Situation& situation) {
-    auto proposals = strategy.propose(situation);
-    EXPECT_TRUE(proposals) << proposals.error().to_string();
-    return *proposals;
+  static ViewPlanner planner(std::string_view name, const SimulatedRunConfig& wanted = config()) {
+    SimulatedRunConfig named = wanted;
+    named.strategy = trial_planners().find(name).value();
+    const std::vector<Region> regions{workspace()};
+    return make_planner(named, named.camera, regions, &truth());
   }
-  static AttentionStrategy attention() { return {config().attention, config().contour_views, gain()}; }
+  static ViewPlanner attention(const SimulatedRunConfig& wanted = config()) { return planner("attention", wanted); }
+  static Ranking ranked(ViewPlanner planner, const PlanningScene& scene) {
+    auto ranking = planner.rank(scene);
+    EXPECT_TRUE(ranking) << ranking.error().to_string();
+    return *ranking;
+  }
 };
 
 }  // namespace saccade::test

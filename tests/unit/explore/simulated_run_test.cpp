@@ -25,10 +25,10 @@ SimulatedRunConfig small_run(std::uint64_t seed, bool with_arm) {
   SimulatedRunConfig config;
   config.voxel_size_m = 0.015;
   config.camera = PinholeCamera{120, 90, 98.4375, 98.4375, 59.5, 44.5, 0.5, 2.0};
-  config.strategy = StrategyKind::sphere;
+  config.strategy = builtin_planners().find("sphere").value();
   config.gain_width_px = 60;
   config.sphere.roll_step_rad = 1.5707963267948966;
-  config.exploration.min_gain = 10;
+  config.planner.min_gain = 10;
   config.exploration.max_views = static_cast<int>(kViews);
   config.exploration.oscillation_frames = 3;
   config.seed = seed;
@@ -36,43 +36,43 @@ SimulatedRunConfig small_run(std::uint64_t seed, bool with_arm) {
   return config;
 }
 
-SimulatedRun run_of(const SimulatedRunConfig& config, std::size_t threads = 1) {
+RunRecord run_of(const SimulatedRunConfig& config, std::size_t threads = 1) {
   return run_simulated(small_truth(), config, Executor::with_threads(threads)).value();
 }
 
-void expect_equal(const SimulatedRun& a, const SimulatedRun& b) {
+void expect_equal(const RunRecord& a, const RunRecord& b) {
   EXPECT_EQ(a.scan.views, b.scan.views);
-  EXPECT_EQ(a.initial.unknown_left, b.initial.unknown_left);
+  EXPECT_EQ(a.scan.measures, b.scan.measures);
   EXPECT_EQ(a.stopped_because, b.stopped_because);
   ASSERT_EQ(a.views.size(), b.views.size());
   for (std::size_t i = 0; i < a.views.size(); ++i) {
-    const MeasuredView& of_a = a.views[i];
-    const MeasuredView& of_b = b.views[i];
-    EXPECT_EQ(of_a.view.T_world_camera.matrix(), of_b.view.T_world_camera.matrix());
-    EXPECT_EQ(of_a.view.motion_s, of_b.view.motion_s);
-    EXPECT_EQ(of_a.view.refused.total(), of_b.view.refused.total());
-    EXPECT_EQ(of_a.after.unknown_left, of_b.after.unknown_left);
-    EXPECT_EQ(of_a.after.metrics.coverage, of_b.after.metrics.coverage);
-    EXPECT_EQ(of_a.after.metrics.chamfer_m, of_b.after.metrics.chamfer_m);
-    EXPECT_EQ(of_a.after.metrics.f_score, of_b.after.metrics.f_score);
+    const ViewRecord& of_a = a.views[i];
+    const ViewRecord& of_b = b.views[i];
+    EXPECT_EQ(of_a.T_world_camera.matrix(), of_b.T_world_camera.matrix());
+    EXPECT_EQ(of_a.motion_s, of_b.motion_s);
+    EXPECT_EQ(of_a.refused.total(), of_b.refused.total());
+    EXPECT_EQ(of_a.measures.unknown_left, of_b.measures.unknown_left);
+    EXPECT_EQ(of_a.measures.coverage, of_b.measures.coverage);
+    EXPECT_EQ(of_a.measures.chamfer_m, of_b.measures.chamfer_m);
+    EXPECT_EQ(of_a.measures.f_score, of_b.measures.f_score);
   }
 }
 
 TEST(SimulatedRun, AnArmCarriesTheCamera) {
-  const SimulatedRun run = run_of(small_run(1, true), 2);
+  const RunRecord run = run_of(small_run(1, true), 2);
   EXPECT_GE(run.scan.views, 1U);
   ASSERT_EQ(run.views.size(), kViews);
-  for (const MeasuredView& measured : run.views) {
-    EXPECT_TRUE(measured.view.q);
-    EXPECT_GT(measured.view.motion_s, 0.0);
-    EXPECT_GT(measured.view.path.size(), 1U);
-    EXPECT_GT(measured.view.refused.total(), 0U);  // an arm does not reach all of the view sphere
+  for (const ViewRecord& measured : run.views) {
+    EXPECT_TRUE(measured.q);
+    EXPECT_GT(measured.motion_s, 0.0);
+    EXPECT_GT(measured.path.size(), 1U);
+    EXPECT_GT(measured.refused.total(), 0U);  // an arm does not reach all of the view sphere
   }
-  EXPECT_GT(run.final().metrics.coverage, run.initial.metrics.coverage);
-  const SimulatedRun flying = run_of(small_run(1, false), 2);
+  EXPECT_GT(run.final().coverage, run.scan.measures.coverage);
+  const RunRecord flying = run_of(small_run(1, false), 2);
   ASSERT_FALSE(flying.views.empty());
-  EXPECT_FALSE(flying.views.front().view.q);
-  EXPECT_EQ(flying.views.front().view.motion_s, 0.0);
+  EXPECT_FALSE(flying.views.front().q);
+  EXPECT_EQ(flying.views.front().motion_s, 0.0);
 }
 
 TEST(SimulatedRun, HasTheSameFiguresForEveryThreadCount) {
@@ -86,7 +86,7 @@ TEST(SimulatedRun, HasTheSameFiguresForEveryThreadCount) {
 TEST(SimulatedRun, RunsThatGoOnAtOnceDoNotDisturbEachOther) {
   if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   constexpr std::size_t kRuns{4};
-  std::vector<SimulatedRun> at_once(kRuns);
+  std::vector<RunRecord> at_once(kRuns);
   std::vector<std::thread> threads;
   for (std::size_t i = 0; i < kRuns; ++i) {
     threads.emplace_back([&at_once, i] { at_once[i] = run_of(small_run(i + 1, true)); });
@@ -99,7 +99,7 @@ TEST(SimulatedRun, TakesAllTheTimeThatItsMotionsTake) {
   if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   SimulatedRunConfig hasty = small_run(3, true);
   hasty.exploration.max_views = test::kSanitized ? 1 : 6;
-  const SimulatedRun run = run_of(hasty, 2);
+  const RunRecord run = run_of(hasty, 2);
   hasty.arm_robot.planner.budget_s = 1e-9;
   expect_equal(run_of(hasty, 2), run);
 }

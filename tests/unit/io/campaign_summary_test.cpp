@@ -8,36 +8,36 @@ namespace saccade {
 namespace {
 
 /// A run whose coverage is this after the scan and after each view.
-CampaignRun covering(const std::vector<double>& coverage, std::uint64_t seed = 1,
-                     const std::string& strategy = "sphere", const std::string& scene = "jug") {
-  CampaignRun run;
-  run.key = {scene, "00", strategy, "none", seed, "{}"};
-  run.initial.coverage = coverage.front();
-  run.initial.unknown_near_objects = 100;
+CampaignEntry covering(const std::vector<double>& coverage, std::uint64_t seed = 1,
+                       const std::string& strategy = "sphere", const std::string& scene = "jug") {
+  CampaignEntry entry{{scene, "00", strategy, "none", seed, "{}"}, {}, 0.0, {}, {}};
+  RunRecord& run = entry.run;
+  run.scan.measures.coverage = coverage.front();
+  run.scan.measures.unknown_near_objects = 100;
   for (std::size_t i = 1; i < coverage.size(); ++i) {
-    CampaignView& view = run.views.emplace_back();
-    view.after.coverage = coverage[i];
-    view.after.unknown_near_objects = 100 - 10 * i;
+    ViewRecord& view = run.views.emplace_back();
+    view.measures.coverage = coverage[i];
+    view.measures.unknown_near_objects = 100 - 10 * i;
     view.path_m = 0.5;
     view.refused.add(Refusal::no_ik, 3);
-    view.phases_ms[kViewPhases.size() - 1] = 250.0;
+    view.times.add(Phase::fusion, 250.0);
   }
-  run.stopped_because = "views_used_up";
+  run.stopped_because = StopReason::views_used_up;
+  return entry;
+}
+
+CampaignEntry with_marks(const std::vector<bool>& marks) {
+  CampaignEntry run = covering(std::vector<double>(marks.size() + 1, 0.5));
+  for (std::size_t i = 0; i < marks.size(); ++i) run.run.views[i].reveals_object = marks[i];
   return run;
 }
 
-CampaignRun with_marks(const std::vector<bool>& marks) {
-  CampaignRun run = covering(std::vector<double>(marks.size() + 1, 0.5));
-  for (std::size_t i = 0; i < marks.size(); ++i) run.views[i].points_at_object = marks[i];
-  return run;
-}
-
-std::optional<double> figure(const CampaignRun& run, std::string_view name, std::size_t budget = 5) {
+std::optional<double> figure(const CampaignEntry& run, std::string_view name, std::size_t budget = 5) {
   return run_figures()[run_figure_index(name)].of(run, budget);
 }
 
 TEST(CampaignFigures, AreaIsTheMeanCoverageOverTheBudget) {
-  const CampaignRun run = covering({0.2, 0.6, 1.0});
+  const CampaignEntry run = covering({0.2, 0.6, 1.0});
   EXPECT_DOUBLE_EQ(coverage_area(run, 0), 0.2);
   EXPECT_DOUBLE_EQ(coverage_area(run, 2), 0.6);
   EXPECT_DOUBLE_EQ(coverage_area(run, 4), (0.2 + 0.6 + 3.0) / 5.0);  // it goes on with its last value
@@ -53,10 +53,10 @@ TEST(CampaignFigures, ViewsToACoverage) {
 }
 
 TEST(CampaignFigures, ObjectDirectedViewsAreThoseOfTheFirstFive) {
-  const CampaignRun first = with_marks({true, true, false, false, false, true});
+  const CampaignEntry first = with_marks({true, true, false, false, false, true});
   EXPECT_EQ(object_views(first), 2U);
   EXPECT_EQ(objects_come_first(first), true);
-  const CampaignRun mixed = with_marks({false, true});
+  const CampaignEntry mixed = with_marks({false, true});
   EXPECT_EQ(object_views(mixed), 1U);
   EXPECT_EQ(objects_come_first(mixed), false);
   EXPECT_EQ(objects_come_first(with_marks({})), std::nullopt);
@@ -64,7 +64,7 @@ TEST(CampaignFigures, ObjectDirectedViewsAreThoseOfTheFirstFive) {
 }
 
 TEST(CampaignFigures, SumsAreOverAllViews) {
-  const CampaignRun run = covering({0.2, 0.4, 0.6});
+  const CampaignEntry run = covering({0.2, 0.4, 0.6});
   EXPECT_EQ(figure(run, "path_m"), 1.0);
   EXPECT_EQ(figure(run, "refused"), 6.0);
   EXPECT_EQ(figure(run, "refused_no_ik"), 6.0);
@@ -75,12 +75,12 @@ TEST(CampaignFigures, SumsAreOverAllViews) {
 }
 
 TEST(CampaignSummary, IsTheMeanOverSeeds) {
-  std::vector<CampaignRun> runs;
+  std::vector<CampaignEntry> runs;
   for (const std::uint64_t seed : {1U, 2U, 4U}) {
     runs.push_back(covering({0.25, 0.5, 0.6 + 0.001 * static_cast<double>(seed)}, seed));
   }
   for (const std::uint64_t seed : {1U, 4U, 9U}) runs.push_back(covering({0.25, 0.5}, seed, "random"));
-  runs.back().stopped_because = "no_candidate";
+  runs.back().run.stopped_because = StopReason::no_candidate;
   const std::vector<CampaignSummary> summaries = summarize(runs, 2);
   ASSERT_EQ(summaries.size(), 2U);  // one scene: none over all scenes
   EXPECT_EQ(summaries[0].group, (CampaignGroup{"jug", "sphere", "none"}));
@@ -92,7 +92,7 @@ TEST(CampaignSummary, IsTheMeanOverSeeds) {
   EXPECT_EQ(summaries[1].stopped.at("no_candidate"), 1U);
   EXPECT_EQ(summaries[1].stopped.at("views_used_up"), 2U);
 
-  const auto coverage = [](const CampaignFigures& map) { return map.coverage; };
+  const auto coverage = [](const Measures& map) { return map.coverage.value_or(0.0); };
   const std::vector<MeanEstimate> curve = over_views(runs, summaries[0].group, 3, coverage);
   ASSERT_EQ(curve.size(), 4U);
   EXPECT_EQ(curve[0].mean, 0.25);
@@ -107,7 +107,7 @@ TEST(CampaignSummary, IsTheMeanOverSeeds) {
 
 TEST(CampaignSummary, OverAllScenesEachSceneCountsOnce) {
   // Ten alike runs of one scene are no more than one: seeds of a scene are no samples of scenes.
-  std::vector<CampaignRun> runs;
+  std::vector<CampaignEntry> runs;
   for (std::uint64_t seed = 1; seed <= 10; ++seed) runs.push_back(covering({0.2, 0.4}, seed, "sphere", "a"));
   runs.push_back(covering({0.2, 0.8}, 1, "sphere", "b"));
   runs.push_back(covering({0.2, 0.3}, 1, "random", "a"));
@@ -124,7 +124,7 @@ TEST(CampaignSummary, OverAllScenesEachSceneCountsOnce) {
 }
 
 TEST(CampaignSummary, SharesOfViewsAreOverTheRunsThatTookThem) {
-  std::vector<CampaignRun> runs{with_marks({true, false}), with_marks({true})};
+  std::vector<CampaignEntry> runs{with_marks({true, false}), with_marks({true})};
   runs[1].key.seed = 2;
   const std::vector<MeanEstimate> shares = object_view_shares(runs, {"jug", "sphere", "none"});
   ASSERT_EQ(shares.size(), kFirstViews);

@@ -6,6 +6,7 @@
 #include <sys/wait.h>
 #include <unistd.h>
 
+#include <array>
 #include <cmath>
 #include <csignal>
 #include <limits>
@@ -25,66 +26,79 @@ CampaignKey key_of(std::uint64_t seed, const std::string& strategy = "sphere") {
   return {"jug", "00ff00ff00ff00ff", strategy, "kinect-v1", seed, R"({"max_views":3,"voxel_size_m":0.01})"};
 }
 
-CampaignRun run_of(const CampaignKey& key, std::size_t views = 2) {
-  CampaignRun run;
-  run.key = key;
-  run.initial = {0.25, 1000, 100, std::nullopt, std::nullopt, std::nullopt};
+const std::array<double, kPhases.size()> kTimes_ms{0.5, 0.1, 3.0, 4.0, 1.25, 20.25, 2.0, 0.0, 7.0};
+
+PhaseTimes times_of(const std::array<double, kPhases.size()>& ms) {
+  PhaseTimes times;
+  for (std::size_t i = 0; i < ms.size(); ++i) times.add(kPhases[i].phase, ms[i]);
+  return times;
+}
+
+CampaignEntry run_of(const CampaignKey& key, std::size_t views = 2) {
+  CampaignEntry entry{key, {}, 1.5, "0.1.0", {}};
+  RunRecord& run = entry.run;
+  run.scan.measures = {0.25, 1000, 100, std::nullopt, std::nullopt, std::nullopt};
   for (std::size_t i = 0; i < views; ++i) {
-    CampaignView view;
+    ViewRecord view;
     view.region = i;
-    view.gain = i == 1 ? std::nullopt : std::optional{321.5};
+    if (i != 1) view.gain_predicted = 321.5;
     view.T_world_camera =
         Pose{Eigen::Translation3d{0.1, 0.2, 0.3 + 1.0 / 3.0} * Eigen::AngleAxisd{0.7, Eigen::Vector3d::UnitX()}};
     view.candidates = 960;
     view.frames = 5;
-    view.after = {0.5 + 0.1 * static_cast<double>(i) + 0.001 * static_cast<double>(key.seed),
-                  900 - i,
-                  90 - i,
-                  0.0012,
-                  0.0034,
-                  0.9};
-    view.points_at_object = i % 2 == 0;
+    view.measures = {0.5 + 0.1 * static_cast<double>(i) + 0.001 * static_cast<double>(key.seed),
+                     900 - i,
+                     90 - i,
+                     0.0012,
+                     0.0034,
+                     0.9};
+    view.reveals_object = i % 2 == 0;
+    view.looks_at_object = false;
     view.evaluated = 700;
     view.refused.add(Refusal::no_ik, 250);
     view.refused.add(Refusal::no_path, 10 + i);
     view.path_m = 1.5;
     view.motion_s = 2.25;
-    view.phases_ms = {0.5, 0.1, 3.0, 4.0, 1.25, 20.25, 2.0, 0.0, 7.0};
+    view.times = times_of(kTimes_ms);
     run.views.push_back(view);
   }
-  run.scan_views = 2;
-  run.scan_refused.add(Refusal::declined);
-  run.stopped_because = "views_used_up";
+  run.scan.views = 2;
+  run.scan.refused.add(Refusal::declined);
+  run.stopped_because = StopReason::views_used_up;
   run.refused_at_end.add(Refusal::outside_limits, 3);
-  run.seconds = 1.5;
-  run.program_version = "0.1.0";
-  return run;
+  return entry;
 }
 
-void expect_same(const CampaignRun& a, const CampaignRun& b) {
-  EXPECT_EQ(a.key, b.key);
-  EXPECT_EQ(a.initial, b.initial);
+void expect_same(const CampaignEntry& stored, const CampaignEntry& expected) {
+  EXPECT_EQ(stored.key, expected.key);
+  EXPECT_EQ(stored.seconds, expected.seconds);
+  EXPECT_EQ(stored.program_version, expected.program_version);
+  const RunRecord& a = stored.run;
+  const RunRecord& b = expected.run;
+  EXPECT_EQ(a.scan.measures, b.scan.measures);
   EXPECT_EQ(a.final(), b.final());
-  EXPECT_EQ(a.scan_views, b.scan_views);
-  EXPECT_EQ(a.scan_refused, b.scan_refused);
+  EXPECT_EQ(a.scan.views, b.scan.views);
+  EXPECT_EQ(a.scan.refused, b.scan.refused);
   EXPECT_EQ(a.stopped_because, b.stopped_because);
   EXPECT_EQ(a.refused_at_end, b.refused_at_end);
-  EXPECT_EQ(a.seconds, b.seconds);
-  EXPECT_EQ(a.program_version, b.program_version);
   ASSERT_EQ(a.views.size(), b.views.size());
   for (std::size_t i = 0; i < a.views.size(); ++i) {
     EXPECT_EQ(a.views[i].region, b.views[i].region);
-    EXPECT_EQ(a.views[i].gain, b.views[i].gain);
+    EXPECT_EQ(std::isnan(a.views[i].gain_predicted), i == 1);
+    if (i != 1) {
+      EXPECT_EQ(a.views[i].gain_predicted, b.views[i].gain_predicted);
+    }
     EXPECT_LT((a.views[i].T_world_camera.matrix() - b.views[i].T_world_camera.matrix()).norm(), 1e-15);
     EXPECT_EQ(a.views[i].candidates, b.views[i].candidates);
     EXPECT_EQ(a.views[i].frames, b.views[i].frames);
-    EXPECT_EQ(a.views[i].after, b.views[i].after);
-    EXPECT_EQ(a.views[i].points_at_object, b.views[i].points_at_object);
+    EXPECT_EQ(a.views[i].measures, b.views[i].measures);
+    EXPECT_EQ(a.views[i].reveals_object, b.views[i].reveals_object);
+    EXPECT_EQ(a.views[i].looks_at_object, b.views[i].looks_at_object);
     EXPECT_EQ(a.views[i].evaluated, b.views[i].evaluated);
     EXPECT_EQ(a.views[i].refused, b.views[i].refused);
     EXPECT_EQ(a.views[i].path_m, b.views[i].path_m);
     EXPECT_EQ(a.views[i].motion_s, b.views[i].motion_s);
-    EXPECT_EQ(a.views[i].phases_ms, b.views[i].phases_ms);
+    EXPECT_EQ(a.views[i].times, b.views[i].times);
   }
 }
 
@@ -119,9 +133,9 @@ TEST(Campaign, EveryPartOfTheKeyTellsRunsApart) {
   const auto campaign = Campaign::open(folder / "c");
   ASSERT_TRUE(campaign);
   ASSERT_TRUE(*campaign->add(run_of(key_of(1))));
-  CampaignRun again = run_of(key_of(1), 1);
+  CampaignEntry again = run_of(key_of(1), 1);
   EXPECT_FALSE(*campaign->add(again));  // the first one stays
-  EXPECT_EQ((**campaign->find(key_of(1))).views.size(), 2U);
+  EXPECT_EQ((**campaign->find(key_of(1))).run.views.size(), 2U);
   std::vector<CampaignKey> others(6, key_of(1));
   others[0].scene = "Jug";
   others[1].scene_hash += "0";
@@ -142,11 +156,11 @@ TEST(Campaign, RefusesWhatItCannotKeep) {
   const TempFolder folder;
   const auto campaign = Campaign::open(folder / "c");
   ASSERT_TRUE(campaign);
-  CampaignRun run = run_of(key_of(std::uint64_t{1} << 63U));
+  CampaignEntry run = run_of(key_of(std::uint64_t{1} << 63U));
   EXPECT_EQ(campaign->add(run).error().code, Errc::invalid_argument);
   EXPECT_EQ(campaign->has(run.key).error().code, Errc::invalid_argument);
   run = run_of(key_of(1));
-  run.views[1].after.f_score = std::nan("");
+  run.run.views[1].measures.f_score = std::nan("");
   EXPECT_EQ(campaign->add(run).error().code, Errc::invalid_argument);
   EXPECT_TRUE(campaign->runs()->empty());
 }
@@ -196,7 +210,7 @@ TEST(Campaign, DamagedFilesAreErrorsNotCrashes) {
   for (std::size_t cut = 1000; cut < bytes.size(); cut += 1777) {
     folder.write("cut", bytes.substr(0, cut));
     const auto campaign = Campaign::open(folder / "cut");
-    const auto runs = campaign ? campaign->runs() : Result<std::vector<CampaignRun>>{campaign.error()};
+    const auto runs = campaign ? campaign->runs() : Result<std::vector<CampaignEntry>>{campaign.error()};
     errors += runs ? 0 : 1;
     EXPECT_TRUE(runs || runs.error().code == Errc::corrupt_data) << cut << ' ' << runs.error().to_string();
   }
@@ -225,7 +239,7 @@ TEST(Campaign, AFullDiskIsOneErrorAndLosesNothing) {
   EXPECT_TRUE(*campaign->has(key_of(1)));
   EXPECT_FALSE(*campaign->has(key_of(2)));
   EXPECT_TRUE(*campaign->add(run_of(key_of(2), 500)));
-  EXPECT_EQ((**campaign->find(key_of(2))).views.size(), 500U);
+  EXPECT_EQ((**campaign->find(key_of(2))).run.views.size(), 500U);
 }
 
 /// Adds runs with the seeds first, first + step, … until `count` or for ever; for use in a child process.
@@ -254,8 +268,8 @@ TEST(Campaign, AKilledProcessLosesNoFinishedRunAndLeavesNoHalfOne) {
     ASSERT_TRUE(runs) << runs.error().to_string();
     EXPECT_GE(runs->size(), stored);
     stored = runs->size();
-    for (const CampaignRun& run : *runs) {
-      EXPECT_EQ(run.views.size(), 30U);
+    for (const CampaignEntry& run : *runs) {
+      EXPECT_EQ(run.run.views.size(), 30U);
       EXPECT_TRUE(*campaign->has(run.key));
     }
   }
@@ -302,13 +316,13 @@ TEST(Campaign, AFileOfTheFirstVersionIsBroughtUpToDate) {
     EXPECT_EQ((*runs)[1].key.noise, "kinect-v2");
     EXPECT_EQ((*runs)[2].key.noise, "none");
     EXPECT_EQ((*runs)[3].key.noise, "kinect-v1");  // its settings are no JSON
-    const CampaignRun& old = runs->front();
+    const CampaignEntry& old = runs->front();
     EXPECT_EQ(old.key.scene, "jug");
-    EXPECT_EQ(old.initial.coverage, 0.25);
-    ASSERT_EQ(old.views.size(), 1U);
-    EXPECT_EQ(old.views[0].candidates, 960U);
-    EXPECT_EQ(old.views[0].refused.total(), 0U);
-    EXPECT_EQ(old.views[0].phases_ms, (PhaseTimes{0.0, 0.5, 0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 7.0}));
+    EXPECT_EQ(old.run.scan.measures.coverage, 0.25);
+    ASSERT_EQ(old.run.views.size(), 1U);
+    EXPECT_EQ(old.run.views[0].candidates, 960U);
+    EXPECT_EQ(old.run.views[0].refused.total(), 0U);
+    EXPECT_EQ(old.run.views[0].times, times_of({0.0, 0.5, 0.0, 0.0, 0.0, 20.0, 0.0, 0.0, 7.0}));
     EXPECT_EQ(*campaign->add(run_of(key_of(77))), round == 0);
     expect_same(**campaign->find(key_of(77)), run_of(key_of(77)));
   }
@@ -317,7 +331,7 @@ TEST(Campaign, AFileOfTheFirstVersionIsBroughtUpToDate) {
 }
 
 TEST(Campaign, TablesAreQuotedAndLeaveOutWhatIsNotThere) {
-  CampaignRun run = run_of(key_of(7), 1);
+  CampaignEntry run = run_of(key_of(7), 1);
   run.key.scene = "a \"jug\", large";
   const std::string text = runs_csv({&run, 1}, 3).text();
   EXPECT_EQ(std::count(text.begin(), text.end(), '\n'), 2);

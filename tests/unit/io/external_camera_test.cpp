@@ -30,7 +30,7 @@ Pose above() { return look_at({0.5, -0.3, 0.4}, {0.0, 0.05, 0.15}); }
 
 /// Compares with the exact picture; pixels on an edge may fall to either side. Returns how many returns there were.
 int expect_truth(const ExternalCamera& camera, const Frame& frame, double tolerance_m) {
-  const auto truth = render(ball_on_plane(), camera.camera(), above());
+  const auto truth = render(ball_on_plane(), camera.intrinsics(), above());
   EXPECT_TRUE(truth.ok());
   int returns = 0;
   int off = 0;
@@ -50,7 +50,7 @@ int expect_truth(const ExternalCamera& camera, const Frame& frame, double tolera
 TEST(ExternalCamera, ThePythonExampleSeesItsScene) {
   auto camera = ExternalCamera::start({kCameraPy});
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
-  EXPECT_EQ(camera->camera(), (PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.1, 3.0}));
+  EXPECT_EQ(camera->intrinsics(), (PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.1, 3.0}));
   for (std::size_t i = 0; i < 2; ++i) {
     const auto frame = camera->capture(above());
     ASSERT_TRUE(frame.ok()) << frame.error().to_string();

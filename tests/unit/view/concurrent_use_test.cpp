@@ -116,7 +116,7 @@ Answers answers(const Executor& executor) {
   given.gains = gains(snapshot, executor);
   const auto best = best_views(snapshot, kRegion, candidates(), 3, small_sensor(), executor);
   EXPECT_TRUE(best.ok());
-  for (const RankedView& view : best->views) given.best.push_back(view.index);
+  for (const OrderedView& view : best->views) given.best.push_back(view.index);
   const auto surface = raycast(snapshot, kCamera, views()[1].T_world_camera, executor);
   EXPECT_TRUE(surface.ok());
   given.depth = surface->depth;

@@ -92,7 +92,7 @@ TEST(OrderViews, ByDecreasingGainThenIndex) {
   const std::vector<std::uint64_t> gains{3, 7, 0, 7, 3};
   std::vector<Pose> poses(5, Pose::Identity());
   for (std::size_t i = 0; i < 5; ++i) poses[i].translation().x() = static_cast<double>(i);
-  const std::vector<RankedView> views = order_views(gains, poses);
+  const std::vector<OrderedView> views = order_views(gains, poses);
   ASSERT_EQ(views.size(), 5U);
   const std::size_t expected[]{1, 3, 0, 4, 2};
   for (std::size_t i = 0; i < 5; ++i) {

@@ -1,0 +1,124 @@
+// SPDX-License-Identifier: Apache-2.0
+// Parses the command line, runs the chosen subcommand, and turns its outcome into an exit status.
+#include "command_line.hpp"
+
+#include <CLI/CLI.hpp>
+#include <exception>
+#include <iostream>
+#include <new>
+
+#include "command.hpp"
+#include "exit_status.hpp"
+#include "interrupt.hpp"
+#include "options.hpp"
+#include "saccade/core/freed_memory.hpp"
+
+namespace saccade::cli {
+namespace {
+
+constexpr const char* kFooter{
+    "Exit status: 0 done, 1 a bug, 2 usage, 3 bad input, 4 not available here, 5 finished without any result,\n"
+    "130 or 143 interrupted (Ctrl-C, SIGTERM): what was done is kept. A second Ctrl-C ends at once.\n"
+    "Lengths are in metres; points and poses are in the map's world frame; angles on the command line are in degrees."};
+
+void add_global_options(CLI::App& program, GlobalOptions& global) {
+  program.add_option("--threads", global.threads, "threads to use; 0: all cores. Results do not depend on it")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{4096}))
+      ->type_name("N");
+  program.add_option("--seed", global.seed, "seed of everything random")
+      ->check(check_whole_number)
+      ->type_name("N")
+      ->capture_default_str();
+  program.add_flag("--quiet,-q", global.quiet, "no progress and no notes on standard error");
+  program.add_option("--json", global.json, "write the machine-readable result to a file; -: to standard output")
+      ->type_name("FILE");
+}
+
+/// No option of the program or its subcommands takes an empty value, as a script's unset variable would be.
+void refuse_empty_values(CLI::App& program) {
+  for (CLI::Option* option : program.get_options()) {
+    if (option->get_items_expected_max() == 0) continue;  // a flag
+    option->check([](const std::string& value) { return std::string{value.empty() ? "must not be empty" : ""}; });
+  }
+  for (CLI::App* subcommand : program.get_subcommands({})) refuse_empty_values(*subcommand);
+}
+
+int fail(const CLI::App& program, ExitStatus status, const std::string& text) {
+  const auto chosen = program.get_subcommands();
+  print_error(chosen.empty() ? "" : chosen.front()->get_name(), text);
+  return static_cast<int>(status);
+}
+
+int usage(const CLI::App& program, const std::string& text) {
+  const auto chosen = program.get_subcommands();
+  const std::string help = chosen.empty() ? "saccade --help" : "saccade " + chosen.front()->get_name() + " --help";
+  return fail(program, ExitStatus::usage, text + " (see " + help + ")");
+}
+
+int run(int argc, char** argv, CLI::App& program, Planners planners) {
+  GlobalOptions global;
+  global.planners = std::move(planners);
+  Action action;
+  program.set_version_flag("--version", std::string{"saccade "} + SACCADE_VERSION);
+  program.require_subcommand(1);
+  program.fallthrough();
+  program.footer(kFooter);
+  add_global_options(program, global);
+  add_annotate(program, global, action);
+  add_attend(program, global, action);
+  add_compare(program, global, action);
+  add_explore(program, global, action);
+  add_filter(program, global, action);
+  add_fuse(program, global, action);
+  add_nbv(program, global, action);
+  add_info(program, global, action);
+  add_scene(program, global, action);
+  add_reproduce(program, global, action);
+  add_robot(program, global, action);
+  add_score(program, global, action);
+  add_segment(program, global, action);
+  add_show(program, global, action);
+  add_sample(program, global, action);
+  add_surfels(program, global, action);
+  add_update(program, global, action);
+  refuse_empty_values(program);
+  try {
+    program.parse(argc, argv);
+  } catch (const CLI::RequiredError& error) {
+    if (!program.get_subcommands().empty()) return usage(program, error.what());
+    return usage(program,
+                 "name what to do: annotate, attend, compare, explore, filter, fuse, nbv, reproduce, robot, scene, "
+                 "score, segment, "
+                 "show, info, sample, surfels or update");
+  } catch (const CLI::ParseError& error) {
+    if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
+    return usage(program, error.what());
+  }
+  const Result<int> status = action();
+  std::cout.flush();
+  if (!std::cout) return fail(program, ExitStatus::bad_input, "standard output: cannot write the result");
+  if (status) return *status;
+  if (status.error().code == Errc::cancelled && interrupted()) {
+    fail(program, ExitStatus::done, "interrupted; nothing was written");
+    return interrupt_status();
+  }
+  return fail(program, exit_status_of(status.error().code), status.error().to_string());
+}
+
+}  // namespace
+
+int run_command_line(int argc, char** argv, Planners planners) {
+  CLI::App program{"Saccade decides where a depth camera should look next, and builds the 3-D map as it goes.",
+                   "saccade"};
+  try {
+    keep_freed_memory();
+    install_interrupt_handler();
+    return run(argc, argv, program, std::move(planners));
+  } catch (const std::bad_alloc&) {
+    return fail(program, ExitStatus::unavailable, "out of memory; use larger voxels or a smaller range");
+  } catch (const std::exception& error) {
+    return fail(program, ExitStatus::bug, std::string{"a bug in saccade, please report it: "} + error.what());
+  }
+}
+
+}  // namespace saccade::cli

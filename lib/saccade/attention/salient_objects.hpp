@@ -1,0 +1,60 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SalientObjects: attention to what looks like an object; SalientSurface: the segments it is drawn from. Thesis §3.1,
+// Algorithm 4, lines 3 to 6.
+
+#include <memory>
+#include <vector>
+
+#include "saccade/attention/attention_source.hpp"
+#include "saccade/attention/saliency.hpp"
+#include "saccade/segment/live_segments.hpp"
+
+namespace saccade {
+
+struct SalientObjectsConfig {
+  MapSegmentsConfig segments;  ///< `within` is the map's workspace, where it has one
+  MeasureConfig measures;
+  SaliencyHeuristic saliency{objectness()};
+  /// Segments that are no longer than this come last, whatever their saliency: scraps at the border of what was seen
+  /// stand alone and look round.
+  double scrap_length_m{0.03};
+  double reach_m{0.2};  ///< unknown space counts within the segment's bounding sphere enlarged by this; thesis §3.1
+
+  /// invalid_argument unless lengths are positive and finite and there is a heuristic; errors of the parts.
+  [[nodiscard]] Status validate() const;
+};
+
+/// The segmented surface of a map, and how salient its segments are.
+struct SalientSurface {
+  SegmentedPoints points;                 ///< means of the surface's voxels
+  std::vector<SegmentMeasures> measures;  ///< one per segment, as the next
+  std::vector<Saliency> saliency;
+  std::vector<std::uint32_t> order;  ///< segments, the most salient first, scraps last, ties by index
+  std::size_t scraps{0};             ///< number of scraps, at the end of `order`
+
+  /// The ball around the box of a segment's points, larger by `reach_m`. Expects a segment with points.
+  [[nodiscard]] Sphere surroundings(std::uint32_t segment, double reach_m) const;
+};
+
+/// Segments of the map's surface by saliency: a region is the surroundings of one segment, all have the index 0, and
+/// scraps are no rivals. Follows the map from call to call; surface outside the workspace draws no attention.
+class SalientObjects final : public AttentionSource {
+ public:
+  /// Expects a valid configuration.
+  explicit SalientObjects(SalientObjectsConfig config = {});
+
+  /// O(what changed since the last call + surface voxels). Errors of the heuristic: size_mismatch when it does not
+  /// return one value per segment.
+  [[nodiscard]] Result<std::vector<RegionOfInterest>> regions(const PlanningContext& context) override;
+  /// The surface alone. A map without a surface has no segment.
+  [[nodiscard]] Result<std::shared_ptr<const SalientSurface>> look(const PlanningContext& context);
+
+ private:
+  [[nodiscard]] Result<SegmentedPoints> segment(const PlanningContext& context);
+
+  SalientObjectsConfig config_;
+  std::optional<LiveSegments> segments_;  ///< within config_.segments.within
+};
+
+}  // namespace saccade

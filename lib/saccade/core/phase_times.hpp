@@ -1,0 +1,79 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Phase and PhaseTimes: what the wall time of a view is spent on.
+
+#include <algorithm>
+#include <array>
+#include <cstddef>
+#include <cstdint>
+#include <numeric>
+#include <optional>
+#include <string_view>
+
+#include "saccade/core/clock.hpp"
+
+namespace saccade {
+
+/// Phases of a view, in the order in which they are done.
+enum class Phase : std::uint8_t {
+  obstacles,     ///< the robot's obstacle map follows the map
+  candidates,    ///< view poses are generated
+  segmentation,  ///< the surface is cut into segments
+  saliency,      ///< attention ranks what there is to look at
+  reachability,  ///< the robot tests poses
+  gain,          ///< views are evaluated
+  planning,      ///< motions are planned
+  motion,        ///< the robot moves
+  fusion,        ///< frames are taken and fused
+};
+
+/// A phase and its names.
+struct PhaseName {
+  Phase phase;
+  std::string_view key;   ///< in files: keys of JSON, columns of tables
+  std::string_view text;  ///< for people
+};
+
+/// The one list of phases, in their order.
+inline constexpr std::array<PhaseName, 9> kPhases{{{Phase::obstacles, "planner_map", "planner's map"},
+                                                   {Phase::candidates, "candidates", "candidates"},
+                                                   {Phase::segmentation, "segmentation", "segmentation"},
+                                                   {Phase::saliency, "saliency", "saliency"},
+                                                   {Phase::reachability, "reachability", "reachability"},
+                                                   {Phase::gain, "evaluation", "evaluation"},
+                                                   {Phase::planning, "planning", "motion planning"},
+                                                   {Phase::motion, "motion", "motion"},
+                                                   {Phase::fusion, "fusion", "fusion"}}};
+
+/// Milliseconds per phase. One thread.
+class PhaseTimes {
+ public:
+  void add(Phase phase, double ms) { ms_[static_cast<std::size_t>(phase)] += ms; }
+  void add(const PhaseTimes& other) {
+    for (std::size_t i = 0; i < ms_.size(); ++i) ms_[i] += other.ms_[i];
+  }
+  [[nodiscard]] double ms(Phase phase) const { return ms_[static_cast<std::size_t>(phase)]; }
+  [[nodiscard]] double total_ms() const { return std::accumulate(ms_.begin(), ms_.end(), 0.0); }
+
+  /// Calls `work` and adds its time to the phase. What `work` itself measures with these times counts for the inner
+  /// phase alone.
+  template <class Work>
+  decltype(auto) measure(Phase phase, const Work& work) {
+    const Measured measured{*this, phase};
+    return work();
+  }
+
+  [[nodiscard]] bool operator==(const PhaseTimes&) const = default;
+
+ private:
+  struct Measured {
+    PhaseTimes& times;
+    Phase phase;
+    double before_ms{times.total_ms()};
+    Stopwatch stopwatch{};
+    ~Measured() { times.add(phase, std::max(0.0, stopwatch.elapsed_ms() - (times.total_ms() - before_ms))); }
+  };
+  std::array<double, kPhases.size()> ms_{};
+};
+
+}  // namespace saccade

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/explore/attempts.hpp"
+
+#include <algorithm>
+
+namespace saccade {
+namespace {
+
+bool is_same(const Pose& a, const Pose& b) {
+  constexpr double kSame{1e-9};
+  return (a.matrix() - b.matrix()).cwiseAbs().maxCoeff() <= kSame;
+}
+
+}  // namespace
+
+Attempts::Attempts(std::span<const ViewRecord> views) {
+  for (const ViewRecord& view : views) add_view(view);
+}
+
+void Attempts::add_view(const ViewRecord& view) {
+  attempts_.push_back({view.region, view.T_world_camera, Attempt::Outcome::taken});
+  refusals_.clear();
+}
+
+void Attempts::add_refused(std::size_t region, std::span<const RankedView> views, Refusal refusal) {
+  for (const RankedView& view : views) attempts_.push_back({region, view.T_world_camera, Attempt::Outcome::refused});
+  auto found = std::find_if(refusals_.begin(), refusals_.end(), [&](const auto& of) { return of.first == region; });
+  if (found == refusals_.end()) found = refusals_.insert(refusals_.end(), {region, {}});
+  found->second.add(refusal, views.size());
+}
+
+void Attempts::add_skipped(std::size_t region, const Pose& T_world_camera) {
+  attempts_.push_back({region, T_world_camera, Attempt::Outcome::skipped});
+}
+
+bool Attempts::contains(std::size_t region, const Pose& T_world_camera) const {
+  return std::any_of(attempts_.begin(), attempts_.end(), [&](const Attempt& attempt) {
+    return attempt.region == region && is_same(attempt.T_world_camera, T_world_camera);
+  });
+}
+
+bool Attempts::was_refused(std::size_t region, const Pose& T_world_camera) const {
+  return std::any_of(attempts_.begin(), attempts_.end(), [&](const Attempt& attempt) {
+    return attempt.region == region && attempt.outcome == Attempt::Outcome::refused &&
+           is_same(attempt.T_world_camera, T_world_camera);
+  });
+}
+
+std::size_t Attempts::views_of(std::size_t region) const {
+  return static_cast<std::size_t>(std::count_if(attempts_.begin(), attempts_.end(), [&](const Attempt& attempt) {
+    return attempt.region == region && attempt.outcome == Attempt::Outcome::taken;
+  }));
+}
+
+RefusalCounts Attempts::refusals_of(std::size_t region) const {
+  for (const auto& [of, counts] : refusals_) {
+    if (of == region) return counts;
+  }
+  return {};
+}
+
+}  // namespace saccade

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Explorer: the closed loop of choosing a view, going there, looking and fusing. Thesis Algorithms 1 and 4.
+
+#include <functional>
+#include <span>
+#include <vector>
+
+#include "saccade/core/progress.hpp"
+#include "saccade/explore/recorder.hpp"
+#include "saccade/explore/stopping.hpp"
+#include "saccade/explore/view_planner.hpp"
+#include "saccade/robot/robot.hpp"
+#include "saccade/sensor/camera.hpp"
+
+namespace saccade {
+
+struct ExplorerConfig {
+  /// Views that gain at least this share of the best one's are as good as the best: among these the robot goes to the
+  /// one that it reaches soonest. 1: to the best alone.
+  double good_enough{1.0};
+  int max_views{12};                             ///< in all
+  double oscillation_rad{0.087266462599716474};  ///< 5°: at each view the camera is tilted from minus to plus this
+  int oscillation_frames{5};                     ///< frames taken on the way; 1: none but the view itself
+  /// Seconds of motion between frames that are fused on the way to a view (KFOM of thesis §2.2); 0: none are, the map
+  /// learns at views alone (KFOVP). For robots that know their way.
+  double frame_on_way_s{0.0};
+
+  [[nodiscard]] Status validate() const;
+};
+
+/// Answer of the one who is asked before the camera moves to a view.
+enum class Approval : std::uint8_t { go, skip, stop };
+using Approve = std::function<Approval(const RankedView& view)>;
+
+/// What an explorer works with. All of it outlives the explorer.
+struct ExplorerParts {
+  TsdfMap& map;
+  Camera& camera;
+  Robot& robot;
+  const Executor& executor;
+  Recorder* recorder{nullptr};        ///< nullptr: nothing is recorded but what explore() returns
+  const Stopping* stopping{nullptr};  ///< besides ExplorerConfig::max_views
+  Approve approve{};                  ///< asked before each move to a view or a pose of the scan; empty: go
+  const Progress* progress{nullptr};
+};
+
+/// Return to the stand-by pose.
+struct StandByResult {
+  bool at_stand_by{false};
+  std::optional<Refusal> refusal{};  ///< where there was no way: why
+  double motion_s{0.0};              ///< duration of the way of a real arm
+};
+
+/// One caller at a time. What is fused comes from the camera, at the poses that the robot says it reached.
+class Explorer {
+ public:
+  Explorer(ExplorerParts parts, const ExplorerConfig& config) : parts_{std::move(parts)}, config_{config} {}
+
+  /// The initial scan: moves to each pose that can be reached, looks, and fuses. What the robot sweeps on its way
+  /// through them is set free before (Robot::swept_by): the one who starts the robot there vouches for it. Errors:
+  /// those of robot, camera, map and recorder.
+  [[nodiscard]] Result<ScanRecord> scan(std::span<const Pose> T_world_camera);
+
+  /// Algorithm 1, lines 4–17, and the exploration of chapter 3: they differ in the planner's attention source. A pose
+  /// is attempted once per region; the planner is asked anew after each view, and also when no view of a ranking could
+  /// be reached.
+  /// @param run views that an earlier, interrupted call took, with its scan; the map is as they left it. The
+  /// exploration
+  ///            ends as if it had never been interrupted, but tries again poses that could not be reached.
+  /// @return the whole run; invalid_argument for a bad configuration; errors of planner, robot, camera, map, recorder.
+  [[nodiscard]] Result<RunRecord> explore(ViewPlanner& planner, RunRecord run = {});
+
+  /// Algorithm 1 whole: forgets the regions, explores one after the other, and returns to stand-by unless cancelled.
+  [[nodiscard]] Result<RunRecord> update(std::span<const RegionOfInterest> changed, const ViewPlanner& planner);
+
+  /// Lines 1 to 3 of Algorithm 1. invalid_argument for a bad region; those before it were forgotten then.
+  [[nodiscard]] Status forget(std::span<const RegionOfInterest> regions);
+  /// Line 17. Robots without a stand-by stay where they are. Errors: those of the robot.
+  [[nodiscard]] Result<StandByResult> return_to_stand_by();
+
+ private:
+  enum class Outcome : std::uint8_t { arrived, nowhere_to_go, cancelled };
+
+  [[nodiscard]] PlanningScene scene(PhaseTimes& times) const;
+  [[nodiscard]] std::optional<StopReason> stopped(const RunRecord& run) const;
+  [[nodiscard]] bool cancelled() const { return parts_.progress != nullptr && parts_.progress->cancelled(); }
+  /// Ranks and tries until the robot stands at a view or no view is left.
+  [[nodiscard]] Result<Outcome> go_to_next(ViewPlanner& planner, RunRecord& run, ViewRecord& view);
+  [[nodiscard]] Result<Outcome> go_to_best(Ranking& ranking, ViewRecord& view);
+  [[nodiscard]] Result<std::optional<Arrival>> move(const Motion& motion, ViewRecord& view);
+  [[nodiscard]] Status look(ViewRecord& view);
+  [[nodiscard]] Result<Outcome> scan_from(const Pose& T_world_camera, ScanRecord& scan);
+  [[nodiscard]] Status fuse(const Pose& T_world_camera, bool keep);
+  [[nodiscard]] Result<double> farthest_tilt_rad(const Pose& T_world_view, double wanted_rad);
+
+  ExplorerParts parts_;
+  ExplorerConfig config_;
+  Attempts attempts_;
+  std::size_t region_{0};      ///< that is being explored; those before it are done
+  std::vector<Frame> frames_;  ///< of the view that is being taken
+};
+
+}  // namespace saccade

@@ -1,0 +1,97 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/explore/planners.hpp"
+
+#include <algorithm>
+
+namespace saccade {
+namespace {
+
+constexpr std::size_t kContourTries{64};
+constexpr std::size_t kSpareViews{16};  // told ahead of those that were taken: the robot may not reach some
+constexpr std::size_t kAllViews{std::numeric_limits<std::size_t>::max()};
+
+std::shared_ptr<AttentionSource> regions_in_turn(const PlannerSetup& setup) {
+  return std::make_shared<RegionsInTurn>(std::span<const Region>{setup.regions});
+}
+
+std::shared_ptr<ViewGenerator> contour_views_of(const PlannerSetup& setup) {
+  return std::make_shared<ContourViews>(setup.contour_views, setup.contours);
+}
+
+std::shared_ptr<Gain> rays(const PlannerSetup& setup) { return std::make_shared<RayGain>(setup.gain); }
+
+std::shared_ptr<Gain> by_chance(const PlannerSetup& setup, bool anew) {
+  return std::make_shared<RandomOrder>(rays(setup), RandomOrderConfig{setup.seed, anew});
+}
+
+ViewPlannerConfig with_tries(const PlannerSetup& setup, std::size_t tries) {
+  ViewPlannerConfig config = setup.planner;
+  config.tries = tries;
+  return config;
+}
+
+PlannerParts make_random(const PlannerSetup& setup) {
+  PlannerParts parts{regions_in_turn(setup), std::make_shared<SphereViews>(setup.sphere), by_chance(setup, false),
+                     with_tries(setup, kSpareViews)};
+  const std::size_t regions = std::max<std::size_t>(1, setup.regions.size());
+  parts.config.views_per_region = (setup.max_views + regions - 1) / regions;
+  return parts;
+}
+
+}  // namespace
+
+void Planners::add(NamedPlanner planner) {
+  const auto same = [&](const NamedPlanner& other) { return other.name == planner.name; };
+  const auto found = std::find_if(planners_.begin(), planners_.end(), same);
+  if (found != planners_.end()) {
+    *found = std::move(planner);
+  } else {
+    planners_.push_back(std::move(planner));
+  }
+}
+
+Result<NamedPlanner> Planners::find(std::string_view name) const {
+  for (const NamedPlanner& planner : planners_) {
+    if (planner.name == name) return planner;
+  }
+  return Error{Errc::invalid_argument, "there is no strategy \"" + std::string{name} + "\"; known: " + names(), ""};
+}
+
+std::string Planners::names() const {
+  std::string names;
+  for (const NamedPlanner& planner : planners_) names += (names.empty() ? "" : ", ") + planner.name;
+  return names;
+}
+
+NamedPlanner attention_planner() {
+  const auto make = [](const PlannerSetup& setup) {
+    return PlannerParts{std::make_shared<SalientObjects>(setup.attention), contour_views_of(setup), rays(setup),
+                        setup.planner};
+  };
+  return {"attention", "views of the contours of what looks like an object, the most salient first", 50.0, false, false,
+          make};
+}
+
+Planners builtin_planners() {
+  Planners planners;
+  planners.add(attention_planner());
+  planners.add({"standard", "of all contours, the view of most unknown space", 200.0, false, false,
+                [](const PlannerSetup& setup) {
+                  return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup), rays(setup),
+                                      with_tries(setup, kContourTries)};
+                }});
+  planners.add(
+      {"sphere", "best gain on the view sphere around each region", 200.0, true, false, [](const PlannerSetup& setup) {
+         return PlannerParts{regions_in_turn(setup), std::make_shared<SphereViews>(setup.sphere), rays(setup),
+                             with_tries(setup, kAllViews)};
+       }});
+  planners.add({"random", "poses of sphere in random order", 200.0, true, false, make_random});
+  planners.add(
+      {"random-contours", "poses of standard in random order", 200.0, false, false, [](const PlannerSetup& setup) {
+         return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup), by_chance(setup, true),
+                             with_tries(setup, kContourTries)};
+       }});
+  return planners;
+}
+
+}  // namespace saccade

@@ -1,0 +1,21 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/robot/joint_controller.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+namespace saccade {
+
+Result<Configuration> SimulatedJoints::execute(const Trajectory& trajectory, const JointObserver& observer) {
+  if (observer) {
+    const auto samples = static_cast<int>(std::ceil(trajectory.duration_s() / kSample_s));
+    for (int i = 0; i <= samples; ++i) {
+      const double t_s = std::min(i * kSample_s, trajectory.duration_s());
+      observer({t_s, trajectory.at(t_s).q});
+    }
+  }
+  q_ = trajectory.end();
+  return q_;
+}
+
+}  // namespace saccade

@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// JointController: moves the joints of an arm along timed positions; SimulatedJoints does so exactly, in no time.
+
+#include <functional>
+
+#include "saccade/core/result.hpp"
+#include "saccade/robot/trajectory.hpp"
+
+namespace saccade {
+
+/// Joint positions on the way.
+struct JointSample {
+  double t_s{0.0};  ///< since the motion began
+  Configuration q;
+};
+using JointObserver = std::function<void(const JointSample& sample)>;
+
+/// One caller at a time.
+class JointController {
+ public:
+  virtual ~JointController() = default;
+  /// @return the joints as they stand.
+  [[nodiscard]] virtual Result<Configuration> position() = 0;
+  /// Follows a trajectory that begins where the joints stand; `observer` is called at samples on the way.
+  /// @return the joints as they stand at the end. An Error means that this is not known.
+  [[nodiscard]] virtual Result<Configuration> execute(const Trajectory& trajectory,
+                                                      const JointObserver& observer = {}) = 0;
+};
+
+/// Stands at the end of the last trajectory at once. Samples every kSample_s of the trajectory's time, and at its end.
+class SimulatedJoints final : public JointController {
+ public:
+  static constexpr double kSample_s{0.02};
+  explicit SimulatedJoints(Configuration q) : q_{std::move(q)} {}
+  [[nodiscard]] Result<Configuration> position() override { return q_; }
+  [[nodiscard]] Result<Configuration> execute(const Trajectory& trajectory,
+                                              const JointObserver& observer = {}) override;
+
+ private:
+  Configuration q_;
+};
+
+}  // namespace saccade
