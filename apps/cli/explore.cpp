@@ -208,7 +208,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   progress.finish();
   const json document = json_envelope("explore", global, executor, {{"total", total.elapsed_ms()}}, result);
   SACCADE_CHECK(write_json(out / "run.json", document));
-  if (options.write_pictures) SACCADE_CHECK(write_report(out, document, options));
+  if (options.write_pictures) SACCADE_CHECK(write_report(out, run->record(), final, document, options));
   SACCADE_CHECK(write_json_output(global, document));
   if (!global.json_to_stdout()) print_summary(options, *run, final);
   if (reason != StopReason::cancelled) {

@@ -43,7 +43,7 @@ class ExploreDevices {
   [[nodiscard]] Status change_scene(const RayScene& scene, const SimulatedRunConfig& config);
   /// The arm, if it is one that we move ourselves.
   [[nodiscard]] const ArmModel* arm() const { return camera_.arm(); }
-  /// A simulated camera goes on as if so many frames had been taken.
+  /// A simulated camera goes on as if it had taken `frames` frames.
   void resume_at(std::size_t frames);
   /// The arm stands as in the interrupted run. invalid_argument.
   [[nodiscard]] Status place_arm(const Configuration& q);

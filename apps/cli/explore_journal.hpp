@@ -16,7 +16,7 @@ struct ExploreJournal {
   nlohmann::json settings;           ///< all that decides how the run goes on; another run's are not its own
   bool scanned{false};               ///< the initial scan is done
   RunRecord run;                     ///< so far
-  std::optional<Configuration> q{};  ///< of the arm as it stands; nullopt for what is no arm
+  std::optional<Configuration> q{};  ///< the arm as it stands; nullopt where there is none
 
   /// Frames that the camera has taken.
   [[nodiscard]] std::size_t frames() const;

@@ -31,11 +31,6 @@ std::string picture_name(std::size_t number, const char* kind) {
   return name.str();
 }
 
-template <class T>
-std::optional<T> optional_of(const json& value) {
-  return value.is_null() ? std::nullopt : std::optional<T>{value.get<T>()};
-}
-
 /// Those of the pictures that are there.
 std::vector<ReportPicture> pictures_of(const RunFolder& out, std::size_t number,
                                        std::initializer_list<ReportPicture> wanted) {
@@ -50,13 +45,11 @@ std::vector<ReportPicture> pictures_of(const RunFolder& out, std::size_t number,
 }
 
 /// "segment 12 of 40, rank 1 by saliency 0.52 (…), 24 of 600 contour points".
-std::string attention_text(const json& attention) {
-  return "segment " + std::to_string(attention.at("segment").get<std::size_t>() + 1) + " of " +
-         std::to_string(attention.at("segments").get<std::size_t>()) + ", number " +
-         std::to_string(attention.at("rank").get<std::size_t>() + 1) +
-         " by saliency: " + attention.at("why").get<std::string>() + "; " +
-         std::to_string(attention.at("contours_of_segment").get<std::size_t>()) + " of " +
-         std::to_string(attention.at("contours").get<std::size_t>()) + " contour points";
+std::string attention_text(const ViewAttention& attention) {
+  return "segment " + std::to_string(attention.segment + 1) + " of " + std::to_string(attention.segments) +
+         ", number " + std::to_string(attention.rank + 1) + " by saliency: " + attention.why + "; " +
+         std::to_string(attention.contours_of_segment) + " of " + std::to_string(attention.contours) +
+         " contour points";
 }
 
 /// Per vertex; what lies outside the workspace is in no segment, and not searched for.
@@ -94,33 +87,18 @@ Status draw_saliency(const RunFolder& out, const ViewScenes& scenes, const Execu
 
 }  // namespace
 
-ReportView report_view(const RunFolder& out, const json& view) {
-  ReportView shown;
-  shown.index = view.at("index").get<std::size_t>() + 1;
-  shown.gain = optional_of<double>(view.at("gain"));
-  shown.candidates = view.at("candidates").get<std::size_t>();
-  shown.coverage = optional_of<double>(view.at("coverage"));
-  shown.unknown_left = view.at("unknown_left").get<std::size_t>();
-  shown.unknown_near_objects = optional_of<std::size_t>(view.at("unknown_near_objects"));
-  shown.points_at_object = optional_of<bool>(view.at("points_at_object"));
-  for (const PhaseName& phase : kPhases) {
-    shown.phases.push_back({std::string{phase.text}, view.at("ms").value(std::string{phase.key}, 0.0)});
+ShownView shown_view(const RunFolder& out, const ViewRecord& view, std::size_t number) {
+  ShownView shown{number, view};
+  if (view.attention) shown.facts.emplace_back("attention", attention_text(*view.attention));
+  if (view.motion_s > 0.0) {
+    shown.facts.emplace_back("robot", fixed(view.motion_s, 1) + " s, camera's way " + fixed(view.path_m, 2) + " m");
   }
-  if (const json attention = view.value("attention", json(nullptr)); !attention.is_null()) {
-    shown.facts.emplace_back("attention", attention_text(attention));
-  }
-  if (const double motion_s = view.value("motion_s", 0.0); motion_s > 0.0) {
-    shown.facts.emplace_back(
-        "robot", fixed(motion_s, 1) + " s, camera's way " + fixed(view.at("path_m").get<double>(), 2) + " m");
-  }
-  if (const double retreat_s = view.value("retreat_s", 0.0); retreat_s > 0.0) {
-    shown.facts.emplace_back("backed out of a contact for", fixed(retreat_s, 1) + " s");
-  }
-  if (const std::string refused = refused_text(view.at("refused")); !refused.empty()) {
+  if (view.retreat_s > 0.0) shown.facts.emplace_back("backed out of a contact for", fixed(view.retreat_s, 1) + " s");
+  if (const std::string refused = refused_text(view.refused); !refused.empty()) {
     shown.facts.emplace_back("refused", refused);
   }
   shown.pictures = pictures_of(
-      out, shown.index,
+      out, number,
       {{{},
         "What drew the attention: the surface by its saliency, with the contours of the chosen segment",
         "The surface from outside, brighter where it is more salient",
@@ -195,7 +173,8 @@ bool is_view_file(const std::string& file_name) {
          (file_name.ends_with(".png") || file_name.ends_with(".json") || file_name.ends_with(".sacmap"));
 }
 
-Status write_report(const RunFolder& out, const json& document, const ExploreOptions& options) {
+Status write_report(const RunFolder& out, const RunRecord& run, const Measures& final, const json& document,
+                    const ExploreOptions& options) {
   const json& result = document.at("result");
   RunReport report;
   report.scene = result.at("scene").get<std::string>();
@@ -214,23 +193,15 @@ Status write_report(const RunFolder& out, const json& document, const ExploreOpt
                   {"camera", camera_text(result.at("camera"))},
                   {"back end", document.at("backend").get<std::string>()}};
   report.min_gain = options.run.planner.min_gain;
-  report.stop_reason = result.at("stopped_because").get<std::string>();
-  if (const json& initial = result.at("initial"); !initial.is_null()) {
-    report.initial.coverage = optional_of<double>(initial.at("coverage"));
-    report.initial.unknown_left = initial.at("unknown_left").get<std::size_t>();
-    const std::string refused = refused_text(initial.at("refused"));
-    if (!refused.empty()) report.initial.facts.emplace_back("poses passed over", refused);
+  report.stop_reason = to_string(run.stopped_because);
+  report.initial.measures = run.scan.measures;
+  if (const std::string refused = refused_text(run.scan.refused); !refused.empty()) {
+    report.initial.facts.emplace_back("poses passed over", refused);
   }
   report.initial.pictures =
       pictures_of(out, 0, {{{}, "The map after the scan, unknown in black", "The map from outside", "map"}});
-  for (const json& view : result.at("views")) report.views.push_back(report_view(out, view));
-  const json& final = result.at("final");
-  report.final = {optional_of<double>(final.at("coverage")),
-                  final.at("unknown_left").get<std::size_t>(),
-                  optional_of<std::size_t>(final.at("unknown_near_objects")),
-                  optional_of<double>(final.at("accuracy_m")),
-                  optional_of<double>(final.at("chamfer_m")),
-                  optional_of<double>(final.at("f_score"))};
+  for (const ViewRecord& view : run.views) report.views.push_back(shown_view(out, view, report.views.size() + 1));
+  report.final = final;
   report.links = {{"mesh.ply", "the surface, with colours"},
                   {"map.sacmap", "the map of occupied, empty and unknown, for saccade nbv"},
                   {"run.json", "all figures, for programs"}};

@@ -19,7 +19,7 @@ struct ViewScenes {
   const TsdfSnapshot& after;
   const ViewRecord& view;  ///< with its choice
   std::vector<Pose> T_world_earlier;
-  std::span<const Frame> frames;  ///< of the oscillation
+  std::span<const Frame> frames;  ///< frames of the oscillation
   const Box& workspace;
   PinholeCamera camera;
   const RobotDrawing* robot{nullptr};  ///< drawn at the view; none: the camera flies
@@ -34,9 +34,8 @@ struct ViewScenes {
 /// Of a view of a run: a picture, what it was chosen from, the map after it.
 [[nodiscard]] bool is_view_file(const std::string& file_name);
 
-/// A view of the document for the page, with the pictures that draw_view made of it. Where the map was not measured
-/// after it, nothing is unknown.
-[[nodiscard]] ReportView report_view(const RunFolder& out, const nlohmann::json& view);
+/// A view for the page, with the pictures that draw_view made of it.
+[[nodiscard]] ShownView shown_view(const RunFolder& out, const ViewRecord& view, std::size_t number);
 /// "640 × 480, f = 525 px, 0.5–2 m", from the document.
 [[nodiscard]] std::string camera_text(const nlohmann::json& camera);
 
@@ -45,8 +44,9 @@ struct ViewScenes {
 /// The same of `refused` in the document.
 [[nodiscard]] std::string refused_text(const nlohmann::json& refused);
 
-/// Writes report.html from the document that goes to run.json and the pictures in the folder; pictures that are not
-/// there are left out. io_failure.
-[[nodiscard]] Status write_report(const RunFolder& out, const nlohmann::json& document, const ExploreOptions& options);
+/// Writes report.html from the record, the document that goes to run.json and the pictures in the folder; pictures that
+/// are not there are left out. io_failure.
+[[nodiscard]] Status write_report(const RunFolder& out, const RunRecord& run, const Measures& final,
+                                  const nlohmann::json& document, const ExploreOptions& options);
 
 }  // namespace saccade::cli

@@ -68,7 +68,7 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   SACCADE_CHECK(write_json(out / "update.json", document));
   if (options.write_pictures) {
     SACCADE_CHECK(pictures.draw_maps(figures));
-    SACCADE_CHECK(write_update_report(options, task, out, document));
+    SACCADE_CHECK(write_update_report(options, task, figures, out, document));
   }
   bar.finish();
   SACCADE_CHECK(write_json_output(global, document));

@@ -130,15 +130,15 @@ Status remove_update_pictures(const RunFolder& out) {
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
 }
 
-Status write_update_report(const UpdateOptions& options, const WatchedTask& task, const RunFolder& out,
-                           const json& document) {
+Status write_update_report(const UpdateOptions& options, const WatchedTask& task, const UpdateFigures& figures,
+                           const RunFolder& out, const json& document) {
   const json& result = document.at("result");
   UpdateReport report;
   fill_head(report, options, document);
   const json& scan = result.at("scan");
-  report.before.unknown_left = scan.at("unknown_left").get<std::size_t>();
-  report.before.facts.emplace_back("views", std::to_string(scan.at("views").get<std::size_t>()));
-  if (const std::string refused = refused_text(scan.at("refused")); !refused.empty()) {
+  report.before.measures.unknown_left = scan.at("unknown_left").get<std::size_t>();
+  report.before.facts.emplace_back("views", std::to_string(figures.scan.views));
+  if (const std::string refused = refused_text(figures.scan.refused); !refused.empty()) {
     report.before.facts.emplace_back("poses passed over", refused);
   }
   report.before.pictures =
@@ -152,18 +152,17 @@ Status write_update_report(const UpdateOptions& options, const WatchedTask& task
   for (const json& region : result.at("regions")) {
     report.regions.push_back(report_region(region, report.regions.size() + 1));
   }
-  report.phases_once = {{"forgetting", 1e3 * result.at("phases_s").at("forgetting").get<double>()}};
+  report.once_ms = {{"forgetting", figures.forgetting_ms}};
   report.unknown_after_task = result.at("unknown_after_task").get<std::size_t>();
-  for (const json& view : result.at("views")) {
-    ReportView shown = report_view(out, view);
-    shown.region = view.at("region").get<std::size_t>() + 1;
-    if (const auto on_way = view.at("frames_on_way").get<std::size_t>(); on_way > 0) {
-      shown.facts.emplace_back("frames on the way", std::to_string(on_way));
-    }
+  for (const ViewRecord& view : figures.run.views) {
+    ShownView shown = shown_view(out, view, report.views.size() + 1);
+    shown.region = view.region + 1;
+    if (view.frames_on_way > 0) shown.facts.emplace_back("frames on the way", std::to_string(view.frames_on_way));
     report.views.push_back(std::move(shown));
   }
   report.after_pictures = picture_of(out, "after.png", "The map after the update", "The map from outside", "map");
-  report.final.unknown_left = report.views.empty() ? report.unknown_after_task : report.views.back().unknown_left;
+  report.final.unknown_left =
+      report.views.empty() ? report.unknown_after_task : report.views.back().record.measures.unknown_left;
   for (const json& object : result.at("objects")) report.objects.push_back(report_object(object));
   report.links = {{"mesh.ply", "the surface, with colours"},
                   {"before.sacmap", "the map before the task"},

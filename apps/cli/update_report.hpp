@@ -37,7 +37,8 @@ class UpdatePictures final : public Recorder {
 [[nodiscard]] Status remove_update_pictures(const RunFolder& out);
 
 /// report.html from the document that goes to update.json and the pictures in the folder. io_failure.
-[[nodiscard]] Status write_update_report(const UpdateOptions& options, const WatchedTask& task, const RunFolder& out,
+[[nodiscard]] Status write_update_report(const UpdateOptions& options, const WatchedTask& task,
+                                         const UpdateFigures& figures, const RunFolder& out,
                                          const nlohmann::json& document);
 
 }  // namespace saccade::cli

@@ -36,9 +36,9 @@ struct UpdateFigures {
   TsdfSnapshot before;  ///< after the scan
   ScanRecord scan;
   StandByResult after_scan;
-  std::optional<Configuration> stand_by{};           ///< of an arm, in which it waits
+  std::optional<Configuration> stand_by{};           ///< configuration in which an arm waits
   TsdfSnapshot forgotten;                            ///< the regions are unknown
-  double forgetting_ms{0.0};                         ///< of all regions
+  double forgetting_ms{0.0};                         ///< time for all regions
   UnknownOfRegions unknown_after_task;               ///< as soon as they were forgotten
   std::vector<UnknownOfRegions> unknown_after_view;  ///< one for each view
   RunRecord run;

@@ -16,7 +16,7 @@
 
 namespace saccade::cli {
 
-/// Of the strategies, one run per scene.
+/// Runs of both strategies, one per scene.
 struct ExplorationExperiments {
   std::vector<RunRecord> attention;
   std::vector<RunRecord> standard;

@@ -15,9 +15,9 @@ namespace saccade {
 struct PlanningContext {
   const TsdfSnapshot& map;
   const Executor& executor;
-  PhaseTimes* times{nullptr};  ///< nullptr: nobody asks for times
+  PhaseTimes* times{nullptr};  ///< nullptr: times are not taken
   std::size_t region{0};       ///< RegionOfInterest::index of the region that is looked at
-  std::size_t views_taken{0};  ///< of that region so far
+  std::size_t views_taken{0};  ///< views of that region so far
   /// Whether the camera went to the pose, or tried to, for this region. Empty: to none.
   std::function<bool(const Pose& T_world_camera)> attempted{};
 

@@ -98,7 +98,7 @@ class Explorer {
   ExplorerConfig config_;
   Attempts attempts_;
   std::size_t region_{0};      ///< that is being explored; those before it are done
-  std::vector<Frame> frames_;  ///< of the view that is being taken
+  std::vector<Frame> frames_;  ///< frames of the view that is being taken
 };
 
 }  // namespace saccade

@@ -22,8 +22,8 @@ struct PlannerSetup {
   ContourViewConfig contour_views{};
   SalientObjectsConfig attention{};
   ViewPlannerConfig planner{};    ///< min_gain and rival_share
-  std::vector<Region> regions{};  ///< of planners that take regions in turn
-  std::size_t max_views{12};      ///< of the run
+  std::vector<Region> regions{};  ///< regions that are taken in turn
+  std::size_t max_views{12};      ///< limit of the run
   std::uint64_t seed{1};
   PinholeCamera camera{};       ///< the real one
   const Truth* truth{nullptr};  ///< what a simulated run knows; nullptr: there is none

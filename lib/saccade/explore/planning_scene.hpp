@@ -11,7 +11,7 @@ namespace saccade {
 struct PlanningScene {
   const TsdfSnapshot& map;
   const Executor& executor;
-  PhaseTimes* times{nullptr};         ///< nullptr: nobody asks for times
+  PhaseTimes* times{nullptr};         ///< nullptr: times are not taken
   const Robot* robot{nullptr};        ///< nullptr: every pose may be taken
   const Attempts* attempts{nullptr};  ///< nullptr: there were none
   std::size_t first_region{0};        ///< regions of a lower index are done

@@ -70,10 +70,10 @@ class Ranking {
   std::size_t in_all_{0};
   std::size_t evaluated_{0};
   RefusalCounts refused_{};
-  RankedViews ranked_{};  ///< of the chosen region; of all regions of the index while none is chosen
+  RankedViews ranked_{};  ///< views of the chosen region; of all regions of the index while none is chosen
   std::optional<RegionOfInterest> chosen_{};
   std::shared_ptr<const ContourSet> contours_{};
-  double first_saliency_{0.0};  ///< of the first region that was chosen
+  double first_saliency_{0.0};  ///< saliency of the first region that was chosen
   std::vector<RankedView> untried_{};
   std::vector<std::pair<std::size_t, RegionResult>> left_{};
 };

@@ -43,7 +43,7 @@ struct ScanRecord {
   std::size_t views{0};
   std::size_t frames{0};    ///< fused
   RefusalCounts refused{};  ///< poses that were passed over
-  Measures measures{};      ///< of the map after it
+  Measures measures{};      ///< the map after it
 };
 
 struct RunRecord {

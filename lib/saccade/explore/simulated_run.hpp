@@ -31,8 +31,8 @@ struct SimulatedRunConfig {
   DepthSensor sensor{DepthSensor::kinect_v1};
   NamedPlanner strategy{attention_planner()};
   ViewPlannerConfig planner{.min_gain = attention_planner().min_gain};
-  ViewSphereConfig sphere;  ///< of planners that look at regions
-  ContourConfig contours;   ///< of all others
+  ViewSphereConfig sphere;  ///< candidates of planners that look at regions
+  ContourConfig contours;   ///< what all others look at
   ContourViewConfig contour_views;
   SalientObjectsConfig attention;
   int gain_width_px{

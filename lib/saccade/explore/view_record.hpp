@@ -46,7 +46,7 @@ struct ViewChoice {
   Region region{};                         ///< that gains are of
   PinholeCamera sensor{};                  ///< virtual, whose rays gains count
   std::vector<RankedView> candidates{};    ///< NaN: not evaluated
-  std::vector<double> saliency{};          ///< of each segment of the map before the view; none: there are no segments
+  std::vector<double> saliency{};          ///< one per segment of the map before the view; none: there are no segments
   std::optional<std::uint32_t> segment{};  ///< that the view is of
   std::shared_ptr<const SalientSurface> surface{};  ///< those segments; nullptr where they were read from a file
   std::shared_ptr<const ContourSet> contours{};     ///< that candidates look at; nullptr: at none, or read from a file
@@ -54,11 +54,11 @@ struct ViewChoice {
 
 /// The segment that drew the attention to a view.
 struct ViewAttention {
-  std::size_t segments{0};             ///< of the map
+  std::size_t segments{0};             ///< in the map
   std::size_t contours{0};             ///< contour points of the map
   std::uint32_t segment{0};            ///< that the view is of
   std::size_t rank{0};                 ///< its place by saliency, 0 for the most salient
-  double saliency{0.0};                ///< of the segment
+  double saliency{0.0};                ///< the segment's
   std::string why{};                   ///< one line for people
   std::size_t contours_of_segment{0};  ///< contour points nearest to the segment
 
@@ -69,9 +69,9 @@ struct ViewAttention {
 struct ViewRecord {
   std::size_t region{0};  ///< index of the region it was chosen for
   Pose T_world_camera{Pose::Identity()};
-  std::optional<Configuration> q{};                                 ///< of an arm that stands at the view
+  std::optional<Configuration> q{};                                 ///< how an arm stands at the view
   double gain_predicted{std::numeric_limits<double>::quiet_NaN()};  ///< NaN: not evaluated
-  Measures measures{};                                              ///< of the map after the view
+  Measures measures{};                                              ///< the map after the view
   std::optional<bool> reveals_object{};                             ///< by what the view made known
   std::optional<bool> looks_at_object{};                            ///< by its optical axis
   std::size_t candidates{0};  ///< poses it was chosen from, those that the robot cannot take included
@@ -85,7 +85,7 @@ struct ViewRecord {
   double retreat_s{0.0};                       ///< its share in which the arm backs out of a contact
   std::vector<Eigen::Vector3d> path{};         ///< the camera's centre on its way, where the robot knows it
   double path_m{0.0};                          ///< length of that way
-  std::optional<ViewAttention> attention{};    ///< of a planner that looks for objects
+  std::optional<ViewAttention> attention{};    ///< where the planner looks for objects
   std::shared_ptr<const ViewChoice> choice{};  ///< nullptr: not kept
 };
 

@@ -22,8 +22,8 @@ std::string verdict(const RunReport& report) {
   const std::size_t n = report.views.size();
   std::string text = n == 0 ? "No view" : n == 1 ? "One view" : grouped(n) + " views";
   text += " after the initial scan.";
-  if (report.initial.coverage && report.final.coverage) {
-    text += " Coverage went from " + percent_text(*report.initial.coverage) + " to " +
+  if (report.initial.measures.coverage && report.final.coverage) {
+    text += " Coverage went from " + percent_text(*report.initial.measures.coverage) + " to " +
             percent_text(*report.final.coverage) + '.';
   }
   if (!report.stop_reason.empty()) text += ' ' + stop_sentence(report.stop_reason);
@@ -33,7 +33,7 @@ std::string verdict(const RunReport& report) {
 std::string legend_html_of(const RunReport& report) {
   const bool drawn =
       !report.initial.pictures.empty() || std::any_of(report.views.begin(), report.views.end(),
-                                                      [](const ReportView& view) { return !view.pictures.empty(); });
+                                                      [](const ShownView& view) { return !view.pictures.empty(); });
   return drawn ? legend_html(report.draws_robot) : std::string{};
 }
 
@@ -44,9 +44,9 @@ std::string summary(const RunReport& report) {
 
 std::string scan_section(const RunReport& report) {
   FactList facts;
-  facts.add("coverage", report.initial.coverage, percent_text);
-  facts.add("unknown left", grouped(report.initial.unknown_left) + " voxels");
-  facts.add("unknown near objects", report.initial.unknown_near_objects, count_text);
+  facts.add("coverage", report.initial.measures.coverage, percent_text);
+  facts.add("unknown left", grouped(report.initial.measures.unknown_left) + " voxels");
+  facts.add("unknown near objects", report.initial.measures.unknown_near_objects, count_text);
   for (const auto& [name, value] : report.initial.facts) facts.add(name.c_str(), value);
   return part_html("scan", "Initial scan", facts, report.initial.pictures);
 }
@@ -68,14 +68,14 @@ std::string run_section(const RunReport& report) {
 
 std::string run_report_html(const RunReport& report) {
   std::vector<std::pair<std::string, std::string>> parts{{"summary", "Summary"}, {"scan", "Scan"}};
-  for (const ReportView& view : report.views) parts.emplace_back(view_id(view), std::to_string(view.index));
+  for (const ShownView& view : report.views) parts.emplace_back(view_id(view), std::to_string(view.number));
   parts.emplace_back("run", "Run");
   std::string main = summary(report) + legend_html_of(report) + scan_section(report);
-  MapFigures before{report.initial.coverage, report.initial.unknown_left};
-  for (const ReportView& view : report.views) {
-    main += part_html(view_id(view), "View " + std::to_string(view.index), view_facts(view, before, report.gain_unit),
+  MapFigures before{report.initial.measures.coverage, report.initial.measures.unknown_left};
+  for (const ShownView& view : report.views) {
+    main += part_html(view_id(view), "View " + std::to_string(view.number), view_facts(view, before, report.gain_unit),
                       view.pictures);
-    before = {view.coverage, view.unknown_left};
+    before = {view.record.measures.coverage, view.record.measures.unknown_left};
   }
   main += run_section(report);
   return page_html({report.title, report.version, settings_of(report), verdict(report), parts}, main);

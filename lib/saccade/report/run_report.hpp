@@ -9,6 +9,8 @@
 #include <utility>
 #include <vector>
 
+#include "saccade/explore/view_record.hpp"
+
 namespace saccade {
 
 /// A picture of the page.
@@ -19,44 +21,20 @@ struct ReportPicture {
   std::string kind;            ///< for example "map"; stepping through enlarged pictures stays with one kind
 };
 
-/// Time spent on one phase of a view.
-struct ReportPhase {
-  std::string name;
-  double ms{0.0};
-};
-
-/// One view that was taken, and the map after it. Figures against the truth are absent where there is none.
-struct ReportView {
-  std::size_t index{1};        ///< its number on the page, each once; the first view after the scan is 1
-  std::optional<double> gain;  ///< as predicted
-  std::size_t candidates{0};
-  std::optional<double> coverage;  ///< share, 0 to 1
-  std::size_t unknown_left{0};     ///< voxels
-  std::optional<std::size_t> unknown_near_objects;
-  std::optional<bool> points_at_object;
-  std::vector<ReportPhase> phases;  ///< the same names in the same order for every view, as far as possible
-  std::vector<ReportPicture> pictures;
+/// One view that was taken, with what the page shows beside its record.
+struct ShownView {
+  std::size_t number{1};  ///< on the page, each once; the first view after the scan is 1
+  ViewRecord record{};
+  std::vector<ReportPicture> pictures{};
   std::vector<std::pair<std::string, std::string>> facts{};  ///< further ones, such as the robot's
-  std::optional<std::size_t> region{};                       ///< number of the one that it was chosen for
+  std::optional<std::size_t> region{};                       ///< number of the region on the page, where there are some
 };
 
 /// The map after the initial scan.
-struct ReportScan {
-  std::optional<double> coverage;
-  std::size_t unknown_left{0};
-  std::optional<std::size_t> unknown_near_objects;
-  std::vector<ReportPicture> pictures;
+struct ShownScan {
+  Measures measures{};
+  std::vector<ReportPicture> pictures{};
   std::vector<std::pair<std::string, std::string>> facts{};  ///< further ones, such as poses that were passed over
-};
-
-/// The map at the end, against the truth.
-struct ReportFinal {
-  std::optional<double> coverage;
-  std::size_t unknown_left{0};
-  std::optional<std::size_t> unknown_near_objects;
-  std::optional<double> accuracy_m;
-  std::optional<double> chamfer_m;
-  std::optional<double> f_score;
 };
 
 /// A file beside the page.
@@ -82,9 +60,9 @@ struct RunReport {
   std::optional<double> min_gain;  ///< below which a region is done
   /// to_string(StopReason), which the page puts into words; any other text is shown as it is.
   std::string stop_reason;
-  ReportScan initial;
-  std::vector<ReportView> views;
-  ReportFinal final;
+  ShownScan initial;
+  std::vector<ShownView> views;
+  Measures final;  ///< the map at the end
   std::vector<ReportLink> links;
 };
 

@@ -62,28 +62,31 @@ std::string part_html(const std::string& id, const std::string& title, const Fac
   return out + "</section>\n";
 }
 
-FactList view_facts(const ReportView& view, const MapFigures& before, const std::string& gain_unit) {
+FactList view_facts(const ShownView& view, const MapFigures& before, const std::string& gain_unit) {
   FactList facts;
   facts.add("region", view.region, count_text);
-  facts.add("gain", view.gain, [&](double gain) { return gain_text(gain) + ' ' + gain_unit; });
-  if (view.candidates > 0) facts.add("candidates", grouped(view.candidates));
-  if (view.coverage) {
-    std::string text = percent_text(*view.coverage);
-    if (before.coverage) text += " (" + signed_text(100.0 * (*view.coverage - *before.coverage), 1) + " points)";
+  facts.add("gain", gain_of(view), [&](double gain) { return gain_text(gain) + ' ' + gain_unit; });
+  if (view.record.candidates > 0) facts.add("candidates", grouped(view.record.candidates));
+  if (view.record.measures.coverage) {
+    std::string text = percent_text(*view.record.measures.coverage);
+    if (before.coverage)
+      text += " (" + signed_text(100.0 * (*view.record.measures.coverage - *before.coverage), 1) + " points)";
     facts.add("coverage", text);
   }
-  facts.add("unknown left",
-            grouped(view.unknown_left) + " (" +
-                signed_text(static_cast<double>(view.unknown_left) - static_cast<double>(before.unknown_left), 0) +
-                ")");
-  facts.add("unknown near objects", view.unknown_near_objects, count_text);
-  facts.add("points at an object", view.points_at_object, [](bool yes) { return std::string{yes ? "yes" : "no"}; });
+  facts.add("unknown left", grouped(view.record.measures.unknown_left) + " (" +
+                                signed_text(static_cast<double>(view.record.measures.unknown_left) -
+                                                static_cast<double>(before.unknown_left),
+                                            0) +
+                                ")");
+  facts.add("unknown near objects", view.record.measures.unknown_near_objects, count_text);
+  facts.add("points at an object", view.record.reveals_object,
+            [](bool yes) { return std::string{yes ? "yes" : "no"}; });
   for (const auto& [name, value] : view.facts) facts.add(name, value);
-  if (!view.phases.empty()) facts.add("time", duration_text(total_ms(view)) + phases_text(view));
+  if (total_ms(view) > 0.0) facts.add("time", duration_text(total_ms(view)) + phases_text(view));
   return facts;
 }
 
-std::string view_id(const ReportView& view) { return "view-" + std::to_string(view.index); }
+std::string view_id(const ShownView& view) { return "view-" + std::to_string(view.number); }
 
 std::string links_html(const std::vector<ReportLink>& links) {
   if (links.empty()) return {};

@@ -32,8 +32,8 @@ struct MapFigures {
   std::optional<double> coverage;
   std::size_t unknown_left{0};
 };
-[[nodiscard]] FactList view_facts(const ReportView& view, const MapFigures& before, const std::string& gain_unit);
-[[nodiscard]] std::string view_id(const ReportView& view);
+[[nodiscard]] FactList view_facts(const ShownView& view, const MapFigures& before, const std::string& gain_unit);
+[[nodiscard]] std::string view_id(const ShownView& view);
 
 /// Empty without links.
 [[nodiscard]] std::string links_html(const std::vector<ReportLink>& links);

@@ -21,12 +21,12 @@ std::string millimetres(double metres) { return number_text(kMillimetres * metre
 
 template <class Get>
 bool any_view(const RunReport& report, const Get& get) {
-  return std::any_of(report.views.begin(), report.views.end(), [&](const ReportView& view) { return get(view); });
+  return std::any_of(report.views.begin(), report.views.end(), [&](const ShownView& view) { return get(view); });
 }
 
-std::vector<std::string> positions_of(std::span<const ReportView> views, const std::string& first) {
+std::vector<std::string> positions_of(std::span<const ShownView> views, const std::string& first) {
   std::vector<std::string> positions{first};
-  for (const ReportView& view : views) positions.push_back(std::to_string(view.index));
+  for (const ShownView& view : views) positions.push_back(std::to_string(view.number));
   return positions;
 }
 
@@ -37,33 +37,35 @@ std::string chart(const std::string& title, const std::string& svg, const std::s
 /// A column of the table: its head, and what stands in it for a view.
 struct Column {
   std::string head;
-  std::function<std::string(const ReportView&)> cell;
+  std::function<std::string(const ShownView&)> cell;
 };
 
 std::vector<Column> columns_of(const RunReport& report) {
   // The cells outlive this function: nothing is captured by reference.
   const auto number = [](const auto& value, const auto& format) { return value ? format(*value) : std::string{"–"}; };
   std::vector<Column> columns;
-  if (any_view(report, [](const ReportView& view) { return view.gain.has_value(); })) {
-    columns.push_back({"gain, " + report.gain_unit, [=](const ReportView& v) { return number(v.gain, gain_text); }});
+  if (any_view(report, [](const ShownView& view) { return gain_of(view).has_value(); })) {
+    columns.push_back({"gain, " + report.gain_unit, [=](const ShownView& v) { return number(gain_of(v), gain_text); }});
   }
-  if (any_view(report, [](const ReportView& view) { return view.candidates > 0; })) {
-    columns.push_back({"candidates", [](const ReportView& v) { return grouped(v.candidates); }});
+  if (any_view(report, [](const ShownView& view) { return view.record.candidates > 0; })) {
+    columns.push_back({"candidates", [](const ShownView& v) { return grouped(v.record.candidates); }});
   }
-  if (any_view(report, [](const ReportView& view) { return view.coverage.has_value(); })) {
-    columns.push_back({"coverage", [=](const ReportView& v) { return number(v.coverage, percent_text); }});
-  }
-  columns.push_back({"unknown left", [](const ReportView& v) { return grouped(v.unknown_left); }});
-  if (any_view(report, [](const ReportView& view) { return view.unknown_near_objects.has_value(); })) {
+  if (any_view(report, [](const ShownView& view) { return view.record.measures.coverage.has_value(); })) {
     columns.push_back(
-        {"unknown near objects", [=](const ReportView& v) { return number(v.unknown_near_objects, count_text); }});
+        {"coverage", [=](const ShownView& v) { return number(v.record.measures.coverage, percent_text); }});
   }
-  if (any_view(report, [](const ReportView& view) { return view.points_at_object.has_value(); })) {
+  columns.push_back({"unknown left", [](const ShownView& v) { return grouped(v.record.measures.unknown_left); }});
+  if (any_view(report, [](const ShownView& view) { return view.record.measures.unknown_near_objects.has_value(); })) {
+    columns.push_back({"unknown near objects",
+                       [=](const ShownView& v) { return number(v.record.measures.unknown_near_objects, count_text); }});
+  }
+  if (any_view(report, [](const ShownView& view) { return view.record.reveals_object.has_value(); })) {
     const auto word = [](bool yes) { return std::string{yes ? "yes" : "no"}; };
-    columns.push_back({"points at an object", [=](const ReportView& v) { return number(v.points_at_object, word); }});
+    columns.push_back(
+        {"points at an object", [=](const ShownView& v) { return number(v.record.reveals_object, word); }});
   }
-  if (any_view(report, [](const ReportView& view) { return !view.phases.empty(); })) {
-    columns.push_back({"time", [](const ReportView& v) { return duration_text(total_ms(v)); }});
+  if (any_view(report, [](const ShownView& view) { return total_ms(view) > 0.0; })) {
+    columns.push_back({"time", [](const ShownView& v) { return duration_text(total_ms(v)); }});
   }
   return columns;
 }
@@ -119,26 +121,27 @@ std::string stop_sentence(const std::string& stop_reason) {
   return "It stopped: " + stop_reason + ".";
 }
 
-std::vector<std::string> phase_names(std::span<const ReportView> views) {
-  std::vector<std::string> names;
-  for (const ReportView& view : views) {
-    for (const ReportPhase& phase : view.phases) {
-      if (std::find(names.begin(), names.end(), phase.name) == names.end()) names.push_back(phase.name);
-    }
-  }
-  return names;
+std::optional<double> gain_of(const ShownView& view) {
+  const double gain = view.record.gain_predicted;
+  return std::isnan(gain) ? std::nullopt : std::optional{gain};
 }
 
-double total_ms(const ReportView& view) {
-  double sum{0.0};
-  for (const ReportPhase& phase : view.phases) sum += phase.ms;
-  return sum;
+std::vector<PhaseName> phases_of(std::span<const ShownView> views) {
+  std::vector<PhaseName> phases;
+  std::copy_if(kPhases.begin(), kPhases.end(), std::back_inserter(phases), [&](const PhaseName& phase) {
+    return std::any_of(views.begin(), views.end(),
+                       [&](const ShownView& view) { return view.record.times.ms(phase.phase) > 0.0; });
+  });
+  return phases;
 }
 
-std::string phases_text(const ReportView& view) {
+double total_ms(const ShownView& view) { return view.record.times.total_ms(); }
+
+std::string phases_text(const ShownView& view) {
   std::string text;
-  for (const ReportPhase& phase : view.phases) {
-    text += (text.empty() ? "" : ", ") + phase.name + ' ' + duration_text(phase.ms);
+  for (const PhaseName& phase : phases_of(std::span{&view, 1})) {
+    text +=
+        (text.empty() ? "" : ", ") + std::string{phase.text} + ' ' + duration_text(view.record.times.ms(phase.phase));
   }
   return text.empty() ? text : " (" + text + ")";
 }
@@ -161,19 +164,19 @@ std::string tile_html(std::string_view label, const std::string& value, const st
 
 std::string tiles_html(const RunReport& report) {
   std::string out = "<dl class=\"tiles\">";
-  const ReportFinal& end = report.final;
+  const Measures& end = report.final;
   if (end.coverage) {
-    const auto& before = report.initial.coverage;
+    const auto& before = report.initial.measures.coverage;
     out += tile_html("coverage", percent_text(*end.coverage), before ? percent_text(*before) + " after the scan" : "");
   }
   out += tile_html("unknown left", grouped(end.unknown_left),
-                   "voxels, of " + grouped(report.initial.unknown_left) + " after the scan");
+                   "voxels, of " + grouped(report.initial.measures.unknown_left) + " after the scan");
   if (end.unknown_near_objects) out += tile_html("near objects", grouped(*end.unknown_near_objects), "unknown voxels");
   if (end.f_score) out += tile_html("F-score", number_text(*end.f_score, 3), "at 5 mm");
   if (end.chamfer_m) out += tile_html("Chamfer distance", millimetres(*end.chamfer_m));
   if (end.accuracy_m) out += tile_html("accuracy", millimetres(*end.accuracy_m));
   double time_ms{0.0};
-  for (const ReportView& view : report.views) time_ms += total_ms(view);
+  for (const ShownView& view : report.views) time_ms += total_ms(view);
   out += tile_html("views", grouped(report.views.size()), time_ms > 0.0 ? "in " + duration_text(time_ms) : "");
   return out + "</dl>";
 }
@@ -188,12 +191,12 @@ std::string charts_html(const RunReport& report) {
     return share ? std::optional{100.0 * *share} : std::nullopt;
   };
   coverage.high = 100.0;
-  coverage.values.push_back(percent(report.initial.coverage));
-  unknown.values.emplace_back(static_cast<double>(report.initial.unknown_left));
-  for (const ReportView& view : report.views) {
-    coverage.values.push_back(percent(view.coverage));
-    unknown.values.emplace_back(static_cast<double>(view.unknown_left));
-    gain.values.push_back(view.gain);
+  coverage.values.push_back(percent(report.initial.measures.coverage));
+  unknown.values.emplace_back(static_cast<double>(report.initial.measures.unknown_left));
+  for (const ShownView& view : report.views) {
+    coverage.values.push_back(percent(view.record.measures.coverage));
+    unknown.values.emplace_back(static_cast<double>(view.record.measures.unknown_left));
+    gain.values.push_back(gain_of(view));
   }
   const auto has_values = [](const ViewCurve& curve) {
     return std::any_of(curve.values.begin(), curve.values.end(), [](const auto& value) { return value.has_value(); });
@@ -211,15 +214,14 @@ std::string charts_html(const RunReport& report) {
   return "<div class=\"charts\">" + out + "</div>";
 }
 
-std::string time_chart_html(std::span<const ReportView> views, const std::string& first) {
-  PhaseCurve curve{"Time per view", phase_names(views), {{}}, positions_of(views, first)};
-  if (curve.names.empty()) return {};
-  for (const ReportView& view : views) {
-    std::vector<double>& ms = curve.ms.emplace_back(curve.names.size(), 0.0);
-    for (const ReportPhase& phase : view.phases) {
-      const auto it = std::find(curve.names.begin(), curve.names.end(), phase.name);
-      ms[static_cast<std::size_t>(it - curve.names.begin())] += phase.ms;
-    }
+std::string time_chart_html(std::span<const ShownView> views, const std::string& first) {
+  PhaseCurve curve{"Time per view", {}, {{}}, positions_of(views, first)};
+  const std::vector<PhaseName> phases = phases_of(views);
+  if (phases.empty()) return {};
+  for (const PhaseName& phase : phases) curve.names.emplace_back(phase.text);
+  for (const ShownView& view : views) {
+    std::vector<double>& ms = curve.ms.emplace_back();
+    for (const PhaseName& phase : phases) ms.push_back(view.record.times.ms(phase.phase));
   }
   std::string key = "<ul class=\"key\">";
   for (std::size_t i = 0; i < curve.names.size(); ++i) {
@@ -235,8 +237,8 @@ std::string table_html(const RunReport& report) {
   std::string out = "<div class=\"scroll\"><table><thead><tr><th>view</th>";
   for (const Column& column : columns) out += "<th>" + html_escaped(column.head) + "</th>";
   out += "</tr></thead><tbody>";
-  for (const ReportView& view : report.views) {
-    const std::string index = std::to_string(view.index);
+  for (const ShownView& view : report.views) {
+    const std::string index = std::to_string(view.number);
     out += "<tr><td><a href=\"#view-" + index + "\">" + index + "</a></td>";
     for (const Column& column : columns) out += "<td>" + html_escaped(column.cell(view)) + "</td>";
     out += "</tr>";

@@ -22,11 +22,13 @@ namespace saccade {
 [[nodiscard]] std::string signed_text(double value, int decimals);
 /// Why the run stopped, as a sentence.
 [[nodiscard]] std::string stop_sentence(const std::string& stop_reason);
-/// Names of all phases in the order in which they first appear.
-[[nodiscard]] std::vector<std::string> phase_names(std::span<const ReportView> views);
-[[nodiscard]] double total_ms(const ReportView& view);
+/// nullopt: not evaluated.
+[[nodiscard]] std::optional<double> gain_of(const ShownView& view);
+/// Phases that took time in one of the views.
+[[nodiscard]] std::vector<PhaseName> phases_of(std::span<const ShownView> views);
+[[nodiscard]] double total_ms(const ShownView& view);
 /// " (candidates 0.4 ms, evaluation 31 ms)".
-[[nodiscard]] std::string phases_text(const ReportView& view);
+[[nodiscard]] std::string phases_text(const ShownView& view);
 
 /// Names and values as a description list. Empty names and values are left out.
 class FactList {
@@ -63,7 +65,7 @@ struct LegendItem {
 [[nodiscard]] std::string legend_html(bool draws_robot, const std::vector<LegendItem>& more = {});
 /// Time of each phase over the views, stacked. Empty without phases.
 /// @param first  name of the position before the first view.
-[[nodiscard]] std::string time_chart_html(std::span<const ReportView> views, const std::string& first);
+[[nodiscard]] std::string time_chart_html(std::span<const ShownView> views, const std::string& first);
 /// A figure; empty for what is no PNG. Pictures much wider than high take the whole width.
 [[nodiscard]] std::string picture_html(const ReportPicture& picture);
 

@@ -145,8 +145,8 @@ std::string tiles(const UpdateReport& report) {
   if (errors > 0) out += tile_html("mean error of lengths", in_millimetres(error_m / errors) + " mm", "of the objects");
   if (report.final.f_score) out += tile_html("F-score", number_text(*report.final.f_score, 3), "at 5 mm");
   double time_ms = 0.0;
-  for (const ReportView& view : report.views) time_ms += total_ms(view);
-  for (const ReportPhase& phase : report.phases_once) time_ms += phase.ms;
+  for (const ShownView& view : report.views) time_ms += total_ms(view);
+  for (const auto& [name, ms] : report.once_ms) time_ms += ms;
   out += tile_html("views", grouped(report.views.size()), time_ms > 0.0 ? "in " + duration_text(time_ms) : "");
   return "<dl class=\"tiles\">" + out + "</dl>";
 }
@@ -157,9 +157,9 @@ std::string summary(const UpdateReport& report) {
 
 std::string before_section(const UpdateReport& report) {
   FactList facts;
-  facts.add("coverage", report.before.coverage, percent_text);
-  facts.add("unknown left", grouped(report.before.unknown_left) + " voxels");
-  facts.add("unknown near objects", report.before.unknown_near_objects, count_text);
+  facts.add("coverage", report.before.measures.coverage, percent_text);
+  facts.add("unknown left", grouped(report.before.measures.unknown_left) + " voxels");
+  facts.add("unknown near objects", report.before.measures.unknown_near_objects, count_text);
   for (const auto& [name, value] : report.before.facts) facts.add(name, value);
   return part_html("before", "Before the task", facts, report.before.pictures);
 }
@@ -184,21 +184,17 @@ std::string task_section(const UpdateReport& report) {
 /// As Table 2.8, with all phases.
 std::string phases_html(const UpdateReport& report) {
   Lines lines{{"phase", "per view", "in all"}, {}};
-  for (const ReportPhase& phase : report.phases_once) {
-    lines.rows.push_back({phase.name, kNothing, duration_text(phase.ms)});
-  }
-  for (const std::string& name : phase_names(report.views)) {
+  for (const auto& [name, ms] : report.once_ms) lines.rows.push_back({name, kNothing, duration_text(ms)});
+  for (const PhaseName& phase : phases_of(report.views)) {
     double sum_ms = 0.0;
-    for (const ReportView& view : report.views) {
-      for (const ReportPhase& phase : view.phases) sum_ms += phase.name == name ? phase.ms : 0.0;
-    }
-    lines.rows.push_back(
-        {name, duration_text(sum_ms / static_cast<double>(report.views.size())), duration_text(sum_ms)});
+    for (const ShownView& view : report.views) sum_ms += view.record.times.ms(phase.phase);
+    lines.rows.push_back({std::string{phase.text}, duration_text(sum_ms / static_cast<double>(report.views.size())),
+                          duration_text(sum_ms)});
   }
   return lines.rows.empty() ? std::string{} : "<h3>Time by phase</h3>" + lines.html();
 }
 
-const ReportRegion* region_of(const UpdateReport& report, const ReportView& view) {
+const ReportRegion* region_of(const UpdateReport& report, const ShownView& view) {
   const auto found = std::find_if(report.regions.begin(), report.regions.end(),
                                   [&](const ReportRegion& region) { return view.region == region.number; });
   return found == report.regions.end() ? nullptr : &*found;
@@ -215,12 +211,13 @@ std::string views_html(const UpdateReport& report) {
   Lines lines{
       {"view", "region", "gain, " + report.gain_unit, "candidates", "unknown in its region", "coverage", "time"}, {}};
   for (std::size_t i = 0; i < report.views.size(); ++i) {
-    const ReportView& view = report.views[i];
+    const ShownView& view = report.views[i];
     const auto unknown = unknown_in_region(report, i);
-    lines.rows.push_back({std::to_string(view.index), text_or_nothing(view.region, count_text),
-                          text_or_nothing(view.gain, gain_text), view.candidates > 0 ? grouped(view.candidates) : "",
-                          unknown ? grouped(unknown->first) : kNothing, text_or_nothing(view.coverage, percent_text),
-                          view.phases.empty() ? "" : duration_text(total_ms(view))});
+    lines.rows.push_back(
+        {std::to_string(view.number), text_or_nothing(view.region, count_text),
+         text_or_nothing(gain_of(view), gain_text), view.record.candidates > 0 ? grouped(view.record.candidates) : "",
+         unknown ? grouped(unknown->first) : kNothing, text_or_nothing(view.record.measures.coverage, percent_text),
+         total_ms(view) <= 0.0 ? "" : duration_text(total_ms(view))});
   }
   return lines.html();
 }
@@ -237,14 +234,14 @@ std::string during_section(const UpdateReport& report) {
 }
 
 std::string view_section(const UpdateReport& report, std::size_t i, const MapFigures& before) {
-  const ReportView& view = report.views[i];
+  const ShownView& view = report.views[i];
   FactList facts = view_facts(view, before, report.gain_unit);
   if (const auto unknown = unknown_in_region(report, i)) {
     facts.add("unknown in its region",
               grouped(unknown->first) + " (" +
                   signed_text(static_cast<double>(unknown->first) - static_cast<double>(unknown->second), 0) + ")");
   }
-  return part_html(view_id(view), "View " + std::to_string(view.index), facts, view.pictures);
+  return part_html(view_id(view), "View " + std::to_string(view.number), facts, view.pictures);
 }
 
 std::string objects_html(const UpdateReport& report) {
@@ -283,7 +280,7 @@ std::string run_section(const UpdateReport& report) {
 
 std::string legend(const UpdateReport& report) {
   const bool in_views = std::any_of(report.views.begin(), report.views.end(),
-                                    [](const ReportView& view) { return !view.pictures.empty(); });
+                                    [](const ShownView& view) { return !view.pictures.empty(); });
   if (!in_views && report.before.pictures.empty() && report.task_pictures.empty() && report.after_pictures.empty()) {
     return {};
   }
@@ -298,7 +295,7 @@ std::string legend(const UpdateReport& report) {
 
 std::string update_report_html(const UpdateReport& report) {
   Pairs parts{{"summary", "Summary"}, {"before", "Before"}, {"task", "Task"}, {"during", "Views"}};
-  for (const ReportView& view : report.views) parts.emplace_back(view_id(view), std::to_string(view.index));
+  for (const ShownView& view : report.views) parts.emplace_back(view_id(view), std::to_string(view.number));
   parts.emplace_back("after", "After");
   parts.emplace_back("run", "Run");
   std::string sections =
@@ -306,7 +303,7 @@ std::string update_report_html(const UpdateReport& report) {
   MapFigures before{report.coverage_after_task, report.unknown_after_task};
   for (std::size_t i = 0; i < report.views.size(); ++i) {
     sections += view_section(report, i, before);
-    before = {report.views[i].coverage, report.views[i].unknown_left};
+    before = {report.views[i].record.measures.coverage, report.views[i].record.measures.unknown_left};
   }
   sections += after_section(report) + run_section(report);
   return page_html({report.title, report.version, settings_of(report), verdict(report), parts}, sections);

@@ -58,20 +58,20 @@ struct UpdateReport {
   std::vector<std::pair<std::string, std::string>> facts;
   std::string gain_unit{"rays"};
   std::optional<double> min_gain;  ///< below which a region is done
-  ReportScan before;               ///< after the initial scan, before the task
+  ShownScan before;                ///< after the initial scan, before the task
   // The task.
   std::vector<ReportPicture> task_pictures;
   std::vector<std::pair<std::string, std::string>> task_facts;
   std::string speed_svg;  ///< speed_plot; it goes into the page as it is
   std::vector<ReportRegion> regions;
   // Looking again.
-  std::vector<ReportPhase> phases_once;  ///< not part of any view, such as clearing
-  std::vector<ReportView> views;         ///< with their region's number
-  std::size_t unknown_after_task{0};     ///< voxels of the whole workspace
+  std::vector<std::pair<std::string, double>> once_ms;  ///< phases that are part of no view, such as clearing
+  std::vector<ShownView> views;                         ///< with their region's number
+  std::size_t unknown_after_task{0};                    ///< voxels of the whole workspace
   std::optional<double> coverage_after_task;
   // After it.
   std::vector<ReportPicture> after_pictures;
-  ReportFinal final;
+  Measures final;
   std::vector<ReportObject> objects;
   std::vector<ReportLink> links;
 };

@@ -67,7 +67,7 @@ class ContourViews final : public ViewGenerator {
 
   ContourViewConfig views_;
   LiveContours contours_;
-  std::shared_ptr<const ContourSet> set_;          ///< of the map that was seen last
+  std::shared_ptr<const ContourSet> set_;          ///< contours of the map that was seen last
   std::shared_ptr<const SalientSurface> surface_;  ///< that set_ belongs to
   std::vector<std::vector<std::uint32_t>> of_segment_;
 };

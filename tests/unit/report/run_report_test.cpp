@@ -9,6 +9,7 @@
 
 #include "saccade/report/html_text.hpp"
 #include "unit/report/png_header.hpp"
+#include "unit/report/shown_view.hpp"
 #include "unit/report/well_formed.hpp"
 
 namespace saccade {
@@ -17,6 +18,7 @@ namespace {
 using test::count;
 using test::Markup;
 using test::png_header;
+using test::shown_view;
 using test::well_formed;
 
 RunReport example() {
@@ -32,13 +34,12 @@ RunReport example() {
   report.facts = {{"voxel size", "5.8 mm"}, {"camera", "640×480"}};
   report.min_gain = 30.0;
   report.stop_reason = "views_used_up";
-  report.initial = {0.709,
-                    273794,
-                    12134,
+  report.initial = {{0.709, 273794, 12134},
                     {{png_header(720, 540), "after the scan", "the map", "map"}},
                     {{"poses passed over", "1 out of reach"}}};
-  report.views = {{1, 5581.0, 960, 0.932, 162586, 4606, false, {{"evaluation", 931.0}, {"fusion", 357.0}}, {}},
-                  {2, 1590.5, 959, 0.941, 132342, 3132, true, {{"evaluation", 877.0}, {"fusion", 371.0}}, {}}};
+  report.views = {
+      shown_view(1, 5581.0, 960, {0.932, 162586, 4606}, false, {{Phase::gain, 931.0}, {Phase::fusion, 357.0}}),
+      shown_view(2, 1590.5, 959, {0.941, 132342, 3132}, true, {{Phase::gain, 877.0}, {Phase::fusion, 371.0}})};
   report.views[0].pictures = {{png_header(720, 592), "the choice", "candidates", "choice"},
                               {png_header(972, 412), "the sight", "colour and depth", "seen"}};
   report.final = {0.941, 132342, 3132, 0.00143, 0.00163, 0.938};
@@ -49,13 +50,9 @@ RunReport example() {
 /// A robot's run: nobody knows the truth.
 RunReport without_truth() {
   RunReport report = example();
-  report.initial.coverage.reset();
-  report.initial.unknown_near_objects.reset();
-  for (ReportView& view : report.views) {
-    view.coverage.reset();
-    view.unknown_near_objects.reset();
-    view.points_at_object.reset();
-  }
+  report.initial.measures.coverage.reset();
+  report.initial.measures.unknown_near_objects.reset();
+  for (ShownView& view : report.views) test::without_truth(view);
   report.final = {{}, 132342, {}, {}, {}, {}};
   return report;
 }
@@ -147,12 +144,12 @@ TEST(RunReport, WithoutTruthSaysNothingOfIt) {
 
 TEST(RunReport, ViewsWithoutGainHaveNoGain) {
   RunReport report = example();
-  for (ReportView& view : report.views) view.gain.reset();
+  for (ShownView& view : report.views) view.record.gain_predicted = std::nan("");
   report.min_gain.reset();
   const std::string page = run_report_html(report);
   EXPECT_EQ(count(page, "<svg"), 3U);
   EXPECT_FALSE(has(page, "gain, rays"));
-  report.views[1].gain = 12.0;
+  report.views[1].record.gain_predicted = 12.0;
   EXPECT_TRUE(has(run_report_html(report), "gain, rays"));
 }
 
@@ -176,7 +173,7 @@ TEST(RunReport, EscapesAllText) {
   }
   report.facts = {{evil, evil}};
   report.links = {{evil, evil}};
-  report.views[0].phases = {{evil, 1.0}};
+  report.views[0].facts = {{evil, evil}};
   for (ReportPicture& picture : report.views[0].pictures) picture.caption = picture.alt = picture.kind = evil;
   const std::string page = run_report_html(report);
   EXPECT_EQ(well_formed(page).problem, "");
@@ -187,10 +184,12 @@ TEST(RunReport, EscapesAllText) {
 TEST(RunReport, OddNumbersDoNotBreakThePage) {
   RunReport report = example();
   const double infinite = std::numeric_limits<double>::infinity();
-  report.views[0].gain = std::nan("");
-  report.views[1].gain = infinite;
-  report.views[0].coverage = std::nan("");
-  report.views[0].phases = {{"evaluation", std::nan("")}, {"fusion", -1.0}, {"motion", infinite}};
+  report.views[0].record.gain_predicted = std::nan("");
+  report.views[1].record.gain_predicted = infinite;
+  report.views[0].record.measures.coverage = std::nan("");
+  report.views[0].record.times.add(Phase::gain, std::nan(""));
+  report.views[0].record.times.add(Phase::planning, -1.0);
+  report.views[0].record.times.add(Phase::motion, infinite);
   report.min_gain = infinite;
   report.final.chamfer_m = std::nan("");
   const std::string page = run_report_html(report);
@@ -211,10 +210,10 @@ TEST(RunReport, IsLittleMoreThanItsPictures) {
   RunReport report = example();
   constexpr std::size_t kPictureBytes{100000};
   constexpr std::size_t kViews{12};
-  const ReportView view = report.views[1];
+  const ShownView view = report.views[1];
   report.views.assign(kViews, view);
   for (std::size_t i = 0; i < kViews; ++i) {
-    report.views[i].index = i + 1;
+    report.views[i].number = i + 1;
     report.views[i].pictures.assign(3, {png_header(720, 540, kPictureBytes), "caption", "alt", "kind"});
   }
   const std::string page = run_report_html(report);
