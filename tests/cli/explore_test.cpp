@@ -11,13 +11,14 @@
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/sacmap.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
 
 Arguments explore(const fs::path& out, Arguments more) {
-  Arguments all{"explore", "clutter:5",    "--out", out.string(), "--image-size",
-                "128,96",  "--voxel-size", "0.02",  "--quiet"};
+  Arguments all{"explore", tiny_cell_file(), "--out", out.string(), "--image-size",
+                "96,72",   "--voxel-size",   "0.015", "--quiet"};
   all.insert(all.end(), more.begin(), more.end());
   return all;
 }
@@ -279,7 +280,7 @@ TEST(ExploreCommand, StepAsksBeforeEachMove) {
 
 TEST(ExploreCommand, ScannedObjectsAreExplored) {
   if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; GoesFromViewToView runs one";
-  const fs::path meshes = fs::absolute(fs::path{SACCADE_SHARED_DATA} / "meshes_ycb");
+  const fs::path meshes = fs::absolute(shared_data() / "meshes_ycb");
   if (!fs::exists(meshes)) GTEST_SKIP() << meshes << " is not there";
   const auto object = [&](const std::string& name, const std::string& file, const std::string& at) {
     return "  - {name: " + name + ", mesh: {path: \"" + (meshes / file).string() + "\"}, at: " + at + "}\n";
