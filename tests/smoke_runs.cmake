@@ -21,7 +21,7 @@ set(smoke_tests
   SceneSequence.IsAFolderOfFramesWithTheirTruth
   Score.IsWhatCanBeWorkedOutByHand
   Segment.LabelsACloudAndSaysHowSalientItsPartsAre
-  ShowCommand.ShowsAnExplorationViewByView
+  ShowCommand.ShowsARunWhileItGoesOn
   Surfels.BothGivesTheModesAndTheAverages
   UpdateCommand.LooksAgainWhereABottleWasPutDown)
 list(JOIN smoke_tests ":" smoke_runs)

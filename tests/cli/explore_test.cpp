@@ -16,11 +16,12 @@
 namespace saccade::test {
 namespace {
 
-Arguments explore(const fs::path& out, Arguments more) {
-  Arguments all{"explore", tiny_cell_file(), "--out", out.string(), "--image-size",
-                "96,72",   "--voxel-size",   "0.015", "--quiet"};
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
+Arguments explore_scene(const std::string& scene, const fs::path& out, const Arguments& more) {
+  return Arguments{"explore", scene, "--out", out.string(), "--quiet"} + more;
+}
+
+Arguments explore(const fs::path& out, const Arguments& more) {
+  return explore_scene(tiny_cell_file(), out, Arguments{"--image-size", "96,72", "--voxel-size", "0.015"} + more);
 }
 
 // Pictures take half of the time, and more under sanitizers.
@@ -45,7 +46,9 @@ TEST(ExploreCommand, TakesAKinectV2) {
 TEST(ExploreCommand, GoesFromViewToView) {
   const TempFolder folder;
   const fs::path run = folder / "run";
-  const Outcome outcome = run_program(explore(run, {"--max-views", "2", "--min-gain", "5", "--json", "-"}));
+  const Outcome outcome = run_program(explore_scene(
+      "clutter:5", run,
+      {"--image-size", "128,96", "--voxel-size", "0.02", "--max-views", "2", "--min-gain", "5", "--json", "-"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = outcome.json().at("result");
   EXPECT_EQ(result.at("stopped_because"), "views_used_up");
