@@ -29,7 +29,7 @@ struct Outcome {
   std::size_t seen{0};  ///< pixels of the ray cast that show a surface
   std::vector<std::uint64_t> gains;
   std::vector<std::uint32_t> segments;  ///< label of each surface point
-  std::size_t components{0};            ///< of the surface points by flood fill
+  std::size_t components{0};            ///< connected parts of the surface, by flood fill
   std::size_t surfels{0};
   std::size_t modes{0};
   std::vector<std::uint32_t> roots;  ///< control point that each surface point belongs to
