@@ -16,6 +16,7 @@
 #include "saccade/annotate/shortest_path_forest.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/cloud_io.hpp"
+#include "support/places.hpp"
 
 namespace {
 
@@ -50,7 +51,7 @@ PointCloud made_sheet(std::size_t points) {
 }
 
 std::vector<PointCloud> recorded_clouds() {
-  const fs::path folder = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
+  const fs::path folder = test::shared_data() / "mosd_labelled" / "learn";
   if (!fs::is_directory(folder)) return {made_sheet(kThesisPoints)};
   std::vector<PointCloud> clouds;
   const std::vector<fs::path> paths = list_clouds(folder).value();

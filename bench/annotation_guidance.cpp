@@ -13,6 +13,7 @@
 #include "saccade/annotate/label_seeds.hpp"
 #include "saccade/annotate/next_best_click.hpp"
 #include "support/labelled_clouds.hpp"
+#include "support/places.hpp"
 
 namespace {
 
@@ -35,7 +36,7 @@ PointCloud lattice(std::size_t side) {
 const PointCloud& cloud() {
   static const PointCloud chosen = [] {
     PointCloud points;
-    const std::vector<test::LabelledCloud> clouds = test::labelled_clouds(SACCADE_SHARED_DATA);
+    const std::vector<test::LabelledCloud> clouds = test::labelled_clouds(test::shared_data());
     if (clouds.empty()) return lattice(412);
     for (const Eigen::Vector3f& p_m : clouds.front().cloud.positions_m) {
       if (p_m.allFinite()) points.positions_m.push_back(p_m);

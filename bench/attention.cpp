@@ -9,6 +9,7 @@
 #include "saccade/attention/made_up_task.hpp"
 #include "saccade/core/clock.hpp"
 #include "support/hand_detectors.hpp"
+#include "support/places.hpp"
 #include "support/recorded_hands.hpp"
 #include "support/reference_em.hpp"
 
@@ -20,7 +21,7 @@ constexpr std::size_t kMadeUpTasks{100};
 
 const std::vector<LabelledTrajectory>& hands() {
   static const std::vector<LabelledTrajectory> read = [] {
-    std::vector<LabelledTrajectory> all = test::recorded_hands(SACCADE_SHARED_DATA).all();
+    std::vector<LabelledTrajectory> all = test::recorded_hands(test::shared_data()).all();
     if (!all.empty()) return all;
     for (std::uint64_t seed = 0; seed < kMadeUpTasks; ++seed) {
       MadeUpTask task = made_up_task(seed, {.actions = 1 + static_cast<int>(seed % 2)});

@@ -13,6 +13,7 @@
 #include "saccade/segment/live_segments.hpp"
 #include "segmentation_peer.hpp"
 #include "support/labelled_clouds.hpp"
+#include "support/places.hpp"
 #include "table_map.hpp"
 
 namespace {
@@ -24,7 +25,7 @@ Executor threads_of(const benchmark::State& state, std::size_t argument) {
 }
 
 const std::vector<test::LabelledCloud>& clouds() {
-  static const std::vector<test::LabelledCloud> read = test::labelled_clouds(SACCADE_SHARED_DATA);
+  static const std::vector<test::LabelledCloud> read = test::labelled_clouds(test::shared_data());
   return read;
 }
 

@@ -8,6 +8,7 @@
 #include "saccade/annotate/annotation_error.hpp"
 #include "saccade/annotate/rectangle_annotator.hpp"
 #include "support/labelled_clouds.hpp"
+#include "support/places.hpp"
 
 namespace {
 
@@ -24,7 +25,7 @@ const Scene& scene() {
     constexpr std::size_t kPoints{150'000};
     Scene best;
     const auto off = [](const Scene& s) { return std::abs(static_cast<double>(s.truth.size()) - kPoints); };
-    for (const test::LabelledCloud& labelled : test::labelled_clouds(SACCADE_SHARED_DATA)) {
+    for (const test::LabelledCloud& labelled : test::labelled_clouds(test::shared_data())) {
       Scene next;
       for (std::size_t i = 0; i < labelled.parts.size(); ++i) {
         if (!labelled.cloud.positions_m[i].allFinite()) continue;

@@ -162,8 +162,19 @@ fi
 echo "Annotation sessions: a thousand processes killed while they annotate"
 step annotation_kills env SACCADE_KILL_CASES=1000 build/release/tests/unit_io '--gtest_filter=AnnotationSessionKilled*'
 
-echo "The annotation page with ten million points"
+echo "The page: its times, and the annotation of ten million points"
+step browser_times scripts/web.sh test --project times --no-deps
 step browser_large env SACCADE_LARGE=1 scripts/web.sh test large
+
+echo "Tests that many seeds, scenes or frames make true, and clang-tidy without what it knows to be clean"
+configure release -DSACCADE_BUILD_TESTS=ON -DSACCADE_BUILD_BENCH=ON && compile release >>"$out/build_tests.log" || failed=1
+step floors ctest --test-dir build/release -L floors --output-on-failure
+for program in build/release/tests/*; do
+  [[ -f $program && -x $program ]] || continue
+  [[ -n "$("$program" --gtest_list_tests --gtest_filter='*Evidence.*' | grep '^  ')" ]] || continue
+  step "tests_$(basename "$program")" "$program" '--gtest_filter=*Evidence.*'
+done
+step tidy env SACCADE_TIDY_CACHE=off scripts/tidy.sh
 
 echo "Fuzzing"
 { configure asan-ubsan && compile asan-ubsan tests/fuzz/all; } >"$out/build_fuzzers.log" || failed=1

@@ -1,14 +1,18 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Sums up what make test ran: the skipped tests and why, the failed ones, and last `N passed, N failed`.
+"""Sums up what make test ran: skipped tests and why, the slowest tests, phases against their budgets, failures, and last
+`N passed, N failed`.
 
-Reads the JUnit files that ctest and Playwright left in a folder. Every phase counts as one more test. Exit status 1 on any failure, and
-when nothing ran."""
-import argparse
+Usage: test_summary.py RESULTS BUDGET. RESULTS is the folder that scripts/test.sh fills, BUDGET is tests/budget.json. Each
+phase counts as one more test. Exit status 1 on any failure, when nothing ran, when a phase took twice its budget, and when
+a test took twice the processor time that it may take. Budgets grow with the machine's slowness (machine_speed.txt)."""
+import json
 import pathlib
 import re
 import sys
 import xml.etree.ElementTree as ElementTree
+
+SLOWEST = 40
 
 
 def reason_of(output):
@@ -20,41 +24,140 @@ def reason_of(output):
     return "no reason given"
 
 
-def main():
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("results", type=pathlib.Path)
-    parser.add_argument("--phases", default="")
-    parser.add_argument("--failed", default="")
-    arguments = parser.parse_args()
+class Tests:
+    """Outcomes of all tests, and the processor seconds of those that GoogleTest ran."""
 
-    passed, failed, skipped = 0, [], {}
-    for path in sorted(arguments.results.glob("*.xml")):
+    def __init__(self):
+        self.passed, self.failed, self.skipped, self.seconds = 0, [], {}, {}
+
+    def skip(self, name, reason):
+        self.skipped.setdefault(reason, []).append(name)
+
+    def read(self, results):
+        for path in sorted(results.glob("*.xml")):
+            for case in ElementTree.parse(path).getroot().iter("testcase"):
+                shard = results / path.stem / f"{case.get('name')}.xml"
+                if shard.exists():
+                    self.read_shard(path.stem, shard, case)
+                else:
+                    self.read_case(path.stem, case)
+
+    def read_case(self, phase, case):
+        """One test of ctest or Playwright. A shard that crashed has left no file of its own, and counts here."""
+        name = f"{phase}: {case.get('name')}"
+        output = case.findtext("system-out") or ""
+        broken = case.find("failure") is not None or case.find("error") is not None
+        status = case.get("status") or ("fail" if broken else "run")  # ctest says it, Playwright does not
+        if case.find("skipped") is not None or status == "notrun":
+            self.skip(name, reason_of(output))
+        elif status == "run":
+            self.passed += 1
+        else:
+            self.failed.append(name)
+
+    def read_shard(self, phase, path, shard):
+        """The tests of one process of GoogleTest. One that fails although none of its tests does (a leak that
+        AddressSanitizer found at the end, say) is a failure, too."""
+        program = path.name.rsplit(".", 2)[0]
+        failed_before = len(self.failed)
         for case in ElementTree.parse(path).getroot().iter("testcase"):
-            name = f"{path.stem}: {case.get('name')}"
-            output = case.findtext("system-out") or ""
-            broken = case.find("failure") is not None or case.find("error") is not None
-            status = case.get("status") or ("fail" if broken else "run")  # ctest says it, Playwright does not
-            if case.find("skipped") is not None or status == "notrun":
-                skipped.setdefault(reason_of(output), []).append(name)
-            elif status == "run":
-                passed += 1
+            name = f"{phase}: {program}.{case.get('classname')}.{case.get('name')}"
+            skipped = case.find("skipped")
+            if case.get("status") != "run":
+                continue
+            if case.find("failure") is not None:
+                self.failed.append(name)
+            elif skipped is not None:
+                self.skip(name, reason_of(f"x: Skipped\n{message_of(skipped)}"))
             else:
-                failed.append(name)
-    for reason, names in skipped.items():
+                self.passed += 1
+            for item in case.iter("property"):
+                if item.get("name") == "processor_s":
+                    self.seconds[name] = float(item.get("value"))
+        if shard.get("status") == "fail" and len(self.failed) == failed_before:
+            self.failed.append(f"{phase}: {shard.get('name')}, after its last test")
+
+
+def message_of(skipped):
+    """GoogleTest 1.12 writes file, line and message; only the message is of interest."""
+    text = (skipped.get("message") or skipped.text or "").strip()
+    return text.splitlines()[-1] if text else ""
+
+
+def cache_of(path):
+    """Compilations that the cache answered, and all."""
+    if not path.exists():
+        return 0, 0
+    lines = path.read_text().splitlines()
+    hits = sum(line in ("direct_cache_hit", "preprocessed_cache_hit") for line in lines)
+    return hits, hits + sum(line == "cache_miss" for line in lines)
+
+
+def print_phases(results, budgets, slowness):
+    """@return the names of failed phases, those that took twice their budget included."""
+    failed, total_s, total_budget = [], 0, 0
+    print(f"{'phase':<9}{'build s':>9}{'run s':>7}{'budget':>8}  compiler cache")
+    for line in (results / "phases.tsv").read_text().splitlines():
+        name, build, run, outcome = line.split("\t")
+        hits, compiled = cache_of(results / f"ccache-{name}.log")
+        share = hits / compiled if compiled else 1.0
+        budget = budgets[name]
+        allowed = slowness * (budget["warm_s"] + (1.0 - share) * (budget["cold_s"] - budget["warm_s"]))
+        took = int(build) + int(run)
+        total_s, total_budget = total_s + took, total_budget + allowed
+        note = f"{hits} of {compiled}" if compiled else "-"
+        if compiled and share < 0.5:
+            note += ": fewer than half"
+        print(f"{name:<9}{build:>9}{run:>7}{allowed:>8.0f}  {note}")
+        if outcome != "passed":
+            failed.append(f"phase {name}")
+        elif took > 2.0 * allowed:
+            failed.append(f"phase {name} took {took} s, twice its budget of {allowed:.0f} s or more (tests/budget.json)")
+    print(f"{'in all':<9}{total_s:>16}{total_budget:>8.0f}")
+    return failed
+
+
+def slow_tests(tests, budget, slowness):
+    """@return what took twice its processor time or more, and prints the slowest."""
+    release = {name.split(": ", 1)[1]: s for name, s in tests.seconds.items() if name.startswith("release: ")}
+    if not release:
+        return []
+    slowest = sorted(release, key=lambda name: -release[name])[:SLOWEST]
+    print(f"The {len(slowest)} tests that took the most processor time, of {sum(release.values()):.0f} s in all:")
+    for name in slowest:
+        print(f"  {release[name]:6.1f} s  {name}")
+    long_tests = budget["long"]
+    for name in long_tests:
+        if name not in release:
+            yield f"{name} is a long test by tests/budget.json, but there is no such test"
+    if len(long_tests) > budget["most_long"]:
+        yield f"{len(long_tests)} long tests in tests/budget.json; at most {budget['most_long']}"
+    for name in slowest:
+        allowed = budget["long_s" if name in long_tests else "test_s"]
+        if release[name] > 2.0 * allowed * slowness:
+            yield f"{name} took {release[name]:.1f} s of processor time; it may take {allowed} s (tests/budget.json)"
+
+
+def main():
+    results, budget = pathlib.Path(sys.argv[1]), json.loads(pathlib.Path(sys.argv[2]).read_text())
+    speeds = [float(text) for text in (results / "machine_speed.txt").read_text().split()]
+    slowness = max(1.0, sum(speeds) / len(speeds))
+    tests = Tests()
+    tests.read(results)
+    for reason, names in tests.skipped.items():
         print(f"Skipped, {reason}:")
         for name in names:
             print(f"  {name}")
+    failed = tests.failed + list(slow_tests(tests, budget["tests"], slowness))
+    print(f"Work takes {speeds[0]:.2f} to {speeds[-1]:.2f} times as long here as where the budgets were measured.")
+    phases = (results / "phases.tsv").read_text().splitlines()
+    failed_phases = print_phases(results, budget["phases"], slowness)
+    failed += failed_phases
     for name in failed:
         print(f"Failed: {name}")
-    failed_phases = arguments.failed.split()
-    for name in failed_phases:
-        print(f"Failed: phase {name}")
-    count_skipped = sum(len(names) for names in skipped.values())
-    phases = len(arguments.phases.split())
-    total_failed = len(failed) + len(failed_phases)
-    print(f"{count_skipped} skipped")
-    print(f"{passed + phases - len(failed_phases)} passed, {total_failed} failed")
-    sys.exit(1 if total_failed or not passed else 0)
+    print(f"{sum(len(names) for names in tests.skipped.values())} skipped")
+    print(f"{tests.passed + len(phases) - len(failed_phases)} passed, {len(failed)} failed")
+    sys.exit(1 if failed or not tests.passed else 0)
 
 
 if __name__ == "__main__":

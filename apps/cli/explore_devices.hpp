@@ -34,7 +34,7 @@ class ExploreDevices {
   [[nodiscard]] CarriedCamera& camera() { return camera_; }
   [[nodiscard]] const PinholeCamera& intrinsics() const { return camera_.intrinsics(); }
   [[nodiscard]] Robot& robot() { return camera_.robot(); }
-  /// The same, as it moves in simulation.
+  /// The simulated arm; nullptr: something else carries the camera.
   [[nodiscard]] const SimulatedRobot* simulated_arm() const {
     return dynamic_cast<const SimulatedRobot*>(&camera_.robot());
   }

@@ -41,7 +41,7 @@ struct ViewScenes {
 
 /// "2 out of reach, 1 without a path"; empty: none.
 [[nodiscard]] std::string refused_text(const RefusalCounts& refused);
-/// The same of `refused` in the document.
+/// As refused_text(counts), for `refused` of the document.
 [[nodiscard]] std::string refused_text(const nlohmann::json& refused);
 
 /// Writes report.html from the record, the document that goes to run.json and the pictures in the folder; pictures that

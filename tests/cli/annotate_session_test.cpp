@@ -6,6 +6,7 @@
 #include "saccade/io/annotation_script.hpp"
 #include "saccade/io/cloud_io.hpp"
 #include "saccade/io/label_presets.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -86,7 +87,7 @@ TEST_F(AnnotateSession, EveryActionIsThatOfTheLibrary) {
 }
 
 TEST_F(AnnotateSession, TheScriptOfTheDocumentationDoesWhatItSays) {
-  const std::string page = *read_text_file(fs::path{SACCADE_SOURCE_DIR} / "docs" / "annotation.md");
+  const std::string page = *read_text_file(source_folder() / "docs" / "annotation.md");
   const std::string mark{"<!-- script -->\n```\n"};
   const std::size_t begin = page.find(mark) + mark.size();
   const std::string script = page.substr(begin, page.find("```", begin) - begin);

@@ -9,6 +9,7 @@
 #include "saccade/attention/made_up_task.hpp"
 #include "saccade/io/hand_trajectory_io.hpp"
 #include "saccade/io/image_io.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -153,7 +154,7 @@ TEST_F(Attend, BadInputIsOneLine) {
 }
 
 TEST(AttendRecorded, TheThesisHandsGiveItsFigures) {
-  const fs::path hands = fs::path{SACCADE_SHARED_DATA} / "hand_polhemus";
+  const fs::path hands = shared_data() / "hand_polhemus";
   if (!fs::exists(hands)) GTEST_SKIP() << "no " << hands;
   const Outcome outcome =
       run_program({"attend", hands.string(), "--method", "zvc", "--evaluate", "--quiet", "--json", "-"});

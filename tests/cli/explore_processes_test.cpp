@@ -7,6 +7,7 @@
 #include "run_program.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/sacmap.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -17,7 +18,9 @@ scan:
   - {from: [0.0, -0.6, 0.5], look_at: [0, 0, 0.1]}
 )"};
 
-std::string example(const std::string& name) { return "python3 '" + std::string{SACCADE_EXAMPLES} + "/" + name + "'"; }
+std::string example(const std::string& name) {
+  return "python3 '" + (source_folder() / "examples" / name).string() + "'";
+}
 
 class ExploreProcesses : public ::testing::Test {
  protected:

@@ -11,15 +11,17 @@
 #include "saccade/io/ply_io.hpp"
 #include "saccade/io/sacmap.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
 
-Arguments explore(const fs::path& out, Arguments more) {
-  Arguments all{"explore", "clutter:5",    "--out", out.string(), "--image-size",
-                "128,96",  "--voxel-size", "0.02",  "--quiet"};
-  all.insert(all.end(), more.begin(), more.end());
-  return all;
+Arguments explore_scene(const std::string& scene, const fs::path& out, const Arguments& more) {
+  return Arguments{"explore", scene, "--out", out.string(), "--quiet"} + more;
+}
+
+Arguments explore(const fs::path& out, const Arguments& more) {
+  return explore_scene(tiny_cell_file(), out, Arguments{"--image-size", "96,72", "--voxel-size", "0.015"} + more);
 }
 
 // Pictures take half of the time, and more under sanitizers.
@@ -44,7 +46,9 @@ TEST(ExploreCommand, TakesAKinectV2) {
 TEST(ExploreCommand, GoesFromViewToView) {
   const TempFolder folder;
   const fs::path run = folder / "run";
-  const Outcome outcome = run_program(explore(run, {"--max-views", "2", "--min-gain", "5", "--json", "-"}));
+  const Outcome outcome = run_program(explore_scene(
+      "clutter:5", run,
+      {"--image-size", "128,96", "--voxel-size", "0.02", "--max-views", "2", "--min-gain", "5", "--json", "-"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = outcome.json().at("result");
   EXPECT_EQ(result.at("stopped_because"), "views_used_up");
@@ -279,7 +283,7 @@ TEST(ExploreCommand, StepAsksBeforeEachMove) {
 
 TEST(ExploreCommand, ScannedObjectsAreExplored) {
   if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; GoesFromViewToView runs one";
-  const fs::path meshes = fs::absolute(fs::path{SACCADE_SHARED_DATA} / "meshes_ycb");
+  const fs::path meshes = fs::absolute(shared_data() / "meshes_ycb");
   if (!fs::exists(meshes)) GTEST_SKIP() << meshes << " is not there";
   const auto object = [&](const std::string& name, const std::string& file, const std::string& at) {
     return "  - {name: " + name + ", mesh: {path: \"" + (meshes / file).string() + "\"}, at: " + at + "}\n";

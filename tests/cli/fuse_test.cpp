@@ -8,6 +8,7 @@
 #include "saccade/io/sacmap.hpp"
 #include "saccade/io/trajectory_io.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -231,7 +232,7 @@ TEST_F(FuseInterrupted, TheSecondSignalEndsAtOnce) {
 }
 
 TEST(FuseRecorded, FiveFramesOfALivingRoom) {
-  const fs::path data = fs::path{SACCADE_SHARED_DATA} / "rgbd_open3d5" / "RGBD";
+  const fs::path data = shared_data() / "rgbd_open3d5" / "RGBD";
   if (!fs::exists(data)) GTEST_SKIP() << data << " is not there";
   const TempFolder folder;
   for (const char* tracking : {"forced", "icp", "hint"}) {
@@ -248,7 +249,7 @@ TEST(FuseRecorded, FiveFramesOfALivingRoom) {
 }
 
 TEST(FuseRecorded, KitchenFitsItsMapWithinEightMillimetres) {
-  const fs::path data = fs::path{SACCADE_SHARED_DATA} / "rgbd_redkitchen";
+  const fs::path data = shared_data() / "rgbd_redkitchen";
   if (!fs::exists(data)) GTEST_SKIP() << data << " is not there";
   if (kSanitized) GTEST_SKIP() << "two hundred frames take minutes with sanitizers; release fuses them";
   const TempFolder folder;

@@ -11,6 +11,7 @@
 #include "saccade/io/trajectory_io.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -208,7 +209,7 @@ TEST(Sample, IsSeededAndKeepsOtherFiles) {
 }
 
 TEST(Program, ResultsThatCannotBePrintedAreAFailure) {
-  const std::string command = std::string{SACCADE_PROGRAM} + " info > /dev/full 2> /dev/null";
+  const std::string command = std::string{saccade_program()} + " info > /dev/full 2> /dev/null";
   const int status = std::system(command.c_str());
   EXPECT_EQ(WEXITSTATUS(status), 3);
 }

@@ -7,6 +7,7 @@
 
 #include "cli/annotated_boxes.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -150,9 +151,9 @@ TEST_F(ReproduceAnnotation, BadInputIsOneLine) {
 }
 
 /// Some of mOSD's clouds, by links.
-TEST(AnnotateRecordedClouds, ThreeClicksPerLabelAreAlmostEnough) {
+TEST(AnnotateRecordedCloudsEvidence, ThreeClicksPerLabelAreAlmostEnough) {
   if (kSanitized) GTEST_SKIP() << "takes long under sanitizers; the tests of annotation run the code";
-  const fs::path recorded = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
+  const fs::path recorded = shared_data() / "mosd_labelled" / "learn";
   if (!fs::exists(recorded)) GTEST_SKIP() << "no " << recorded;
   const TempFolder folder;
   Arguments names{"learn38.pcd", "learn33.pcd", "learn0.pcd"};

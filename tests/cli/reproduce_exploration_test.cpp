@@ -49,7 +49,7 @@ TEST(ReproduceExploration, SegmentsOfObjectsComeBeforeTheTable) {
   EXPECT_GT(table.at("candidates").get<std::size_t>(), of_objects);
 }
 
-TEST(ReproduceExploration, PhasesMarksAndCurvesOfFourScenes) {
+TEST(ReproduceExplorationEvidence, PhasesMarksAndCurvesOfFourScenes) {
   if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; explore_test runs one";
   const TempFolder folder;
   const Outcome outcome = reproduce({"3.1", "3.3", "3.17"}, {"--out", folder.path().string()});

@@ -9,6 +9,7 @@
 #include "cli/run_program.hpp"
 #include "saccade/attention/made_up_task.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -204,7 +205,7 @@ TEST_F(ReproduceHands, AnInterruptionKeepsTheTablesBeforeIt) {
 }
 
 TEST(ReproduceRecordedHands, Table2_2IsWithinThreePointsOfTheThesis) {
-  const fs::path hands = fs::path{SACCADE_SHARED_DATA} / "hand_polhemus";
+  const fs::path hands = shared_data() / "hand_polhemus";
   if (!fs::exists(hands)) GTEST_SKIP() << "no " << hands;
   if (kSanitized) GTEST_SKIP() << "200 trajectories take too long under sanitizers";
   const Outcome outcome = run_program({"reproduce", "2.2", "2.6", "--hands", hands.string(), "--quiet", "--json", "-"});

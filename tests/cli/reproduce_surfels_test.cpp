@@ -51,7 +51,7 @@ void expect_close_up(const json& figure, const fs::path& file) {
   }
 }
 
-TEST(ReproduceSurfels, ScenesErrorsAndCurvesOfAFewFrames) {
+TEST(ReproduceSurfelsEvidence, ScenesErrorsAndCurvesOfAFewFrames) {
   if (kSanitized) GTEST_SKIP() << "five scenes take long under sanitizers";
   const TempFolder folder;
   const fs::path out = folder / "plots";
@@ -139,7 +139,7 @@ TEST(ReproduceSurfels, AnInterruptionKeepsTheScenesThatAreDone) {
   }
 }
 
-TEST(ReproduceSurfels, ExposureCompensationWinsBackWhatGainCosts) {
+TEST(ReproduceSurfelsEvidence, ExposureCompensationWinsBackWhatGainCosts) {
   if (kSanitized) GTEST_SKIP() << "three trials take long under sanitizers";
   const json table = tables_of(run_program({"reproduce", "4.gain", "--scene", "magazines-2", "--frames", "24",
                                             "--image-width", "128", "--placements", "2", "--quiet", "--json", "-"}))

@@ -32,7 +32,7 @@ TEST(Reproduce, RefusesWhatItDoesNotKnow) {
   expect_failure(run_program({"reproduce", "2.9", "--json", "/dev/null/no/file"}), 3, "reproduce", {"/dev/null/no"});
 }
 
-TEST(Reproduce, UpdatesStandBesideTheThesis) {
+TEST(ReproduceEvidence, UpdatesStandBesideTheThesis) {
   if (kSanitized) GTEST_SKIP() << "four updates take long under sanitizers; update_test runs them";
   const Outcome outcome = run_program({"reproduce", "2.7", "--image-width", "80", "--quiet", "--json", "-"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;

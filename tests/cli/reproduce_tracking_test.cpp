@@ -10,7 +10,7 @@
 namespace saccade::test {
 namespace {
 
-constexpr int kScanFrames{10};
+constexpr int kScanFrames{6};
 
 void expect_parts(const std::string& text, const Arguments& parts) {
   for (const std::string& part : parts) EXPECT_NE(text.find(part), std::string::npos) << part << "\n" << text;

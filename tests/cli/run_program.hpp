@@ -19,6 +19,7 @@
 #include <thread>
 #include <vector>
 
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade::test {
@@ -47,7 +48,7 @@ class RunningProgram {
   explicit RunningProgram(const Arguments& arguments, rlim_t file_bytes = 0, const std::string& input = "") {
     std::ofstream{folder_ / "in"} << input;
     const std::string in = (folder_ / "in").string();
-    std::vector<char*> argv{const_cast<char*>(SACCADE_PROGRAM)};
+    std::vector<char*> argv{const_cast<char*>(saccade_program())};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     const std::string out = (folder_ / "out").string();

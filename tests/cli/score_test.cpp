@@ -5,6 +5,7 @@
 #include "cli/run_program.hpp"
 #include "saccade/io/pcd_io.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -79,7 +80,7 @@ TEST_F(Score, AveragesOverPairsAndFolders) {
 
 /// What docs/segmentation.md says of mOSD's clouds, by the commands that it names.
 TEST_F(Score, OfRealLabelledClouds) {
-  const fs::path clouds = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled" / "learn";
+  const fs::path clouds = shared_data() / "mosd_labelled" / "learn";
   if (!fs::is_directory(clouds)) GTEST_SKIP() << "no " << clouds;
   if (kSanitized) GTEST_SKIP() << "twelve clouds take long under sanitizers; golden has one";
   fs::create_directories(folder_ / "predicted");

@@ -12,8 +12,9 @@ namespace saccade::test {
 namespace {
 
 Arguments short_run(const fs::path& out) {
-  return {"explore",     "clutter:5", "--out",      out.string(), "--image-size", "128,96", "--voxel-size", "0.02",
-          "--max-views", "2",         "--min-gain", "5",          "--quiet"};
+  return {"explore",      tiny_cell_file(), "--out",       out.string(), "--image-size", "128,96",
+          "--voxel-size", "0.02",           "--max-views", "2",          "--min-gain",   "5",
+          "--quiet"};
 }
 
 /// The document's summary, and that it is served until it is interrupted.
@@ -50,7 +51,7 @@ TEST(ShowCommand, ShowsAnExplorationViewByView) {
   ASSERT_EQ(views.size(), 2U);
   const nlohmann::json document = shown(run, folder / "shown.json");
   EXPECT_EQ(document.at("kind"), "run");
-  EXPECT_EQ(document.at("title"), "Exploration of clutter:5");
+  EXPECT_EQ(document.at("title"), "Exploration of tiny-cell");
   ASSERT_EQ(document.at("steps").size(), 3U);  // with the scan
   EXPECT_TRUE(document["steps"][0].at("T_world_camera").is_null());
   for (std::size_t i = 0; i < 2; ++i) {

@@ -45,13 +45,14 @@
 #include "saccade/view/contours.hpp"
 #include "saccade/view/view_gain.hpp"
 #include "saccade/view/view_sphere.hpp"
+#include "support/places.hpp"
 
 namespace saccade {
 namespace {
 
 /// The cell "default" of the row whose cell "in the code" is `name`; empty without such a row.
 std::string documented(const std::string& name) {
-  std::ifstream file{SACCADE_SOURCE_DIR "/docs/defaults.md"};
+  std::ifstream file{test::source_folder() / "docs/defaults.md"};
   for (std::string line; std::getline(file, line);) {
     std::vector<std::string> cells;
     std::istringstream row{line};

@@ -15,6 +15,7 @@
 #include "saccade/annotate/simulated_annotator.hpp"
 #include "support/effort.hpp"
 #include "support/labelled_clouds.hpp"
+#include "support/places.hpp"
 
 namespace saccade {
 namespace {
@@ -29,7 +30,7 @@ struct TrueScene {
 
 std::vector<TrueScene> true_scenes(std::size_t most) {
   std::vector<TrueScene> scenes;
-  for (const test::LabelledCloud& labelled : test::labelled_clouds(SACCADE_SHARED_DATA)) {
+  for (const test::LabelledCloud& labelled : test::labelled_clouds(test::shared_data())) {
     if (scenes.size() == (test::kSanitized ? 1 : most)) break;
     TrueScene scene;
     for (std::size_t i = 0; i < labelled.parts.size(); ++i) {
@@ -66,7 +67,7 @@ double iou_of_clicks(const TrueScene& scene, const std::shared_ptr<const Neighbo
 
 TEST(AnnotationGuidance, AFewSeedsGiveTheTruthBack) {
   const std::vector<TrueScene> scenes = true_scenes(12);
-  if (scenes.empty()) GTEST_SKIP() << "no labelled clouds in " << SACCADE_SHARED_DATA;
+  if (scenes.empty()) GTEST_SKIP() << "no labelled clouds in " << test::shared_data();
   std::size_t seeds_of_all{0}, labels{0};
   for (const TrueScene& scene : scenes) {
     const auto graph = graph_of_scene(scene, false);
@@ -79,10 +80,10 @@ TEST(AnnotationGuidance, AFewSeedsGiveTheTruthBack) {
   EXPECT_LT(seeds_of_all, 4 * labels);
 }
 
-TEST(AnnotationGuidance, ClicksWhereMostIsSettledBeatRandomOnes) {
+TEST(AnnotationGuidanceEvidence, ClicksWhereMostIsSettledBeatRandomOnes) {
   if (test::kSanitized) GTEST_SKIP() << "takes long under sanitizers; the next test runs the code";
   const std::vector<TrueScene> scenes = true_scenes(5);
-  if (scenes.empty()) GTEST_SKIP() << "no labelled clouds in " << SACCADE_SHARED_DATA;
+  if (scenes.empty()) GTEST_SKIP() << "no labelled clouds in " << test::shared_data();
   constexpr std::uint32_t kSeeds{3};
   double guided{0.0}, random{0.0}, simulated{0.0};
   for (const TrueScene& scene : scenes) {

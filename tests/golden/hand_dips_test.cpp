@@ -10,6 +10,7 @@
 #include "support/dip_reports.hpp"
 #include "support/effort.hpp"
 #include "support/hand_detectors.hpp"
+#include "support/places.hpp"
 #include "support/recorded_hands.hpp"
 
 namespace saccade {
@@ -17,7 +18,7 @@ namespace {
 
 /// Without the trajectories that have a mislabelled place; empty where there are none.
 std::vector<LabelledTrajectory> sound_hands() {
-  std::vector<LabelledTrajectory> hands = test::recorded_hands(SACCADE_SHARED_DATA).all();
+  std::vector<LabelledTrajectory> hands = test::recorded_hands(test::shared_data()).all();
   std::erase_if(hands, [](const LabelledTrajectory& hand) { return is_mislabelled(hand); });
   return hands;
 }
@@ -37,7 +38,7 @@ class RecordedHandDips : public testing::TestWithParam<HeldFigures> {};
 TEST_P(RecordedHandDips, AreWhereThingsWereMoved) {
   const HeldFigures& held = GetParam();
   const std::vector<LabelledTrajectory> hands = sound_hands();
-  if (hands.empty()) GTEST_SKIP() << "no recorded hands in " << SACCADE_SHARED_DATA;
+  if (hands.empty()) GTEST_SKIP() << "no recorded hands in " << test::shared_data();
   ASSERT_EQ(hands.size(), 192U);
   const int seeds = held.sigma_m > 0.0 || held.bad.any() ? test::scaled_cases(4) : 1;
   DetectionCounts wide;
@@ -76,7 +77,7 @@ INSTANTIATE_TEST_SUITE_P(
 
 TEST(RecordedHandDipStream, ReportsWithoutNoiseSoonAndNothingWrong) {
   const std::vector<LabelledTrajectory> hands = sound_hands();
-  if (hands.empty()) GTEST_SKIP() << "no recorded hands in " << SACCADE_SHARED_DATA;
+  if (hands.empty()) GTEST_SKIP() << "no recorded hands in " << test::shared_data();
   DetectionCounts counts;
   std::vector<double> latencies_s;
   for (const LabelledTrajectory& hand : hands) {

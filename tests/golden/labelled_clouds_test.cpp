@@ -9,13 +9,14 @@
 #include "saccade/segment/overlap.hpp"
 #include "support/effort.hpp"
 #include "support/labelled_clouds.hpp"
+#include "support/places.hpp"
 
 namespace saccade {
 namespace {
 
 TEST(LabelledClouds, ObjectsAreSegments) {
-  std::vector<test::LabelledCloud> clouds = test::labelled_clouds(SACCADE_SHARED_DATA);
-  if (clouds.empty()) GTEST_SKIP() << "no labelled clouds in " << SACCADE_SHARED_DATA;
+  std::vector<test::LabelledCloud> clouds = test::labelled_clouds(test::shared_data());
+  if (clouds.empty()) GTEST_SKIP() << "no labelled clouds in " << test::shared_data();
   if (test::kSanitized) clouds.resize(1);
   SupervoxelConfig config;
   config.voxels.single_camera = true;

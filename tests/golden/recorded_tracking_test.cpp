@@ -12,6 +12,7 @@
 #include "saccade/map/trajectory_error.hpp"
 #include "saccade/sensor/gap_filling.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade {
 namespace {
@@ -23,7 +24,7 @@ struct Sequence {
   std::vector<Frame> frames;
 };
 
-fs::path folder_of(const char* name) { return fs::path{SACCADE_SHARED_DATA} / name; }
+fs::path folder_of(const char* name) { return test::shared_data() / name; }
 
 /// Depth images as `saccade fuse` prepares them, all with poses.
 Sequence read_sequence(const fs::path& folder, const RgbdFolderConfig& config) {

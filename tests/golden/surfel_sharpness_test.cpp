@@ -20,6 +20,7 @@
 #include "saccade/surfel/surfel_points.hpp"
 #include "saccade/surfel/surfel_view.hpp"
 #include "support/effort.hpp"
+#include "support/places.hpp"
 
 namespace saccade {
 namespace {
@@ -27,7 +28,7 @@ namespace {
 constexpr std::size_t kLookedAt{10};  ///< frames that edges are looked for in
 
 std::size_t frames_to_fuse() {
-  constexpr std::size_t kQuick{100};
+  constexpr std::size_t kQuick{60};
   const char* const asked = std::getenv("SACCADE_SHARPNESS_FRAMES");
   return asked != nullptr ? std::stoul(asked) : kQuick;
 }
@@ -59,7 +60,7 @@ Image<float> rendered(const SurfelPoints& points, const PinholeCamera& camera, c
 }
 
 TEST(SurfelSharpness, ModesAreSharperThanAveragesOnRecordedFrames) {
-  const auto folder = std::filesystem::path{SACCADE_SHARED_DATA} / "rgbd_redkitchen";
+  const auto folder = test::shared_data() / "rgbd_redkitchen";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   if (test::kSanitized) GTEST_SKIP() << "takes long under sanitizers";
   const Executor executor = Executor::with_threads(0);

@@ -10,6 +10,7 @@
 
 #include "support/effort.hpp"
 #include "support/hand_detectors.hpp"
+#include "support/places.hpp"
 #include "support/recorded_hands.hpp"
 #include "thesis/hand_figures.hpp"
 
@@ -36,7 +37,7 @@ struct Parts {
 const Parts& parts() {
   static const Parts made = [] {
     Parts split;
-    split.all = test::recorded_hands(SACCADE_SHARED_DATA, kEvery).all();
+    split.all = test::recorded_hands(test::shared_data(), kEvery).all();
     for (const LabelledTrajectory& labelled : split.all) {
       (labelled.name.starts_with("user1") ? split.user1 : split.user2).push_back(labelled);
     }
@@ -63,13 +64,13 @@ DetectorEvaluation evaluate(const HandActionDetector& detector, const std::vecto
 class RecordedHands : public testing::Test {
  protected:
   void SetUp() override {
-    if (parts().all.empty()) GTEST_SKIP() << "no recorded hands in " << SACCADE_SHARED_DATA;
+    if (parts().all.empty()) GTEST_SKIP() << "no recorded hands in " << test::shared_data();
   }
 };
 
 TEST_F(RecordedHands, AreThoseOfTwoUsersWithNineWrongLabels) {
   if (test::kSanitized) GTEST_SKIP() << "only a part is read under sanitizers";
-  const test::RecordedHands hands = test::recorded_hands(SACCADE_SHARED_DATA);
+  const test::RecordedHands hands = test::recorded_hands(test::shared_data());
   EXPECT_EQ(hands.placements_and_removals.size(), 140U);
   EXPECT_EQ(hands.pick_and_place.size(), 60U);
   std::size_t labels{0};
@@ -84,7 +85,7 @@ TEST_F(RecordedHands, AreThoseOfTwoUsersWithNineWrongLabels) {
 
 TEST_F(RecordedHands, Table2_2) {
   if (test::kSanitized) GTEST_SKIP() << "only a part is read under sanitizers";
-  const test::RecordedHands hands = test::recorded_hands(SACCADE_SHARED_DATA);
+  const test::RecordedHands hands = test::recorded_hands(test::shared_data());
   const auto expect_near = [](const char* what, const DetectorEvaluation& ours, Rates thesis) {
     const Rates rates = rates_of(ours);
     EXPECT_NEAR(rates.precision, thesis.precision, kPoints) << what;
@@ -132,7 +133,10 @@ void expect_rows(const HandActionDetector& detector, Rates ConditionRates::*thes
   EXPECT_TRUE(test::kSanitized || near >= near_rows) << near << " rows within 3 points";
 }
 
-TEST_F(RecordedHands, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ConditionRates::gmm, 6); }
+/// Eleven conditions, five seeds of noise each: half a minute.
+class RecordedHandsEvidence : public RecordedHands {};
+
+TEST_F(RecordedHandsEvidence, Tables2_3And2_4OfGmmAs) { expect_rows(by_gmm, &ConditionRates::gmm, 6); }
 
 TEST_F(RecordedHands, Tables2_3And2_4OfZvc) { expect_rows(by_zvc, &ConditionRates::zvc, 5); }
 

@@ -2,6 +2,7 @@
 // The page, its files and the data behind it, over HTTP.
 #include "server/served_page.hpp"
 #include "server/web_page.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 namespace {
@@ -48,7 +49,7 @@ TEST_F(Http, AllFilesOfThePageAreGivenOut) {
 
 TEST_F(Http, PageFilesAreThoseOfItsFolder) {
   for (const server::PageFile& file : server::page_files()) {
-    std::ifstream read{std::string{SACCADE_SOURCE_DIR} + "/web/dist/" + std::string{file.path}, std::ios::binary};
+    std::ifstream read{source_folder().string() + "/web/dist/" + std::string{file.path}, std::ios::binary};
     const std::string content{std::istreambuf_iterator<char>{read}, {}};
     EXPECT_TRUE((std::string{file.content.begin(), file.content.end()}) == content) << file.path;
   }

@@ -8,10 +8,11 @@
 #include <string>
 
 #include "saccade/io/urdf.hpp"
+#include "support/places.hpp"
 
 namespace saccade::test {
 
-inline std::filesystem::path shared_robots() { return std::filesystem::path{SACCADE_SHARED_DATA} / "robots"; }
+inline std::filesystem::path shared_robots() { return shared_data() / "robots"; }
 
 inline std::string text_of_file(const std::filesystem::path& path) {
   std::ifstream file{path};

@@ -20,7 +20,7 @@ class Attempts {
   void add_view(const ViewRecord& view);
   /// The robot cannot take these poses.
   void add_refused(std::size_t region, std::span<const RankedView> views, Refusal refusal);
-  /// The one who was asked does not want this pose.
+  /// The caller does not want this pose.
   void add_skipped(std::size_t region, const Pose& T_world_camera);
 
   /// Whether the camera went to the pose, or tried to, for this region.

@@ -29,7 +29,7 @@ struct ExplorerConfig {
   [[nodiscard]] Status validate() const;
 };
 
-/// Answer of the one who is asked before the camera moves to a view.
+/// What the caller answers before the camera moves to a view.
 enum class Approval : std::uint8_t { go, skip, stop };
 using Approve = std::function<Approval(const RankedView& view)>;
 
@@ -58,7 +58,7 @@ class Explorer {
   Explorer(ExplorerParts parts, const ExplorerConfig& config) : parts_{std::move(parts)}, config_{config} {}
 
   /// The initial scan: moves to each pose that can be reached, looks, and fuses. What the robot sweeps on its way
-  /// through them is set free before (Robot::swept_by): the one who starts the robot there vouches for it. Errors:
+  /// through them is set free before (Robot::swept_by): the caller vouches for it. Errors:
   /// those of robot, camera, map and recorder.
   [[nodiscard]] Result<ScanRecord> scan(std::span<const Pose> T_world_camera);
 

@@ -15,7 +15,7 @@ enum class StopReason : std::uint8_t {
   regions_done,   ///< no view of any region that the robot can take gains enough
   views_used_up,  ///< as many views as were allowed
   no_candidate,   ///< no view of a region can be reached, or none of those that would gain enough
-  cancelled,      ///< the caller's progress, or the one who was asked, said so
+  cancelled,      ///< the caller's progress or approval said so
 };
 [[nodiscard]] std::string_view to_string(StopReason reason);
 /// The inverse. corrupt_data for any other text.

@@ -241,7 +241,7 @@ TEST_F(Explore, RegionsAreTakenInTurn) {
   FreeRobot robot;
   for (const bool by_chance : {false, true}) {
     TsdfMap map = empty_map();
-    exploration_.max_views = 4;  // of chance, two for each region
+    exploration_.max_views = 4;  // by chance two for each region
     const auto result = explore(map, robot, planner(by_chance ? "random" : "sphere", {left, right}));
     ASSERT_TRUE(result);
     ASSERT_EQ(result->views.size(), 4U);

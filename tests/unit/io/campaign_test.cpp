@@ -14,6 +14,7 @@
 
 #include "saccade/io/campaign_csv.hpp"
 #include "saccade/io/file_io.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -304,7 +305,7 @@ TEST(Campaign, AFileOfTheFirstVersionIsBroughtUpToDate) {
   const fs::path path = folder / "c";
   {
     const SqliteFile file = SqliteFile::open(path, 0).value();
-    ASSERT_TRUE(file.run(*read_text_file(fs::path{SACCADE_SOURCE_DIR} / "tests/unit/io/campaign_version_1.sql")));
+    ASSERT_TRUE(file.run(*read_text_file(test::source_folder() / "tests/unit/io/campaign_version_1.sql")));
   }
   for (int round = 0; round < 2; ++round) {  // the second time there is nothing to do
     const auto campaign = Campaign::open(path);

@@ -9,12 +9,13 @@
 
 #include "saccade/io/external_robot.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
 namespace {
 
-const std::string kExamples{SACCADE_SOURCE_DIR "/examples/"};
+const std::string kExamples{(test::source_folder() / "examples/").string()};
 const std::string kCameraPy{"/usr/bin/python3 -B '" + kExamples + "external_camera.py'"};
 const std::string kRobotPy{"/usr/bin/python3 -B '" + kExamples + "external_robot.py'"};
 
@@ -66,10 +67,9 @@ TEST(ExternalCamera, ThePythonExampleSeesItsScene) {
 }
 
 TEST(ExternalCamera, TheCppExampleSeesItsSceneInColor) {
-#ifndef SACCADE_EXAMPLE_CAMERA
-  GTEST_SKIP() << "the examples are not built";
-#else
-  auto camera = ExternalCamera::start({SACCADE_EXAMPLE_CAMERA});
+  const std::filesystem::path example = test::example_program("external_camera");
+  if (!std::filesystem::exists(example)) GTEST_SKIP() << "the examples are not built";
+  auto camera = ExternalCamera::start({example.string()});
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
   for (int i = 0; i < 5; ++i) {
     const auto frame = camera->capture(above());
@@ -79,7 +79,6 @@ TEST(ExternalCamera, TheCppExampleSeesItsSceneInColor) {
     EXPECT_EQ((*frame->color)(80, 70), (Rgb8{200, 60, 40}));
     EXPECT_EQ((*frame->color)(3, 118), (Rgb8{160, 160, 150}));
   }
-#endif
 }
 
 TEST(ExternalRobot, ThePythonExampleReachesItsBox) {

@@ -18,6 +18,7 @@
 #include "saccade/io/scene_yaml.hpp"
 #include "saccade/io/text_cloud.hpp"
 #include "saccade/io/urdf.hpp"
+#include "support/places.hpp"
 
 namespace saccade {
 namespace {
@@ -28,7 +29,7 @@ namespace fs = std::filesystem;
 template <class Accepts>
 std::size_t check_seeds(const char* name, Accepts accepts) {
   std::size_t seeds = 0;
-  for (const auto& entry : fs::directory_iterator{fs::path{SACCADE_SOURCE_DIR} / "tests/fuzz/corpus" / name}) {
+  for (const auto& entry : fs::directory_iterator{test::source_folder() / "tests/fuzz/corpus" / name}) {
     const auto content = read_text_file(entry.path());
     EXPECT_TRUE(content && accepts(*content, entry.path().filename().string())) << entry.path();
     ++seeds;

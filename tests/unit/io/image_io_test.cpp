@@ -9,6 +9,7 @@
 
 #include "saccade/io/depth_encoding.hpp"
 #include "saccade/io/file_io.hpp"
+#include "support/places.hpp"
 #include "support/png_maker.hpp"
 #include "support/temp_folder.hpp"
 
@@ -22,7 +23,7 @@ using test::TempFolder;
 
 Result<PngPixels> decode(const std::string& file) { return decode_png(as_byte_span(file)); }
 
-fs::path sample(const char* name) { return fs::path{SACCADE_SOURCE_DIR} / "tests/fuzz/corpus/image" / name; }
+fs::path sample(const char* name) { return test::source_folder() / "tests/fuzz/corpus/image" / name; }
 
 std::string message(const std::string& file) {
   const auto pixels = decode(file);

@@ -12,6 +12,7 @@
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/label_input.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -221,7 +222,7 @@ TEST(Labels, AreExplainedInTextAndJson) {
 }
 
 TEST(Labels, LeaveRealCloudsUntouched) {
-  const fs::path data{SACCADE_SHARED_DATA};
+  const fs::path data = test::shared_data();
   const std::vector<fs::path> paths{data / "clouds/example.pcd", data / "mosd_labelled/learn/learn0.pcd"};
   for (const fs::path& path : paths) {
     if (!fs::exists(path)) GTEST_SKIP() << "no " << path;

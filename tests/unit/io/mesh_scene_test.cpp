@@ -5,6 +5,7 @@
 
 #include "saccade/io/ply_io.hpp"
 #include "saccade/scene/ray_scene.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -83,7 +84,7 @@ TEST(MeshScene, FilesOfAFolderByTheirNames) {
 }
 
 TEST(MeshScene, HouseholdObjectsStandOnTheTable) {
-  const std::filesystem::path folder = std::filesystem::path{SACCADE_SHARED_DATA} / "meshes_ycb";
+  const std::filesystem::path folder = test::shared_data() / "meshes_ycb";
   if (!std::filesystem::exists(folder)) GTEST_SKIP() << folder << " is not there";
   const auto files = mesh_files(folder);
   ASSERT_TRUE(files);

@@ -11,6 +11,7 @@
 
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/lzf.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -141,7 +142,7 @@ TEST(Lzf, RoundTripsAndSurvivesDamage) {
 }
 
 TEST(Pcd, RealCloudsAreRead) {
-  const fs::path data{SACCADE_SHARED_DATA};
+  const fs::path data = test::shared_data();
   if (!fs::exists(data / "clouds")) GTEST_SKIP() << "no " << data / "clouds";
   std::size_t clouds = 0;
   for (const char* place : {"clouds", "mosd_labelled"}) {
@@ -167,7 +168,7 @@ TEST(Pcd, RealCloudsAreRead) {
 }
 
 TEST(Pcd, OrganisedRealCloudObeysItsCamera) {
-  const fs::path path = fs::path{SACCADE_SHARED_DATA} / "mosd_labelled/learn/learn0.pcd";
+  const fs::path path = test::shared_data() / "mosd_labelled/learn/learn0.pcd";
   if (!fs::exists(path)) GTEST_SKIP() << "no " << path;
   const auto cloud = read_pcd(path);
   ASSERT_TRUE(cloud);

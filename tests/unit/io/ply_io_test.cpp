@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "saccade/io/file_io.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -173,7 +174,7 @@ TEST(Ply, NanAndWindowsLineEndsAreRead) {
 }
 
 TEST(Ply, RealMeshesAreRead) {
-  const fs::path folder = fs::path{SACCADE_SHARED_DATA} / "meshes_ycb";
+  const fs::path folder = test::shared_data() / "meshes_ycb";
   if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
   int meshes = 0;
   for (const auto& entry : fs::directory_iterator{folder}) {

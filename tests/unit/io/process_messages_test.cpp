@@ -13,6 +13,7 @@
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/text_scan.hpp"
+#include "support/places.hpp"
 
 namespace saccade {
 namespace {
@@ -131,7 +132,7 @@ TEST(ProcessMessages, DepthInMetresAndColor) {
 
 /// docs/processes.md shows what is so: "→ " is what Saccade writes, "← " what it understands.
 TEST(ProcessMessages, TheTranscriptInTheDocumentIsSo) {
-  const auto document = read_text_file(SACCADE_SOURCE_DIR "/docs/processes.md");
+  const auto document = read_text_file(test::source_folder() / "docs/processes.md");
   ASSERT_TRUE(document.ok());
   int requests = 0;
   int answers = 0;

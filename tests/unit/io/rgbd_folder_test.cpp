@@ -7,6 +7,7 @@
 
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -314,7 +315,7 @@ std::ostream& operator<<(std::ostream& out, const RealFolder& folder) { return o
 class RealFrames : public testing::TestWithParam<RealFolder> {};
 
 TEST_P(RealFrames, AllAreRead) {
-  const fs::path folder = fs::path{SACCADE_SHARED_DATA} / GetParam().name;
+  const fs::path folder = test::shared_data() / GetParam().name;
   if (!fs::exists(folder)) GTEST_SKIP() << "no " << folder;
   auto source = open_rgbd_folder(folder);
   ASSERT_TRUE(source) << source.error().to_string();

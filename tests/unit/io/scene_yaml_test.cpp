@@ -8,6 +8,7 @@
 
 #include "saccade/io/ply_io.hpp"
 #include "saccade/scene/surface_samples.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -180,7 +181,7 @@ TEST(SceneYaml, MeshesOfSeveralFormatsAreRead) {
 }
 
 TEST(SceneYaml, ScannedObjectsAreRead) {
-  const fs::path meshes = fs::path{SACCADE_SHARED_DATA} / "meshes_ycb";
+  const fs::path meshes = test::shared_data() / "meshes_ycb";
   if (!fs::exists(meshes)) GTEST_SKIP() << meshes << " is not there";
   const auto scene = parse_scene(kHead + "  - {name: mug, at: [0, 0, 0], mesh: {path: 025_mug.stl}}\n" +
                                      "  - {name: banana, at: [0.3, 0, 0], mesh: {path: 011_banana_rgb.ply}}\n",

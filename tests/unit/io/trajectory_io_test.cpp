@@ -10,6 +10,7 @@
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/json_io.hpp"
+#include "support/places.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -137,7 +138,7 @@ TEST(Trajectory, BrokenTextIsAnErrorWithItsLine) {
 }
 
 TEST(Trajectory, RealFilesAreRead) {
-  const fs::path data{SACCADE_SHARED_DATA};
+  const fs::path data = test::shared_data();
   if (!fs::exists(data)) GTEST_SKIP() << "no " << data;
   EXPECT_EQ(read_poses(data / "rgbd_eyeinhand_shelfA/cam.poses.A.txt")->size(), 15U);
   EXPECT_EQ(read_poses(data / "rgbd_open3d5/RGBD/trajectory.log")->size(), 5U);
@@ -182,7 +183,7 @@ TEST(Intrinsics, BadOnesAreRefused) {
 }
 
 TEST(CamInfo, RealFileIsRead) {
-  const fs::path path = fs::path{SACCADE_SHARED_DATA} / "rgbd_eyeinhand_shelfA/cam.info.txt";
+  const fs::path path = test::shared_data() / "rgbd_eyeinhand_shelfA/cam.info.txt";
   if (!fs::exists(path)) GTEST_SKIP() << "no " << path;
   const auto info = parse_cam_info(*read_text_file(path));
   ASSERT_TRUE(info) << info.error().to_string();

@@ -25,7 +25,7 @@ RenderedSequenceConfig exact() {
   return config;
 }
 
-TEST(SurfelScenes, HaveManySegmentsThatTheCameraSees) {
+TEST(SurfelScenesEvidence, HaveManySegmentsThatTheCameraSees) {
   if (test::kSanitized) GTEST_SKIP() << "200 frames take long under sanitizers; the next tests cover the code";
   std::size_t scenes{0};
   for (const std::string_view name : kSurfelScenes) {

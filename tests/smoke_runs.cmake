@@ -1,0 +1,27 @@
+# SPDX-License-Identifier: Apache-2.0
+# What AddressSanitizer runs of the command line: each command once, and what is wrong with its input. The rest of
+# tests/cli goes through the same code, which the unit and property tests cover under the sanitizers.
+set(smoke_tests
+  Annotate.AFewClicksLabelAScene
+  AnnotateSession.AScriptLabelsAScene
+  Attend.FindsWhatTheLibraryFinds
+  BadInput.*
+  CompareCommand.GoesOnWhereItStopped
+  ExploreCommand.GoesFromViewToView
+  ExploreProcesses.ACameraAndARobotThatAreProgramsBuildAMap
+  Filter.RemovesWhatTheLibraryRemoves
+  Fuse.ForcedPosesGiveAllResults
+  Nbv.InfoDescribesTheProgramTheMapAndTheRun
+  Nbv.RanksTheViewSphereAsTheLibraryDoes
+  Reproduce.TablesStandBesideTheThesis
+  RobotCommand.SaysWhatItUnderstood
+  RobotReach.GoesByWhatItIsTold
+  Sample.IsSeededAndKeepsOtherFiles
+  SceneCommand.DrawsAScene
+  SceneSequence.IsAFolderOfFramesWithTheirTruth
+  Score.IsWhatCanBeWorkedOutByHand
+  Segment.LabelsACloudAndSaysHowSalientItsPartsAre
+  ShowCommand.ShowsARunWhileItGoesOn
+  Surfels.BothGivesTheModesAndTheAverages
+  UpdateCommand.LooksAgainWhereABottleWasPutDown)
+list(JOIN smoke_tests ":" smoke_runs)
