@@ -46,14 +46,15 @@ std::ptrdiff_t lines_of(const fs::path& path) {
 TEST(CompareCommand, GoesOnWhereItStopped) {
   const TempFolder folder;
   const fs::path out = folder / "out";
-  const Outcome first = run_program(compare(out, {"--seeds", "1", "--quiet", "--json", "-"}));
+  const Outcome first = run_program(compare_scenes(out, "clutter:5", {"--seeds", "1", "--quiet", "--json", "-"}));
   ASSERT_EQ(first.status, 0) << first.err;
   expect_envelope(first.json(), "compare");
   EXPECT_EQ(first.json().at("result").at("runs").dump(), R"({"done":2,"done_now":2,"planned":2})");
   const std::vector<CampaignEntry> before = runs_in(out);
   ASSERT_EQ(before.size(), 2U);
 
-  const Outcome second = run_program(compare(out, {"--seeds", "1-2", "--json", (folder / "result.json").string()}));
+  const Outcome second =
+      run_program(compare_scenes(out, "clutter:5", {"--seeds", "1-2", "--json", (folder / "result.json").string()}));
   ASSERT_EQ(second.status, 0) << second.err;
   EXPECT_NE(second.err.find("2 of 4 runs found"), std::string::npos) << second.err;
   EXPECT_NE(second.out.find("2 done now, 2 found"), std::string::npos) << second.out;
@@ -74,16 +75,17 @@ TEST(CompareCommand, GoesOnWhereItStopped) {
   EXPECT_NEAR(sphere.at("mean").get<double>(), 0.5 * sum, 1e-12);
   EXPECT_LT(sphere.at("low").get<double>(), sphere.at("mean").get<double>());
   EXPECT_EQ(result.at("gaps").at(0).at("coverage").at("n"), 2);
-  EXPECT_EQ(names_in(out), (Arguments{"campaign.sqlite", "coverage-tiny-cell.svg", "index.html", "runs.csv",
-                                      "summary.csv", "unknown-tiny-cell.svg", "views.csv"}));
+  EXPECT_EQ(names_in(out), (Arguments{"campaign.sqlite", "coverage-clutter-5.svg", "index.html", "runs.csv",
+                                      "summary.csv", "unknown-clutter-5.svg", "views.csv"}));
   EXPECT_EQ(lines_of(out / "runs.csv"), 5);
   EXPECT_EQ(lines_of(out / "views.csv"), 9);  // the scan and one view of each run
   EXPECT_EQ(lines_of(out / "summary.csv"), 1 + 2 * std::ssize(run_figures()));
   EXPECT_TRUE(text_of(out / "index.html").starts_with("<!DOCTYPE html>"));
-  EXPECT_TRUE(text_of(out / "coverage-tiny-cell.svg").starts_with("<svg "));
+  EXPECT_TRUE(text_of(out / "coverage-clutter-5.svg").starts_with("<svg "));
 
   // Other settings are other runs.
-  const Outcome listed = run_program(compare(out, {"--seeds", "1-2", "--list", "--no-noise", "--json", "-"}));
+  const Outcome listed =
+      run_program(compare_scenes(out, "clutter:5", {"--seeds", "1-2", "--list", "--no-noise", "--json", "-"}));
   ASSERT_EQ(listed.status, 0) << listed.err;
   const nlohmann::json planned = listed.json();
   for (const nlohmann::json& run : planned.at("result").at("runs")) EXPECT_EQ(run.at("found"), false);
