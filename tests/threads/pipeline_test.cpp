@@ -82,6 +82,9 @@ Outcome run(const std::vector<Frame>& seen, const Executor& executor) {
   TsdfConfig config;
   config.voxel_size_m = 0.015;
   TsdfMap map = TsdfMap::create(config).value();
+  const Sphere region{{0.0, 0.0, 0.05}, 0.2};
+  EXPECT_TRUE(map.free(Box{{-0.9, -0.9, -0.3}, {0.9, 0.9, 0.9}}).ok());  // cameras stand in free space
+  EXPECT_TRUE(map.forget(region).ok());
   for (const Frame& frame : seen)
     EXPECT_TRUE(map.integrate(kCamera, frame.depth, *frame.T_world_camera, executor).ok());
   const TsdfSnapshot snapshot = map.snapshot();
@@ -93,7 +96,7 @@ Outcome run(const std::vector<Frame>& seen, const Executor& executor) {
   const std::vector<Pose> poses = poses_of(view_sphere({0.0, 0.0, 0.05}, sphere).value());
   GainConfig gain;
   gain.sensor = {96, 72, 78.75, 78.75, 47.5, 35.5, 0.2, 3.0};
-  outcome.gains = evaluate_views(snapshot, Sphere{{0.0, 0.0, 0.05}, 0.2}, poses, gain, executor)->gains;
+  outcome.gains = evaluate_views(snapshot, region, poses, gain, executor)->gains;
   add_labels(snapshot, executor, outcome);
   add_surfels(seen, executor, outcome);
   return outcome;
