@@ -193,7 +193,7 @@ TEST(RobotReach, InterruptedItKeepsWhatWasDone) {
   const TempFolder folder;
   const std::string urdf = folder.write("arm.urdf", offset_wrist()).string();
   const fs::path out = folder / "out";
-  RunningProgram program{{"robot", "reach", urdf, "--out", out.string(), "--radius", "0.3", "--step", "0.02"}};
+  RunningProgram program{{"robot", "reach", urdf, "--out", out.string(), "--radius", "0.2", "--step", "0.03"}};
   ASSERT_TRUE(program.wait_for("testing poses: 1")) << program.err();
   program.send(SIGINT);
   const Outcome outcome = program.finish();
