@@ -128,12 +128,11 @@ class Driven {
   TsdfMap free_;
 };
 
-TEST(DrivenWayParity, BackOutIsTheWayThatItCameAndNeverDeeper) {
+void expect_to_back_out_the_way_it_came(int cases) {
   const ArmModel model = find_robot("comau_smart_six")->arm;
   const ArmCollision arm = ArmCollision::create(model).value();
   Driven driven{model, arm, 5};
   constexpr double kStep_s{test::kSanitized ? 0.11 : 0.011};
-  const int cases = test::scaled_cases(250);
   int touching = 0;
   int backed_out = 0;
   std::size_t looked_at = 0;
@@ -173,6 +172,11 @@ TEST(DrivenWayParity, BackOutIsTheWayThatItCameAndNeverDeeper) {
   std::cout << "cases " << cases << ", touching " << touching << ", backed out " << backed_out << ", looked at "
             << looked_at << '\n';
 }
+
+TEST(DrivenWayParity, BackOutIsTheWayThatItCameAndNeverDeeper) {
+  expect_to_back_out_the_way_it_came(test::scaled_cases(125));
+}
+TEST(DrivenWayParityEvidence, BackOutIsTheWayThatItCameAndNeverDeeper) { expect_to_back_out_the_way_it_came(250); }
 
 }  // namespace
 }  // namespace saccade
