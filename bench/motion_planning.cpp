@@ -17,6 +17,7 @@
 #include "saccade/io/scene_yaml.hpp"
 #include "saccade/io/urdf.hpp"
 #include "saccade/robot/reachability.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 #include "saccade/view/view_sphere.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/test_arms.hpp"

@@ -16,6 +16,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/io/json_io.hpp"
 #include "saccade/io/ply_io.hpp"
+#include "saccade/io/refusals_json.hpp"
 #include "saccade/io/run_json.hpp"
 #include "saccade/io/sacmap.hpp"
 #include "saccade/io/ternary_export.hpp"

@@ -12,6 +12,7 @@
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/image_io.hpp"
 #include "saccade/io/json_io.hpp"
+#include "saccade/io/refusals_json.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/run_report.hpp"
 #include "saccade/report/saliency_picture.hpp"

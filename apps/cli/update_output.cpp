@@ -8,6 +8,7 @@
 #include "explore_report.hpp"
 #include "saccade/io/camera_io.hpp"
 #include "saccade/io/json_io.hpp"
+#include "saccade/io/refusals_json.hpp"
 #include "saccade/io/run_json.hpp"
 #include "saccade/map/count_unknown.hpp"
 #include "saccade/map/mesh.hpp"

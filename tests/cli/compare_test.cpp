@@ -7,6 +7,7 @@
 #include "run_program.hpp"
 #include "saccade/io/campaign_figures.hpp"
 #include "saccade/io/json_io.hpp"
+#include "saccade/io/refusals_json.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {

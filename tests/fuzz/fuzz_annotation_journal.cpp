@@ -6,7 +6,7 @@
 
 #include "saccade/annotate/action_history.hpp"
 #include "saccade/io/annotation_journal.hpp"
-#include "saccade/io/sacmap_bricks.hpp"
+#include "saccade/io/crc32.hpp"
 
 namespace {
 
@@ -28,7 +28,7 @@ std::uint32_t number_at(const Bytes& file, std::size_t offset) {
 
 /// The checksum of so many bytes, right behind them.
 void repair(Bytes& file, std::size_t offset, std::size_t size) {
-  const std::uint32_t crc = saccade::sacmap::crc32(std::span{file}.subspan(offset, size));
+  const std::uint32_t crc = saccade::crc32(std::span{file}.subspan(offset, size));
   std::memcpy(&file[offset + size], &crc, sizeof crc);
 }
 
@@ -42,7 +42,7 @@ void repair_all(Bytes& file) {
     const std::size_t payload = number_at(file, at);
     const std::size_t next = at + kRecordHeaderBytes + payload;
     if (next > file.size()) return;
-    const std::uint32_t crc = saccade::sacmap::crc32(std::span{file}.subspan(at + kRecordHeaderBytes, payload));
+    const std::uint32_t crc = saccade::crc32(std::span{file}.subspan(at + kRecordHeaderBytes, payload));
     std::memcpy(&file[at + 4], &crc, sizeof crc);
     repair(file, at, 8);
     at = next;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/io/crc32.hpp"
 #include "saccade/io/sacmap.hpp"
 #include "saccade/io/sacmap_bricks.hpp"
 
@@ -24,7 +25,7 @@ void require(bool condition) {
 
 void repair(Bytes& file, std::size_t offset, std::size_t size) {
   if (file.size() < offset + size + 4) return;
-  const std::uint32_t crc = saccade::sacmap::crc32(std::span{file}.subspan(offset, size));
+  const std::uint32_t crc = saccade::crc32(std::span{file}.subspan(offset, size));
   std::memcpy(&file[offset + size], &crc, sizeof crc);
 }
 
@@ -33,7 +34,7 @@ void repair_first_sector(Bytes& file) {
   constexpr std::size_t kData{kOffset + kSectorHeaderBytes + 4};
   if (file.size() < kData) return;
   const auto size = static_cast<std::uint32_t>(file.size() - kData);
-  const std::uint32_t crc = saccade::sacmap::crc32(std::span{file}.subspan(kData));
+  const std::uint32_t crc = saccade::crc32(std::span{file}.subspan(kData));
   std::memcpy(&file[kOffset + 16], &size, sizeof size);
   std::memcpy(&file[kOffset + 20], &crc, sizeof crc);
   repair(file, kOffset, kSectorHeaderBytes);

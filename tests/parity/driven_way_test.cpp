@@ -9,6 +9,7 @@
 #include <iostream>
 
 #include "saccade/io/urdf.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 #include "support/effort.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/test_arms.hpp"

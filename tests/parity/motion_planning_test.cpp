@@ -9,6 +9,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/io/urdf.hpp"
 #include "saccade/robot/motion_planner.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 #include "support/effort.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/planning_scenes.hpp"

@@ -14,13 +14,6 @@
 
 namespace saccade {
 
-/// A trajectory with the places where the hand is known to have acted.
-struct LabelledTrajectory {
-  std::string name;
-  HandTrajectory trajectory;
-  std::vector<Eigen::Vector3d> labels_m;
-};
-
 /// Whether a label lies farther than `distance_m` from every sample, so that it cannot be where the hand acted.
 [[nodiscard]] bool is_mislabelled(const LabelledTrajectory& labelled, double distance_m = 0.2);
 

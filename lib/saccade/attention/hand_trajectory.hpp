@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HandTrajectory: where a hand was, sample after sample; HandAction: where and when it did something.
+// HandTrajectory: where a hand was, sample after sample; HandAction: where and when it did something;
+// LabelledTrajectory: both.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -26,6 +27,13 @@ struct HandAction {
   double time_s{0.0};
   double saliency{0.0};  ///< in the unit of the detector that found it; larger is more certain
   std::string why;       ///< one line for people
+};
+
+/// A trajectory with the places where the hand is known to have acted.
+struct LabelledTrajectory {
+  std::string name;
+  HandTrajectory trajectory;
+  std::vector<Eigen::Vector3d> labels_m;
 };
 
 }  // namespace saccade

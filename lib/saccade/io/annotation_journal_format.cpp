@@ -10,10 +10,10 @@
 #include "saccade/core/fnv1a.hpp"
 #include "saccade/io/annotation_journal.hpp"
 #include "saccade/io/annotation_records.hpp"
+#include "saccade/io/crc32.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/little_endian.hpp"
 #include "saccade/io/readable_text.hpp"
-#include "saccade/io/sacmap_bricks.hpp"
 
 namespace saccade {
 namespace {
@@ -46,7 +46,7 @@ struct RecordHeader {
   std::uint32_t payload_crc{0};
   std::uint32_t header_crc{0};  ///< of the eight bytes before
 
-  [[nodiscard]] std::uint32_t own_crc() const { return sacmap::crc32(std::as_bytes(std::span{this, 1}).first(8)); }
+  [[nodiscard]] std::uint32_t own_crc() const { return crc32(std::as_bytes(std::span{this, 1}).first(8)); }
 };
 static_assert(sizeof(RecordHeader) == 12 && std::is_trivially_copyable_v<RecordHeader>);
 
@@ -61,7 +61,7 @@ std::optional<std::span<const std::byte>> take_record(ByteReader& reader) {
   const auto header = ahead.value<RecordHeader>();
   if (header.header_crc != header.own_crc() || !ahead.has(header.payload_bytes)) return std::nullopt;
   const auto payload = ahead.take(header.payload_bytes);
-  if (sacmap::crc32(payload) != header.payload_crc) return std::nullopt;
+  if (crc32(payload) != header.payload_crc) return std::nullopt;
   reader = ahead;
   return payload;
 }
@@ -100,7 +100,7 @@ Result<SessionSubject> read_header(ByteReader& reader) {
   if (header.name_bytes > kMaxNameBytes) return damaged(12, "the cloud's name is too long");
   if (!reader.has(header.name_bytes + sizeof(std::uint32_t))) return short_header;
   const auto name = reader.take(header.name_bytes);
-  const std::uint32_t crc = sacmap::crc32(ByteReader{start}.take(sizeof(FixedHeader) + header.name_bytes));
+  const std::uint32_t crc = crc32(ByteReader{start}.take(sizeof(FixedHeader) + header.name_bytes));
   if (reader.value<std::uint32_t>() != crc) return damaged(0, "the header's checksum is wrong");
   SessionSubject subject{std::string{as_text(name)}, header.points, header.positions_hash, {}};
   subject.graph = {header.neighbours, header.position_weight_per_m, header.normal_weight, header.color_weight,
@@ -159,7 +159,7 @@ Bytes encode_journal_header(const SessionSubject& subject) {
   out.reserve(sizeof header + name.size() + sizeof(std::uint32_t));
   append_value(out, header);
   out.insert(out.end(), name.begin(), name.end());
-  append_value(out, sacmap::crc32(out));
+  append_value(out, crc32(out));
   return out;
 }
 
@@ -168,7 +168,7 @@ Bytes encode_journal_record(const AnnotationAction& action) {
   append_action(action, out);
   const auto payload = std::span{out}.subspan(sizeof(RecordHeader));
   SACCADE_EXPECTS(payload.size() <= std::numeric_limits<std::uint32_t>::max());
-  RecordHeader header{static_cast<std::uint32_t>(payload.size()), sacmap::crc32(payload), 0};
+  RecordHeader header{static_cast<std::uint32_t>(payload.size()), crc32(payload), 0};
   header.header_crc = header.own_crc();
   std::memcpy(out.data(), &header, sizeof header);
   return out;

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "saccade/io/any_mesh.hpp"
+
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
 #include <assimp/Importer.hpp>
 
 #include "saccade/io/ply_io.hpp"
-#include "saccade/io/scene_yaml.hpp"
 
 namespace saccade {
 namespace {

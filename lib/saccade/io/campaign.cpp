@@ -6,6 +6,7 @@
 
 #include "saccade/io/campaign_schema.hpp"
 #include "saccade/io/json_io.hpp"
+#include "saccade/io/refusals_json.hpp"
 
 namespace saccade {
 namespace {

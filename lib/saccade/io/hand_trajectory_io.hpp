@@ -7,7 +7,6 @@
 #include <string_view>
 #include <vector>
 
-#include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/attention/trajectory_check.hpp"
 #include "saccade/core/result.hpp"

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// JSON in files: parsing with errors as values, atomic writing, poses as 4×4 row-major nested arrays, refusals by
-// reason.
+// JSON in files: parsing with errors as values, atomic writing, poses as 4×4 row-major nested arrays.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -9,7 +8,6 @@
 
 #include "saccade/core/pose.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/robot/refusal.hpp"
 
 namespace saccade {
 
@@ -23,10 +21,5 @@ namespace saccade {
 [[nodiscard]] nlohmann::json pose_to_json(const Pose& T_a_b);
 /// The inverse. corrupt_data unless it is a 4×4 nested array of numbers; invalid_argument unless it is a rigid motion.
 [[nodiscard]] Result<Pose> pose_from_json(const nlohmann::json& value);
-
-/// {"no_ik": 3, …}: how many by reason; those that did not occur are left out.
-[[nodiscard]] nlohmann::json refusals_to_json(const RefusalCounts& refused);
-/// The inverse; reasons that are not known are passed over. corrupt_data for anything else.
-[[nodiscard]] Result<RefusalCounts> refusals_from_json(const nlohmann::json& value);
 
 }  // namespace saccade

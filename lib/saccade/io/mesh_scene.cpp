@@ -6,6 +6,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "saccade/io/any_mesh.hpp"
 #include "saccade/io/scene_yaml.hpp"
 #include "saccade/scene/tabletop.hpp"
 

@@ -15,7 +15,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kQuotedBytes{80};
+constexpr std::size_t kQuotedLineBytes{80};
 constexpr std::size_t kReasonBytes{300};
 
 Error bad(std::string what) { return {Errc::corrupt_data, std::move(what), {}}; }
@@ -28,8 +28,8 @@ std::string moving_request(const char* request, std::size_t number, const Pose& 
 /// The object in a line, unless it reports an error.
 Result<nlohmann::json> parse_answer(std::string_view line) {
   auto answer = parse_json(line);
-  if (!answer) return bad("it is not JSON: '" + readable(line, kQuotedBytes) + "'; messages belong on stderr");
-  if (!answer->is_object()) return bad("it is no JSON object: '" + readable(line, kQuotedBytes) + "'");
+  if (!answer) return bad("it is not JSON: '" + readable(line, kQuotedLineBytes) + "'; messages belong on stderr");
+  if (!answer->is_object()) return bad("it is no JSON object: '" + readable(line, kQuotedLineBytes) + "'");
   if (const auto error = answer->find("error"); error != answer->end()) {
     const auto* text = error->get_ptr<const std::string*>();
     if (text == nullptr) return bad("error must be a text");

@@ -5,7 +5,8 @@
 #include <string>
 
 #include "saccade/io/json_io.hpp"
-#include "saccade/robot/arm_model.hpp"
+#include "saccade/io/refusals_json.hpp"
+#include "saccade/robot/configuration.hpp"
 
 namespace saccade {
 namespace {

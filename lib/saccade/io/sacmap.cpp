@@ -12,6 +12,7 @@
 #include <string_view>
 
 #include "saccade/io/atomic_file.hpp"
+#include "saccade/io/crc32.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/little_endian.hpp"
 #include "saccade/io/sacmap_bricks.hpp"
@@ -58,7 +59,7 @@ static_assert(sizeof(SectorHeader) == 24 && std::is_trivially_copyable_v<SectorH
 template <class T>
 void append_with_crc(Bytes& out, const T& header) {
   append_value(out, header);
-  append_value(out, sacmap::crc32(std::as_bytes(std::span{&header, 1})));
+  append_value(out, crc32(std::as_bytes(std::span{&header, 1})));
 }
 
 /// nullopt when the checksum does not fit.
@@ -66,7 +67,7 @@ template <class T>
 std::optional<T> read_with_crc(ByteReader& reader) {
   const T header = reader.value<T>();
   const auto crc = reader.value<std::uint32_t>();
-  return crc == sacmap::crc32(std::as_bytes(std::span{&header, 1})) ? std::optional{header} : std::nullopt;
+  return crc == crc32(std::as_bytes(std::span{&header, 1})) ? std::optional{header} : std::nullopt;
 }
 
 std::string name_of(const Index3& key) {
@@ -131,7 +132,7 @@ struct Compressor {
     const std::span<const std::byte> compressed = std::span{packed}.first(size);
     out.clear();
     append_with_crc(out, SectorHeader{key, static_cast<std::uint32_t>(raw.size()), static_cast<std::uint32_t>(size),
-                                      sacmap::crc32(compressed)});
+                                      crc32(compressed)});
     out.insert(out.end(), compressed.begin(), compressed.end());
   }
 };
@@ -231,7 +232,7 @@ struct Decompressor {
 
   Result<std::size_t> decode(const SectorRecord& record, const TsdfConfig& config) {
     const std::string name = name_of(record.header.key);
-    if (sacmap::crc32(record.compressed) != record.header.compressed_crc) {
+    if (crc32(record.compressed) != record.header.compressed_crc) {
       return damaged(record.offset, "the checksum of " + name + " is wrong");
     }
     raw.resize(record.header.raw_bytes);

@@ -5,6 +5,7 @@
 
 #include <algorithm>
 
+#include "saccade/io/crc32.hpp"
 #include "saccade/io/little_endian.hpp"
 
 namespace saccade::sacmap {
@@ -133,14 +134,6 @@ BrickRef unpack(const Record& record) {
 }
 
 }  // namespace
-
-std::uint32_t crc32(std::span<const std::byte> head, std::span<const std::byte> tail) {
-  const auto extend = [](uLong crc, std::span<const std::byte> bytes) {
-    // A null pointer would start anew.
-    return bytes.empty() ? crc : ::crc32_z(crc, reinterpret_cast<const Bytef*>(bytes.data()), bytes.size());
-  };
-  return static_cast<std::uint32_t>(extend(extend(0, head), tail));
-}
 
 const char* fault_of(const BrickRef& brick, const TsdfConfig& config) {
   if (const DenseBrick* dense = brick.dense()) return fault_of_dense(*dense, config);

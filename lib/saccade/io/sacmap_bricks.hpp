@@ -13,9 +13,6 @@
 
 namespace saccade::sacmap {
 
-/// CRC-32, as in zlib and PNG, of `head` followed by `tail`.
-[[nodiscard]] std::uint32_t crc32(std::span<const std::byte> head, std::span<const std::byte> tail = {});
-
 /// Per brick: child index u16, kind u8, info u8, CRC-32 u32 of those four bytes and the payload, payload.
 constexpr std::size_t kBrickHeaderBytes{8};
 constexpr std::size_t kFreeBytes{3 * kBrickVoxels / 8};

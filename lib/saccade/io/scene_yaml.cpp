@@ -9,6 +9,7 @@
 #include <numbers>
 #include <utility>
 
+#include "saccade/io/any_mesh.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/yaml_map.hpp"
 #include "saccade/scene/random_clutter.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Scenes from YAML files, the scenes that come with Saccade, and meshes of any format. The format: docs/scenes.md.
+// Scenes from YAML files, the scenes that come with Saccade. The format: docs/scenes.md.
 
 #include <filesystem>
 #include <string>
@@ -26,9 +26,5 @@ struct BuiltinScene {
 
 /// A built-in scene by its name, "clutter:SEED" (random_clutter), or a file. not_found with the known names.
 [[nodiscard]] Result<Scene> find_scene(const std::string& name_or_path);
-
-/// Triangles of PLY (with vertex colours), STL, OBJ, GLB and what else assimp reads, all parts in one mesh. not_found;
-/// corrupt_data with assimp's reason.
-[[nodiscard]] Result<TriangleMesh> read_any_mesh(const std::filesystem::path& path);
 
 }  // namespace saccade

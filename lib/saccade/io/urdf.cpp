@@ -8,9 +8,9 @@
 #include <set>
 #include <utility>
 
+#include "saccade/io/any_mesh.hpp"
 #include "saccade/io/file_io.hpp"
 #include "saccade/io/readable_text.hpp"
-#include "saccade/io/scene_yaml.hpp"
 #include "saccade/io/urdf_document.hpp"
 
 namespace saccade {
@@ -100,9 +100,9 @@ class Tree {
 };
 
 /// Makes the description, walking down the tree.
-class Builder {
+class ArmBuilder {
  public:
-  Builder(const UrdfDocument& document, const fs::path& folder, const UrdfConfig& config)
+  ArmBuilder(const UrdfDocument& document, const fs::path& folder, const UrdfConfig& config)
       : document_{document}, tree_{*document.model}, folder_{folder}, config_{config} {}
 
   Result<UrdfArm> build() {
@@ -332,7 +332,7 @@ Result<UrdfArm> parse_urdf(const std::string& urdf, const fs::path& folder, cons
   if (!(config.default_speed > 0.0) || !(config.acceleration_time_s > 0.0))
     return Error{Errc::invalid_argument, "the default speed and the time to reach a speed must be positive", ""};
   const auto document = parse_urdf_document(urdf);
-  auto arm = document ? Builder{*document, folder, config}.build() : Result<UrdfArm>{document.error()};
+  auto arm = document ? ArmBuilder{*document, folder, config}.build() : Result<UrdfArm>{document.error()};
   if (arm) return arm;
   // Names in the file may be anything.
   return Error{arm.error().code, readable(arm.error().message, kMessageBytes),

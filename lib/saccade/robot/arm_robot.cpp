@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "saccade/robot/swept_cells.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 
 namespace saccade {
 namespace {

@@ -5,6 +5,7 @@
 #include <cmath>
 
 #include "saccade/robot/swept_cells.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 
 namespace saccade {
 namespace {

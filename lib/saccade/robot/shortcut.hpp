@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "saccade/robot/trajectory.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 
 namespace saccade {
 

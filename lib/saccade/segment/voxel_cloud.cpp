@@ -15,11 +15,11 @@ namespace saccade {
 
 namespace {
 
-constexpr std::size_t kPointGrain{8192};
+constexpr std::size_t kVoxelPointGrain{8192};
 constexpr std::size_t kVoxelGrain{1024};
 
 /// Sums over points, of which plane and mean come: x y z, xx xy xz yy yz zz, and their number.
-struct Moments {
+struct VoxelMoments {
   Eigen::Array<double, 10, 1> sums{Eigen::Array<double, 10, 1>::Zero()};
 
   void add(const Eigen::Vector3d& p) {
@@ -66,7 +66,7 @@ Eigen::Vector3d least_eigenvector(const Eigen::Matrix3d& m) {
 }
 
 /// Of the plane through the points, towards the viewpoint; where they do not span one, to the viewpoint.
-Eigen::Vector3f plane_normal(const Moments& moments, const Eigen::Vector3d& to_viewpoint) {
+Eigen::Vector3f plane_normal(const VoxelMoments& moments, const Eigen::Vector3d& to_viewpoint) {
   const Eigen::Vector3d mean = moments.mean();
   const auto& s = moments.sums;
   Eigen::Matrix3d covariance;
@@ -84,9 +84,9 @@ Eigen::Vector3f plane_normal(const Moments& moments, const Eigen::Vector3d& to_v
 }
 
 /// The sums over each voxel and those next to it.
-std::vector<Moments> with_neighbours(const VoxelCloud& cloud, const std::vector<Moments>& moments,
-                                     const Executor& executor) {
-  std::vector<Moments> sums(moments.size());
+std::vector<VoxelMoments> with_neighbours(const VoxelCloud& cloud, const std::vector<VoxelMoments>& moments,
+                                          const Executor& executor) {
+  std::vector<VoxelMoments> sums(moments.size());
   executor.parallel_for(moments.size(), kVoxelGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t voxel = begin; voxel < end; ++voxel) {
       Eigen::Array<double, 10, 1> sum = moments[voxel].sums;
@@ -143,7 +143,7 @@ Result<VoxelCloud> voxelise(const PointCloud& cloud, const VoxelCloudConfig& con
     return config.single_camera ? Eigen::Vector3f{p.x() / p.z(), p.y() / p.z(), std::log(p.z())} : p;
   };
   std::vector<std::uint64_t> cells(points);
-  executor.parallel_for(points, kPointGrain, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(points, kVoxelPointGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const Eigen::Vector3f& p = cloud.positions_m[i];
       const bool is_point = p.allFinite() && !(config.single_camera && !(p.z() > 0.0F));
@@ -155,7 +155,7 @@ Result<VoxelCloud> voxelise(const PointCloud& cloud, const VoxelCloudConfig& con
   VoxelCloud made;
   made.voxel_of.assign(points, kUnlabelled);
   CellBlocks index;
-  std::vector<Moments> moments;
+  std::vector<VoxelMoments> moments;
   std::vector<VoxelSums> sums;  // only where the cloud has normals or colours
   const bool has_sums = !cloud.normals.empty() || !cloud.colors.empty();
   for (std::size_t i = 0; i < points;) {
@@ -172,7 +172,7 @@ Result<VoxelCloud> voxelise(const PointCloud& cloud, const VoxelCloudConfig& con
       moments.emplace_back();
       if (has_sums) sums.emplace_back();
     }
-    Moments here = moments[voxel];
+    VoxelMoments here = moments[voxel];
     for (const std::uint64_t cell = cells[i]; i < points && cells[i] == cell; ++i) {
       made.voxel_of[i] = voxel;
       here.add(cloud.positions_m[i].cast<double>());
@@ -185,7 +185,7 @@ Result<VoxelCloud> voxelise(const PointCloud& cloud, const VoxelCloudConfig& con
   }
   find_neighbours(made, index, executor);
 
-  const std::vector<Moments> near = with_neighbours(made, with_neighbours(made, moments, executor), executor);
+  const std::vector<VoxelMoments> near = with_neighbours(made, with_neighbours(made, moments, executor), executor);
   made.voxels.resize(moments.size());
   executor.parallel_for(moments.size(), kVoxelGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t v = begin; v < end; ++v) {

@@ -8,6 +8,7 @@
 #include "saccade/io/scene_yaml.hpp"
 #include "saccade/io/urdf.hpp"
 #include "saccade/map/count_unknown.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 #include "saccade/scene/random_clutter.hpp"
 #include "support/effort.hpp"
 

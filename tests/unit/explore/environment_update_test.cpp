@@ -9,6 +9,7 @@
 #include "saccade/explore/simulated_run.hpp"
 #include "saccade/io/urdf.hpp"
 #include "saccade/map/count_unknown.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 #include "saccade/scene/random_clutter.hpp"
 #include "support/effort.hpp"
 

@@ -8,8 +8,8 @@
 #include <cstring>
 
 #include "saccade/io/annotation_records.hpp"
+#include "saccade/io/crc32.hpp"
 #include "saccade/io/file_io.hpp"
-#include "saccade/io/sacmap_bricks.hpp"
 #include "support/annotated_cloud.hpp"
 
 namespace saccade {
@@ -75,8 +75,8 @@ void expect_first_actions(const Result<SavedSession>& saved, const Journal& jour
 /// A record with these bytes as payload and right checksums.
 Bytes record_of(const Bytes& payload) {
   Bytes out(kRecordHeaderBytes);
-  const std::array<std::uint32_t, 2> head{static_cast<std::uint32_t>(payload.size()), sacmap::crc32(payload)};
-  const std::uint32_t crc = sacmap::crc32(std::as_bytes(std::span{head}));
+  const std::array<std::uint32_t, 2> head{static_cast<std::uint32_t>(payload.size()), crc32(payload)};
+  const std::uint32_t crc = crc32(std::as_bytes(std::span{head}));
   std::memcpy(out.data(), head.data(), sizeof head);
   std::memcpy(out.data() + sizeof head, &crc, sizeof crc);
   out.insert(out.end(), payload.begin(), payload.end());

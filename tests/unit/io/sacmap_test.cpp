@@ -11,6 +11,7 @@
 #include <random>
 
 #include "analytic_map.hpp"
+#include "saccade/io/crc32.hpp"
 #include "saccade/io/sacmap_bricks.hpp"
 
 namespace saccade {
@@ -72,9 +73,9 @@ Bytes file_with_brick(const std::function<void(DenseBrick&)>& edit) {
   file.insert(file.end(), packed.begin(), packed.end());
   std::byte* sector = file.data() + kHeaderBytes;
   const std::array<std::uint32_t, 3> sizes{static_cast<std::uint32_t>(raw.size()),
-                                           static_cast<std::uint32_t>(packed.size()), sacmap::crc32(packed)};
+                                           static_cast<std::uint32_t>(packed.size()), crc32(packed)};
   std::memcpy(sector + 12, sizes.data(), sizeof sizes);
-  const std::uint32_t crc = sacmap::crc32({sector, 24});
+  const std::uint32_t crc = crc32({sector, 24});
   std::memcpy(sector + 24, &crc, sizeof crc);
   return file;
 }
@@ -83,7 +84,7 @@ Bytes file_with_brick(const std::function<void(DenseBrick&)>& edit) {
 template <class T>
 void patch_header(Bytes& file, std::size_t offset, T value) {
   std::memcpy(file.data() + offset, &value, sizeof value);
-  const std::uint32_t crc = sacmap::crc32(std::span{file}.first(kHeaderBytes - 4));
+  const std::uint32_t crc = crc32(std::span{file}.first(kHeaderBytes - 4));
   std::memcpy(file.data() + kHeaderBytes - 4, &crc, sizeof crc);
 }
 
@@ -91,7 +92,7 @@ template <class T>
 void patch_first_sector(Bytes& file, std::size_t offset, T value) {
   std::byte* sector = file.data() + kHeaderBytes;
   std::memcpy(sector + offset, &value, sizeof value);
-  const std::uint32_t crc = sacmap::crc32({sector, kSectorHeaderBytes - 4});
+  const std::uint32_t crc = crc32({sector, kSectorHeaderBytes - 4});
   std::memcpy(sector + kSectorHeaderBytes - 4, &crc, sizeof crc);
 }
 

@@ -6,6 +6,7 @@
 #include <filesystem>
 #include <fstream>
 
+#include "saccade/io/any_mesh.hpp"
 #include "saccade/io/ply_io.hpp"
 #include "saccade/scene/surface_samples.hpp"
 #include "support/places.hpp"

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "saccade/robot/swept_cells.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 #include "support/test_arms.hpp"
 
 namespace saccade {

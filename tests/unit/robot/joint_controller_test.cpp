@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/robot/joint_controller.hpp"
 
+#include "saccade/robot/trajectory_timing.hpp"
+
 #include <gtest/gtest.h>
 
 #include "support/test_arms.hpp"

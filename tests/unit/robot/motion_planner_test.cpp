@@ -6,6 +6,7 @@
 #include <set>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/robot/trajectory_timing.hpp"
 #include "support/effort.hpp"
 #include "support/sliding_arms.hpp"
 #include "support/trajectory_checks.hpp"
