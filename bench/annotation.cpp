@@ -15,7 +15,7 @@
 
 #include "saccade/annotate/shortest_path_forest.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/cloud_io.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
 #include "support/places.hpp"
 
 namespace {

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whole arms that are free, configuration by configuration, one thread: ours, and FCL with a box per obstacle cell.
-#include "saccade/robot/arm_collision.hpp"
+#include "saccade/arm/arm_collision.hpp"
 
 #include <benchmark/benchmark.h>
 
-#include "saccade/io/urdf.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/test_arms.hpp"
 

@@ -6,8 +6,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/attention/made_up_task.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/trial/made_up_task.hpp"
 #include "support/hand_detectors.hpp"
 #include "support/places.hpp"
 #include "support/recorded_hands.hpp"

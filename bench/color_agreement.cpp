@@ -17,8 +17,8 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
-#include "saccade/io/rgbd_folder.hpp"
-#include "saccade/io/trajectory_io.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 
 namespace {
 

@@ -11,9 +11,9 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/sensor/noise.hpp"
-#include "saccade/view/contour_views.hpp"
-#include "saccade/view/live_contours.hpp"
-#include "saccade/view/view_gain.hpp"
+#include "saccade/views/contour_views.hpp"
+#include "saccade/views/live_contours.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "support/naive_contours.hpp"
 #include "table_map.hpp"
 

@@ -17,10 +17,10 @@
 
 #include "depth_filter_peer.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/depth_encoding.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/scene_yaml.hpp"
+#include "saccade/io/frames/depth_encoding.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/filter_picture.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 #include "thesis/depth_baselines.hpp"
 #include "thesis/filter_trials.hpp"
 

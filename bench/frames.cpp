@@ -5,7 +5,7 @@
 #include <cstdlib>
 #include <filesystem>
 
-#include "saccade/io/rgbd_folder.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 
 namespace saccade::bench {

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <ctime>
 
+#include "saccade/arm/inverse_kinematics.hpp"
+#include "saccade/arm/kinematics.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/inverse_kinematics.hpp"
-#include "saccade/robot/kinematics.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/views/view_sphere.hpp"
 #include "support/kdl_arm.hpp"
 #include "support/test_arms.hpp"
 

@@ -9,11 +9,11 @@
 #include "peers.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/core/simd.hpp"
-#include "saccade/map/icp.hpp"
 #include "saccade/map/raycast.hpp"
-#include "saccade/map/reconstruction.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/map/view_points.hpp"
+#include "saccade/tracking/icp.hpp"
+#include "saccade/tracking/reconstruction.hpp"
 
 namespace {
 

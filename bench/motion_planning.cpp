@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // From one view of a cluttered table to another, where the straight joint path collides, one thread: our planner, and
 // OMPL's with FCL, a box per obstacle cell, and OMPL's simplifier behind it.
-#include "saccade/robot/motion_planner.hpp"
+#include "saccade/arm/motion_planner.hpp"
 
 #include <benchmark/benchmark.h>
 #include <ompl/base/spaces/RealVectorStateSpace.h>
@@ -12,13 +12,13 @@
 #include <algorithm>
 #include <iostream>
 
+#include "saccade/arm/reachability.hpp"
+#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/reachability.hpp"
-#include "saccade/robot/trajectory_timing.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/simulated_run.hpp"
+#include "saccade/views/view_sphere.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/test_arms.hpp"
 

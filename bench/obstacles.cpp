@@ -9,9 +9,9 @@
 #include <vector>
 
 #include "peers.hpp"
+#include "saccade/arm/obstacle_map.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/robot/obstacle_map.hpp"
-#include "saccade/view/view_gain.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "table_map.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 
 #include "peer_comparison.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/view/view_gain.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "thesis/ray_search.hpp"
 #include "thesis/update_task.hpp"
 

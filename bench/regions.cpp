@@ -9,11 +9,11 @@
 #include <random>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
 #include "saccade/scene/ray_scene.hpp"
-#include "saccade/view/best_views.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/simulated_run.hpp"
+#include "saccade/views/best_views.hpp"
+#include "saccade/views/view_sphere.hpp"
 
 namespace {
 

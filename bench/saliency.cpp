@@ -8,8 +8,8 @@
 
 #include "saccade/attention/isolation.hpp"
 #include "saccade/attention/saliency.hpp"
+#include "saccade/cloud/cell_index.hpp"
 #include "saccade/map/mesh.hpp"
-#include "saccade/segment/cell_index.hpp"
 #include "saccade/segment/lccp.hpp"
 #include "table_map.hpp"
 

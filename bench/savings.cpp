@@ -7,7 +7,7 @@
 #include <array>
 #include <map>
 
-#include "saccade/view/view_gain.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "table_map.hpp"
 
 namespace {

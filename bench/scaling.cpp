@@ -8,8 +8,8 @@
 
 #include "frames.hpp"
 #include "saccade/map/raycast.hpp"
-#include "saccade/view/view_gain.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/views/view_gain.hpp"
+#include "saccade/views/view_sphere.hpp"
 #include "table_map.hpp"
 
 namespace {

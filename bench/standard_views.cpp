@@ -7,11 +7,11 @@
 #include <algorithm>
 #include <random>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
 #include "saccade/scene/ray_scene.hpp"
-#include "saccade/view/best_views.hpp"
-#include "saccade/view/contour_views.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/simulated_run.hpp"
+#include "saccade/views/best_views.hpp"
+#include "saccade/views/contour_views.hpp"
 
 namespace {
 

@@ -12,7 +12,7 @@
 #include <optional>
 #include <vector>
 
-#include "saccade/io/rgbd_folder.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"

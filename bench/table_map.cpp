@@ -4,8 +4,8 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/view/view_gain.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/views/view_gain.hpp"
+#include "saccade/views/view_sphere.hpp"
 
 namespace saccade::bench {
 

@@ -9,8 +9,8 @@
 #include "embree_views.hpp"
 #include "peer_comparison.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/view/best_views.hpp"
-#include "saccade/view/view_gain.hpp"
+#include "saccade/views/best_views.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "table_map.hpp"
 
 namespace {

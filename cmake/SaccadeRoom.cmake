@@ -69,12 +69,13 @@ function(saccade_rooms_first target)
 endfunction()
 
 # saccade_room(NAME SOURCES file… [ROOMS room…] [PACKAGES "name arguments of find_package"…]
-#              [PUBLIC target…] [PRIVATE target…] [FUZZED])
+#              [PUBLIC target…] [PRIVATE target…] [FUZZED] [FUZZED_SOURCES file…])
+# The folder of a room is lib/saccade/NAME, or lib/saccade/io/clouds for io_clouds.
 # ROOMS are the rooms that this one includes; the layer test holds them to the order of the layers. PACKAGES are what the
 # targets in PUBLIC and PRIVATE come from; the installed package looks for the same ones, for this component only.
 # A room whose packages or rooms are not there is left out of the build, with a line that says why.
 function(saccade_room name)
-  cmake_parse_arguments(ROOM "FUZZED" "" "SOURCES;ROOMS;PACKAGES;PUBLIC;PRIVATE" ${ARGN})
+  cmake_parse_arguments(ROOM "FUZZED" "" "SOURCES;ROOMS;PACKAGES;PUBLIC;PRIVATE;FUZZED_SOURCES" ${ARGN})
   if(ROOM_UNPARSED_ARGUMENTS)
     message(FATAL_ERROR "saccade_room(${name}): unknown arguments ${ROOM_UNPARSED_ARGUMENTS}")
   endif()
@@ -120,14 +121,20 @@ function(saccade_room name)
   endif()
   target_link_libraries(${target} PUBLIC ${room_targets} ${ROOM_PUBLIC}
                         PRIVATE $<BUILD_INTERFACE:saccade_flags> $<BUILD_INTERFACE:${room_flags}> ${ROOM_PRIVATE})
+  if(SACCADE_BUILD_FUZZERS AND ROOM_FUZZED_SOURCES)  # as FUZZED, for some files of a room
+    set_source_files_properties(${ROOM_FUZZED_SOURCES} PROPERTIES
+      COMPILE_OPTIONS "-fsanitize=fuzzer-no-link;-fsanitize=null,alignment,object-size,vptr")
+  endif()
+  file(RELATIVE_PATH folder ${PROJECT_SOURCE_DIR}/lib/saccade ${CMAKE_CURRENT_SOURCE_DIR})
   set_property(GLOBAL APPEND PROPERTY SACCADE_ROOMS ${name})
+  set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_FOLDER "${folder}")
   set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_ROOMS "${ROOM_ROOMS}")
   set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_PACKAGES "${ROOM_PACKAGES}")
   if(SACCADE_INSTALL)
     install(TARGETS ${target} EXPORT saccade_${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
     install(EXPORT saccade_${name} NAMESPACE saccade:: FILE saccade-${name}-targets.cmake
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/saccade)
-    install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade/${name}
+    install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade/${folder}
             FILES_MATCHING PATTERN "*.hpp")
   endif()
 endfunction()

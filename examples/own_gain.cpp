@@ -2,8 +2,8 @@
 // A gain of one's own: what a view shows, divided by how far the camera would have to fly to it.
 #include <cstdio>
 
-#include "saccade/explore/simulated_run.hpp"
 #include "saccade/scene/random_clutter.hpp"
+#include "saccade/trial/simulated_run.hpp"
 
 using namespace saccade;
 

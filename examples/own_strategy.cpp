@@ -4,7 +4,7 @@
 #include <cmath>
 
 #include "command_line.hpp"
-#include "saccade/explore/simulated_run.hpp"
+#include "saccade/trial/simulated_run.hpp"
 
 using namespace saccade;
 

@@ -2,9 +2,9 @@
 // Plans a motion of the built-in arm to a camera pose, around a post that is in the way, and prints where the arm is.
 #include <cstdio>
 
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/motion_planner.hpp"
-#include "saccade/robot/reachability.hpp"
+#include "saccade/arm/motion_planner.hpp"
+#include "saccade/arm/reachability.hpp"
+#include "saccade/arm/urdf.hpp"
 
 int main() {
   using namespace saccade;

@@ -104,7 +104,7 @@ done
 
 echo "Arms beside FCL: 100,000 configurations each"
 scripts/install_packages.sh program tests
-configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io unit_surfel golden >"$out/build_parity.log" || failed=1
+configure release -DSACCADE_BUILD_TESTS=ON && compile release parity unit_io_sessions unit_surfel golden >"$out/build_parity.log" || failed=1
 step arm_collision env SACCADE_COLLISION_CASES=100000 build/release/tests/parity '--gtest_filter=ArmCollision*'
 
 echo "Surfels of rendered scenes, segmented: all frames"
@@ -160,7 +160,7 @@ else
 fi
 
 echo "Annotation sessions: a thousand processes killed while they annotate"
-step annotation_kills env SACCADE_KILL_CASES=1000 build/release/tests/unit_io '--gtest_filter=AnnotationSessionKilled*'
+step annotation_kills env SACCADE_KILL_CASES=1000 build/release/tests/unit_io_sessions '--gtest_filter=AnnotationSessionKilled*'
 
 echo "The page: its times, and the annotation of ten million points"
 step browser_times scripts/web.sh test --project times --no-deps

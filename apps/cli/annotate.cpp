@@ -12,7 +12,7 @@
 #include "json_output.hpp"
 #include "options.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/label_presets.hpp"
+#include "saccade/io/sessions/label_presets.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -19,7 +19,7 @@
 #include "saccade/annotate/next_best_click.hpp"
 #include "saccade/annotate/rectangle_annotator.hpp"
 #include "saccade/annotate/simulated_annotator.hpp"
-#include "saccade/io/annotation_script.hpp"
+#include "saccade/io/sessions/annotation_script.hpp"
 #include "serve.hpp"
 
 namespace saccade::cli {

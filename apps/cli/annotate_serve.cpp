@@ -11,7 +11,7 @@
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/label_presets.hpp"
+#include "saccade/io/sessions/label_presets.hpp"
 #include "serve.hpp"
 #include "server/annotate/annotation_service.hpp"
 

@@ -9,10 +9,10 @@
 #include "saccade/annotate/annotation_margin.hpp"
 #include "saccade/annotate/label_seeds.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/annotation_session.hpp"
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/label_input.hpp"
-#include "saccade/io/label_presets.hpp"
+#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
+#include "saccade/io/sessions/label_presets.hpp"
 #include "server/annotate/session_start.hpp"
 
 namespace saccade::cli {

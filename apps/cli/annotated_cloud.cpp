@@ -5,8 +5,8 @@
 #include <map>
 #include <numbers>
 
-#include "saccade/annotate/estimated_normals.hpp"
-#include "saccade/io/image_io.hpp"
+#include "saccade/cloud/estimated_normals.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/segment_picture.hpp"
 
 namespace saccade::cli {

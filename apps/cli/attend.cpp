@@ -15,10 +15,10 @@
 #include "run_folder.hpp"
 #include "saccade/attention/trajectory_changes.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/atomic_file.hpp"
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/json_io.hpp"
+#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 
 namespace saccade::cli {
 namespace {

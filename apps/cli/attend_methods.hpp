@@ -8,10 +8,10 @@
 #include <string>
 #include <string_view>
 
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/io/hand_trajectory_io.hpp"
+#include "saccade/io/frames/hand_trajectory_io.hpp"
 #include "saccade/report/attention_picture.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace CLI {
 class App;

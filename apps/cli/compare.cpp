@@ -15,7 +15,7 @@
 #include "json_output.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/atomic_file.hpp"
+#include "saccade/io/files/atomic_file.hpp"
 
 namespace saccade::cli {
 namespace {

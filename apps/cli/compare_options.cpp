@@ -8,7 +8,7 @@
 #include <optional>
 #include <set>
 
-#include "saccade/io/scene_yaml.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
 namespace {

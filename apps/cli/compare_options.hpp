@@ -9,7 +9,7 @@
 
 #include "command.hpp"
 #include "run_options.hpp"
-#include "saccade/io/mesh_scene.hpp"
+#include "saccade/scene/mesh_scene.hpp"
 
 namespace saccade::cli {
 

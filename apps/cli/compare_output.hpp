@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "saccade/io/campaign_summary.hpp"
 #include "saccade/report/plot.hpp"
+#include "saccade/trial/campaign_summary.hpp"
 
 namespace saccade::cli {
 

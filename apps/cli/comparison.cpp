@@ -5,10 +5,10 @@
 #include <nlohmann/json.hpp>
 
 #include "robot_options.hpp"
-#include "saccade/io/camera_io.hpp"
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/robot/arm_hash.hpp"
+#include "saccade/arm/arm_hash.hpp"
+#include "saccade/io/frames/camera_io.hpp"
 #include "saccade/scene/scene_hash.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -8,8 +8,8 @@
 #include <vector>
 
 #include "compare_options.hpp"
-#include "saccade/io/campaign.hpp"
 #include "saccade/scene/ray_scene.hpp"
+#include "saccade/trial/campaign.hpp"
 
 namespace saccade::cli {
 

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "explore_devices.hpp"
 
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/io/urdf.hpp"
+#include "saccade/arm/urdf.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -6,9 +6,9 @@
 #include <optional>
 
 #include "explore_options.hpp"
-#include "saccade/explore/carried_camera.hpp"
-#include "saccade/io/external_camera.hpp"
-#include "saccade/io/external_robot.hpp"
+#include "saccade/devices/external_camera.hpp"
+#include "saccade/devices/external_robot.hpp"
+#include "saccade/trial/carried_camera.hpp"
 
 namespace saccade::cli {
 

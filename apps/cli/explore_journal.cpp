@@ -5,9 +5,9 @@
 
 #include <stdexcept>
 
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/run_json.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
+#include "saccade/io/runs/run_json.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -11,9 +11,9 @@
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/json_io.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/filter_picture.hpp"
 #include "saccade/sensor/mask.hpp"
 

@@ -8,9 +8,9 @@
 #include <string_view>
 
 #include "options.hpp"
-#include "saccade/io/rgbd_folder.hpp"
-#include "saccade/map/reconstruction.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
 #include "saccade/sensor/gap_filling.hpp"
+#include "saccade/tracking/reconstruction.hpp"
 
 namespace CLI {
 class App;

@@ -12,8 +12,8 @@
 
 #include "progress_bar.hpp"
 #include "saccade/core/executor.hpp"
-#include "saccade/map/reconstruction.hpp"
 #include "saccade/sensor/gap_filling.hpp"
+#include "saccade/tracking/reconstruction.hpp"
 
 namespace saccade::cli {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "fuse_frames.hpp"
-#include "saccade/io/rgbd_folder.hpp"
-#include "saccade/map/depth_residual.hpp"
-#include "saccade/map/trajectory_error.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
+#include "saccade/tracking/depth_residual.hpp"
+#include "saccade/tracking/trajectory_error.hpp"
 
 namespace saccade::cli {
 

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "interrupt.hpp"
-#include "saccade/io/image_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/report/fusion_pictures.hpp"
 #include "saccade/report/ternary_picture.hpp"

@@ -17,8 +17,8 @@
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/core/simd.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {

@@ -7,8 +7,8 @@
 #include <filesystem>
 #include <iostream>
 
-#include "saccade/io/atomic_file.hpp"
-#include "saccade/io/json_io.hpp"
+#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/json_io.hpp"
 
 namespace saccade::cli {
 

@@ -10,7 +10,7 @@
 
 #include "saccade/core/region.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/io/camera_io.hpp"
+#include "saccade/io/frames/camera_io.hpp"
 #include "saccade/sensor/mask.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
 

@@ -15,11 +15,11 @@
 #include "json_output.hpp"
 #include "robot_options.hpp"
 #include "robot_reach.hpp"
+#include "saccade/arm/inverse_kinematics.hpp"
+#include "saccade/arm/kinematics.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/inverse_kinematics.hpp"
-#include "saccade/robot/kinematics.hpp"
+#include "saccade/io/files/json_io.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {

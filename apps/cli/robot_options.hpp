@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "saccade/io/urdf.hpp"
+#include "saccade/arm/urdf.hpp"
 
 namespace CLI {
 class App;

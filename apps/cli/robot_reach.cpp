@@ -15,8 +15,8 @@
 #include "progress_bar.hpp"
 #include "robot_reach_output.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/scene_yaml.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -9,8 +9,8 @@
 
 #include "command.hpp"
 #include "robot_options.hpp"
+#include "saccade/arm/reach_map.hpp"
 #include "saccade/core/region.hpp"
-#include "saccade/robot/reach_map.hpp"
 #include "saccade/scene/fixture_boxes.hpp"
 
 namespace saccade::cli {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "saccade/io/atomic_file.hpp"
+#include "saccade/io/files/atomic_file.hpp"
 
 namespace saccade::cli {
 namespace {

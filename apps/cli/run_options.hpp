@@ -3,7 +3,7 @@
 // RunOptions: how a simulated exploration goes, as the command line says it.
 
 #include "options.hpp"
-#include "saccade/explore/simulated_run.hpp"
+#include "saccade/trial/simulated_run.hpp"
 
 namespace CLI {
 class App;

@@ -15,9 +15,9 @@
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/atomic_file.hpp"
-#include "saccade/io/depth_encoding.hpp"
-#include "saccade/io/trajectory_io.hpp"
+#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/frames/depth_encoding.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/sensor/noise.hpp"
 

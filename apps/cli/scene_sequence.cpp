@@ -17,11 +17,11 @@
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/camera_io.hpp"
-#include "saccade/io/depth_encoding.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/trajectory_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/frames/camera_io.hpp"
+#include "saccade/io/frames/depth_encoding.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/scene/surfel_scenes.hpp"
 
 namespace saccade::cli {

@@ -11,8 +11,8 @@
 #include "options.hpp"
 #include "progress_bar.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/image_io.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 
 namespace saccade::cli {
 namespace {

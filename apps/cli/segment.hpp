@@ -11,7 +11,7 @@
 #include "command.hpp"
 #include "json_output.hpp"
 #include "saccade/attention/saliency.hpp"
-#include "saccade/io/cloud_io.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/segment/flood_fill.hpp"
 #include "saccade/segment/score_curve.hpp"

@@ -5,7 +5,7 @@
 
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
-#include "saccade/io/file_io.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "score_json.hpp"
 #include "segment.hpp"
 #include "summary.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "segment.hpp"
 
 namespace saccade::cli {

@@ -4,9 +4,9 @@
 #include <CLI/CLI.hpp>
 
 #include "options.hpp"
-#include "saccade/annotate/estimated_normals.hpp"
-#include "saccade/annotate/estimated_radii.hpp"
-#include "saccade/io/cloud_io.hpp"
+#include "saccade/cloud/estimated_normals.hpp"
+#include "saccade/cloud/estimated_radii.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
 
 namespace saccade::cli {
 namespace {

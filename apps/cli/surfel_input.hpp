@@ -7,7 +7,7 @@
 #include <span>
 
 #include "saccade/core/executor.hpp"
-#include "saccade/io/column_table.hpp"
+#include "saccade/io/files/column_table.hpp"
 #include "saccade/segment/segmentation_truth.hpp"
 
 namespace CLI {

@@ -13,9 +13,9 @@
 #include "json_output.hpp"
 #include "progress_bar.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/ply_io.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "saccade/map/mesh.hpp"
 #include "update_report.hpp"
 

@@ -5,9 +5,9 @@
 #include <array>
 
 #include "explore_report.hpp"
-#include "saccade/io/atomic_file.hpp"
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/image_io.hpp"
+#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/update_pictures.hpp"
 #include "saccade/report/update_report.hpp"

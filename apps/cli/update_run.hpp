@@ -3,9 +3,9 @@
 // UpdateRun: one user-driven update of a simulated scene, from the scan before the task to the figures after it.
 
 #include "explore_devices.hpp"
-#include "saccade/explore/object_shape.hpp"
-#include "saccade/explore/region_coverage.hpp"
-#include "saccade/explore/simulated_task.hpp"
+#include "saccade/trial/object_shape.hpp"
+#include "saccade/trial/region_coverage.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "update_options.hpp"
 
 namespace saccade::cli {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "view_json.hpp"
 
-#include "saccade/robot/arm_mesh.hpp"
+#include "saccade/arm/arm_mesh.hpp"
 
 namespace saccade::cli {
 

@@ -5,8 +5,8 @@
 #include <optional>
 #include <vector>
 
+#include "saccade/arm/arm_model.hpp"
 #include "saccade/report/robot_drawing.hpp"
-#include "saccade/robot/arm_model.hpp"
 
 namespace saccade::cli {
 

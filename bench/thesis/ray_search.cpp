@@ -7,7 +7,7 @@
 #include <mutex>
 
 #include "saccade/map/ray_walk.hpp"
-#include "saccade/view/sensor_rays.hpp"
+#include "saccade/views/sensor_rays.hpp"
 
 namespace saccade::thesis {
 namespace {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numbers>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/robot/kinematics.hpp"
+#include "saccade/arm/kinematics.hpp"
+#include "saccade/trial/simulated_run.hpp"
 
 namespace saccade::thesis {
 namespace {

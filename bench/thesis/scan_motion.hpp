@@ -4,8 +4,8 @@
 
 #include <vector>
 
+#include "saccade/arm/arm_model.hpp"
 #include "saccade/core/pose.hpp"
-#include "saccade/robot/arm_model.hpp"
 #include "saccade/scene/scene.hpp"
 
 namespace saccade::thesis {

@@ -3,10 +3,10 @@
 
 #include <algorithm>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/io/urdf.hpp"
-#include "saccade/map/reconstruction.hpp"
+#include "saccade/arm/urdf.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/tracking/reconstruction.hpp"
+#include "saccade/trial/simulated_run.hpp"
 #include "thesis/scan_motion.hpp"
 
 namespace saccade::thesis {

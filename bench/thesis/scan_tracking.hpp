@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "saccade/core/progress.hpp"
-#include "saccade/explore/object_shape.hpp"
+#include "saccade/trial/object_shape.hpp"
 
 namespace saccade::thesis {
 

@@ -12,7 +12,7 @@
 #include "saccade/scene/truth_labels.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
-#include "saccade/view/gain.hpp"
+#include "saccade/views/gain.hpp"
 #include "thesis/surfel_figures.hpp"
 
 namespace saccade::thesis {

@@ -4,10 +4,10 @@
 #include <algorithm>
 #include <numbers>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/view/view_gain.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/simulated_run.hpp"
+#include "saccade/views/view_gain.hpp"
+#include "saccade/views/view_sphere.hpp"
 
 namespace saccade::thesis {
 namespace {

@@ -6,8 +6,8 @@
 #include <fstream>
 
 #include "annotation_server/annotation_desk.hpp"
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/label_input.hpp"
+#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 namespace {

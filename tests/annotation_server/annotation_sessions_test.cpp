@@ -3,8 +3,8 @@
 #include <fstream>
 
 #include "annotation_server/annotation_desk.hpp"
-#include "saccade/io/annotation_journal.hpp"
-#include "saccade/io/file_io.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/sessions/annotation_journal.hpp"
 #include "support/small_disk.hpp"
 
 namespace saccade {

@@ -2,10 +2,10 @@
 // saccade annotate with scripts and sessions, as a user runs it.
 #include "cli/annotated_boxes.hpp"
 #include "saccade/annotate/annotation.hpp"
-#include "saccade/io/annotation_journal.hpp"
-#include "saccade/io/annotation_script.hpp"
-#include "saccade/io/cloud_io.hpp"
-#include "saccade/io/label_presets.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
+#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/sessions/annotation_script.hpp"
+#include "saccade/io/sessions/label_presets.hpp"
 #include "support/places.hpp"
 
 namespace saccade::test {

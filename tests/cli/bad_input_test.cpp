@@ -7,8 +7,8 @@
 #include <cstring>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 
 namespace saccade::test {
 namespace {

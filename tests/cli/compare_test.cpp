@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "run_program.hpp"
-#include "saccade/io/campaign_figures.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/refusals_json.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/runs/refusals_json.hpp"
+#include "saccade/trial/campaign_figures.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {

@@ -5,8 +5,8 @@
 #include <fstream>
 
 #include "run_program.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "support/places.hpp"
 
 namespace saccade::test {

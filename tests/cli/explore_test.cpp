@@ -7,9 +7,9 @@
 #include <fstream>
 
 #include "run_program.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/ply_io.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"
 

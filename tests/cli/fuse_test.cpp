@@ -3,10 +3,10 @@
 #include <gtest/gtest.h>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/ply_io.hpp"
-#include "saccade/io/sacmap.hpp"
-#include "saccade/io/trajectory_io.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"
 

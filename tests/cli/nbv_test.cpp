@@ -6,11 +6,11 @@
 #include <cstdlib>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/sacmap.hpp"
-#include "saccade/io/trajectory_io.hpp"
-#include "saccade/view/view_gain.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
+#include "saccade/views/view_gain.hpp"
+#include "saccade/views/view_sphere.hpp"
 #include "support/places.hpp"
 
 namespace saccade::test {

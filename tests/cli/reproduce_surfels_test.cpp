@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/image_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {

@@ -6,12 +6,12 @@
 #include <sstream>
 
 #include "run_program.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/reach_map.hpp"
+#include "saccade/arm/reach_map.hpp"
+#include "saccade/arm/urdf.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/scene/fixture_boxes.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {

@@ -5,10 +5,10 @@
 #include <set>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/rgbd_folder.hpp"
-#include "saccade/io/trajectory_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {

@@ -5,9 +5,9 @@
 #include <algorithm>
 
 #include "run_program.hpp"
-#include "saccade/io/image_io.hpp"
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/ply_io.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 
 namespace saccade::test {
 namespace {

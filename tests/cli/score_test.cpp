@@ -3,7 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/pcd_io.hpp"
+#include "saccade/io/clouds/pcd_io.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"
 

@@ -5,8 +5,8 @@
 #include <cmath>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/cloud_io.hpp"
-#include "saccade/io/image_io.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 
 namespace saccade::test {
 namespace {

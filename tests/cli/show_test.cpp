@@ -5,7 +5,7 @@
 #include <csignal>
 
 #include "run_program.hpp"
-#include "saccade/io/json_io.hpp"
+#include "saccade/io/files/json_io.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {

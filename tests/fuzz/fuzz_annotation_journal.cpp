@@ -5,8 +5,8 @@
 #include <cstring>
 
 #include "saccade/annotate/action_history.hpp"
-#include "saccade/io/annotation_journal.hpp"
-#include "saccade/io/crc32.hpp"
+#include "saccade/io/files/crc32.hpp"
+#include "saccade/io/sessions/annotation_journal.hpp"
 
 namespace {
 

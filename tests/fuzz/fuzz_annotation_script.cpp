@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "saccade/io/annotation_script.hpp"
+#include "saccade/io/sessions/annotation_script.hpp"
 #include "support/annotated_cloud.hpp"
 
 namespace {

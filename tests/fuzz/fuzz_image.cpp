@@ -7,8 +7,8 @@
 #include <span>
 #include <string>
 
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/image_io.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "support/png_maker.hpp"
 
 namespace {

@@ -4,8 +4,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "saccade/io/cloud_io.hpp"
-#include "saccade/io/kitti_io.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
+#include "saccade/io/clouds/kitti_io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span{data, size});

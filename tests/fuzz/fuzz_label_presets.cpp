@@ -5,7 +5,7 @@
 #include <string_view>
 
 #include "saccade/annotate/action.hpp"
-#include "saccade/io/label_presets.hpp"
+#include "saccade/io/sessions/label_presets.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto labels = saccade::parse_label_presets({reinterpret_cast<const char*>(data), size});

@@ -5,8 +5,8 @@
 #include <cstdlib>
 #include <span>
 
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/npy_io.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/npy_io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span{data, size});

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "saccade/io/ply_io.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto file = saccade::parse_ply(std::as_bytes(std::span{data, size}));

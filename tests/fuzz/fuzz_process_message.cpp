@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "saccade/io/process_messages.hpp"
-#include "saccade/io/readable_text.hpp"
+#include "saccade/devices/process_messages.hpp"
+#include "saccade/io/files/readable_text.hpp"
 
 namespace {
 

@@ -8,9 +8,9 @@
 #include <span>
 #include <vector>
 
-#include "saccade/io/crc32.hpp"
-#include "saccade/io/sacmap.hpp"
-#include "saccade/io/sacmap_bricks.hpp"
+#include "saccade/io/files/crc32.hpp"
+#include "saccade/io/maps/sacmap.hpp"
+#include "saccade/io/maps/sacmap_bricks.hpp"
 
 namespace {
 

@@ -5,9 +5,9 @@
 #include <span>
 #include <string>
 
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/label_input.hpp"
-#include "saccade/io/text_cloud.hpp"
+#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/text_cloud.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span{data, size});

@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <string>
 
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/inverse_kinematics.hpp"
-#include "saccade/robot/kinematics.hpp"
+#include "saccade/arm/inverse_kinematics.hpp"
+#include "saccade/arm/kinematics.hpp"
+#include "saccade/arm/urdf.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const std::string text{reinterpret_cast<const char*>(data), size};

@@ -2,10 +2,10 @@
 // A simulated camera that sees the arm which holds it: what the map learns with and without the mask.
 #include <gtest/gtest.h>
 
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/io/urdf.hpp"
+#include "saccade/arm/arm_silhouette.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/map/mesh.hpp"
-#include "saccade/robot/arm_silhouette.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 #include "saccade/scene/simulated_camera.hpp"
 
 namespace saccade {

@@ -3,9 +3,9 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/map/reconstruction.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/sensor/noise.hpp"
+#include "saccade/tracking/reconstruction.hpp"
 
 namespace saccade {
 namespace {

@@ -7,10 +7,10 @@
 #include <filesystem>
 #include <vector>
 
-#include "saccade/io/rgbd_folder.hpp"
-#include "saccade/map/reconstruction.hpp"
-#include "saccade/map/trajectory_error.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
 #include "saccade/sensor/gap_filling.hpp"
+#include "saccade/tracking/reconstruction.hpp"
+#include "saccade/tracking/trajectory_error.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"
 

@@ -13,7 +13,7 @@
 #include <string>
 #include <vector>
 
-#include "saccade/io/rgbd_folder.hpp"
+#include "saccade/io/frames/rgbd_folder.hpp"
 #include "saccade/surfel/color_edges.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"

@@ -8,22 +8,50 @@ import pathlib
 import re
 import sys
 
-# What a room may include besides itself, lowest first (docs/architecture.md).
-CHAIN = ["core", "sensor", "map", "segment", "attention", "view", "robot", "explore"]
-ALLOWED = {room: set(CHAIN[:position]) for position, room in enumerate(CHAIN)}
-ALLOWED["surfel"] = {"core", "sensor"}
-for above_surfel in ["segment", "attention", "view", "robot", "explore"]:
-    ALLOWED[above_surfel].add("surfel")
-ALLOWED["scene"] = {"core", "sensor", "map"}
-for above_scene in ["robot", "explore"]:
-    ALLOWED[above_scene].add("scene")
-ALLOWED["annotate"] = {"core", "segment"}
-ALLOWED["cuda"] = {"core", "sensor", "map", "surfel", "view"}
-KNOWS_ALL = set(ALLOWED) - {"cuda"}
-ALLOWED["io"] = set(KNOWS_ALL)
-ALLOWED["report"] = KNOWS_ALL | {"io"}
+import rooms
 
-CORE_ROOMS = {"core", "sensor", "map", "surfel", "segment", "attention", "view", "annotate"}
+# What each room may include: the rooms named here and what those may include, itself, and core (docs/architecture.md).
+TABLE = {
+    "core": [],
+    "io/files": [],
+    "sensor": [],
+    "io/frames": ["io/files", "sensor"],
+    "cloud": [],
+    "map": ["sensor"],
+    "surfel": ["sensor"],
+    "io/clouds": ["io/files", "cloud", "map", "surfel"],
+    "io/maps": ["io/files", "map"],
+    "tracking": ["sensor", "map", "surfel"],
+    "segment": ["cloud", "map", "surfel"],
+    "attention": ["cloud", "map", "segment"],
+    "views": ["map", "attention"],
+    "robot": ["map"],
+    "explore": ["tracking", "attention", "views", "robot"],
+    "arm": ["robot", "views", "io/clouds"],
+    "devices": ["io/files", "io/frames", "robot"],
+    "io/runs": ["io/frames", "io/clouds", "io/maps", "explore"],
+    "scene": ["io/clouds", "devices"],
+    "trial": ["scene", "arm", "io/runs"],
+    "annotate": ["cloud"],
+    "io/sessions": ["io/files", "annotate"],
+    "report": ["io/frames", "surfel", "views", "arm", "attention", "explore"],
+    "cuda": ["map", "surfel", "views"],
+}
+
+
+def closure(room):
+    """Returns every room that a room may include, without itself."""
+    found = {"core"} - {room}
+    for below in TABLE[room]:
+        found |= {below} | closure(below)
+    return found
+
+
+ALLOWED = {room: closure(room) for room in TABLE}
+
+# What an embedder of the loop builds: these rooms need nothing but the libraries below.
+CORE_ROOMS = {"core", "sensor", "cloud", "map", "tracking", "surfel", "segment", "attention", "views", "robot", "explore",
+              "annotate"}
 CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "nanoflann.hpp", "zstd.h", "malloc.h"}  # first part of the path in <…>
 CORE_PACKAGES = {"Eigen3", "TBB", "HWY", "hwy", "nanoflann", "zstd"}
 
@@ -32,6 +60,7 @@ SOURCES = {".hpp", ".cpp", ".cu", ".cuh"}
 PAGE = {".ts", ".css", ".mjs"}
 NEED_SPDX = SOURCES | PAGE | {".cmake", ".in", ".sh", ".py", ".yaml"}
 NOT_OURS = {"__pycache__", "corpus", "node_modules", "dist"}
+KEYWORDS = {"SOURCES", "ROOMS", "PACKAGES", "PUBLIC", "PRIVATE", "FUZZED", "FUZZED_SOURCES"}
 INCLUDE = re.compile(r'^\s*#\s*include\s*([<"])([^>"]+)[>"]', re.MULTILINE)
 PRINTS = re.compile(r"\bstd::(?:cout|cerr|clog)\b|\b(?:std::)?(?:f?printf|puts|exit|abort|_Exit|quick_exit)\s*\(")
 COMMENT = re.compile(r'"(?:\\.|[^"\\\n])*"|//[^\n]*|/\*.*?\*/', re.DOTALL)
@@ -46,7 +75,7 @@ def check_library_source(name, room, text):
     for mark, path in INCLUDE.findall(text):
         first, *rest = path.split("/")
         if first == "saccade" and rest:
-            other = rest[0]
+            other = rooms.room_of_include(path, TABLE) or rest[0]
             if other != room and other not in ALLOWED[room]:
                 yield f"{name}: room {room} includes {path}; it may include {sorted(ALLOWED[room]) or 'no other room'}"
         elif path.startswith("apps/") or ".." in path.split("/"):
@@ -63,6 +92,11 @@ def check_library_source(name, room, text):
         yield f"{name}: {found.group().strip()} in the library; it never prints and never exits"
 
 
+def folder_of(target):
+    """Returns the room that a target such as io_clouds is built from."""
+    return target.replace("_", "/")
+
+
 def check_room_cmake(name, room, text):
     text = re.sub(r"#[^\n]*", "", text)
     call = re.search(r"saccade_room\((.*?)\)", text, re.DOTALL)
@@ -70,14 +104,13 @@ def check_room_cmake(name, room, text):
         yield f"{name}: no saccade_room(…)"
         return
     words = re.findall(r'"[^"]*"|\S+', call.group(1))
-    if words[0] != room:
+    if folder_of(words[0]) != room:
         yield f"{name}: saccade_room({words[0]}) in the folder {room}"
-    keywords = {"SOURCES", "ROOMS", "PACKAGES", "PUBLIC", "PRIVATE"}
     current = None
     for word in words[1:]:
-        if word in keywords:
+        if word in KEYWORDS:
             current = word
-        elif current == "ROOMS" and word not in ALLOWED[room]:
+        elif current == "ROOMS" and folder_of(word) not in ALLOWED[room]:
             yield f"{name}: room {room} links {word}; it may link {sorted(ALLOWED[room]) or 'no other room'}"
         elif current == "PACKAGES" and room in CORE_ROOMS and word.strip('"').split()[0] not in CORE_PACKAGES:
             yield f"{name}: core room {room} needs {word}; core rooms need only {sorted(CORE_PACKAGES)}"
@@ -88,13 +121,13 @@ def check_room_cmake(name, room, text):
 def links_of(text):
     call = re.search(r"saccade_room\((.*?)\)", re.sub(r"#[^\n]*", "", text), re.DOTALL)
     words = re.findall(r'"[^"]*"|\S+', call.group(1)) if call else []
-    rooms = []
+    linked = []
     if "ROOMS" in words:
         for word in words[words.index("ROOMS") + 1:]:
-            if word in ("SOURCES", "PACKAGES", "PUBLIC", "PRIVATE"):
+            if word in KEYWORDS:
                 break
-            rooms.append(word)
-    return set(rooms)
+            linked.append(folder_of(word))
+    return set(linked)
 
 
 def check_links_match(root, room, texts):
@@ -107,8 +140,8 @@ def check_links_match(root, room, texts):
             if other not in reachable:
                 reachable.add(other)
                 queue.append(other)
-    included = {path.split("/")[1] for text in texts for _, path in INCLUDE.findall(text) if path.startswith("saccade/")}
-    for other in sorted(included - reachable - {room}):
+    included = {rooms.room_of_include(path, TABLE) for text in texts for _, path in INCLUDE.findall(text)}
+    for other in sorted(included - reachable - {room, None}):
         yield f"lib/saccade/{room}/CMakeLists.txt: {other} is included but not linked (ROOMS)"
 
 
@@ -134,13 +167,13 @@ def check_text(name, path, text):
 def check(root):
     violations, checked = [], 0
     library = root / "lib" / "saccade"
-    for room_folder in sorted(path for path in library.iterdir() if path.is_dir()):
-        room = room_folder.name
+    files = [path.relative_to(library) for path in library.rglob("*") if path.is_file() and path.parent != library]
+    for room in sorted({rooms.room_of(path.as_posix(), TABLE) or path.parent.as_posix() for path in files}):
         if room not in ALLOWED:
             violations.append(f"lib/saccade/{room}: no such room in the order of the layers")
             continue
         texts = []
-        for path in files_below(root, [room_folder.relative_to(root)]):
+        for path in files_below(root, [f"lib/saccade/{room}"]):
             name, text = str(path.relative_to(root)), path.read_text()
             if path.suffix in SOURCES:
                 texts.append(text)

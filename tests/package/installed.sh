@@ -27,8 +27,8 @@ if consume nowhere "-DCONSUMER_COMPONENTS=core;nowhere" >"$work/nowhere.log" 2>&
 fi
 grep -q nowhere "$work/nowhere.log"
 
-if [[ -d $work/prefix/include/saccade/io ]]; then
-  consume all "-DCONSUMER_COMPONENTS=map;io"
+if [[ -d $work/prefix/include/saccade/io/clouds ]]; then
+  consume all "-DCONSUMER_COMPONENTS=map;io_clouds"
   cmake --build "$work/all"
   "$work/all/consumer"
 fi

@@ -5,7 +5,7 @@
 # BUILD for any that belongs to another library. Built as quickly as can be.   Usage: subproject.sh SOURCE BUILD WORK
 set -euo pipefail
 source_dir="$1" build="$2" work="$3"
-core_rooms=(core sensor map surfel segment attention view annotate)
+core_rooms=(core sensor cloud map tracking surfel segment attention views robot explore annotate)
 rm -rf "$work"
 cmake -S "$source_dir/tests/package/subproject" -B "$work" -G Ninja -DCMAKE_BUILD_TYPE=None \
   -DCMAKE_CXX_FLAGS="-O0 -DNDEBUG -DHWY_COMPILE_ONLY_STATIC" -DCMAKE_UNITY_BUILD=ON -DCMAKE_UNITY_BUILD_BATCH_SIZE=32 \

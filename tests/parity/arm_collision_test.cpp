@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Arms against obstacles and themselves, beside FCL with a box per obstacle cell and the bodies as they are described.
 // SACCADE_COLLISION_CASES: configurations per arm (3000), anywhere, and as many near contact.
-#include "saccade/robot/arm_collision.hpp"
+#include "saccade/arm/arm_collision.hpp"
 
 #include <gtest/gtest.h>
 
@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "saccade/robot/body_surface.hpp"
+#include "saccade/arm/body_surface.hpp"
 #include "support/effort.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/shared_arms.hpp"

@@ -8,10 +8,10 @@
 #include <random>
 
 #include "saccade/core/simd.hpp"
-#include "saccade/map/icp.hpp"
-#include "saccade/map/icp_kernels.hpp"
 #include "saccade/map/view_points.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
+#include "saccade/tracking/icp.hpp"
+#include "saccade/tracking/icp_kernels.hpp"
 #include "support/effort.hpp"
 
 namespace saccade {

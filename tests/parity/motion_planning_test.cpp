@@ -6,10 +6,10 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "saccade/arm/motion_planner.hpp"
+#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/motion_planner.hpp"
-#include "saccade/robot/trajectory_timing.hpp"
 #include "support/effort.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/planning_scenes.hpp"

@@ -8,10 +8,10 @@
 #include <random>
 
 #include "saccade/core/simd.hpp"
-#include "saccade/view/best_views.hpp"
-#include "saccade/view/view_gain.hpp"
-#include "saccade/view/view_order.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/views/best_views.hpp"
+#include "saccade/views/view_gain.hpp"
+#include "saccade/views/view_order.hpp"
+#include "saccade/views/view_sphere.hpp"
 #include "support/brute_force_gain.hpp"
 #include "support/effort.hpp"
 

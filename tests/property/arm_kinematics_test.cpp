@@ -4,8 +4,8 @@
 
 #include <filesystem>
 
-#include "saccade/robot/inverse_kinematics.hpp"
-#include "saccade/robot/kinematics.hpp"
+#include "saccade/arm/inverse_kinematics.hpp"
+#include "saccade/arm/kinematics.hpp"
 #include "support/effort.hpp"
 #include "support/kdl_arm.hpp"
 #include "support/shared_arms.hpp"

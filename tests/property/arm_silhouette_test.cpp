@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The silhouettes of recorded and built-in arms against rays cast at every triangle, and of enlarged ones against
 // points.
-#include "saccade/robot/arm_silhouette.hpp"
+#include "saccade/arm/arm_silhouette.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,8 +9,8 @@
 #include <iostream>
 #include <optional>
 
-#include "saccade/io/urdf.hpp"
-#include "saccade/robot/arm_mesh.hpp"
+#include "saccade/arm/arm_mesh.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "support/effort.hpp"
 #include "support/shared_arms.hpp"
 #include "support/test_arms.hpp"

@@ -8,9 +8,9 @@
 #include <cstdio>
 #include <random>
 
-#include "saccade/io/file_io.hpp"
-#include "saccade/io/label_input.hpp"
-#include "saccade/io/label_output.hpp"
+#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_output.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "support/effort.hpp"
 #include "support/temp_folder.hpp"
 

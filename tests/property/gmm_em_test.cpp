@@ -7,10 +7,10 @@
 
 #include <algorithm>
 
-#include "saccade/attention/made_up_task.hpp"
-#include "saccade/attention/seeded_random.hpp"
 #include "saccade/attention/trajectory_changes.hpp"
+#include "saccade/core/seeded_random.hpp"
 #include "saccade/core/simd.hpp"
+#include "saccade/trial/made_up_task.hpp"
 #include "support/effort.hpp"
 #include "support/reference_em.hpp"
 

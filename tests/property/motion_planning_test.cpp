@@ -6,7 +6,7 @@
 
 #include <thread>
 
-#include "saccade/robot/motion_planner.hpp"
+#include "saccade/arm/motion_planner.hpp"
 #include "support/effort.hpp"
 #include "support/sliding_arms.hpp"
 

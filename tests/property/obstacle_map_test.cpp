@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Obstacle cells against a look at every voxel, distances and spheres against all boxes, and a map that is followed
 // against one made anew, over random maps, cell sizes, fixtures, threads and instruction sets.
-#include "saccade/robot/obstacle_map.hpp"
+#include "saccade/arm/obstacle_map.hpp"
 
 #include <gtest/gtest.h>
 

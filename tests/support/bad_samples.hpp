@@ -5,8 +5,8 @@
 #include <cmath>
 #include <cstdint>
 
-#include "saccade/attention/hand_trajectory.hpp"
-#include "saccade/attention/seeded_random.hpp"
+#include "saccade/core/seeded_random.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade::test {
 

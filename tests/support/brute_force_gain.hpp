@@ -6,8 +6,8 @@
 #include <set>
 #include <tuple>
 
-#include "saccade/view/sensor_rays.hpp"
-#include "saccade/view/view_gain.hpp"
+#include "saccade/views/sensor_rays.hpp"
+#include "saccade/views/view_gain.hpp"
 
 namespace saccade::test {
 

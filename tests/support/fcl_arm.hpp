@@ -16,7 +16,7 @@
 #include <variant>
 #include <vector>
 
-#include "saccade/robot/arm_collision.hpp"
+#include "saccade/arm/arm_collision.hpp"
 
 namespace saccade::test {
 

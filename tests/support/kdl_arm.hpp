@@ -7,8 +7,8 @@
 #include <kdl/chainiksolverpos_lma.hpp>
 #include <kdl/chainjnttojacsolver.hpp>
 
-#include "saccade/robot/arm_model.hpp"
-#include "saccade/robot/kinematics.hpp"
+#include "saccade/arm/arm_model.hpp"
+#include "saccade/arm/kinematics.hpp"
 
 namespace saccade::test {
 

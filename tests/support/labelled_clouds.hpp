@@ -7,8 +7,8 @@
 #include <string>
 #include <vector>
 
-#include "saccade/io/pcd_io.hpp"
-#include "saccade/segment/point_cloud.hpp"
+#include "saccade/cloud/point_cloud.hpp"
+#include "saccade/io/clouds/pcd_io.hpp"
 
 namespace saccade::test {
 

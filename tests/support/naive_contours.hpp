@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "saccade/view/contours.hpp"
+#include "saccade/views/contours.hpp"
 
 namespace saccade::test {
 

@@ -8,7 +8,7 @@
 #include <set>
 #include <vector>
 
-#include "saccade/segment/point_cloud.hpp"
+#include "saccade/cloud/point_cloud.hpp"
 
 namespace saccade::test {
 

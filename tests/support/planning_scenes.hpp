@@ -8,10 +8,10 @@
 #include <string>
 #include <vector>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/robot/reachability.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/arm/reachability.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/simulated_run.hpp"
+#include "saccade/views/view_sphere.hpp"
 
 namespace saccade::test {
 

@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "saccade/attention/gmm_em.hpp"
-#include "saccade/attention/hand_trajectory.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade::test {
 

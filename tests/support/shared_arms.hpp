@@ -7,7 +7,7 @@
 #include <iterator>
 #include <string>
 
-#include "saccade/io/urdf.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "support/places.hpp"
 
 namespace saccade::test {

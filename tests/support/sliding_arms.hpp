@@ -6,8 +6,8 @@
 #include <utility>
 #include <vector>
 
-#include "saccade/robot/arm_model.hpp"
-#include "saccade/robot/obstacle_map.hpp"
+#include "saccade/arm/arm_model.hpp"
+#include "saccade/arm/obstacle_map.hpp"
 #include "support/test_arms.hpp"
 
 namespace saccade::test {

@@ -9,8 +9,8 @@
 #include <string>
 #include <vector>
 
-#include "saccade/robot/arm_model.hpp"
-#include "saccade/robot/inverse_kinematics.hpp"
+#include "saccade/arm/arm_model.hpp"
+#include "saccade/arm/inverse_kinematics.hpp"
 
 namespace saccade::test {
 

@@ -15,8 +15,8 @@
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
-#include "saccade/view/view_gain.hpp"
-#include "saccade/view/view_sphere.hpp"
+#include "saccade/views/view_gain.hpp"
+#include "saccade/views/view_sphere.hpp"
 #include "support/parallel_backend.hpp"
 
 namespace saccade {

@@ -5,9 +5,9 @@
 #include <algorithm>
 #include <cstring>
 
-#include "saccade/io/cloud_io.hpp"
-#include "saccade/io/sacmap.hpp"
-#include "saccade/view/view_gain.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/ray_hits.hpp"
 #include "support/effort.hpp"

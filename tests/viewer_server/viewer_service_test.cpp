@@ -8,7 +8,7 @@
 #include <cstring>
 #include <thread>
 
-#include "saccade/io/json_io.hpp"
+#include "saccade/io/files/json_io.hpp"
 #include "server/service_thread.hpp"
 #include "support/temp_folder.hpp"
 #include "viewer_server/asked.hpp"

@@ -6,12 +6,12 @@
 #include <optional>
 
 #include "saccade/attention/saliency.hpp"
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/report/mesh_picture.hpp"
 #include "saccade/report/segment_picture.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 #include "saccade/segment/lccp.hpp"
+#include "saccade/trial/simulated_run.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
 

@@ -4,9 +4,9 @@
 #include <algorithm>
 #include <array>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/scene_yaml.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 #include "saccade/scene/simulated_camera.hpp"
+#include "saccade/trial/simulated_run.hpp"
 
 namespace saccade::cli {
 namespace {

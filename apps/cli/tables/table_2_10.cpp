@@ -6,7 +6,7 @@
 
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
 #include "thesis/update_task.hpp"

@@ -6,7 +6,7 @@
 
 #include "json_output.hpp"
 #include "peer_comparison.hpp"
-#include "saccade/view/view_gain.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
 #include "thesis/ray_search.hpp"

@@ -6,11 +6,11 @@
 #include <limits>
 #include <map>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/explore/statistics.hpp"
-#include "saccade/io/scene_yaml.hpp"
-#include "saccade/io/urdf.hpp"
+#include "saccade/arm/urdf.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/report/plot.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/simulated_run.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
 

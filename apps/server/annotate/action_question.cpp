@@ -7,7 +7,7 @@
 #include <string>
 #include <vector>
 
-#include "saccade/io/annotation_script.hpp"
+#include "saccade/io/sessions/annotation_script.hpp"
 
 namespace saccade::server {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <map>
 
-#include "saccade/io/file_io.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
 

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "saccade/annotate/annotation.hpp"
-#include "saccade/io/cloud_io.hpp"
-#include "saccade/io/label_output.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
+#include "saccade/io/clouds/label_output.hpp"
 
 namespace saccade::server {
 

@@ -9,7 +9,7 @@
 #include <cstring>
 #include <utility>
 
-#include "saccade/io/file_io.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
 namespace {

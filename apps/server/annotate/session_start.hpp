@@ -10,7 +10,7 @@
 #include <vector>
 
 #include "saccade/annotate/label_seeds.hpp"
-#include "saccade/io/annotation_session.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 
 namespace saccade::server {
 

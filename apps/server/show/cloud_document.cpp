@@ -4,7 +4,7 @@
 #include <map>
 
 #include "saccade/annotate/label_table.hpp"
-#include "saccade/io/cloud_io.hpp"
+#include "saccade/io/clouds/cloud_io.hpp"
 #include "server/show/figures.hpp"
 #include "server/show/open_document.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/sacmap.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "server/show/map_layers.hpp"
 #include "server/show/open_document.hpp"
 

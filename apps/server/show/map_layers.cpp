@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "saccade/attention/nearest_segment.hpp"
-#include "saccade/io/ternary_export.hpp"
+#include "saccade/io/maps/ternary_export.hpp"
 #include "saccade/report/color_map.hpp"
 #include "server/show/figures.hpp"
 

@@ -7,7 +7,7 @@
 
 #include "saccade/attention/salient_objects.hpp"
 #include "saccade/core/executor.hpp"
-#include "saccade/view/view_generator.hpp"
+#include "saccade/views/view_generator.hpp"
 #include "server/show/scene_document.hpp"
 
 namespace saccade::server {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/scene_yaml.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
-#include "saccade/io/any_mesh.hpp"
+#include "saccade/io/clouds/any_mesh.hpp"
 #include "server/show/figures.hpp"
 #include "server/show/open_document.hpp"
 

@@ -5,7 +5,7 @@
 #include <array>
 #include <cctype>
 
-#include "saccade/io/mesh_scene.hpp"
+#include "saccade/scene/mesh_scene.hpp"
 
 namespace saccade::server {
 namespace {

@@ -6,7 +6,7 @@
 #include <optional>
 
 #include "saccade/core/executor.hpp"
-#include "saccade/io/ply_io.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
 #include "server/show/scene_document.hpp"
 
 namespace saccade::server {

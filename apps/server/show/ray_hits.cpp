@@ -4,7 +4,7 @@
 #include <optional>
 
 #include "saccade/map/ray_walk.hpp"
-#include "saccade/view/sensor_rays.hpp"
+#include "saccade/views/sensor_rays.hpp"
 
 namespace saccade::server {
 namespace {

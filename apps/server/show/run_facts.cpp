@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "saccade/io/view_choice.hpp"
+#include "saccade/io/runs/view_choice.hpp"
 #include "server/show/figures.hpp"
 
 namespace saccade::server {

@@ -5,8 +5,8 @@
 #include <numbers>
 #include <optional>
 
+#include "saccade/arm/arm_mesh.hpp"
 #include "saccade/report/robot_drawing.hpp"
-#include "saccade/robot/arm_mesh.hpp"
 #include "server/show/figures.hpp"
 #include "server/show/ray_hits.hpp"
 

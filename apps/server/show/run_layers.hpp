@@ -2,8 +2,8 @@
 #pragma once
 // Layers of one view of an exploration: what it was chosen from and what came of it.
 
+#include "saccade/arm/arm_model.hpp"
 #include "saccade/explore/view_record.hpp"
-#include "saccade/robot/arm_model.hpp"
 #include "server/show/map_layers.hpp"
 
 namespace saccade::server {

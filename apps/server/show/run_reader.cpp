@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/show/run_reader.hpp"
 
-#include "saccade/io/json_io.hpp"
-#include "saccade/io/ply_io.hpp"
-#include "saccade/io/sacmap.hpp"
-#include "saccade/io/trajectory_io.hpp"
-#include "saccade/io/urdf.hpp"
-#include "saccade/io/view_choice.hpp"
+#include "saccade/arm/urdf.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
+#include "saccade/io/runs/view_choice.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
 #include "server/show/run_layers.hpp"

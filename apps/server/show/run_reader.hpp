@@ -7,9 +7,9 @@
 #include <string>
 #include <vector>
 
+#include "saccade/arm/arm_model.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/explore/view_record.hpp"
-#include "saccade/robot/arm_model.hpp"
 #include "server/show/map_layers.hpp"
 #include "server/show/scene_document.hpp"
 

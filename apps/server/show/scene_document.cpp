@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "saccade/core/fnv1a.hpp"
-#include "saccade/io/json_io.hpp"
+#include "saccade/io/files/json_io.hpp"
 
 namespace saccade::server {
 namespace {

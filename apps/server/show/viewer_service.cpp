@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "saccade/io/file_io.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
 namespace {

@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
-#include "saccade/annotate/estimated_normals.hpp"
-#include "saccade/annotate/nearest_neighbours.hpp"
+#include "saccade/cloud/estimated_normals.hpp"
+#include "saccade/cloud/nearest_neighbours.hpp"
 
 namespace saccade {
 namespace {

@@ -6,11 +6,11 @@
 #include <span>
 #include <vector>
 
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/progress.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/core/unset_vector.hpp"
-#include "saccade/segment/point_cloud.hpp"
 
 namespace saccade {
 

@@ -7,9 +7,9 @@
 #include <vector>
 
 #include "saccade/attention/hand_smoothing.hpp"
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/attention/speed_dips.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 

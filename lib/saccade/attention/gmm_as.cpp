@@ -9,7 +9,7 @@
 #include <limits>
 #include <utility>
 
-#include "saccade/attention/trajectory_check.hpp"
+#include "saccade/sensor/trajectory_check.hpp"
 
 namespace saccade {
 namespace {

@@ -7,8 +7,8 @@
 #include <vector>
 
 #include "saccade/attention/gmm_em.hpp"
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 

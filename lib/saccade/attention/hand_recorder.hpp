@@ -4,9 +4,9 @@
 
 #include <optional>
 
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 

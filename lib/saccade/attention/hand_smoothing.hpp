@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 

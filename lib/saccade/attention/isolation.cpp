@@ -6,7 +6,7 @@
 #include <cstddef>
 #include <span>
 
-#include "saccade/segment/cell_index.hpp"
+#include "saccade/cloud/cell_index.hpp"
 
 namespace saccade {
 

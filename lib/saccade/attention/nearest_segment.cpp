@@ -4,7 +4,7 @@
 #include <limits>
 #include <numeric>
 
-#include "saccade/segment/cell_index.hpp"
+#include "saccade/cloud/cell_index.hpp"
 
 namespace saccade {
 namespace {

@@ -8,9 +8,9 @@
 #include <string>
 #include <vector>
 
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 

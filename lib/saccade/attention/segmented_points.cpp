@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "saccade/attention/isolation.hpp"
-#include "saccade/segment/point_cloud.hpp"
+#include "saccade/cloud/point_cloud.hpp"
 
 namespace saccade {
 

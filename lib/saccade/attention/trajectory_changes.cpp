@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/attention/seeded_random.hpp"
+#include "saccade/core/seeded_random.hpp"
 
 namespace saccade {
 namespace {

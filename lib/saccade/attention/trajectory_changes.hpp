@@ -4,8 +4,8 @@
 
 #include <cstdint>
 
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 

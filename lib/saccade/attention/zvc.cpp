@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "saccade/attention/trajectory_check.hpp"
+#include "saccade/sensor/trajectory_check.hpp"
 
 namespace saccade {
 namespace {

@@ -5,8 +5,8 @@
 #include <cstddef>
 #include <vector>
 
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 

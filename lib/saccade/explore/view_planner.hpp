@@ -6,8 +6,8 @@
 
 #include "saccade/attention/attention_source.hpp"
 #include "saccade/explore/ranking.hpp"
-#include "saccade/view/gain.hpp"
-#include "saccade/view/view_generator.hpp"
+#include "saccade/views/gain.hpp"
+#include "saccade/views/view_generator.hpp"
 
 namespace saccade {
 

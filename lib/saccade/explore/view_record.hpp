@@ -16,8 +16,8 @@
 #include "saccade/robot/refusal.hpp"
 #include "saccade/robot/trajectory.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
-#include "saccade/view/gain.hpp"
-#include "saccade/view/view_generator.hpp"
+#include "saccade/views/gain.hpp"
+#include "saccade/views/view_generator.hpp"
 
 namespace saccade {
 

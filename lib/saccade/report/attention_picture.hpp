@@ -9,12 +9,12 @@
 #include <string>
 #include <vector>
 
-#include "saccade/attention/hand_trajectory.hpp"
 #include "saccade/attention/speed_dips.hpp"
 #include "saccade/report/canvas.hpp"
 #include "saccade/report/color_map.hpp"
 #include "saccade/report/sheet.hpp"
 #include "saccade/report/viewpoint.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 #include "saccade/sensor/image.hpp"
 
 namespace saccade {

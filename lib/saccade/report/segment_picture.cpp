@@ -6,10 +6,10 @@
 #include <numbers>
 #include <numeric>
 
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/report/canvas.hpp"
 #include "saccade/report/mesh_picture.hpp"
 #include "saccade/report/shading.hpp"
-#include "saccade/segment/point_cloud.hpp"
 
 namespace saccade {
 

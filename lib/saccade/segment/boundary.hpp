@@ -8,8 +8,8 @@
 #include <span>
 #include <vector>
 
+#include "saccade/cloud/point_cells.hpp"
 #include "saccade/core/executor.hpp"
-#include "saccade/segment/point_cells.hpp"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "saccade/segment/point_cells.hpp"
+#include "saccade/cloud/point_cells.hpp"
 
 namespace saccade {
 

@@ -7,9 +7,9 @@
 #include <cstdint>
 #include <vector>
 
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/segment/point_cloud.hpp"
 #include "saccade/segment/surfel_graph.hpp"
 
 namespace saccade {

@@ -8,7 +8,7 @@
 #include <tuple>
 #include <utility>
 
-#include "saccade/segment/disjoint_sets.hpp"
+#include "saccade/cloud/disjoint_sets.hpp"
 
 namespace saccade {
 

@@ -5,8 +5,8 @@
 #include <cstdint>
 #include <span>
 
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/segment/point_cloud.hpp"
 
 namespace saccade {
 

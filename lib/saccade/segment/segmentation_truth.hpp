@@ -9,11 +9,11 @@
 #include <span>
 #include <vector>
 
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/segment/boundary.hpp"
 #include "saccade/segment/boundary_matching.hpp"
 #include "saccade/segment/consistency_error.hpp"
-#include "saccade/segment/point_cloud.hpp"
 
 namespace saccade {
 

@@ -5,7 +5,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "saccade/segment/cell_index.hpp"
+#include "saccade/cloud/cell_index.hpp"
 #include "saccade/segment/supervoxel_growth.hpp"
 
 namespace saccade {

@@ -8,9 +8,9 @@
 #include <utility>
 #include <vector>
 
+#include "saccade/cloud/point_cloud.hpp"
+#include "saccade/cloud/voxel_cloud.hpp"
 #include "saccade/core/executor.hpp"
-#include "saccade/segment/point_cloud.hpp"
-#include "saccade/segment/voxel_cloud.hpp"
 
 namespace saccade {
 

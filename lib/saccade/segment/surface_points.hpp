@@ -6,10 +6,10 @@
 #include <cstdint>
 #include <vector>
 
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/map/voxel_block.hpp"
-#include "saccade/segment/point_cloud.hpp"
 
 namespace saccade {
 

@@ -10,10 +10,10 @@
 #include <span>
 #include <vector>
 
+#include "saccade/cloud/disjoint_sets.hpp"
+#include "saccade/cloud/point_cells.hpp"
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/executor.hpp"
-#include "saccade/segment/disjoint_sets.hpp"
-#include "saccade/segment/point_cells.hpp"
-#include "saccade/segment/point_cloud.hpp"
 
 namespace saccade {
 

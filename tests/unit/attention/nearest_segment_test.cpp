@@ -6,7 +6,7 @@
 #include <limits>
 #include <random>
 
-#include "saccade/segment/point_cloud.hpp"
+#include "saccade/cloud/point_cloud.hpp"
 
 namespace saccade {
 namespace {

@@ -7,7 +7,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "saccade/segment/point_cloud.hpp"
+#include "saccade/cloud/point_cloud.hpp"
 
 namespace saccade {
 namespace {

@@ -11,7 +11,7 @@
 #include <random>
 
 #include "saccade/attention/isolation.hpp"
-#include "saccade/segment/point_cloud.hpp"
+#include "saccade/cloud/point_cloud.hpp"
 #include "support/effort.hpp"
 
 namespace saccade {

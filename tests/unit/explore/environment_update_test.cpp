@@ -6,11 +6,11 @@
 #include <algorithm>
 #include <random>
 
-#include "saccade/explore/simulated_run.hpp"
-#include "saccade/io/urdf.hpp"
+#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/map/count_unknown.hpp"
-#include "saccade/robot/trajectory_timing.hpp"
 #include "saccade/scene/random_clutter.hpp"
+#include "saccade/trial/simulated_run.hpp"
 #include "support/effort.hpp"
 
 namespace saccade {

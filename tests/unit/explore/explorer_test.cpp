@@ -3,11 +3,11 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/explore/metrics.hpp"
-#include "saccade/explore/simulated_run.hpp"
 #include "saccade/map/count_unknown.hpp"
 #include "saccade/scene/random_clutter.hpp"
 #include "saccade/scene/simulated_camera.hpp"
+#include "saccade/trial/metrics.hpp"
+#include "saccade/trial/simulated_run.hpp"
 
 namespace saccade {
 namespace {

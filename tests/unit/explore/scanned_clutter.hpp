@@ -6,9 +6,9 @@
 
 #include <algorithm>
 
-#include "saccade/explore/oracle_gain.hpp"
-#include "saccade/explore/simulated_run.hpp"
 #include "saccade/scene/random_clutter.hpp"
+#include "saccade/trial/oracle_gain.hpp"
+#include "saccade/trial/simulated_run.hpp"
 
 namespace saccade::test {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "saccade/cloud/point_cloud.hpp"
 #include "saccade/report/color_map.hpp"
-#include "saccade/segment/point_cloud.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

@@ -4,8 +4,8 @@
 #include <gtest/gtest.h>
 
 #include "analytic_map.hpp"
-#include "saccade/attention/made_up_task.hpp"
 #include "saccade/report/ternary_picture.hpp"
+#include "saccade/trial/made_up_task.hpp"
 #include "unit/report/pixels.hpp"
 #include "unit/report/well_formed.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/robot/trajectory_timing.hpp"
+#include "saccade/arm/trajectory_timing.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/arm/arm_robot.hpp"
+
+#include <algorithm>
+
+#include "saccade/arm/swept_cells.hpp"
+#include "saccade/arm/trajectory_timing.hpp"
+
+namespace saccade {
+namespace {
+
+/// The configuration that config asks for; touching is not looked at.
+Configuration choose_start(const ArmRobotConfig& config, const Reachability& reachability,
+                           const ObstacleMap& fixtures) {
+  if (config.start) return *config.start;
+  const Configuration& middle = reachability.arm().middle();
+  for (const Pose& pose : config.first_poses) {
+    const std::vector<Configuration> free = reachability.goals(pose, middle, fixtures).free;
+    if (free.empty()) continue;
+    return *std::min_element(free.begin(), free.end(), [&](const Configuration& a, const Configuration& b) {
+      return rest_to_rest_s(reachability.arm(), middle, a) < rest_to_rest_s(reachability.arm(), middle, b);
+    });
+  }
+  return middle;
+}
+
+Status check_configuration(const ArmModel& arm, const Configuration& q) {
+  const auto fail = [&](const std::string& what) { return Error{Errc::invalid_argument, what, arm.name()}; };
+  if (q.size() != arm.dof()) {
+    return fail("the configuration has " + std::to_string(q.size()) + " values, the arm " + std::to_string(arm.dof()) +
+                " joints");
+  }
+  if (!q.allFinite() || !arm.within_limits(q)) return fail("the configuration is outside the joints' limits");
+  return {};
+}
+
+}  // namespace
+
+Status ArmRobotConfig::validate() const {
+  SACCADE_CHECK(collision.validate());
+  SACCADE_CHECK(planner.validate());
+  return obstacles.validate();
+}
+
+Result<ArmRobot::Parts> ArmRobot::make_parts(const ArmModel& arm, const TsdfConfig& map, const ArmRobotConfig& config) {
+  SACCADE_CHECK(config.validate());
+  SACCADE_TRY(const ArmCollision collision, ArmCollision::create(arm, config.collision));
+  SACCADE_TRY(Reachability reachability, Reachability::create(collision, config.ik));
+  SACCADE_TRY(MotionPlanner planner, MotionPlanner::create(collision, config.planner));
+  SACCADE_TRY(const TsdfMap unseen, TsdfMap::create(map));
+  SACCADE_TRY(ObstacleMap obstacles, ObstacleMap::create(unseen.snapshot(), config.obstacles, Executor{}));
+  ObstacleConfig fixtures_alone = config.obstacles;
+  fixtures_alone.unknown_is_obstacle = false;
+  SACCADE_TRY(ObstacleMap fixtures, ObstacleMap::create(unseen.snapshot(), fixtures_alone, Executor{}));
+  const Configuration start = choose_start(config, reachability, fixtures);
+  SACCADE_CHECK(check_configuration(arm, start));
+  if (const auto contact = collision.contact(start, fixtures)) {
+    return Error{Errc::invalid_argument, "the arm cannot begin as it stands: " + describe(arm, *contact), arm.name()};
+  }
+  return Parts{std::move(reachability), std::move(planner), std::move(fixtures), std::move(obstacles), start};
+}
+
+Status ArmRobot::place(const Configuration& q) {
+  SACCADE_CHECK(check_configuration(arm(), q));
+  stand(q);
+  return {};
+}
+
+void ArmRobot::arrive(const Motion& motion, const Configuration& q) {
+  way_.add(motion.trajectory);
+  q_ = q;
+  retreat_.reset();
+}
+
+void ArmRobot::stand(const Configuration& q) {
+  way_.clear();
+  q_ = q;
+  retreat_.reset();
+}
+
+Status ArmRobot::follow(const TsdfSnapshot& map, const Executor& executor) {
+  SACCADE_TRY([[maybe_unused]] const ObstacleUpdate update, obstacles_.update(map, executor));
+  const ArmCollision& collision = reachability_.collision();
+  retreat_.reset();
+  if (collision.contact(q_, obstacles_)) retreat_ = way_.back_from(q_, collision, obstacles_);
+  return {};
+}
+
+Result<std::vector<Box>> ArmRobot::swept_by(std::span<const Pose> T_world_camera) {
+  SweptCells cells{reachability_.collision(), obstacles_};
+  Configuration at = q_;
+  cells.add(at);
+  for (const Pose& pose : T_world_camera) {
+    SACCADE_TRY(const PlannedMotion planned, plan_among(std::span{&pose, 1}, Way::any, at, fixtures_));
+    if (!planned.motion) continue;
+    cells.add(planned.motion->trajectory);
+    at = planned.motion->trajectory.end();
+  }
+  return cells.boxes();
+}
+
+std::vector<std::optional<Refusal>> ArmRobot::test(std::span<const Pose> T_world_camera,
+                                                   const Executor& executor) const {
+  return reachability_.test(T_world_camera, q_, obstacles_, executor);
+}
+
+Result<PlannedMotion> ArmRobot::plan(std::span<const Pose> T_world_camera, Way way) {
+  if (way == Way::straight) return plan_among(T_world_camera, way, q_, obstacles_);
+  SACCADE_TRY(PlannedMotion planned, plan_among(T_world_camera, way, planned_from(), obstacles_));
+  if (planned.motion) begin_with_retreat(*planned.motion);
+  return planned;
+}
+
+Result<PlannedMotion> ArmRobot::plan_to_stand_by() {
+  SACCADE_TRY(PlanOutcome outcome, planner_.plan(planned_from(), std::span{&stand_by_, 1}, obstacles_));
+  if (!outcome.plan) return PlannedMotion{std::nullopt, outcome.refusal, std::move(outcome.why)};
+  Motion motion{0, camera_pose(arm(), stand_by_), std::move(outcome.plan->trajectory)};
+  begin_with_retreat(motion);
+  return PlannedMotion{std::move(motion), std::nullopt, ""};
+}
+
+void ArmRobot::begin_with_retreat(Motion& motion) const {
+  if (!retreat_) return;
+  std::vector<Trajectory::Piece> pieces = retreat_->pieces();
+  const std::vector<Trajectory::Piece>& onwards = motion.trajectory.pieces();
+  pieces.insert(pieces.end(), onwards.begin(), onwards.end());
+  motion.trajectory = Trajectory{std::move(pieces)};
+  motion.retreat_s = retreat_->duration_s();
+}
+
+Result<PlannedMotion> ArmRobot::plan_among(std::span<const Pose> T_world_camera, Way way, const Configuration& from,
+                                           const ObstacleMap& obstacles) const {
+  SACCADE_EXPECTS(!T_world_camera.empty());
+  std::vector<Configuration> goals;
+  std::vector<std::size_t> pose_of;
+  std::optional<Refusal> refusal;
+  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
+    PoseGoals at_pose = reachability_.goals(T_world_camera[i], from, obstacles);
+    // Of several poses, the reason of the one that came farthest.
+    if (at_pose.refusal && (!refusal || *at_pose.refusal > *refusal)) refusal = at_pose.refusal;
+    pose_of.insert(pose_of.end(), at_pose.free.size(), i);
+    std::move(at_pose.free.begin(), at_pose.free.end(), std::back_inserter(goals));
+  }
+  if (goals.empty()) return PlannedMotion{std::nullopt, refusal, ""};
+  SACCADE_TRY(PlanOutcome outcome, way == Way::straight ? planner_.plan_straight(from, goals, obstacles)
+                                                        : planner_.plan(from, goals, obstacles));
+  if (!outcome.plan) return PlannedMotion{std::nullopt, outcome.refusal, std::move(outcome.why)};
+  const std::size_t pose = pose_of[outcome.plan->goal];
+  return PlannedMotion{Motion{pose, T_world_camera[pose], std::move(outcome.plan->trajectory)}, std::nullopt, ""};
+}
+
+Status ArmRobot::check_start(const Motion& motion) const {
+  constexpr double kSame{1e-6};
+  if (!motion.trajectory.empty() && (motion.trajectory.at(0.0).q - q_).lpNorm<Eigen::Infinity>() <= kSame) return {};
+  return Error{Errc::invalid_argument, "the motion does not begin where the arm stands", arm().name()};
+}
+
+Result<SimulatedRobot> SimulatedRobot::create(const ArmModel& arm, const TsdfConfig& map,
+                                              const ArmRobotConfig& config) {
+  SACCADE_TRY(Parts parts, make_parts(arm, map, config));
+  return SimulatedRobot{std::move(parts)};
+}
+
+Result<std::optional<Arrival>> SimulatedRobot::execute(const Motion& motion, const OnWay& on_way) {
+  SACCADE_CHECK(check_start(motion));
+  JointObserver observer;
+  if (on_way) {
+    observer = [&](const JointSample& sample) {
+      pass(sample.q);
+      on_way({sample.t_s, T_world_camera()});
+    };
+  }
+  SACCADE_TRY(const Configuration q, joints_.execute(motion.trajectory, observer));
+  arrive(motion, q);
+  motions_.push_back(motion.trajectory);
+  return std::optional{Arrival{T_world_camera(), motion.trajectory.duration_s()}};
+}
+
+}  // namespace saccade

@@ -1,0 +1,104 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/arm/inverse_kinematics.hpp"
+
+#include <utility>
+
+#include "saccade/arm/joint_turns.hpp"
+#include "saccade/arm/kinematics.hpp"
+
+namespace saccade {
+namespace {
+
+/// Poses per chunk of work: a millisecond or so.
+constexpr std::size_t kGrain{512};
+
+bool meets(const Pose& T_world_a, const Pose& T_world_b) {
+  // ‖Ra − Rb‖ (Frobenius) is √2 times the angle between them, where it is small.
+  return (T_world_a.translation() - T_world_b.translation()).norm() <= kIkTolerance &&
+         (T_world_a.linear() - T_world_b.linear()).norm() <= kIkTolerance;
+}
+
+}  // namespace
+
+std::string_view to_string(IkMethod method) {
+  switch (method) {
+    case IkMethod::automatic: return "automatic";
+    case IkMethod::closed_form: return "closed form";
+    case IkMethod::numeric: return "numeric";
+  }
+  return "unknown";
+}
+
+Configuration IkTable::solution(std::size_t pose, std::size_t i) const {
+  SACCADE_EXPECTS(pose < poses() && i < count(pose));
+  const std::size_t at = (first[pose] + i) * static_cast<std::size_t>(dof);
+  return Eigen::Map<const Eigen::VectorXd>{values.data() + at, dof};
+}
+
+Result<InverseKinematics> InverseKinematics::create(ArmModel arm, const IkConfig& config) {
+  if (config.max_turns < 1) return Error{Errc::invalid_argument, "max_turns must be one at least", ""};
+  const auto shared = std::make_shared<const ArmModel>(std::move(arm));
+  SACCADE_TRY(NumericIk numeric, NumericIk::create(shared, config.numeric));
+  InverseKinematics ik{shared, config.max_turns, std::move(numeric)};
+  if (config.method == IkMethod::numeric) return ik;
+  auto wrist = SphericalWrist::find(*shared);
+  if (wrist) {
+    ik.wrist_ = *std::move(wrist);
+  } else if (config.method == IkMethod::closed_form) {
+    return wrist.error();
+  } else {
+    ik.why_numeric_ = wrist.error().message;
+  }
+  return ik;
+}
+
+void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference,
+                               std::vector<Configuration>& solutions) const {
+  if (!wrist_) {
+    for (const Configuration& q : numeric_.solve(T_world_camera, reference)) solutions.push_back(q);
+    return;
+  }
+  const WristSolutions found = wrist_->solve(T_world_camera, reference);
+  for (std::size_t i = 0; i < found.count; ++i) {
+    Configuration q = found.q[i];
+    if (!meets(camera_pose(*arm_, q), T_world_camera) && !refine(*arm_, T_world_camera, q)) continue;
+    append_turns(*arm_, q, reference, max_turns_, solutions);
+  }
+}
+
+std::vector<Configuration> InverseKinematics::solve(const Pose& T_world_camera) const {
+  return solve(T_world_camera, arm_->middle());
+}
+
+std::vector<Configuration> InverseKinematics::solve(const Pose& T_world_camera, const Configuration& reference) const {
+  SACCADE_EXPECTS(reference.size() == arm_->dof());
+  std::vector<Configuration> solutions;
+  append(T_world_camera, reference, solutions);
+  return solutions;
+}
+
+IkTable InverseKinematics::solve_all(std::span<const Pose> T_world_camera, const Configuration& reference,
+                                     const Executor& executor) const {
+  SACCADE_EXPECTS(reference.size() == arm_->dof());
+  const std::size_t poses = T_world_camera.size();
+  IkTable table;
+  table.dof = arm_->dof();
+  table.first.assign(poses + 1, 0);
+  std::vector<std::vector<double>> parts((poses + kGrain - 1) / kGrain);
+  executor.parallel_for(poses, kGrain, [&](std::size_t begin, std::size_t end) {
+    std::vector<double>& part = parts[begin / kGrain];
+    std::vector<Configuration> solutions;
+    for (std::size_t i = begin; i < end; ++i) {
+      solutions.clear();
+      append(T_world_camera[i], reference, solutions);
+      table.first[i + 1] = solutions.size();
+      for (const Configuration& q : solutions) part.insert(part.end(), q.data(), q.data() + q.size());
+    }
+  });
+  for (std::size_t i = 0; i < poses; ++i) table.first[i + 1] += table.first[i];
+  table.values.reserve(table.solutions() * static_cast<std::size_t>(table.dof));
+  for (const std::vector<double>& part : parts) table.values.insert(table.values.end(), part.begin(), part.end());
+  return table;
+}
+
+}  // namespace saccade

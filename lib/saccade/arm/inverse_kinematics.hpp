@@ -1,0 +1,86 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// InverseKinematics: the configurations that bring the camera to a pose; in closed form where the arm allows it.
+
+#include <cstddef>
+#include <cstdint>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "saccade/arm/arm_model.hpp"
+#include "saccade/arm/numeric_ik.hpp"
+#include "saccade/arm/spherical_wrist.hpp"
+#include "saccade/core/executor.hpp"
+
+namespace saccade {
+
+enum class IkMethod {
+  automatic,    ///< closed form where it applies, else numeric
+  closed_form,  ///< SphericalWrist
+  numeric,      ///< NumericIk
+};
+
+[[nodiscard]] std::string_view to_string(IkMethod method);
+
+struct IkConfig {
+  IkMethod method{IkMethod::automatic};
+  /// Closed form: a joint whose limits hold several whole turns of an angle is given in so many of them at most, those
+  /// nearest to the reference. Two hold every turn of a joint with less than ±2π; a wrist of ±47 rad alone has fifteen.
+  int max_turns{2};
+  NumericIkConfig numeric;
+};
+
+/// Solutions of many poses, one after the other.
+struct IkTable {
+  int dof{0};
+  std::vector<std::size_t> first;  ///< of each pose, and the end: poses + 1 entries
+  std::vector<double> values;      ///< dof per solution
+
+  [[nodiscard]] std::size_t poses() const { return first.empty() ? 0 : first.size() - 1; }
+  [[nodiscard]] std::size_t solutions() const { return first.empty() ? 0 : first.back(); }
+  [[nodiscard]] std::size_t count(std::size_t pose) const { return first[pose + 1] - first[pose]; }
+  /// The i-th solution of a pose.
+  [[nodiscard]] Configuration solution(std::size_t pose, std::size_t i) const;
+};
+
+/// Immutable, cheap to copy, safe for concurrent use.
+class InverseKinematics {
+ public:
+  /// invalid_argument for a bad configuration; unsupported, with the reason, where the closed form is asked for and
+  /// does not apply.
+  [[nodiscard]] static Result<InverseKinematics> create(ArmModel arm, const IkConfig& config = {});
+
+  [[nodiscard]] const ArmModel& arm() const { return *arm_; }
+  /// closed_form or numeric.
+  [[nodiscard]] IkMethod method() const { return wrist_ ? IkMethod::closed_form : IkMethod::numeric; }
+  /// Whether the closed form is refined, because the arm's axes only nearly meet or are parallel, as after rounding.
+  [[nodiscard]] bool refines() const { return wrist_ && !wrist_->is_exact(); }
+  /// Why there is no closed form; empty where there is one or none was looked for.
+  [[nodiscard]] const std::string& why_numeric() const { return why_numeric_; }
+
+  /// All solutions within the limits (closed form), or those that were found (numeric), each within kIkTolerance of the
+  /// pose by forward kinematics. The reference settles what a pose leaves open: singular joints, whole turns, the
+  /// numeric start; it is the arm's middle where it is left out. No solution is a valid answer.
+  [[nodiscard]] std::vector<Configuration> solve(const Pose& T_world_camera) const;
+  [[nodiscard]] std::vector<Configuration> solve(const Pose& T_world_camera, const Configuration& reference) const;
+
+  /// The same for many poses. The thread count never changes a bit of the result.
+  [[nodiscard]] IkTable solve_all(std::span<const Pose> T_world_camera, const Configuration& reference,
+                                  const Executor& executor) const;
+
+ private:
+  InverseKinematics(std::shared_ptr<const ArmModel> arm, int max_turns, NumericIk numeric)
+      : arm_{std::move(arm)}, max_turns_{max_turns}, numeric_{std::move(numeric)} {}
+  void append(const Pose& T_world_camera, const Configuration& reference, std::vector<Configuration>& solutions) const;
+
+  std::shared_ptr<const ArmModel> arm_;
+  int max_turns_;
+  std::optional<SphericalWrist> wrist_;
+  NumericIk numeric_;
+  std::string why_numeric_;
+};
+
+}  // namespace saccade

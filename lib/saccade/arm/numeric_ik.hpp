@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// NumericIk: inverse kinematics of any arm by iteration from many starts (Orocos KDL); refine: the last digits.
+
+#include <cstdint>
+#include <memory>
+#include <vector>
+
+#include "saccade/arm/arm_model.hpp"
+
+namespace saccade {
+
+/// What a solution may miss its pose by: metres, and radians.
+constexpr double kIkTolerance{1e-9};
+
+struct NumericIkConfig {
+  int restarts{100};          ///< starts besides the reference, drawn within the limits
+  int max_solutions{1};       ///< stops when it has found so many that differ by more than distinct_rad in some joint
+  int iterations{60};         ///< of each start, at most
+  double distinct_rad{0.05};  ///< rad; m for prismatic joints
+  std::uint64_t seed{1};
+
+  [[nodiscard]] Status validate() const;
+};
+
+/// Levenberg–Marquardt (KDL's ChainIkSolverPos_LMA) from the reference, then from random configurations; what it finds
+/// outside the limits is turned by whole turns, else put on them and iterated once more.
+/// A pose may go unsolved though it can be reached: more restarts make that rarer. Starts depend on the seed alone, so
+/// every pose has the same answer whatever is asked before it and on whatever thread.
+class NumericIk {
+ public:
+  /// invalid_argument for a bad configuration.
+  [[nodiscard]] static Result<NumericIk> create(std::shared_ptr<const ArmModel> arm,
+                                                const NumericIkConfig& config = {});
+
+  /// Within the limits, each within kIkTolerance of the pose; none where none was found. From 10 µs to milliseconds for
+  /// a pose that cannot be reached. Safe for concurrent use: each call has a solver of its own.
+  [[nodiscard]] std::vector<Configuration> solve(const Pose& T_world_camera, const Configuration& reference) const;
+
+ private:
+  NumericIk(std::shared_ptr<const ArmModel> arm, const NumericIkConfig& config)
+      : arm_{std::move(arm)}, config_{config} {}
+  std::shared_ptr<const ArmModel> arm_;
+  NumericIkConfig config_;
+};
+
+/// Newton's method from a near solution, damped where the arm is singular. Whether q then meets the pose within
+/// kIkTolerance; limits are not looked at. Ten iterations at most.
+[[nodiscard]] bool refine(const ArmModel& arm, const Pose& T_world_camera, Configuration& q);
+
+}  // namespace saccade

@@ -1,0 +1,92 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// CellIndex: cells of a regular grid, numbered in the order of insertion.
+
+#include <Eigen/Core>
+#include <array>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <vector>
+
+#include "saccade/cloud/point_cloud.hpp"
+
+namespace saccade {
+
+inline constexpr std::uint64_t kNoCell{~std::uint64_t{0}};
+inline constexpr std::uint64_t kFarCell{kNoCell - 1};  ///< beyond what an index holds
+inline constexpr int kCellBits{21};                    ///< per axis
+
+/// The cell of edge length `size` that `place` lies in, or kFarCell.
+[[nodiscard]] inline std::uint64_t cell_at(const Eigen::Vector3f& place, double size) {
+  constexpr double kHalf{static_cast<double>(1 << (kCellBits - 1))};
+  std::uint64_t cell{0};
+  for (const int axis : {0, 1, 2}) {
+    const double index = std::floor(static_cast<double>(place[axis]) / size);
+    if (!(index > 8.0 - kHalf && index < kHalf - 9.0)) return kFarCell;  // so that blocks next to its block exist
+    cell = (cell << kCellBits) | static_cast<std::uint64_t>(index + kHalf);
+  }
+  return cell;
+}
+
+/// What to add to a cell, without sign, to come to the 26 next to it.
+[[nodiscard]] inline const std::array<std::uint64_t, 26>& neighbour_offsets() {
+  static const std::array<std::uint64_t, 26> offsets = [] {
+    std::array<std::uint64_t, 26> made{};
+    std::size_t next{0};
+    for (const std::int64_t x : {-1, 0, 1}) {
+      for (const std::int64_t y : {-1, 0, 1}) {
+        for (const std::int64_t z : {-1, 0, 1}) {
+          constexpr std::int64_t kAxis{std::int64_t{1} << kCellBits};
+          if (x != 0 || y != 0 || z != 0) made[next++] = static_cast<std::uint64_t>((x * kAxis + y) * kAxis + z);
+        }
+      }
+    }
+    return made;
+  }();
+  return offsets;
+}
+
+/// A hash of cells. One thread inserts; find is const.
+class CellIndex {
+ public:
+  CellIndex() : slots_(std::size_t{1} << kFirstBits, kUnlabelled) {}
+
+  [[nodiscard]] const std::vector<std::uint64_t>& cells() const { return cells_; }
+
+  /// kUnlabelled if the cell is not there.
+  [[nodiscard]] std::uint32_t find(std::uint64_t cell) const { return slots_[slot_of(cell)]; }
+
+  /// The number of the cell, the next one if it is new.
+  std::uint32_t insert(std::uint64_t cell) {
+    std::uint32_t& slot = slots_[slot_of(cell)];
+    if (slot != kUnlabelled) return slot;
+    const auto number = static_cast<std::uint32_t>(cells_.size());
+    slot = number;
+    cells_.push_back(cell);
+    if (2 * cells_.size() > slots_.size()) grow();
+    return number;
+  }
+
+ private:
+  static constexpr int kFirstBits{12};
+
+  /// Of the cell, or the free one in which it would stand.
+  [[nodiscard]] std::size_t slot_of(std::uint64_t cell) const {
+    const std::size_t mask = slots_.size() - 1;
+    std::size_t slot = static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15ULL) >> (64 - bits_));
+    while (slots_[slot] != kUnlabelled && cells_[slots_[slot]] != cell) slot = (slot + 1) & mask;
+    return slot;
+  }
+  void grow() {
+    ++bits_;
+    slots_.assign(std::size_t{1} << bits_, kUnlabelled);
+    for (std::size_t i = 0; i < cells_.size(); ++i) slots_[slot_of(cells_[i])] = static_cast<std::uint32_t>(i);
+  }
+
+  int bits_{kFirstBits};
+  std::vector<std::uint32_t> slots_;
+  std::vector<std::uint64_t> cells_;
+};
+
+}  // namespace saccade

@@ -1,0 +1,27 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/cloud/estimated_radii.hpp"
+
+#include <algorithm>
+#include <numbers>
+
+namespace saccade {
+
+std::vector<float> estimate_radii(const NearestNeighbours& neighbours) {
+  constexpr std::size_t kFourth{3};
+  constexpr float kMostMedians{4.0F};
+  std::vector<float> radii_m(neighbours.order.size(), 0.0F);
+  if (neighbours.count == 0) return radii_m;
+  const std::size_t which = std::min(kFourth, neighbours.count - 1);
+  for (std::size_t n = 0; n < radii_m.size(); ++n) {
+    radii_m[n] = std::numbers::sqrt2_v<float> *
+                 (neighbours.positions_m[neighbours.of(n)[which]] - neighbours.positions_m[n]).norm();
+  }
+  std::vector<float> sorted = radii_m;
+  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
+  std::nth_element(sorted.begin(), middle, sorted.end());
+  const float most_m = kMostMedians * *middle;
+  for (float& radius_m : radii_m) radius_m = std::min(radius_m, most_m);
+  return radii_m;
+}
+
+}  // namespace saccade

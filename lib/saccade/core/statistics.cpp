@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/core/statistics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+namespace {
+
+/// The probability as a function of the angle θ = atan(t/√degrees), which is bounded where t is not.
+double probability_within(double theta, std::size_t degrees) {
+  const double sine = std::sin(theta);
+  const double cosine = std::cos(theta);
+  const bool odd = degrees % 2 == 1;
+  // Each term of the series is the one before times cos²θ · k/(k + 1), k = 2, 4, … for odd and 1, 3, … for even
+  // degrees.
+  double term = odd ? cosine : 1.0;
+  double sum = 0.0;
+  for (std::size_t k = odd ? 2 : 1; k < degrees; k += 2) {
+    sum += term;
+    term *= cosine * cosine * static_cast<double>(k) / static_cast<double>(k + 1);
+  }
+  return odd ? 2.0 / std::numbers::pi * (theta + sine * sum) : sine * sum;
+}
+
+}  // namespace
+
+std::optional<double> MeanEstimate::low() const {
+  return half_width ? std::optional{mean - *half_width} : std::nullopt;
+}
+
+std::optional<double> MeanEstimate::high() const {
+  return half_width ? std::optional{mean + *half_width} : std::nullopt;
+}
+
+MeanEstimate estimate_mean(std::span<const double> values, double confidence) {
+  SACCADE_EXPECTS(std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
+  MeanEstimate estimate;
+  estimate.n = values.size();
+  if (values.empty()) return estimate;
+  const auto n = static_cast<double>(values.size());
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  estimate.mean = sum / n;
+  if (values.size() < 2) return estimate;
+  double squares = 0.0;
+  for (const double value : values) squares += (value - estimate.mean) * (value - estimate.mean);
+  estimate.standard_deviation = std::sqrt(squares / (n - 1.0));
+  estimate.half_width = student_t_quantile(confidence, values.size() - 1) * *estimate.standard_deviation / std::sqrt(n);
+  return estimate;
+}
+
+bool are_apart(const MeanEstimate& a, const MeanEstimate& b) {
+  if (!a.half_width || !b.half_width) return false;
+  return *a.low() > *b.high() || *b.low() > *a.high();
+}
+
+double student_t_probability(double t, std::size_t degrees) {
+  SACCADE_EXPECTS(t >= 0.0 && degrees >= 1);
+  return probability_within(std::atan(t / std::sqrt(static_cast<double>(degrees))), degrees);
+}
+
+double student_t_quantile(double confidence, std::size_t degrees) {
+  SACCADE_EXPECTS(confidence > 0.0 && confidence < 1.0 && degrees >= 1);
+  double low = 0.0;
+  double high = std::numbers::pi / 2.0;
+  for (double middle = 0.5 * high; low < middle && middle < high; middle = 0.5 * (low + high)) {
+    (probability_within(middle, degrees) < confidence ? low : high) = middle;
+  }
+  return std::sqrt(static_cast<double>(degrees)) * std::tan(0.5 * (low + high));
+}
+
+}  // namespace saccade

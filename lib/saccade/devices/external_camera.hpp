@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ExternalCamera: a depth camera behind a program of the user's, docs/processes.md.
+
+#include <memory>
+#include <string>
+
+#include "saccade/devices/external_process.hpp"
+#include "saccade/devices/process_messages.hpp"
+#include "saccade/sensor/camera.hpp"
+
+namespace saccade {
+
+struct ExternalCameraConfig {
+  std::string command;           ///< as a shell would run it
+  double start_timeout_s{30.0};  ///< until it has said what it is
+  double capture_timeout_s{10.0};
+
+  [[nodiscard]] Status validate() const;
+};
+
+/// One caller at a time. Destroying it ends the program, as ExternalProcess does.
+class ExternalCamera final : public Camera {
+ public:
+  /// Starts the program and asks what it is. unavailable: it reports an error itself; else the errors of
+  /// ExternalProcess and parse_camera_hello(). Each names the command and quotes what the program wrote to stderr.
+  [[nodiscard]] static Result<ExternalCamera> start(const ExternalCameraConfig& config);
+
+  [[nodiscard]] const PinholeCamera& intrinsics() const override { return format_.camera; }
+  [[nodiscard]] const ExternalCameraFormat& format() const { return format_; }
+
+  /// Takes one frame. Its T_world_camera is the one given, or the camera's own where that knows better; its index
+  /// counts from 0.
+  /// @param T_world_camera where the robot says the camera is
+  /// @return unavailable: the camera reports an error, and may be asked again. Any other error is final.
+  [[nodiscard]] Result<Frame> capture(const Pose& T_world_camera) override;
+
+ private:
+  ExternalCamera(ExternalCameraConfig config, std::unique_ptr<ExternalProcess> process, ExternalCameraFormat format)
+      : config_{std::move(config)}, process_{std::move(process)}, format_{format} {}
+
+  ExternalCameraConfig config_;
+  std::unique_ptr<ExternalProcess> process_;
+  ExternalCameraFormat format_;
+  std::size_t asked_{0};
+};
+
+}  // namespace saccade

@@ -1,0 +1,62 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Intrinsics from text, 3×3 matrices and JSON; CamInfo of the Princeton APC sequences; masks from polygon files.
+
+#include <filesystem>
+#include <map>
+#include <nlohmann/json_fwd.hpp>
+#include <optional>
+#include <string>
+#include <string_view>
+
+#include "saccade/core/result.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/sensor/distortion.hpp"
+#include "saccade/sensor/mask.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+
+namespace saccade {
+
+/// Nearest return that is trusted in a recording unless something else is said: the sensor has already left out what it
+/// cannot measure, and hand-held and wrist-mounted cameras come nearer than the 0.4 m of PinholeCamera.
+constexpr double kRecordedMinRange_m{0.2};
+
+/// What a file or an option says about a camera; pixels.
+struct Intrinsics {
+  double fx{0.0};
+  double fy{0.0};
+  double cx{0.0};
+  double cy{0.0};
+  std::optional<int> width;
+  std::optional<int> height;
+  std::optional<double> min_range_m;
+  std::optional<double> max_range_m;
+  std::optional<Distortion> distortion;
+
+  /// Camera of the given image size; the range defaults to kRecordedMinRange_m and PinholeCamera's maximum.
+  /// size_mismatch when the intrinsics are for another size; invalid_argument as PinholeCamera::validate().
+  [[nodiscard]] Result<PinholeCamera> camera(int image_width, int image_height) const;
+};
+
+/// Accepts "fx,fy,cx,cy" (commas or blanks), a 3×3 matrix [fx 0 cx; 0 fy cy; 0 0 1] row by row, or JSON: either
+/// {"width", "height", "intrinsic_matrix": nine numbers column by column} as Open3D writes it, or
+/// {"width", "height", "fx", "fy", "cx", "cy", "min_range_m", "max_range_m", "distortion": {"k1", "k2", "p1", "p2",
+/// "k3"}} of which only the focal lengths and the principal point are required. corrupt_data says what is wrong.
+[[nodiscard]] Result<Intrinsics> parse_intrinsics(std::string_view text);
+[[nodiscard]] Result<Intrinsics> read_intrinsics(const std::filesystem::path& path);
+/// The second JSON form.
+[[nodiscard]] nlohmann::json camera_to_json(const PinholeCamera& camera);
+
+/// cam.info.txt: intrinsics of both cameras and one camera-to-world matrix per frame name ("frame-000000").
+struct CamInfo {
+  Intrinsics color;
+  Intrinsics depth;
+  std::map<std::string, PoseEntry, std::less<>> T_world_camera;
+};
+/// corrupt_data with the line; a matrix that is no pose is kept as the error of that frame.
+[[nodiscard]] Result<CamInfo> parse_cam_info(std::string_view text);
+
+/// Polygons [[[u, v], ...], ...] in JSON.
+[[nodiscard]] Result<std::vector<PixelPolygon>> parse_polygons(std::string_view json_text);
+
+}  // namespace saccade

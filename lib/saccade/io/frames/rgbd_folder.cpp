@@ -1,0 +1,231 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/io/frames/rgbd_folder.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/rgbd_layout.hpp"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
+
+class FolderSource final : public RgbdFolderSource {
+ public:
+  FolderSource(PinholeCamera camera, RgbdFolderInfo info, std::vector<RgbdFrameFiles> frames,
+               std::optional<Undistorter> undistorter, std::optional<MaskImage> mask, const RgbdFolderConfig& config)
+      : camera_{camera},
+        info_{std::move(info)},
+        frames_{std::move(frames)},
+        undistorter_{std::move(undistorter)},
+        mask_{std::move(mask)},
+        every_nth_{config.every_nth},
+        first_{config.first},
+        require_poses_{config.require_poses && info_.has_poses},
+        read_color_{config.read_color} {}
+
+  [[nodiscard]] const PinholeCamera& camera() const override { return camera_; }
+  [[nodiscard]] std::optional<std::size_t> size() const override { return frames_.size(); }
+  [[nodiscard]] const RgbdFolderInfo& info() const override { return info_; }
+
+  [[nodiscard]] Result<std::optional<Frame>> next() override {
+    if (position_ == frames_.size()) return std::optional<Frame>{};
+    const std::size_t position = position_++;
+    auto frame = read(frames_[position]);
+    if (!frame) {
+      Error error = frame.error();
+      const std::string name = "frame " + frames_[position].name;
+      error.context = error.context.empty() ? name : name + ", " + error.context;
+      return error;
+    }
+    frame->index = first_ + position * every_nth_;
+    return std::optional{std::move(*frame)};
+  }
+
+ private:
+  [[nodiscard]] Result<Frame> read(const RgbdFrameFiles& files) const {
+    Frame frame;
+    frame.name = files.name;
+    frame.time_s = files.time_s;
+    auto pose = read_pose(files);
+    if (pose) {
+      frame.T_world_camera = *pose;
+    } else if (require_poses_) {
+      return pose.error();
+    }
+    SACCADE_TRY(frame.depth, read_depth(files));
+    if (read_color_ && files.color) {
+      SACCADE_TRY(frame.color, read_frame_color(*files.color));
+    }
+    return frame;
+  }
+
+  [[nodiscard]] static Result<Pose> read_pose(const RgbdFrameFiles& files) {
+    if (files.T_world_camera) return *files.T_world_camera;
+    if (!files.pose_file) return Error{Errc::not_found, "has no pose, as others here have", {}};
+    SACCADE_TRY(const auto poses, read_poses(*files.pose_file));
+    if (poses.size() != 1) return Error{Errc::corrupt_data, "one 4x4 matrix expected", files.pose_file->string()};
+    return poses.front();
+  }
+
+  [[nodiscard]] Status check_size(int width, int height, const fs::path& path) const {
+    if (width == camera_.width && height == camera_.height) return {};
+    return Error{Errc::size_mismatch,
+                 "image is " + size_text(width, height) + ", not " + size_text(camera_.width, camera_.height),
+                 path.string()};
+  }
+
+  [[nodiscard]] Result<DepthImage> read_depth(const RgbdFrameFiles& files) const {
+    if (!files.depth) return Error{Errc::not_found, "its depth image is missing", {}};
+    SACCADE_TRY(const Image16 samples, read_png16(*files.depth));
+    SACCADE_CHECK(check_size(samples.width(), samples.height(), *files.depth));
+    DepthImage depth = decode_depth(samples, info_.encoding);
+    if (undistorter_) {
+      SACCADE_TRY(depth, undistorter_->undistort(depth));
+    }
+    if (mask_) SACCADE_CHECK(apply_mask(*mask_, depth));
+    clip_to_range(camera_, depth);
+    return depth;
+  }
+
+  [[nodiscard]] Result<ColorImage> read_frame_color(const fs::path& path) const {
+    SACCADE_TRY(ColorImage color, saccade::read_color(path));
+    SACCADE_CHECK(check_size(color.width(), color.height(), path));
+    return undistorter_ ? undistorter_->undistort(color) : Result<ColorImage>{std::move(color)};
+  }
+
+  PinholeCamera camera_;
+  RgbdFolderInfo info_;
+  std::vector<RgbdFrameFiles> frames_;
+  std::optional<Undistorter> undistorter_;
+  std::optional<MaskImage> mask_;
+  std::size_t every_nth_;
+  std::size_t first_;
+  bool require_poses_;
+  bool read_color_;
+  std::size_t position_{0};
+};
+
+/// Intrinsics given, of the layout's own file, or of a file beside the frames.
+Status find_intrinsics(const fs::path& folder, const RgbdFolderConfig& config, RgbdListing& listing) {
+  if (config.intrinsics) {
+    listing.intrinsics = config.intrinsics;
+    listing.intrinsics_from = "given";
+  }
+  if (listing.intrinsics) return {};
+  const fs::path above = fs::absolute(folder / "x").parent_path().lexically_normal().parent_path();
+  for (const fs::path& place : {folder, above}) {
+    for (const char* name : {"camera-intrinsics.txt", "intrinsics.K.txt", "intrinsics.txt", "camera.json",
+                             "camera_primesense.json", "intrinsic.json", "camera_intrinsic.json"}) {
+      std::error_code ignored;
+      if (!fs::is_regular_file(place / name, ignored)) continue;
+      SACCADE_TRY(listing.intrinsics, read_intrinsics(place / name));
+      listing.intrinsics_from = (place / name).string();
+      return {};
+    }
+  }
+  return Error{Errc::not_found,
+               "no camera intrinsics here; pass --intrinsics fx,fy,cx,cy or add a camera-intrinsics.txt with the 3x3 "
+               "matrix",
+               folder.string()};
+}
+
+/// Size of the first depth image whose header can be read.
+Result<PngSize> first_size(const std::vector<RgbdFrameFiles>& frames) {
+  std::optional<Error> first_error;
+  for (const RgbdFrameFiles& frame : frames) {
+    if (!frame.depth) continue;
+    const auto size = read_png_size(*frame.depth);
+    if (size) return size;
+    if (!first_error) first_error = size.error();
+  }
+  SACCADE_EXPECTS(first_error.has_value());
+  return Error{first_error->code, "no depth image here can be read; the first: " + first_error->message,
+               first_error->context};
+}
+
+Result<std::optional<MaskImage>> find_mask(const RgbdFolderConfig& config, const PinholeCamera& camera) {
+  std::vector<PixelPolygon> polygons = config.mask_polygons;
+  if (config.mask_file && config.mask_file->extension() == ".json") {
+    SACCADE_TRY(const std::string text, read_text_file(*config.mask_file));
+    SACCADE_TRY(auto read, parse_polygons(text));
+    polygons.insert(polygons.end(), read.begin(), read.end());
+  } else if (config.mask_file) {
+    SACCADE_TRY(MaskImage mask, read_mask(*config.mask_file));
+    if (mask.width() != camera.width || mask.height() != camera.height) {
+      return Error{Errc::size_mismatch,
+                   "the mask is " + size_text(mask.width(), mask.height()) + ", the depth images are " +
+                       size_text(camera.width, camera.height),
+                   config.mask_file->string()};
+    }
+    if (polygons.empty()) return std::optional{std::move(mask)};
+    SACCADE_TRY(const MaskImage drawn, mask_from_polygons(camera.width, camera.height, polygons));
+    for (std::size_t i = 0; i < mask.size(); ++i) mask.data()[i] = std::min(mask.data()[i], drawn.data()[i]);
+    return std::optional{std::move(mask)};
+  }
+  if (polygons.empty()) return std::optional<MaskImage>{};
+  SACCADE_TRY(MaskImage mask, mask_from_polygons(camera.width, camera.height, polygons));
+  return std::optional{std::move(mask)};
+}
+
+std::vector<RgbdFrameFiles> selected(std::vector<RgbdFrameFiles> all, const RgbdFolderConfig& config) {
+  std::vector<RgbdFrameFiles> chosen;
+  const std::size_t limit = config.count.value_or(all.size());
+  for (std::size_t i = config.first; i < all.size() && chosen.size() < limit;) {
+    chosen.push_back(std::move(all[i]));
+    if (all.size() - i <= config.every_nth) break;
+    i += config.every_nth;
+  }
+  return chosen;
+}
+
+}  // namespace
+
+Status RgbdFolderConfig::validate() const {
+  const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "RGB-D folder"}; };
+  if (every_nth == 0) return fail("the step between frames must be at least 1");
+  if (count && *count == 0) return fail("the number of frames must be at least 1");
+  if (!(max_time_difference_s >= 0.0)) return fail("the largest time difference must not be negative");
+  if (encoding) SACCADE_CHECK(encoding->validate());
+  if (distortion) SACCADE_CHECK(distortion->validate());
+  return {};
+}
+
+Result<std::unique_ptr<RgbdFolderSource>> open_rgbd_folder(const fs::path& folder, const RgbdFolderConfig& config) {
+  SACCADE_CHECK(config.validate());
+  SACCADE_TRY(RgbdListing listing, list_rgbd_folder(folder, config));
+  if (listing.frames.size() <= config.first) {
+    return Error{Errc::invalid_argument,
+                 "there are only " + std::to_string(listing.frames.size()) + " frames, none left after skipping " +
+                     std::to_string(config.first),
+                 folder.string()};
+  }
+  SACCADE_CHECK(find_intrinsics(folder, config, listing));
+  SACCADE_TRY(const PngSize size, first_size(listing.frames));
+  Intrinsics intrinsics = *listing.intrinsics;
+  if (config.min_range_m) intrinsics.min_range_m = config.min_range_m;
+  if (config.max_range_m) intrinsics.max_range_m = config.max_range_m;
+  SACCADE_TRY(const PinholeCamera camera, intrinsics.camera(size.width, size.height));
+
+  const Distortion distortion = config.distortion.value_or(intrinsics.distortion.value_or(Distortion{}));
+  std::optional<Undistorter> undistorter;
+  if (!distortion.is_zero()) {
+    SACCADE_TRY(undistorter, Undistorter::create(camera, distortion));
+  }
+  SACCADE_TRY(auto mask, find_mask(config, camera));
+
+  RgbdFolderInfo info{listing.layout, config.encoding.value_or(listing.encoding), listing.intrinsics_from,
+                      listing.has_poses, false};
+  info.has_color = config.read_color && std::any_of(listing.frames.begin(), listing.frames.end(),
+                                                    [](const RgbdFrameFiles& f) { return f.color.has_value(); });
+  return std::unique_ptr<RgbdFolderSource>{
+      std::make_unique<FolderSource>(camera, std::move(info), selected(std::move(listing.frames), config),
+                                     std::move(undistorter), std::move(mask), config)};
+}
+
+}  // namespace saccade

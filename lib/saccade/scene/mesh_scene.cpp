@@ -1,0 +1,122 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/scene/mesh_scene.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <sstream>
+
+#include "saccade/io/clouds/any_mesh.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/scene/tabletop.hpp"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+std::string extension_of(const fs::path& path) {
+  std::string extension = path.extension().string();
+  std::transform(extension.begin(), extension.end(), extension.begin(),
+                 [](unsigned char c) { return static_cast<char>(c >= 'A' && c <= 'Z' ? c - 'A' + 'a' : c); });
+  return extension;
+}
+
+bool y_is_up(const fs::path& path, UpAxis up) {
+  if (up != UpAxis::as_usual) return up == UpAxis::y;
+  const std::string extension = extension_of(path);
+  return extension == ".glb" || extension == ".gltf";
+}
+
+/// Whether an object of this size has its place on the table.
+bool fits(const Eigen::Vector3d& size_m) {
+  return size_m.x() <= kMostMeshLength_m && size_m.y() <= kMostMeshWidth_m && size_m.z() <= kMostMeshHeight_m &&
+         size_m.maxCoeff() >= kLeastMeshSize_m;
+}
+
+std::string size_text(const Eigen::Vector3d& size_m) {
+  std::ostringstream text;
+  text.precision(3);
+  text << size_m.x() << " x " << size_m.y() << " x " << size_m.z() << " m";
+  return text.str();
+}
+
+/// The unit that the file is likely to be in; empty: none would do.
+std::string scale_hint(const Eigen::Vector3d& size_units) {
+  struct Unit {
+    double scale;
+    const char* text;
+  };
+  for (const Unit& unit : {Unit{1.0, "1 (metres)"}, Unit{0.001, "0.001 (millimetres)"},
+                           Unit{0.01, "0.01 (centimetres)"}, Unit{0.0254, "0.0254 (inches)"}}) {
+    if (fits(unit.scale * size_units)) return unit.text;
+  }
+  return {};
+}
+
+}  // namespace
+
+bool is_mesh_file(const fs::path& path) {
+  constexpr std::array<std::string_view, 7> kExtensions{".ply", ".stl", ".obj", ".glb", ".gltf", ".off", ".dae"};
+  return std::find(kExtensions.begin(), kExtensions.end(), extension_of(path)) != kExtensions.end();
+}
+
+Status MeshSceneConfig::validate() const {
+  if (std::isfinite(scale) && scale > 0.0) return {};
+  return Error{Errc::invalid_argument, "the scale of a mesh must be positive", "mesh scene"};
+}
+
+Result<Scene> mesh_scene(const fs::path& path, const MeshSceneConfig& config) {
+  SACCADE_CHECK(config.validate());
+  SACCADE_TRY(TriangleMesh mesh, read_any_mesh(path));
+  if (mesh.triangles.empty()) return Error{Errc::corrupt_data, "the file has no triangles", path.string()};
+  const bool turned = y_is_up(path, config.up);
+  bool finite{true};
+  Eigen::AlignedBox3d bounds;
+  for (Eigen::Vector3f& vertex : mesh.vertices) {
+    if (turned) vertex = Eigen::Vector3f{vertex.x(), -vertex.z(), vertex.y()};
+    finite = finite && vertex.allFinite();
+    bounds.extend(vertex.cast<double>());
+  }
+  if (!finite) return Error{Errc::corrupt_data, "a coordinate of the mesh is not finite", path.string()};
+  const Eigen::Vector3d size_m = config.scale * bounds.sizes();
+  if (!fits(size_m)) {
+    const std::string hint = scale_hint(bounds.sizes());
+    return Error{Errc::invalid_argument,
+                 "the object measures " + size_text(size_m) + "; on the table there is room for " +
+                     size_text({kMostMeshLength_m, kMostMeshWidth_m, kMostMeshHeight_m}) + ", and " +
+                     std::to_string(std::lround(100.0 * kLeastMeshSize_m)) + " cm are the least" +
+                     (hint.empty() ? "; scale it" : "; a scale of " + hint + " would do"),
+                 path.string()};
+  }
+  const Eigen::Vector3d foot{bounds.center().x(), bounds.center().y(), bounds.min().z()};
+  for (Eigen::Vector3f& vertex : mesh.vertices) {
+    vertex = (config.scale * (vertex.cast<double>() - foot)).cast<float>();
+  }
+  mesh.normals.clear();
+  Scene scene = empty_tabletop(path.filename().string());
+  SceneObject object;
+  object.name = "object";
+  object.shape = MeshShape{std::move(mesh)};
+  object.color = {198, 140, 82};
+  object.texture = {Texture::Kind::checker, 0.025, 0.6};
+  scene.objects.push_back(std::move(object));
+  return scene;
+}
+
+Result<std::vector<fs::path>> mesh_files(const fs::path& folder) {
+  std::error_code code;
+  std::vector<fs::path> files;
+  for (fs::directory_iterator entry{folder, code}, end; !code && entry != end; entry.increment(code)) {
+    if (is_mesh_file(entry->path()) && !entry->is_directory()) files.push_back(entry->path());
+  }
+  if (code) return Error{Errc::io_failure, "the folder cannot be read: " + code.message(), folder.string()};
+  if (files.empty()) {
+    return Error{Errc::invalid_argument, "the folder holds no mesh (PLY, STL, OBJ, GLB, glTF, OFF, DAE)",
+                 folder.string()};
+  }
+  std::sort(files.begin(), files.end());
+  return files;
+}
+
+}  // namespace saccade

@@ -1,0 +1,76 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/tracking/reconstruction.hpp"
+
+#include "saccade/core/clock.hpp"
+#include "saccade/map/view_points.hpp"
+
+namespace saccade {
+
+Result<Reconstruction> Reconstruction::create(const ReconstructionConfig& config) {
+  SACCADE_CHECK(config.icp.validate());
+  SACCADE_TRY(TsdfMap map, TsdfMap::create(config.map));
+  return Reconstruction{std::move(map), config.icp};
+}
+
+Result<Reconstruction> Reconstruction::resume(TsdfSnapshot content, const IcpConfig& icp) {
+  SACCADE_CHECK(icp.validate());
+  SACCADE_CHECK(content.config.validate());
+  return Reconstruction{TsdfMap{std::move(content)}, icp};
+}
+
+void Reconstruction::resume(const Pose& T_world_camera_hint) {
+  suspended_ = false;
+  T_world_resume_ = T_world_camera_hint;
+}
+
+Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCamera& camera, TrackingMode mode,
+                                            const std::optional<Pose>& hint, const Executor& executor) {
+  FrameReport report;
+  report.T_world_camera = T_world_last_.value_or(Pose::Identity());
+  if (suspended_) {
+    report.status = FrameReport::Status::suspended;
+    return report;
+  }
+  if (mode != TrackingMode::icp && !hint) {
+    return Error{Errc::invalid_argument, "this tracking mode needs a pose for every frame", frame.name};
+  }
+  const bool map_is_empty = map_.content().grid.empty();
+  if (mode == TrackingMode::forced) {
+    report.T_world_camera = *hint;
+  } else if (map_is_empty) {
+    report.T_world_camera = hint.value_or(Pose::Identity());  // nothing to align to: the first frame defines the world
+  } else {
+    const Pose resumed_or_last = T_world_resume_.value_or(T_world_last_.value_or(Pose::Identity()));
+    SACCADE_CHECK(track(frame, camera, mode == TrackingMode::hint ? *hint : resumed_or_last, executor, report));
+    if (report.status == FrameReport::Status::lost) return report;
+  }
+  const ColorImage* color = frame.color ? &*frame.color : nullptr;
+  SACCADE_TRY(report.fusion, map_.integrate(camera, frame.depth, report.T_world_camera, executor, color));
+  report.integrate_ms = report.fusion.ms;
+  T_world_last_ = report.T_world_camera;
+  T_world_resume_.reset();
+  return report;
+}
+
+Status Reconstruction::track(const Frame& frame, const PinholeCamera& camera, const Pose& T_world_start,
+                             const Executor& executor, FrameReport& report) const {
+  if (frame.depth.width() != camera.width || frame.depth.height() != camera.height) {
+    return Error{Errc::size_mismatch, "the depth image and the camera differ in size", frame.name};
+  }
+  Stopwatch stopwatch;
+  SACCADE_TRY(const SurfaceView view, raycast(map_.content(), camera, T_world_start, executor));
+  report.raycast_ms = stopwatch.lap_ms();
+  const PointImage model = to_points(view, executor);
+  const PointImage measured = to_points(frame.depth, camera, executor);
+  report.icp = align(measured, model, camera, Pose::Identity(), executor, icp_);
+  report.track_ms = stopwatch.lap_ms();
+  if (report.icp.converged) {
+    report.T_world_camera = T_world_start * report.icp.T_model_camera;
+  } else {
+    report.status = FrameReport::Status::lost;
+    report.why = report.icp.why;
+  }
+  return {};
+}
+
+}  // namespace saccade

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/trial/campaign_csv.hpp"
+
+#include <array>
+#include <cmath>
+
+namespace saccade {
+namespace {
+
+constexpr std::array<std::string_view, 5> kKeyColumns{"scene", "scene_hash", "strategy", "noise", "seed"};
+constexpr std::array<std::string_view, 6> kMapColumns{"coverage",   "unknown_left", "unknown_near_objects",
+                                                      "accuracy_m", "chamfer_m",    "f_score"};
+/// Of a view, between its number and its phases.
+constexpr std::array<std::string_view, 10> kViewColumns{"region",  "gain",    "candidates",       "evaluated",
+                                                        "refused", "frames",  "points_at_object", "looks_at_object",
+                                                        "path_m",  "motion_s"};
+
+void add_key(CsvTable& table, const CampaignKey& key) {
+  table.add(key.scene).add(key.scene_hash).add(key.strategy).add(key.noise).add(key.seed);
+}
+
+void add_map(CsvTable& table, const Measures& measures) {
+  table.add(measures.coverage).add(std::uint64_t{measures.unknown_left});
+  table.add(std::uint64_t{measures.unknown_near_objects.value_or(0)});
+  table.add(measures.accuracy_m).add(measures.chamfer_m).add(measures.f_score);
+}
+
+void add_view(CsvTable& table, const ViewRecord& view) {
+  table.add(std::uint64_t{view.region});
+  table.add(std::isnan(view.gain_predicted) ? std::nullopt : std::optional{view.gain_predicted});
+  table.add(std::uint64_t{view.candidates});
+  table.add(std::uint64_t{view.evaluated}).add(std::uint64_t{view.refused.total()});
+  table.add(std::uint64_t{view.frames}).add(std::uint64_t{view.reveals_object.value_or(false) ? 1U : 0U});
+  table.add(std::uint64_t{view.looks_at_object.value_or(false) ? 1U : 0U}).add(view.path_m).add(view.motion_s);
+  for (const PhaseName& phase : kPhases) table.add(view.times.ms(phase.phase));
+  add_map(table, view.measures);
+}
+
+}  // namespace
+
+CsvTable runs_csv(std::span<const CampaignEntry> runs, std::size_t budget) {
+  std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
+  columns.emplace_back("stopped_because");
+  for (const RunFigure& figure : run_figures()) columns.push_back(figure.name);
+  columns.insert(columns.end(), {"program_version", "finished_at", "settings"});
+  CsvTable table{columns};
+  for (const CampaignEntry& entry : runs) {
+    add_key(table, entry.key);
+    table.add(to_string(entry.run.stopped_because));
+    for (const RunFigure& figure : run_figures()) table.add(figure.of(entry, budget));
+    table.add(entry.program_version).add(entry.finished_at).add(entry.key.settings);
+    table.end_row();
+  }
+  return table;
+}
+
+CsvTable views_csv(std::span<const CampaignEntry> runs) {
+  std::vector<std::string_view> columns{kKeyColumns.begin(), kKeyColumns.end()};
+  columns.emplace_back("number");
+  columns.insert(columns.end(), kViewColumns.begin(), kViewColumns.end());
+  std::vector<std::string> phases;
+  for (const PhaseName& phase : kPhases) phases.push_back(std::string{phase.key} + "_ms");
+  columns.insert(columns.end(), phases.begin(), phases.end());
+  columns.insert(columns.end(), kMapColumns.begin(), kMapColumns.end());
+  CsvTable table{columns};
+  for (const CampaignEntry& entry : runs) {
+    add_key(table, entry.key);
+    table.add(std::uint64_t{0});
+    // What a scan does not have.
+    for (std::size_t i = 0; i < kViewColumns.size() + kPhases.size(); ++i) table.add(std::nullopt);
+    add_map(table, entry.run.scan.measures);
+    table.end_row();
+    for (std::size_t i = 0; i < entry.run.views.size(); ++i) {
+      add_key(table, entry.key);
+      table.add(std::uint64_t{i + 1});
+      add_view(table, entry.run.views[i]);
+      table.end_row();
+    }
+  }
+  return table;
+}
+
+CsvTable summary_csv(std::span<const CampaignSummary> summaries) {
+  CsvTable table{{"scene", "strategy", "noise", "figure", "n", "mean", "low", "high"}};
+  for (const CampaignSummary& summary : summaries) {
+    for (std::size_t i = 0; i < summary.figures.size(); ++i) {
+      const MeanEstimate& estimate = summary.figures[i];
+      table.add(summary.group.scene.value_or("")).add(summary.group.strategy).add(summary.group.noise);
+      table.add(run_figures()[i].name).add(std::uint64_t{estimate.n});
+      table.add(estimate.n == 0 ? std::nullopt : std::optional{estimate.mean});
+      table.add(estimate.low()).add(estimate.high());
+      table.end_row();
+    }
+  }
+  return table;
+}
+
+}  // namespace saccade

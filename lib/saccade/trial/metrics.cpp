@@ -1,0 +1,191 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/trial/metrics.hpp"
+
+#include <algorithm>
+#include <cmath>
+#include <limits>
+#include <numeric>
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector3d;
+
+/// Points of the mesh inside the workspace that do not lie on a support.
+std::vector<Eigen::Vector3f> points_off_supports(const Truth& truth, const TriangleMesh& mesh, double voxel_size_m) {
+  const Box& workspace = truth.scene().scene().workspace;
+  std::vector<Eigen::Vector3f> points;
+  for (const Eigen::Vector3f& point : sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m(), workspace).points) {
+    if (truth.to_supports_m(point.cast<double>(), 2.0 * voxel_size_m) > voxel_size_m) points.push_back(point);
+  }
+  return points;
+}
+
+}  // namespace
+
+Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Executor& executor) {
+  if (!(std::isfinite(spacing_m) && spacing_m > 0.0)) {
+    return Error{Errc::invalid_argument, "the spacing of the samples must be positive", "truth"};
+  }
+  const auto is_support = [&scene](std::size_t i) { return scene.meshes()[i].support; };
+  const TriangleMesh objects = joined_mesh(scene.meshes(), [&](std::size_t i) { return !is_support(i); });
+  const TriangleMesh supports = joined_mesh(scene.meshes(), is_support);
+  if (objects.triangles.empty()) return Error{Errc::invalid_argument, "there is nothing but supports", "truth"};
+  SACCADE_TRY(MeshDistance object_distance, MeshDistance::build(objects));
+  SACCADE_TRY(Solids bodies, Solids::build(scene, [](const SceneObject&) { return true; }));
+  Data data{scene, std::move(bodies), spacing_m, {}, {}, std::move(object_distance), std::nullopt};
+  if (!supports.triangles.empty()) {
+    SACCADE_TRY(data.supports, MeshDistance::build(supports));
+  }
+  std::vector<ObjectMesh> wanted;
+  for (const ObjectMesh& object : scene.meshes()) {
+    if (!object.support) wanted.push_back(object);
+  }
+  const SurfaceSamples samples = sample_surfaces(wanted, spacing_m, scene.scene().workspace);
+  const std::vector<std::uint8_t> seen = observable(scene, samples, {}, executor);
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    if (seen[i] == 0) continue;
+    data.observable_points.push_back(samples.points[i]);
+    data.observable_normals.push_back(samples.normals[i]);
+  }
+  if (data.observable_points.empty()) {
+    return Error{Errc::invalid_argument,
+                 "no surface of an object can be seen in the workspace; move the workspace or the objects", "truth"};
+  }
+  return Truth{std::make_shared<const Data>(std::move(data))};
+}
+
+double Truth::to_objects_m(const Vector3d& p, double beyond_m) const { return data_->objects.distance_m(p, beyond_m); }
+
+double Truth::to_supports_m(const Vector3d& p, double beyond_m) const {
+  return data_->supports ? data_->supports->distance_m(p, beyond_m) : beyond_m;
+}
+
+bool Truth::inside_solid(const Vector3d& p) const { return data_->bodies.contain(p); }
+
+std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+  const double e = map.config.voxel_size_m;
+  const Box& workspace = truth.scene().scene().workspace;
+  Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
+  Vector3d high = -low;
+  for (const ObjectMesh& object : truth.scene().meshes()) {
+    if (object.support) continue;
+    for (const Eigen::Vector3f& vertex : object.mesh.vertices) {
+      low = low.cwiseMin(vertex.cast<double>());
+      high = high.cwiseMax(vertex.cast<double>());
+    }
+  }
+  low = (low - Vector3d::Constant(kNearObjects_m)).cwiseMax(workspace.min);
+  high = (high + Vector3d::Constant(kNearObjects_m)).cwiseMin(workspace.max);
+  if (!(low.array() < high.array()).all()) return 0;
+  const Index3 first = voxel_at(low, e);
+  const Index3 last = voxel_at(high, e);
+  const auto counts = [&](const Index3& voxel) {
+    const Vector3d p = voxel_center(voxel, e);
+    return map.grid.state(voxel) == VoxelState::unknown && contains(workspace, p) &&
+           truth.to_objects_m(p, 2.0 * kNearObjects_m) <= kNearObjects_m && !truth.inside_solid(p);
+  };
+  const auto in_layer = [&](std::size_t layer) {
+    std::size_t count = 0;
+    Index3 voxel{0, 0, first.z + static_cast<std::int32_t>(layer)};
+    for (voxel.y = first.y; voxel.y <= last.y; ++voxel.y) {
+      for (voxel.x = first.x; voxel.x <= last.x; ++voxel.x) count += counts(voxel) ? 1 : 0;
+    }
+    return count;
+  };
+  std::vector<std::size_t> layers(static_cast<std::size_t>(last.z - first.z + 1));
+  executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t layer = begin; layer < end; ++layer) layers[layer] = in_layer(layer);
+  });
+  return std::accumulate(layers.begin(), layers.end(), std::size_t{0});
+}
+
+NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,
+                       const Executor& executor) {
+  const double e = after.config.voxel_size_m;
+  const IndexBox box = voxels_with_center_in(truth.scene().scene().workspace, e);
+  if (box.empty()) return {};
+  std::vector<NewlyKnown> layers(static_cast<std::size_t>(box.hi.z - box.lo.z));
+  const auto add_layer = [&](std::size_t layer) {
+    Index3 voxel{0, 0, box.lo.z + static_cast<std::int32_t>(layer)};
+    for (voxel.y = box.lo.y; voxel.y < box.hi.y; ++voxel.y) {
+      for (voxel.x = box.lo.x; voxel.x < box.hi.x; ++voxel.x) {
+        if (after.grid.state(voxel) == VoxelState::unknown || before.grid.state(voxel) != VoxelState::unknown) continue;
+        ++layers[layer].voxels;
+        const bool near = truth.to_objects_m(voxel_center(voxel, e), 2.0 * kAtObject_m) <= kAtObject_m;
+        layers[layer].near_objects += near ? 1 : 0;
+      }
+    }
+  };
+  executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t layer = begin; layer < end; ++layer) add_layer(layer);
+  });
+  NewlyKnown total;
+  for (const NewlyKnown& layer : layers) {
+    total.voxels += layer.voxels;
+    total.near_objects += layer.near_objects;
+  }
+  return total;
+}
+
+bool looks_at_object(const Truth& truth, const Pose& T_world_camera) {
+  constexpr double kStep_m{0.01};
+  const Box& workspace = truth.scene().scene().workspace;
+  const Vector3d origin = T_world_camera.translation();
+  const Vector3d axis = T_world_camera.linear().col(2);
+  const auto hit = truth.scene().cast(origin, axis);
+  const double past_m =
+      (0.5 * (workspace.min + workspace.max) - origin).norm() + (workspace.max - workspace.min).norm();
+  const double end_m = hit ? std::min(hit->t, past_m) : past_m;
+  const auto is_near = [&](double t_m) {
+    return truth.to_objects_m(origin + t_m * axis, 2.0 * kAtObject_m) <= kAtObject_m;
+  };
+  for (double t_m = 0.0; t_m < end_m; t_m += kStep_m) {
+    if (is_near(t_m)) return true;
+  }
+  return is_near(end_m);
+}
+
+Metrics measure(const Truth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {
+  Metrics metrics;
+  metrics.unknown_near_objects = unknown_near_objects(truth, map, executor);
+  if (mesh.triangles.empty()) return metrics;
+  const auto built = MeshDistance::build(mesh);
+  SACCADE_EXPECTS(built.ok());
+  const MeshDistance& reconstruction = *built;
+  const Box& workspace = truth.scene().scene().workspace;
+  const double farthest_m = (workspace.max - workspace.min).norm();
+
+  const std::vector<Eigen::Vector3f>& wanted = truth.observable_points();
+  const auto share = [](double count, std::size_t of) { return count / static_cast<double>(of); };
+  std::vector<double> missing_m(wanted.size());
+  executor.parallel_for(wanted.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      missing_m[i] = reconstruction.distance_m(wanted[i].cast<double>(), farthest_m);
+  });
+  const auto within = [](const std::vector<double>& distances, double limit) {
+    return static_cast<double>(std::count_if(distances.begin(), distances.end(), [&](double d) { return d <= limit; }));
+  };
+  metrics.coverage = share(within(missing_m, map.config.voxel_size_m), wanted.size());
+
+  const std::vector<Eigen::Vector3f> found = points_off_supports(truth, mesh, map.config.voxel_size_m);
+  if (found.empty()) return metrics;
+  std::vector<double> wrong_m(found.size());
+  executor.parallel_for(found.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      const Vector3d p = found[i].cast<double>();
+      wrong_m[i] = truth.to_supports_m(p, truth.to_objects_m(p, farthest_m));
+    }
+  });
+  const auto mean = [](const std::vector<double>& values) {
+    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
+  };
+  metrics.accuracy_m = mean(wrong_m);
+  metrics.chamfer_m = 0.5 * (mean(wrong_m) + mean(missing_m));
+  const double precision = share(within(wrong_m, kFScoreDistance_m), wrong_m.size());
+  const double recall = share(within(missing_m, kFScoreDistance_m), missing_m.size());
+  metrics.f_score = precision + recall > 0.0 ? 2.0 * precision * recall / (precision + recall) : 0.0;
+  return metrics;
+}
+
+}  // namespace saccade

@@ -1,0 +1,199 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/trial/simulated_run.hpp"
+
+#include <limits>
+
+#include "saccade/map/count_unknown.hpp"
+#include "saccade/map/mesh.hpp"
+#include "saccade/scene/fixture_boxes.hpp"
+#include "saccade/trial/oracle_gain.hpp"
+
+namespace saccade {
+namespace {
+
+/// What carries the camera in run_simulated.
+Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRunConfig& config) {
+  if (!config.arm) {
+    SACCADE_TRY(FreeRobot robot, flying_camera(scene));
+    return std::unique_ptr<Robot>{std::make_unique<FreeRobot>(std::move(robot))};
+  }
+  ArmRobotConfig robot_config = config.arm_robot;
+  robot_config.planner.seed = config.seed;
+  // A search that ran out of time would depend on the machine and on what else runs there.
+  robot_config.planner.budget_s = std::numeric_limits<double>::infinity();
+  SACCADE_TRY(SimulatedRobot robot, simulated_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
+  return std::unique_ptr<Robot>{std::make_unique<SimulatedRobot>(std::move(robot))};
+}
+
+/// Fills in the straight ways of a camera that flies. It begins at the last pose of the scan, unless one was passed
+/// over.
+void measure_flights(RunRecord& run, const std::vector<Pose>& scan) {
+  std::optional<Eigen::Vector3d> last;
+  if (!scan.empty() && run.scan.refused.total() == 0) last = scan.back().translation();
+  for (ViewRecord& view : run.views) {
+    const Eigen::Vector3d here = view.T_world_camera.translation();
+    if (view.path.size() < 2 && last) view.path_m = (here - *last).norm();
+    last = here;
+  }
+}
+
+}  // namespace
+
+std::string_view to_string(DepthSensor sensor) { return sensor == DepthSensor::kinect_v1 ? "kinect-v1" : "kinect-v2"; }
+
+Result<DepthSensor> depth_sensor(std::string_view name) {
+  for (const DepthSensor sensor : {DepthSensor::kinect_v1, DepthSensor::kinect_v2}) {
+    if (to_string(sensor) == name) return sensor;
+  }
+  return Error{Errc::invalid_argument, "there is no sensor \"" + std::string{name} + "\"; known: kinect-v1, kinect-v2",
+               ""};
+}
+
+Status SimulatedRunConfig::validate() const {
+  SACCADE_CHECK(camera.validate());
+  SACCADE_CHECK(sphere.validate());
+  SACCADE_CHECK(contours.validate());
+  SACCADE_CHECK(attention.validate());
+  SACCADE_CHECK(planner.validate());
+  SACCADE_CHECK(contour_views.validate());
+  SACCADE_CHECK(exploration.validate());
+  SACCADE_CHECK(map().validate());
+  if (arm) SACCADE_CHECK(arm_robot.validate());
+  if (gain_width_px < 1) {
+    return Error{Errc::invalid_argument, "the virtual sensor must be one pixel wide at least", "exploration"};
+  }
+  return {};
+}
+
+SimulatedRunConfig SimulatedRunConfig::with(const NamedPlanner& named) const {
+  SimulatedRunConfig config = *this;
+  config.strategy = named;
+  config.planner.min_gain = named.min_gain;
+  return config;
+}
+
+TsdfConfig SimulatedRunConfig::map() const {
+  TsdfConfig config;
+  config.voxel_size_m = voxel_size_m;
+  config.truncation_vox = truncation_vox;
+  config.clearing_percent = clearing_percent;
+  return config;
+}
+
+Planners trial_planners() {
+  Planners planners = builtin_planners();
+  planners.add(oracle_planner());
+  return planners;
+}
+
+std::vector<Region> regions_of(const Scene& scene, const NamedPlanner& planner) {
+  if (!planner.looks_at_regions || scene.regions.empty()) return {scene.workspace};
+  return scene.regions;
+}
+
+ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& camera, std::span<const Region> regions,
+                         const Truth* truth) {
+  SACCADE_EXPECTS(!regions.empty() && (truth != nullptr || !config.strategy.needs_truth));
+  PlannerSetup setup;
+  setup.gain.sensor = coarser(camera, std::min(config.gain_width_px, camera.width));
+  setup.gain.tilt_rad = config.exploration.oscillation_rad;
+  setup.sphere = config.sphere;
+  setup.contours = config.contours;
+  setup.contour_views = config.contour_views;
+  setup.attention = config.attention;
+  setup.planner = config.planner;
+  setup.regions = {regions.begin(), regions.end()};
+  setup.max_views = static_cast<std::size_t>(config.exploration.max_views);
+  setup.seed = config.seed;
+  setup.camera = camera;
+  setup.truth = truth;
+  return ViewPlanner{config.strategy.make(setup)};
+}
+
+Result<SimulatedCamera> simulated_camera(const RayScene& scene, const SimulatedRunConfig& config) {
+  SimulatedCameraConfig camera;
+  camera.camera = config.camera;
+  camera.noise = config.noise ? std::optional{kinect_v1_noise(config.seed)} : std::nullopt;
+  if (config.noise && config.sensor == DepthSensor::kinect_v2) {
+    camera.time_of_flight.emplace().noise.seed = config.seed;
+    camera.depth_filter.emplace();
+  }
+  return SimulatedCamera::create(scene, camera);
+}
+
+Result<FreeRobot> flying_camera(const RayScene& scene) {
+  SACCADE_TRY(const Solids fixtures, Solids::build(scene, [](const SceneObject& object) { return object.fixture; }));
+  return FreeRobot{[fixtures](const Eigen::Vector3d& p) {
+    return fixtures.distance_m(p, 2.0 * kCameraClearance_m) > kCameraClearance_m && !fixtures.contain(p);
+  }};
+}
+
+Result<SimulatedRobot> simulated_arm(const ArmModel& arm, const Scene& scene, const SimulatedRunConfig& config,
+                                     ArmRobotConfig robot) {
+  if (!scene.objects.empty()) {
+    SACCADE_TRY(const std::vector<FixtureBox> fixtures, fixture_boxes(scene));
+    for (const FixtureBox& fixture : fixtures) robot.obstacles.fixtures.push_back(fixture.box);
+  }
+  robot.first_poses = scene.scan;
+  TsdfConfig map = config.map();
+  map.workspace = scene.workspace;
+  return SimulatedRobot::create(arm, map, robot);
+}
+
+Measures measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+  const Metrics metrics = measure(truth, map, extract_mesh(map, executor), executor);
+  return {metrics.coverage,
+          count_unknown(map, truth.scene().scene().workspace),
+          metrics.unknown_near_objects,
+          metrics.accuracy_m,
+          metrics.chamfer_m,
+          metrics.f_score};
+}
+
+Status TruthMeter::scanned(ScanRecord& scan, const TsdfSnapshot& map) {
+  scan.measures = measure_map(truth_, map, executor_);
+  before_ = map;
+  return {};
+}
+
+Status TruthMeter::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> /*frames*/) {
+  view.measures = measure_map(truth_, map, executor_);
+  view.reveals_object = newly_known(truth_, before_, map, executor_).points_at_object();
+  view.looks_at_object = looks_at_object(truth_, view.T_world_camera);
+  before_ = map;
+  return {};
+}
+
+Result<RunRecord> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Executor& executor,
+                                const Progress& progress) {
+  SACCADE_CHECK(config.validate());
+  ViewPlanner planner = make_planner(config, config.camera, regions_of(truth.scene().scene(), config.strategy), &truth);
+  return run_simulated(truth, config, planner, executor, progress);
+}
+
+Result<RunRecord> run_simulated(const Truth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
+                                const Executor& executor, const Progress& progress) {
+  SACCADE_CHECK(config.validate());
+  const Scene& scene = truth.scene().scene();
+  TsdfConfig map_config = config.map();
+  map_config.workspace = scene.workspace;
+  SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
+  SACCADE_TRY(SimulatedCamera sensor, simulated_camera(truth.scene(), config));
+  SACCADE_TRY(std::unique_ptr<Robot> robot, carrier(truth.scene(), config));
+  SACCADE_TRY(CarriedCamera camera,
+              CarriedCamera::create(std::move(sensor), std::move(robot), config.arm.get(), executor));
+  TruthMeter meter{truth, executor};
+  Explorer explorer{{map, camera, camera.robot(), executor, &meter, nullptr, {}, &progress}, config.exploration};
+  RunRecord run;
+  SACCADE_TRY(run.scan, explorer.scan(scene.scan));
+  if (!run.scan.complete) {
+    run.scan.measures = measure_map(truth, map.content(), executor);
+    run.stopped_because = StopReason::cancelled;
+    return run;
+  }
+  SACCADE_TRY(run, explorer.explore(planner, std::move(run)));
+  measure_flights(run, scene.scan);
+  return run;
+}
+
+}  // namespace saccade

@@ -1,0 +1,103 @@
+// SPDX-License-Identifier: Apache-2.0
+// The seeds of the fuzz targets must be valid: a seed that is refused at once teaches the fuzzer nothing.
+#include <gtest/gtest.h>
+
+#include <filesystem>
+
+#include "saccade/arm/urdf.hpp"
+#include "saccade/devices/process_messages.hpp"
+#include "saccade/io/clouds/kitti_io.hpp"
+#include "saccade/io/clouds/pcd_io.hpp"
+#include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/clouds/text_cloud.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/npy_io.hpp"
+#include "saccade/io/frames/camera_io.hpp"
+#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/sessions/label_presets.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "support/places.hpp"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+/// Calls accepts(content, file name) for each seed and returns how many there were.
+template <class Accepts>
+std::size_t check_seeds(const char* name, Accepts accepts) {
+  std::size_t seeds = 0;
+  for (const auto& entry : fs::directory_iterator{test::source_folder() / "tests/fuzz/corpus" / name}) {
+    const auto content = read_text_file(entry.path());
+    EXPECT_TRUE(content && accepts(*content, entry.path().filename().string())) << entry.path();
+    ++seeds;
+  }
+  return seeds;
+}
+
+TEST(FuzzCorpus, SeedsAreAccepted) {
+  EXPECT_GE(check_seeds("image",
+                        [](const std::string& content, const std::string& name) {
+                          return name.ends_with(".bin") || decode_color(as_byte_span(content)).ok();
+                        }),
+            9U);
+  EXPECT_GE(check_seeds("ply", [](const auto& content, const auto&) { return parse_ply(as_byte_span(content)).ok(); }),
+            3U);
+  EXPECT_GE(check_seeds("pcd", [](const auto& content, const auto&) { return parse_pcd(as_byte_span(content)).ok(); }),
+            3U);
+  EXPECT_GE(check_seeds("text_cloud",
+                        [](const std::string& content, const auto&) {
+                          const auto bytes = as_byte_span(content);
+                          return parse_text_cloud({bytes.begin(), bytes.end()}).ok();
+                        }),
+            5U);
+  EXPECT_GE(check_seeds("kitti",
+                        [](const std::string& content, const std::string& name) {
+                          const auto bytes = as_byte_span(content);
+                          return name == "scan.bin" ? parse_kitti_scan(bytes).ok() : parse_kitti_labels(bytes).ok();
+                        }),
+            2U);
+  EXPECT_GE(check_seeds("npy", [](const auto& content, const auto&) { return parse_npy(as_byte_span(content)).ok(); }),
+            4U);
+  EXPECT_GE(check_seeds("poses", [](const auto& content, const auto&) { return parse_pose_list(content).ok(); }), 5U);
+  EXPECT_GE(check_seeds("camera",
+                        [](const std::string& content, const std::string& name) {
+                          if (name == "cam.info.txt") return parse_cam_info(content).ok();
+                          if (name == "polygons.json") return parse_polygons(content).ok();
+                          return parse_intrinsics(content).ok();
+                        }),
+            6U);
+  EXPECT_GE(check_seeds("hand_trajectory",
+                        [](const std::string& content, const std::string&) {
+                          const int format = content[0] % 4;
+                          const std::string text = content.substr(1);
+                          if (format == 3) return parse_hand_labels(text).ok();
+                          return parse_hand_trajectory(text, static_cast<HandFormat>(format)).ok();
+                        }),
+            5U);
+  EXPECT_GE(check_seeds("scene", [](const auto& content, const auto&) { return parse_scene(content).ok(); }), 3U);
+  EXPECT_GE(check_seeds("urdf", [](const auto& content, const auto&) { return parse_urdf(content).ok(); }), 3U);
+  EXPECT_GE(check_seeds("annotation_journal",
+                        [](const std::string& content, const std::string&) {
+                          const auto saved = decode_journal(as_byte_span(content).subspan(1));
+                          return saved && saved->actions.size() > 3;
+                        }),
+            2U);
+  EXPECT_GE(
+      check_seeds("label_presets", [](const auto& content, const auto&) { return parse_label_presets(content).ok(); }),
+      2U);
+  EXPECT_GE(check_seeds("process_message",
+                        [](const std::string& content, const std::string& name) {
+                          const std::string line = content.substr(0, content.find('\n'));
+                          if (name.starts_with("camera")) return parse_camera_hello(line).ok();
+                          if (name == "capture") return parse_capture_answer(line, 0, 16).ok();
+                          const auto move = parse_move_answer(line, 0, Pose::Identity());
+                          return name == "error" ? move.error().code == Errc::unavailable : move.ok();
+                        }),
+            6U);
+}
+
+}  // namespace
+}  // namespace saccade
