@@ -8,8 +8,8 @@
 #include <limits>
 #include <string>
 
-#include "saccade/views/cast_window.hpp"
-#include "saccade/views/stop_grid.hpp"
+#include "saccade/views/internal/cast_window.hpp"
+#include "saccade/views/internal/stop_grid.hpp"
 #include "thesis/stop_volume.hpp"
 
 namespace saccade::bench {

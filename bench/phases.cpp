@@ -5,13 +5,13 @@
 
 #include "frames.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/map/frame_fuser.hpp"
+#include "saccade/map/internal/frame_fuser.hpp"
+#include "saccade/map/internal/surface_tiles.hpp"
 #include "saccade/map/ray_walk.hpp"
 #include "saccade/map/raycast.hpp"
-#include "saccade/map/surface_tiles.hpp"
 #include "saccade/map/view_points.hpp"
 #include "saccade/tracking/icp.hpp"
-#include "saccade/views/gain_problem.hpp"
+#include "saccade/views/internal/gain_problem.hpp"
 #include "table_map.hpp"
 
 namespace {

@@ -12,7 +12,7 @@
 #include "saccade/scene/ray_scene.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "saccade/trial/simulated_run.hpp"
-#include "saccade/views/best_views.hpp"
+#include "saccade/views/internal/best_views.hpp"
 #include "saccade/views/view_sphere.hpp"
 
 namespace {

@@ -6,7 +6,7 @@
 #include <algorithm>
 #include <unordered_map>
 
-#include "saccade/attention/isolation.hpp"
+#include "saccade/attention/internal/isolation.hpp"
 #include "saccade/attention/saliency.hpp"
 #include "saccade/cloud/cell_index.hpp"
 #include "saccade/map/mesh.hpp"

@@ -9,7 +9,7 @@
 #include "embree_views.hpp"
 #include "peer_comparison.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/views/best_views.hpp"
+#include "saccade/views/internal/best_views.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "table_map.hpp"
 

@@ -135,7 +135,7 @@ function(saccade_room name)
     install(EXPORT saccade_${name} NAMESPACE saccade:: FILE saccade-${name}-targets.cmake
             DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/saccade)
     install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade/${folder}
-            FILES_MATCHING PATTERN "*.hpp")
+            FILES_MATCHING PATTERN "*.hpp" PATTERN "internal" EXCLUDE)
   endif()
 endfunction()
 

@@ -8,8 +8,8 @@
 #include <utility>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/scene/internal/truth_labels.hpp"
 #include "saccade/scene/rendered_sequence.hpp"
-#include "saccade/scene/truth_labels.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/views/gain.hpp"

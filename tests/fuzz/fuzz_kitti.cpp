@@ -5,7 +5,7 @@
 #include <span>
 
 #include "saccade/io/clouds/cloud_io.hpp"
-#include "saccade/io/clouds/kitti_io.hpp"
+#include "saccade/io/clouds/internal/kitti_io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   const auto bytes = std::as_bytes(std::span{data, size});

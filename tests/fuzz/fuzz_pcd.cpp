@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <span>
 
-#include "saccade/io/clouds/lzf.hpp"
+#include "saccade/io/clouds/internal/lzf.hpp"
 #include "saccade/io/clouds/pcd_io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {

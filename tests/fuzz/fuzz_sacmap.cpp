@@ -9,8 +9,8 @@
 #include <vector>
 
 #include "saccade/io/files/crc32.hpp"
+#include "saccade/io/maps/internal/sacmap_bricks.hpp"
 #include "saccade/io/maps/sacmap.hpp"
-#include "saccade/io/maps/sacmap_bricks.hpp"
 
 namespace {
 

@@ -7,7 +7,7 @@
 #include <cmath>
 
 #include "saccade/core/simd.hpp"
-#include "saccade/map/cell.hpp"
+#include "saccade/map/internal/cell.hpp"
 #include "saccade/map/ray_walk.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/sensor/analytic_scene.hpp"

@@ -14,7 +14,7 @@
 #include <vector>
 
 #include "saccade/io/frames/rgbd_folder.hpp"
-#include "saccade/surfel/color_edges.hpp"
+#include "saccade/surfel/internal/color_edges.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/surfel/surfel_points.hpp"

@@ -164,8 +164,21 @@ def check_text(name, path, text):
         yield f"{name}: no #pragma once"
 
 
+def check_page(root):
+    """Compares the table of docs/architecture.md with TABLE."""
+    page = root / "docs" / "architecture.md"
+    rows = re.findall(r"^\| `([a-z/]+)` \|.*\| ([a-z/, –]+) \|$", page.read_text(), re.MULTILINE) if page.exists() else []
+    for room, below in rows:
+        below = [] if below == "–" else below.split(", ")
+        if room not in TABLE or below != TABLE[room]:
+            yield f"docs/architecture.md: {room} may include {below}; the layer test says {TABLE.get(room, 'nothing of it')}"
+    built = {room for room in TABLE if (root / "lib" / "saccade" / room / "CMakeLists.txt").exists()}
+    for room in sorted(built - {room for room, _ in rows} if page.exists() else []):
+        yield f"docs/architecture.md: {room} is not in the table of rooms"
+
+
 def check(root):
-    violations, checked = [], 0
+    violations, checked = list(check_page(root)), 0
     library = root / "lib" / "saccade"
     files = [path.relative_to(library) for path in library.rglob("*") if path.is_file() and path.parent != library]
     for room in sorted({rooms.room_of(path.as_posix(), TABLE) or path.parent.as_posix() for path in files}):

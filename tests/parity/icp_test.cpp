@@ -11,7 +11,7 @@
 #include "saccade/map/view_points.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/icp.hpp"
-#include "saccade/tracking/icp_kernels.hpp"
+#include "saccade/tracking/internal/icp_kernels.hpp"
 #include "support/effort.hpp"
 
 namespace saccade {

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "saccade/core/simd.hpp"
-#include "saccade/views/best_views.hpp"
+#include "saccade/views/internal/best_views.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "saccade/views/view_order.hpp"
 #include "saccade/views/view_sphere.hpp"

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // best_views of a whole workspace is the order of the gains that brute force finds, for hundreds of poses that share
 // centres and rolls: clutter seen from a few sides, its shadows unknown, and the workspace cut anywhere.
-#include "saccade/views/best_views.hpp"
+#include "saccade/views/internal/best_views.hpp"
 
 #include <gtest/gtest.h>
 

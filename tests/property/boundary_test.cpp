@@ -8,7 +8,7 @@
 
 #include "saccade/segment/boundary.hpp"
 #include "saccade/segment/boundary_matching.hpp"
-#include "saccade/segment/least_assignment.hpp"
+#include "saccade/segment/internal/least_assignment.hpp"
 #include "support/effort.hpp"
 #include "support/naive_surfels.hpp"
 

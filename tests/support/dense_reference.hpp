@@ -5,8 +5,8 @@
 #include <unordered_map>
 #include <vector>
 
+#include "saccade/map/internal/tsdf_math.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/map/tsdf_math.hpp"
 
 namespace saccade::test {
 

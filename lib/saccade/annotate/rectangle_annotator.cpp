@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "saccade/annotate/splat_depth.hpp"
+#include "saccade/annotate/internal/splat_depth.hpp"
 #include "saccade/core/pose.hpp"
 
 namespace saccade {

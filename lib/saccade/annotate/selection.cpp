@@ -6,7 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
-#include "saccade/annotate/splat_depth.hpp"
+#include "saccade/annotate/internal/splat_depth.hpp"
 
 namespace saccade {
 

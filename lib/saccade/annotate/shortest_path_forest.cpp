@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/annotate/parallel_spread.hpp"
+#include "saccade/annotate/internal/parallel_spread.hpp"
 
 namespace saccade {
 namespace {

@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/arm/swept_cells.hpp"
+#include "saccade/arm/internal/swept_cells.hpp"
 #include "saccade/arm/trajectory_timing.hpp"
 
 namespace saccade {

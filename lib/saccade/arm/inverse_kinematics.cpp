@@ -3,7 +3,7 @@
 
 #include <utility>
 
-#include "saccade/arm/joint_turns.hpp"
+#include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/kinematics.hpp"
 
 namespace saccade {

@@ -5,8 +5,8 @@
 #include <cmath>
 #include <numeric>
 
-#include "saccade/arm/ompl_search.hpp"
-#include "saccade/arm/shortcut.hpp"
+#include "saccade/arm/internal/ompl_search.hpp"
+#include "saccade/arm/internal/shortcut.hpp"
 #include "saccade/core/clock.hpp"
 
 namespace saccade {

@@ -11,7 +11,7 @@
 #include <random>
 #include <utility>
 
-#include "saccade/arm/joint_turns.hpp"
+#include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/kinematics.hpp"
 
 // KDL's solver and OMPL's library both carry this decomposition as a weak symbol, Debian 12's OMPL that of an older

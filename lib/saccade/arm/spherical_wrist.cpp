@@ -6,7 +6,7 @@
 #include <numbers>
 #include <string>
 
-#include "saccade/arm/joint_turns.hpp"
+#include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/kinematics.hpp"
 
 namespace saccade {

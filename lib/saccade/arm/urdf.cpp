@@ -8,7 +8,7 @@
 #include <set>
 #include <utility>
 
-#include "saccade/arm/urdf_document.hpp"
+#include "saccade/arm/internal/urdf_document.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/readable_text.hpp"

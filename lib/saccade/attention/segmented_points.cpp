@@ -8,7 +8,7 @@
 #include <string>
 #include <utility>
 
-#include "saccade/attention/isolation.hpp"
+#include "saccade/attention/internal/isolation.hpp"
 #include "saccade/cloud/point_cloud.hpp"
 
 namespace saccade {

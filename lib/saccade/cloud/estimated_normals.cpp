@@ -5,7 +5,7 @@
 #include <array>
 #include <span>
 
-#include "saccade/cloud/least_directions.hpp"
+#include "saccade/cloud/internal/least_directions.hpp"
 
 namespace saccade {
 namespace {

@@ -5,8 +5,8 @@
 #include <limits>
 #include <numeric>
 
-#include "saccade/cloud/leaf_search.hpp"
-#include "saccade/cloud/leaf_tree.hpp"
+#include "saccade/cloud/internal/leaf_search.hpp"
+#include "saccade/cloud/internal/leaf_tree.hpp"
 #include "saccade/core/result.hpp"
 
 namespace saccade {

@@ -9,7 +9,7 @@
 #include <string>
 #include <utility>
 
-#include "saccade/cloud/cell_blocks.hpp"
+#include "saccade/cloud/internal/cell_blocks.hpp"
 
 namespace saccade {
 

@@ -5,8 +5,8 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/map/internal/mesh_join.hpp"
 #include "saccade/map/map_changes.hpp"
-#include "saccade/map/mesh_join.hpp"
 
 namespace saccade {
 namespace {

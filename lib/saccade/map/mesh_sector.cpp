@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <bit>
 
-#include "saccade/map/marching_cubes.hpp"
+#include "saccade/map/internal/marching_cubes.hpp"
 
 namespace saccade {
 namespace {

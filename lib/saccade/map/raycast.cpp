@@ -6,10 +6,10 @@
 #include <memory>
 #include <mutex>
 
+#include "saccade/map/internal/raycast_kernels.hpp"
+#include "saccade/map/internal/surface_tiles.hpp"
+#include "saccade/map/internal/voxel_reader.hpp"
 #include "saccade/map/ray_math.hpp"
-#include "saccade/map/raycast_kernels.hpp"
-#include "saccade/map/surface_tiles.hpp"
-#include "saccade/map/voxel_reader.hpp"
 
 namespace saccade {
 namespace {

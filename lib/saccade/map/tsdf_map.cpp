@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/map/frame_fuser.hpp"
+#include "saccade/map/internal/frame_fuser.hpp"
 #include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {

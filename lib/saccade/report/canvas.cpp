@@ -7,8 +7,8 @@
 #include <numbers>
 #include <variant>
 
-#include "saccade/report/blend.hpp"
 #include "saccade/report/font.hpp"
+#include "saccade/report/internal/blend.hpp"
 
 namespace saccade {
 namespace {

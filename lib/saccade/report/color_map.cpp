@@ -5,7 +5,7 @@
 #include <cmath>
 #include <cstdio>
 
-#include "saccade/report/blend.hpp"
+#include "saccade/report/internal/blend.hpp"
 #include "saccade/report/sheet.hpp"
 
 namespace saccade {

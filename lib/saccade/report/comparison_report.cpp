@@ -6,8 +6,8 @@
 
 #include "saccade/core/result.hpp"
 #include "saccade/report/html_text.hpp"
-#include "saccade/report/run_report_curves.hpp"
-#include "saccade/report/run_report_page.hpp"
+#include "saccade/report/internal/run_report_curves.hpp"
+#include "saccade/report/internal/run_report_page.hpp"
 #include "saccade/report/run_report_parts.hpp"
 
 namespace saccade {

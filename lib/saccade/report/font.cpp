@@ -7,7 +7,7 @@
 #include <cstdint>
 #include <vector>
 
-#include "saccade/report/blend.hpp"
+#include "saccade/report/internal/blend.hpp"
 
 namespace saccade {
 namespace {

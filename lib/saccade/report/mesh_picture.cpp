@@ -5,7 +5,7 @@
 #include <array>
 #include <cmath>
 
-#include "saccade/report/shading.hpp"
+#include "saccade/report/internal/shading.hpp"
 
 namespace saccade {
 namespace {

@@ -8,8 +8,8 @@
 #include <numbers>
 #include <span>
 
-#include "saccade/report/blend.hpp"
-#include "saccade/report/plane_drawing.hpp"
+#include "saccade/report/internal/blend.hpp"
+#include "saccade/report/internal/plane_drawing.hpp"
 #include "saccade/report/sheet.hpp"
 
 namespace saccade {

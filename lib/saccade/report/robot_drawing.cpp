@@ -4,7 +4,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "saccade/report/blend.hpp"
+#include "saccade/report/internal/blend.hpp"
 #include "saccade/report/mesh_picture.hpp"
 
 namespace saccade {

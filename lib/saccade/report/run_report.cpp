@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "saccade/report/html_text.hpp"
-#include "saccade/report/run_report_page.hpp"
+#include "saccade/report/internal/run_report_page.hpp"
 #include "saccade/report/run_report_parts.hpp"
 
 namespace saccade {

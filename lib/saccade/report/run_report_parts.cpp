@@ -9,7 +9,7 @@
 #include "saccade/report/color_map.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/html_text.hpp"
-#include "saccade/report/run_report_curves.hpp"
+#include "saccade/report/internal/run_report_curves.hpp"
 #include "saccade/report/ternary_picture.hpp"
 
 namespace saccade {

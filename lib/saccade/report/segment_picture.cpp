@@ -8,8 +8,8 @@
 
 #include "saccade/cloud/point_cloud.hpp"
 #include "saccade/report/canvas.hpp"
+#include "saccade/report/internal/shading.hpp"
 #include "saccade/report/mesh_picture.hpp"
-#include "saccade/report/shading.hpp"
 
 namespace saccade {
 

@@ -6,8 +6,8 @@
 #include <cmath>
 
 #include "saccade/map/ray_walk.hpp"
-#include "saccade/report/blend.hpp"
-#include "saccade/report/shading.hpp"
+#include "saccade/report/internal/blend.hpp"
+#include "saccade/report/internal/shading.hpp"
 
 namespace saccade {
 namespace {

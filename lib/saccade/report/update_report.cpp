@@ -6,7 +6,7 @@
 
 #include "saccade/report/color_map.hpp"
 #include "saccade/report/html_text.hpp"
-#include "saccade/report/run_report_page.hpp"
+#include "saccade/report/internal/run_report_page.hpp"
 #include "saccade/report/update_pictures.hpp"
 
 namespace saccade {

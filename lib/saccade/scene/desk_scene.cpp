@@ -3,7 +3,7 @@
 #include <Eigen/Geometry>
 #include <numbers>
 
-#include "saccade/scene/scene_maker.hpp"
+#include "saccade/scene/internal/scene_maker.hpp"
 
 namespace saccade {
 namespace {

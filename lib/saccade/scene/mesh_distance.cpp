@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "saccade/map/closest_point.hpp"
-#include "saccade/scene/embree_handles.hpp"
+#include "saccade/scene/internal/embree_handles.hpp"
 
 namespace saccade {
 

@@ -7,8 +7,8 @@
 #include <sstream>
 
 #include "saccade/io/clouds/any_mesh.hpp"
+#include "saccade/scene/internal/tabletop.hpp"
 #include "saccade/scene/scene_yaml.hpp"
-#include "saccade/scene/tabletop.hpp"
 
 namespace saccade {
 namespace {

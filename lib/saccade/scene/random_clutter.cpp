@@ -8,7 +8,7 @@
 #include <numbers>
 #include <random>
 
-#include "saccade/scene/tabletop.hpp"
+#include "saccade/scene/internal/tabletop.hpp"
 
 namespace saccade {
 namespace {

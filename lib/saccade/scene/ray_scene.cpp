@@ -5,7 +5,7 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/scene/embree_handles.hpp"
+#include "saccade/scene/internal/embree_handles.hpp"
 #include "saccade/scene/paint.hpp"
 
 namespace saccade {

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <numbers>
 
-#include "saccade/scene/lathe.hpp"
+#include "saccade/scene/internal/lathe.hpp"
 
 namespace saccade {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/scene/surfel_scenes.hpp"
 
-#include "saccade/scene/scene_maker.hpp"
+#include "saccade/scene/internal/scene_maker.hpp"
 
 namespace saccade {
 namespace {

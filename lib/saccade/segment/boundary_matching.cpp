@@ -6,8 +6,8 @@
 #include <queue>
 #include <tuple>
 
-#include "saccade/segment/boundary_sides.hpp"
-#include "saccade/segment/least_assignment.hpp"
+#include "saccade/segment/internal/boundary_sides.hpp"
+#include "saccade/segment/internal/least_assignment.hpp"
 
 namespace saccade {
 

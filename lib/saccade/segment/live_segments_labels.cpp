@@ -3,8 +3,8 @@
 #include <algorithm>
 #include <utility>
 
+#include "saccade/segment/internal/supervoxel_growth.hpp"
 #include "saccade/segment/live_segments.hpp"
-#include "saccade/segment/supervoxel_growth.hpp"
 
 namespace saccade {
 

@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "saccade/cloud/cell_index.hpp"
-#include "saccade/segment/supervoxel_growth.hpp"
+#include "saccade/segment/internal/supervoxel_growth.hpp"
 
 namespace saccade {
 

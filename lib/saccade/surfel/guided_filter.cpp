@@ -12,7 +12,7 @@
 #include <utility>
 #include <vector>
 
-#include "saccade/surfel/guided_filter_kernels.hpp"
+#include "saccade/surfel/internal/guided_filter_kernels.hpp"
 
 namespace saccade {
 namespace {

@@ -7,9 +7,9 @@
 #include <span>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/surfel/mode_choice.hpp"
-#include "saccade/surfel/mode_merges.hpp"
-#include "saccade/surfel/mode_update.hpp"
+#include "saccade/surfel/internal/mode_choice.hpp"
+#include "saccade/surfel/internal/mode_merges.hpp"
+#include "saccade/surfel/internal/mode_update.hpp"
 
 namespace saccade {
 namespace {

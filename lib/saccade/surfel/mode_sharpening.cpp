@@ -7,7 +7,7 @@
 #include <span>
 #include <utility>
 
-#include "saccade/surfel/mode_choice.hpp"
+#include "saccade/surfel/internal/mode_choice.hpp"
 
 namespace saccade {
 namespace {

@@ -9,8 +9,8 @@
 #include <numeric>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/surfel/surfel_averages.hpp"
-#include "saccade/surfel/surfel_index.hpp"
+#include "saccade/surfel/internal/surfel_averages.hpp"
+#include "saccade/surfel/internal/surfel_index.hpp"
 
 namespace saccade {
 namespace {

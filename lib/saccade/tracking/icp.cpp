@@ -7,7 +7,7 @@
 #include <cmath>
 #include <vector>
 
-#include "saccade/tracking/icp_kernels.hpp"
+#include "saccade/tracking/internal/icp_kernels.hpp"
 
 namespace saccade {
 namespace {

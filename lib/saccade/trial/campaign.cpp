@@ -6,7 +6,7 @@
 
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/runs/refusals_json.hpp"
-#include "saccade/trial/campaign_schema.hpp"
+#include "saccade/trial/internal/campaign_schema.hpp"
 
 namespace saccade {
 namespace {

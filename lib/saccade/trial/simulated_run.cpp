@@ -6,7 +6,7 @@
 #include "saccade/map/count_unknown.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/scene/fixture_boxes.hpp"
-#include "saccade/trial/oracle_gain.hpp"
+#include "saccade/trial/internal/oracle_gain.hpp"
 
 namespace saccade {
 namespace {

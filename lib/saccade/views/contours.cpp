@@ -6,7 +6,7 @@
 #include <numbers>
 #include <unordered_map>
 
-#include "saccade/views/contour_sector.hpp"
+#include "saccade/views/internal/contour_sector.hpp"
 
 namespace saccade {
 namespace {

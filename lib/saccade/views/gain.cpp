@@ -5,7 +5,7 @@
 #include <cmath>
 #include <random>
 
-#include "saccade/views/best_views.hpp"
+#include "saccade/views/internal/best_views.hpp"
 
 namespace saccade {
 namespace {

@@ -5,7 +5,7 @@
 #include <mutex>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/views/gain_problem.hpp"
+#include "saccade/views/internal/gain_problem.hpp"
 
 namespace saccade {
 namespace {

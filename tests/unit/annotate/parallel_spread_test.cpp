@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Whoever is first: what several threads find is what one finds, and in the same order.
-#include "saccade/annotate/parallel_spread.hpp"
+#include "saccade/annotate/internal/parallel_spread.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/arm/swept_cells.hpp"
+#include "saccade/arm/internal/swept_cells.hpp"
 #include "saccade/arm/trajectory_timing.hpp"
 #include "support/test_arms.hpp"
 

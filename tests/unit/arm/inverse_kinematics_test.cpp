@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/arm/joint_turns.hpp"
+#include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/kinematics.hpp"
 #include "support/effort.hpp"
 #include "support/test_arms.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/arm/shortcut.hpp"
+#include "saccade/arm/internal/shortcut.hpp"
 
 #include <gtest/gtest.h>
 

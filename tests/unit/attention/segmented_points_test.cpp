@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-#include "saccade/attention/isolation.hpp"
+#include "saccade/attention/internal/isolation.hpp"
 #include "saccade/cloud/point_cloud.hpp"
 #include "support/effort.hpp"
 

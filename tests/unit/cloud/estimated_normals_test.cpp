@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-#include "saccade/cloud/least_directions.hpp"
+#include "saccade/cloud/internal/least_directions.hpp"
 #include "saccade/core/simd.hpp"
 
 namespace saccade {

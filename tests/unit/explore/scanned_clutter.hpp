@@ -7,7 +7,7 @@
 #include <algorithm>
 
 #include "saccade/scene/random_clutter.hpp"
-#include "saccade/trial/oracle_gain.hpp"
+#include "saccade/trial/internal/oracle_gain.hpp"
 #include "saccade/trial/simulated_run.hpp"
 
 namespace saccade::test {

@@ -9,7 +9,7 @@
 #include <utility>
 
 #include "analytic_map.hpp"
-#include "saccade/map/marching_cubes.hpp"
+#include "saccade/map/internal/marching_cubes.hpp"
 #include "support/parallel_backend.hpp"
 
 namespace saccade {

@@ -5,8 +5,8 @@
 
 #include <algorithm>
 
-#include "saccade/report/blend.hpp"
 #include "saccade/report/font.hpp"
+#include "saccade/report/internal/blend.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

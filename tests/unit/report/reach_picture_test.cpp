@@ -6,7 +6,7 @@
 #include <numbers>
 
 #include "saccade/report/color_map.hpp"
-#include "saccade/report/plane_drawing.hpp"
+#include "saccade/report/internal/plane_drawing.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

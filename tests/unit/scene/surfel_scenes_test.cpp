@@ -7,7 +7,7 @@
 #include <set>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/scene/truth_labels.hpp"
+#include "saccade/scene/internal/truth_labels.hpp"
 #include "support/effort.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/truth_labels.hpp"
+#include "saccade/scene/internal/truth_labels.hpp"
 
 #include <gtest/gtest.h>
 

@@ -11,7 +11,7 @@
 
 #include "saccade/segment/boundary_matching.hpp"
 #include "saccade/segment/consistency_error.hpp"
-#include "saccade/segment/least_assignment.hpp"
+#include "saccade/segment/internal/least_assignment.hpp"
 
 namespace saccade {
 namespace {

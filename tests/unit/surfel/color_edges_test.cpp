@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges in images and how steep renderings are there: of known ramps, and of a checked plane seen with wrong poses,
 // fused with and without the mode filter.
-#include "saccade/surfel/color_edges.hpp"
+#include "saccade/surfel/internal/color_edges.hpp"
 
 #include <gtest/gtest.h>
 

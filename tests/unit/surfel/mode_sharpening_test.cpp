@@ -12,7 +12,7 @@
 #include <random>
 #include <vector>
 
-#include "saccade/surfel/mode_choice.hpp"
+#include "saccade/surfel/internal/mode_choice.hpp"
 
 namespace saccade {
 namespace {

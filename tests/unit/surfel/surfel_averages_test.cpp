@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The index image and the averages of surfel fusion, which are made in vectors, against plain loops that say the same
 // surfel by surfel: the same bits, for every instruction set.
-#include "saccade/surfel/surfel_averages.hpp"
+#include "saccade/surfel/internal/surfel_averages.hpp"
 
 #include <gtest/gtest.h>
 

@@ -4,7 +4,7 @@
 
 #include <algorithm>
 
-#include "saccade/trial/oracle_gain.hpp"
+#include "saccade/trial/internal/oracle_gain.hpp"
 #include "saccade/views/view_order.hpp"
 #include "unit/explore/scanned_clutter.hpp"
 

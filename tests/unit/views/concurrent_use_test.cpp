@@ -15,7 +15,7 @@
 #include "saccade/map/view_points.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/icp.hpp"
-#include "saccade/views/best_views.hpp"
+#include "saccade/views/internal/best_views.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "saccade/views/view_order.hpp"
 #include "saccade/views/view_sphere.hpp"

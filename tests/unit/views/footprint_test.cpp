@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Faces by which rays come to voxels that score, and the pixels that see them.
-#include "saccade/views/footprint.hpp"
+#include "saccade/views/internal/footprint.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,7 @@
 #include <set>
 #include <tuple>
 
-#include "saccade/views/cast_window.hpp"
+#include "saccade/views/internal/cast_window.hpp"
 #include "support/brute_force_gain.hpp"
 
 namespace saccade {

@@ -8,7 +8,7 @@
 #include <fstream>
 #include <utility>
 
-#include "saccade/io/clouds/kitti_io.hpp"
+#include "saccade/io/clouds/internal/kitti_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade {

@@ -6,7 +6,7 @@
 #include <utility>
 
 #include "saccade/io/clouds/cloud_io.hpp"
-#include "saccade/io/clouds/kitti_io.hpp"
+#include "saccade/io/clouds/internal/kitti_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/npy_io.hpp"
 #include "saccade/io/files/number_lines.hpp"

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "saccade/io/clouds/lzf.hpp"
+#include "saccade/io/clouds/internal/lzf.hpp"
 #include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"

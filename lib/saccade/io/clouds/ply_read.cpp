@@ -3,7 +3,7 @@
 #include <bit>
 #include <cstring>
 
-#include "saccade/io/clouds/ply_header.hpp"
+#include "saccade/io/clouds/internal/ply_header.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"

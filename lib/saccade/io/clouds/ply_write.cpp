@@ -2,7 +2,7 @@
 #include <bit>
 #include <limits>
 
-#include "saccade/io/clouds/ply_header.hpp"
+#include "saccade/io/clouds/internal/ply_header.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"

@@ -7,7 +7,7 @@
 #include <string>
 #include <utility>
 
-#include "saccade/io/clouds/text_column.hpp"
+#include "saccade/io/clouds/internal/text_column.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/number_lines.hpp"
 #include "saccade/io/files/text_fields.hpp"

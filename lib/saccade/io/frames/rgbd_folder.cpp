@@ -6,7 +6,7 @@
 
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/io/frames/rgbd_layout.hpp"
+#include "saccade/io/frames/internal/rgbd_layout.hpp"
 
 namespace saccade {
 namespace {

@@ -15,7 +15,7 @@
 #include "saccade/io/files/crc32.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/little_endian.hpp"
-#include "saccade/io/maps/sacmap_bricks.hpp"
+#include "saccade/io/maps/internal/sacmap_bricks.hpp"
 
 namespace saccade {
 namespace {

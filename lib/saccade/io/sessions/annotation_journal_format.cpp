@@ -13,7 +13,7 @@
 #include "saccade/io/files/little_endian.hpp"
 #include "saccade/io/files/readable_text.hpp"
 #include "saccade/io/sessions/annotation_journal.hpp"
-#include "saccade/io/sessions/annotation_records.hpp"
+#include "saccade/io/sessions/internal/annotation_records.hpp"
 
 namespace saccade {
 namespace {

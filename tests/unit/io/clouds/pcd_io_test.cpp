@@ -9,7 +9,7 @@
 #include <limits>
 #include <random>
 
-#include "saccade/io/clouds/lzf.hpp"
+#include "saccade/io/clouds/internal/lzf.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "support/places.hpp"
 #include "support/temp_folder.hpp"

@@ -12,7 +12,7 @@
 
 #include "analytic_map.hpp"
 #include "saccade/io/files/crc32.hpp"
-#include "saccade/io/maps/sacmap_bricks.hpp"
+#include "saccade/io/maps/internal/sacmap_bricks.hpp"
 
 namespace saccade {
 namespace {

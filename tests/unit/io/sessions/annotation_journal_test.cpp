@@ -9,7 +9,7 @@
 
 #include "saccade/io/files/crc32.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/sessions/annotation_records.hpp"
+#include "saccade/io/sessions/internal/annotation_records.hpp"
 #include "support/annotated_cloud.hpp"
 
 namespace saccade {

@@ -6,7 +6,7 @@
 
 #include "saccade/arm/urdf.hpp"
 #include "saccade/devices/process_messages.hpp"
-#include "saccade/io/clouds/kitti_io.hpp"
+#include "saccade/io/clouds/internal/kitti_io.hpp"
 #include "saccade/io/clouds/pcd_io.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/clouds/text_cloud.hpp"

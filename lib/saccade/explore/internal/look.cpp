@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+// What the explorer does at a view and on its way there: it moves, tilts the camera, takes frames and fuses them.
+#include "saccade/explore/internal/look.hpp"
+
+#include <cmath>
+
+namespace saccade {
+
+Pose tilted(const Pose& T_world_view, double tilt_rad) {
+  return T_world_view * Eigen::AngleAxisd{tilt_rad, Eigen::Vector3d::UnitX()};
+}
+
+double oscillation_rad(const ExplorerConfig& config) {
+  return config.oscillation_frames > 1 ? config.oscillation_rad : 0.0;
+}
+
+std::vector<double> tilts_towards(double farthest_rad) {
+  constexpr int kHalvings{3};
+  std::vector<double> tilts_rad;
+  for (int i = 0; farthest_rad != 0.0 && i <= kHalvings; ++i) tilts_rad.push_back(std::ldexp(farthest_rad, -i));
+  return tilts_rad;
+}
+
+Result<double> Explorer::farthest_tilt_rad(const Pose& T_world_view, double wanted_rad) {
+  for (const double tilt_rad : tilts_towards(wanted_rad)) {
+    const Pose pose = tilted(T_world_view, tilt_rad);
+    SACCADE_TRY(const PlannedMotion planned, parts_.robot.plan(std::span{&pose, 1}, Way::straight));
+    if (planned.motion) return tilt_rad;
+  }
+  return 0.0;
+}
+
+Status Explorer::fuse(const Pose& T_world_camera, bool keep) {
+  SACCADE_TRY(Frame frame, parts_.camera.capture(T_world_camera));
+  const ColorImage* color = frame.color ? &*frame.color : nullptr;
+  const Pose T_world_frame = frame.T_world_camera.value_or(T_world_camera);
+  SACCADE_TRY([[maybe_unused]] const FusionStats stats,
+              parts_.map.integrate(parts_.camera.intrinsics(), frame.depth, T_world_frame, parts_.executor, color));
+  if (keep) frames_.push_back(std::move(frame));
+  return {};
+}
+
+Result<std::optional<Arrival>> Explorer::move(const Motion& motion, ViewRecord& view) {
+  Status fused;
+  double next_s = config_.frame_on_way_s;
+  const OnWay on_way = [&](const CameraSample& sample) {
+    view.path.emplace_back(sample.T_world_camera.translation());
+    if (config_.frame_on_way_s <= 0.0 || sample.t_s < next_s || !fused.ok() || cancelled()) return;
+    next_s += config_.frame_on_way_s;
+    fused = view.times.measure(Phase::fusion, [&] { return fuse(sample.T_world_camera, false); });
+    ++view.frames_on_way;
+  };
+  auto arrival = view.times.measure(Phase::motion, [&] { return parts_.robot.execute(motion, on_way); });
+  view.path_m = length_m(view.path);
+  if (!fused.ok()) return fused.error();
+  return arrival;
+}
+
+Status Explorer::look(ViewRecord& view) {
+  frames_.clear();
+  return view.times.measure(Phase::fusion, [&]() -> Status {
+    const double wanted_rad = oscillation_rad(config_);
+    SACCADE_TRY(view.tilt.least_rad, farthest_tilt_rad(view.T_world_camera, -wanted_rad));
+    SACCADE_TRY(view.tilt.greatest_rad, farthest_tilt_rad(view.T_world_camera, wanted_rad));
+    const double middle_rad = 0.5 * (view.tilt.least_rad + view.tilt.greatest_rad);
+    const double half_rad = 0.5 * (view.tilt.greatest_rad - view.tilt.least_rad);
+    double motion_s = 0.0;
+    for (int i = 0; i < config_.oscillation_frames; ++i) {
+      const double share = config_.oscillation_frames > 1 ? 2.0 * i / (config_.oscillation_frames - 1) - 1.0 : 0.0;
+      const Pose wanted = tilted(view.T_world_camera, middle_rad + share * half_rad);
+      SACCADE_TRY(const PlannedMotion planned, parts_.robot.plan(std::span{&wanted, 1}, Way::straight));
+      if (!planned.motion) continue;
+      SACCADE_TRY(const std::optional<Arrival> arrival, parts_.robot.execute(*planned.motion));
+      if (!arrival) continue;
+      motion_s += arrival->motion_s;
+      SACCADE_CHECK(fuse(arrival->T_world_camera, true));
+      ++view.frames;
+    }
+    view.motion_s += motion_s;
+    return {};
+  });
+}
+
+Result<ScanRecord> Explorer::scan(std::span<const Pose> T_world_camera) {
+  SACCADE_CHECK(config_.validate());
+  std::vector<Pose> way;
+  for (const Pose& pose : T_world_camera) {
+    way.push_back(pose);
+    for (const double end_rad : {-oscillation_rad(config_), oscillation_rad(config_)}) {
+      for (const double tilt_rad : tilts_towards(end_rad)) way.push_back(tilted(pose, tilt_rad));
+    }
+  }
+  SACCADE_CHECK(parts_.robot.follow(parts_.map.content(), parts_.executor));
+  SACCADE_TRY(const std::vector<Box> swept, parts_.robot.swept_by(way));
+  for (const Box& box : swept) SACCADE_CHECK(parts_.map.free(box));
+  ScanRecord scan;
+  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
+    if (parts_.progress != nullptr) parts_.progress->report("initial scan", i, T_world_camera.size());
+    SACCADE_TRY(const Outcome outcome, scan_from(T_world_camera[i], scan));
+    if (outcome != Outcome::cancelled) continue;
+    scan.complete = false;
+    return scan;
+  }
+  if (parts_.recorder != nullptr) SACCADE_CHECK(parts_.recorder->scanned(scan, parts_.map.content()));
+  return scan;
+}
+
+Result<Explorer::Outcome> Explorer::scan_from(const Pose& T_world_camera, ScanRecord& scan) {
+  if (cancelled()) return Outcome::cancelled;
+  SACCADE_CHECK(parts_.robot.follow(parts_.map.content(), parts_.executor));
+  SACCADE_TRY(const PlannedMotion planned, parts_.robot.plan(std::span{&T_world_camera, 1}));
+  if (!planned.motion) {
+    scan.refused.add(planned.refusal.value_or(Refusal::declined));
+    return Outcome::nowhere_to_go;
+  }
+  const Approval approval = parts_.approve ? parts_.approve({T_world_camera}) : Approval::go;
+  if (approval == Approval::stop) return Outcome::cancelled;
+  if (approval == Approval::skip) return Outcome::nowhere_to_go;
+  SACCADE_TRY(const std::optional<Arrival> arrival, parts_.robot.execute(*planned.motion));
+  if (!arrival) {
+    scan.refused.add(Refusal::declined);
+    return Outcome::nowhere_to_go;
+  }
+  ViewRecord view;
+  view.T_world_camera = T_world_camera;
+  SACCADE_CHECK(look(view));
+  scan.frames += view.frames;
+  ++scan.views;
+  return Outcome::arrived;
+}
+
+}  // namespace saccade

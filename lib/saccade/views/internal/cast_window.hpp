@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// CastWindow: the rays of one camera centre and roll that can score; window_of finds them.
+
+#include <algorithm>
+#include <optional>
+#include <span>
+#include <vector>
+
+#include "saccade/core/region.hpp"
+#include "saccade/views/internal/footprint.hpp"
+#include "saccade/views/sensor_rays.hpp"
+
+namespace saccade {
+
+/// Columns [begin, end) of a row.
+struct ColumnRange {
+  int begin{0};
+  int end{0};
+};
+
+/// A rectangle of the canonical image, and in each of its rows the columns to cast. The PixelAxes outlive it.
+struct CastWindow {
+  SensorRays rays;
+  std::span<const float> a;
+  std::span<const float> b;
+  double pixels_per_a{0.0};
+  double pixels_per_b{0.0};
+  std::vector<ColumnRange> columns{};  ///< empty: all of every row
+
+  [[nodiscard]] bool empty() const { return a.empty() || b.empty(); }
+  [[nodiscard]] ColumnRange columns_of(int row) const {
+    return columns.empty() ? ColumnRange{0, static_cast<int>(a.size())} : columns[static_cast<std::size_t>(row)];
+  }
+  [[nodiscard]] PixelGrid grid() const {
+    return {static_cast<double>(a.front()), static_cast<double>(b.front()), pixels_per_a, pixels_per_b,
+            static_cast<int>(a.size()),     static_cast<int>(b.size())};
+  }
+  /// The same rays, so the same gain.
+  [[nodiscard]] bool same_rays(const CastWindow& other) const {
+    return rays.same_lattice(other.rays) && std::ranges::equal(a, other.a) && std::ranges::equal(b, other.b);
+  }
+};
+
+/// All pixels of the image.
+[[nodiscard]] CastWindow whole_image(const SensorRays& rays, const PixelAxes& axes);
+
+/// At least the pixels whose rays meet a voxel that lies in the box of voxels and, for a sphere, whose centre lies in
+/// the sphere: bounded by the projections of the box and of the sphere enlarged by half a voxel's diagonal, and by a
+/// pixel more for rounding. `columns` stays empty: see column_ranges.
+[[nodiscard]] CastWindow window_of(const SensorRays& rays, const PixelAxes& axes, const IndexBox& voxels,
+                                   const Region& region, double voxel_size_m);
+
+/// For each row of the window, the columns that can meet the region; empty, so all of them, unless it is a sphere.
+[[nodiscard]] std::vector<ColumnRange> column_ranges(const CastWindow& window, const Region& region,
+                                                     double voxel_size_m);
+
+}  // namespace saccade
