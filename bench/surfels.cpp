@@ -12,6 +12,7 @@
 #include <optional>
 #include <vector>
 
+#include "saccade/core/statistics.hpp"
 #include "saccade/io/frames/rgbd_folder.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/surfel/mode_filter.hpp"
@@ -61,12 +62,6 @@ const Frames& frames() {
     return rendered;
   }();
   return made;
-}
-
-double median(std::vector<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// One repetition is a whole sequence, and its time that of the median frame.

@@ -6,6 +6,7 @@
 
 #include "annotate.hpp"
 #include "json_output.hpp"
+#include "saccade/core/statistics.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -120,8 +121,8 @@ json simulation_json(const AnnotateOptions& options, const SimulatedAnnotation& 
   if (options.method == AnnotationMethod::control_points) {
     result["ms"] = {{"graph", annotation.graph_ms},
                     {"full", annotation.full_ms},
-                    {"add", {{"median", median_of(annotation.add_ms)}}},
-                    {"delete", {{"median", median_of(annotation.delete_ms)}}}};
+                    {"add", {{"median", median(annotation.add_ms)}}},
+                    {"delete", {{"median", median(annotation.delete_ms)}}}};
   }
   return result;
 }
@@ -156,7 +157,7 @@ json annotation_json(const AnnotatedCloud& cloud) {
                {{"graph", cloud.graph_ms},
                 {"actions",
                  {{"count", action_ms.size()},
-                  {"median", median_of(action_ms)},
+                  {"median", median(action_ms)},
                   {"max", action_ms.empty() ? 0.0 : *std::max_element(action_ms.begin(), action_ms.end())}}}}}};
   if (cloud.next) {
     json& next = result["next_best_click"];
@@ -198,8 +199,8 @@ void print_simulation(const AnnotateOptions& options, const SimulatedAnnotation&
   }
   if (options.method != AnnotationMethod::control_points) return;
   summary.line("graph", fixed(annotation.graph_ms, 1) + " ms");
-  summary.line("add, delete", fixed(median_of(annotation.add_ms), 2) + " ms, " +
-                                  fixed(median_of(annotation.delete_ms), 2) + " ms (median)");
+  summary.line("add, delete",
+               fixed(median(annotation.add_ms), 2) + " ms, " + fixed(median(annotation.delete_ms), 2) + " ms (median)");
 }
 
 void print_simulations(const AnnotateOptions& options, std::span<const OfCloud<SimulatedAnnotation>> clouds) {
@@ -257,7 +258,7 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
   summary.line("time", "graph " + fixed(cloud.graph_ms, 1) + " ms" +
                            (cloud.action_ms.empty()
                                 ? ""
-                                : ", actions " + fixed(median_of(cloud.action_ms), 2) + " ms (median), " +
+                                : ", actions " + fixed(median(cloud.action_ms), 2) + " ms (median), " +
                                       fixed(*std::max_element(cloud.action_ms.begin(), cloud.action_ms.end()), 2) +
                                       " ms at most"));
   const std::array<std::pair<const char*, const std::filesystem::path*>, 5> files{{{"session", &options.session},

@@ -6,6 +6,7 @@
 
 #include "attend.hpp"
 #include "json_output.hpp"
+#include "saccade/core/statistics.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -96,7 +97,7 @@ std::size_t AttendResult::actions() const {
 double AttendResult::median_ms() const {
   std::vector<double> values;
   for (const AttendedTrajectory& trajectory : trajectories) values.push_back(trajectory.ms);
-  return median_of(values);
+  return median(values);
 }
 
 DetectorEvaluation AttendResult::evaluation() const {

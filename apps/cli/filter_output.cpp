@@ -2,6 +2,7 @@
 #include <iostream>
 
 #include "filter.hpp"
+#include "saccade/core/statistics.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -18,7 +19,7 @@ std::size_t sum(const FilterResult& result, std::size_t FilteredFrame::*count) {
 double median_ms(const FilterResult& result) {
   std::vector<double> ms;
   for (const FilteredFrame& frame : result.frames) ms.push_back(frame.ms);
-  return median_of(std::move(ms));
+  return median(std::move(ms));
 }
 
 json frame_json(const FilteredFrame& frame) {

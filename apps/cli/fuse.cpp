@@ -15,6 +15,7 @@
 #include "json_output.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
@@ -79,7 +80,7 @@ json map_json(const TsdfSnapshot& map) {
 json result_json(const FuseRun& run, const TsdfSnapshot& map) {
   const FuseRecord& record = run.record;
   const auto timing = [](const std::vector<double>& ms) -> json {
-    return {{"median", median_of(ms)}, {"frames", ms.size()}};
+    return {{"median", median(ms)}, {"frames", ms.size()}};
   };
   const bool tracked = !record.raycast_ms.empty() || !run.fit;
   json result{{"folder", run.options.frames.string()},
@@ -137,9 +138,8 @@ void print_summary(const FuseRun& run, const TsdfSnapshot& map) {
   }
   const TsdfGrid::Usage usage = map.grid.usage();
   summary.line("map", std::to_string(usage.bricks()) + " bricks, " + mebibytes(usage.bytes));
-  summary.line("per frame", fixed(median_of(record.track_ms), 1) + " ms track, " +
-                                fixed(median_of(record.raycast_ms), 1) + " ms ray cast, " +
-                                fixed(median_of(record.integrate_ms), 1) + " ms integrate (medians)");
+  summary.line("per frame", fixed(median(record.track_ms), 1) + " ms track, " + fixed(median(record.raycast_ms), 1) +
+                                " ms ray cast, " + fixed(median(record.integrate_ms), 1) + " ms integrate (medians)");
   summary.line("results", run.options.out.string());
 }
 

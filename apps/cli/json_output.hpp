@@ -37,7 +37,4 @@ using TimingsMs = std::map<std::string, double>;
 /// [x, y, z]
 [[nodiscard]] nlohmann::json point_json(const Eigen::Vector3d& p);
 
-/// Median; the mean of the middle two for an even count; 0 for none.
-[[nodiscard]] double median_of(std::vector<double> values);
-
 }  // namespace saccade::cli

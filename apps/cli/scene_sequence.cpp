@@ -17,6 +17,7 @@
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/frames/depth_encoding.hpp"
@@ -201,7 +202,7 @@ Result<int> run_sequence(const SequenceOptions& options, const GlobalOptions& gl
       {"frames", true_poses.size()},
       {"segments", camera.segments().names().size() - 1},
       {"interrupted", interrupted()},
-      {"ms_per_frame", {{"render", {{"median", median_of(render_ms)}}}, {"write", {{"median", median_of(write_ms)}}}}}};
+      {"ms_per_frame", {{"render", {{"median", median(render_ms)}}}, {"write", {{"median", median(write_ms)}}}}}};
   SACCADE_CHECK(
       write_json_output(global, json_envelope("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, result)));
   if (!global.json_to_stdout()) {

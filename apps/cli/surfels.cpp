@@ -11,6 +11,7 @@
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/surfel_cloud.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/sheet.hpp"
@@ -159,7 +160,7 @@ json exposure_json(const SurfelsRun& run) {
 }
 
 json result_json(const SurfelsRun& run) {
-  const auto median = [](const std::vector<double>& ms) -> json { return {{"median", median_of(ms)}}; };
+  const auto median = [](const std::vector<double>& ms) -> json { return {{"median", median(ms)}}; };
   const std::filesystem::path average = run.options.average_out();
   return {{"folder", run.options.frames.string()},
           {"out", run.options.out.string()},
@@ -204,9 +205,9 @@ void print_summary(const SurfelsRun& run) {
   if (run.uncolored > 0) {
     summary.line("left out", std::to_string(run.uncolored) + " surfels that no frame with colour saw");
   }
-  summary.line("per frame", fixed(median_of(run.times.associate), 1) + " ms associate, " +
-                                fixed(median_of(run.times.guided_filter), 1) + " ms guided filter, " +
-                                fixed(median_of(run.times.integrate), 1) + " ms integrate (medians)");
+  summary.line("per frame", fixed(median(run.times.associate), 1) + " ms associate, " +
+                                fixed(median(run.times.guided_filter), 1) + " ms guided filter, " +
+                                fixed(median(run.times.integrate), 1) + " ms integrate (medians)");
   if (!run.exposures.empty()) {
     const json exposure = exposure_json(run);
     summary.line("exposure", "gains of " + fixed(exposure["min"].get<double>(), 2) + " to " +

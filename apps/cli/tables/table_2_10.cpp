@@ -6,6 +6,7 @@
 
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
@@ -80,8 +81,8 @@ Result<TsdfSnapshot> measure_file(const thesis::UpdateTask& task, const Executor
   }
   std::error_code ignored;
   costs.file_bytes = std::filesystem::file_size(file, ignored);
-  costs.save_ms = median_of(save_ms);
-  costs.load_ms = median_of(load_ms);
+  costs.save_ms = median(save_ms);
+  costs.load_ms = median(load_ms);
   return *std::move(loaded);
 }
 
@@ -94,7 +95,7 @@ Status measure_map(const thesis::UpdateTask& task, TsdfMap& map, const Executor&
     snapshot_ms.push_back(clock.lap_ms());
     if (run == 0) SACCADE_EXPECTS(snapshot.grid == map.content().grid);
   }
-  costs.snapshot_ms = median_of(snapshot_ms);
+  costs.snapshot_ms = median(snapshot_ms);
 
   std::vector<double> alone_ms;
   std::vector<double> held_ms;
@@ -111,8 +112,8 @@ Status measure_map(const thesis::UpdateTask& task, TsdfMap& map, const Executor&
     held_ms.push_back(beside.ms);
     alone_ms.push_back(alone.ms);
   }
-  costs.frame_alone_ms = median_of(alone_ms);
-  costs.frame_after_snapshot_ms = median_of(held_ms);
+  costs.frame_alone_ms = median(alone_ms);
+  costs.frame_after_snapshot_ms = median(held_ms);
   return {};
 }
 

@@ -6,6 +6,7 @@
 
 #include "json_output.hpp"
 #include "peer_comparison.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
@@ -71,8 +72,8 @@ Result<Measured> measure_ours(const Views& views, const RaySearch& exact, const 
     wall_s.push_back(cost.wall_s);
     cpu_s.push_back(cost.cpu_s);
   }
-  ours.total = {median_of(wall_s), median_of(cpu_s)};
-  ours.prepare_s = median_of(prepare_s);
+  ours.total = {median(wall_s), median(cpu_s)};
+  ours.prepare_s = median(prepare_s);
   return ours;
 }
 

@@ -4,11 +4,12 @@
 #include <cmath>
 #include <numeric>
 #include <optional>
-#include <random>
 
 #include "json_output.hpp"
 #include "saccade/annotate/shortest_path_forest.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/seeded_random.hpp"
+#include "saccade/core/statistics.hpp"
 #include "summary.hpp"
 #include "tables/labelled_clouds.hpp"
 #include "tables/thesis_table.hpp"
@@ -45,9 +46,9 @@ std::vector<Root> random_roots(const PointCloud& cloud, std::size_t count, std::
   for (std::uint32_t i = 0; i < cloud.positions_m.size(); ++i) {
     if (cloud.positions_m[i].allFinite()) roots.push_back({i, 0.0});
   }
-  std::mt19937_64 random{seed};
+  SeededRandom random{seed};
   for (std::size_t i = 0; i < std::min(count, roots.size()); ++i) {
-    std::swap(roots[i], roots[i + random() % (roots.size() - i)]);
+    std::swap(roots[i], roots[i + random.below(roots.size() - i)]);
   }
   roots.resize(std::min(count, roots.size()));
   return roots;
@@ -82,7 +83,7 @@ Result<AnnotationTimes> measure(const LabelledCloud& cloud, const NeighbourhoodC
     addition_ms.push_back(timed_ms([&] { forest.add(root); }));
     deletion_ms.push_back(timed_ms([&] { forest.remove(root.point); }));
   }
-  return AnnotationTimes{median_of(graph_ms), median_of(annotation_ms), median_of(addition_ms), median_of(deletion_ms)};
+  return AnnotationTimes{median(graph_ms), median(annotation_ms), median(addition_ms), median(deletion_ms)};
 }
 
 }  // namespace

@@ -7,6 +7,7 @@
 #include <numeric>
 #include <set>
 
+#include "saccade/core/statistics.hpp"
 #include "summary.hpp"
 #include "tables/labelled_clouds.hpp"
 #include "tables/thesis_table.hpp"
@@ -123,12 +124,8 @@ Outcome outcome_of(const SimulatedAnnotation& annotation, const Budget& budget) 
 
 /// Over clouds; the deviation of one is 0.
 MeanAndDeviation mean_of(const std::vector<double>& values) {
-  const auto count = static_cast<double>(values.size());
-  MeanAndDeviation mean{std::accumulate(values.begin(), values.end(), 0.0) / count, 0.0};
-  if (values.size() < 2) return mean;
-  for (const double value : values) mean.deviation += (value - mean.mean) * (value - mean.mean) / (count - 1.0);
-  mean.deviation = std::sqrt(mean.deviation);
-  return mean;
+  const MeanEstimate estimate = estimate_mean(values);
+  return {estimate.mean, estimate.standard_deviation.value_or(0.0)};
 }
 
 std::string text_of(const MeanAndDeviation& value, int decimals) {

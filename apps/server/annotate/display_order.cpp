@@ -4,7 +4,9 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <random>
+
+#include "saccade/core/seeded_random.hpp"
+#include "saccade/core/statistics.hpp"
 
 namespace saccade::server {
 
@@ -15,11 +17,7 @@ DisplayOrder::DisplayOrder(std::span<const Eigen::Vector3f> positions_m)
     if (positions_m[point].allFinite()) order_.push_back(point);
   }
   constexpr std::uint32_t kSeed{1};
-  std::mt19937 random{kSeed};  // its numbers are the same everywhere, those of std::shuffle are not
-  for (std::size_t end = order_.size(); end > 1; --end) {
-    const std::uint64_t chosen = random() * static_cast<std::uint64_t>(end) >> 32U;
-    std::swap(order_[end - 1], order_[chosen]);
-  }
+  SeededRandom{kSeed}.shuffle(order_);
   for (std::size_t rank = 0; rank < order_.size(); ++rank) rank_[order_[rank]] = static_cast<std::uint32_t>(rank);
 }
 
@@ -45,9 +43,8 @@ double typical_spacing_m(std::span<const Eigen::Vector3f> positions_m, const Dis
       distances_m2[sample] = nearest.back();
     }
   });
-  const auto middle = distances_m2.begin() + static_cast<std::ptrdiff_t>(distances_m2.size() / 2);
-  std::nth_element(distances_m2.begin(), middle, distances_m2.end());
-  return std::isfinite(*middle) ? std::sqrt(static_cast<double>(*middle)) : 0.0;
+  const float typical_m2 = upper_median(distances_m2);
+  return std::isfinite(typical_m2) ? std::sqrt(static_cast<double>(typical_m2)) : 0.0;
 }
 
 }  // namespace saccade::server

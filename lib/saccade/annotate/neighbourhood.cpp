@@ -10,6 +10,7 @@
 
 #include "saccade/cloud/estimated_normals.hpp"
 #include "saccade/cloud/nearest_neighbours.hpp"
+#include "saccade/core/statistics.hpp"
 
 namespace saccade {
 namespace {
@@ -120,9 +121,7 @@ class Nodes {
   [[nodiscard]] double median_spacing_m() const {
     std::vector<float> reach_m2;
     for (const Node& node : nodes_) reach_m2.push_back(node.reach_m2);
-    const auto middle = reach_m2.begin() + static_cast<std::ptrdiff_t>(reach_m2.size() / 2);
-    std::nth_element(reach_m2.begin(), middle, reach_m2.end());
-    return static_cast<double>(std::sqrt(*middle));
+    return static_cast<double>(std::sqrt(upper_median(reach_m2)));
   }
 
   const NearestNeighbours& neighbours_;
@@ -191,9 +190,7 @@ std::uint32_t median_of_sample(std::span<const Neighbourhood::Edge> edges) {
   std::vector<std::uint32_t> costs;
   for (std::size_t i = 0; i < edges.size(); i += 1 + edges.size() / kSamples) costs.push_back(edges[i].cost);
   if (costs.empty()) return 1;
-  const auto middle = costs.begin() + static_cast<std::ptrdiff_t>(costs.size() / 2);
-  std::nth_element(costs.begin(), middle, costs.end());
-  return *middle;
+  return upper_median(costs);
 }
 
 }  // namespace

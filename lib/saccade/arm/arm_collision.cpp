@@ -6,8 +6,6 @@
 #include <bit>
 #include <cmath>
 #include <limits>
-#include <numbers>
-#include <random>
 
 #include "saccade/arm/body_surface.hpp"
 
@@ -28,19 +26,6 @@ double longest_offset_m(const ArmJoint& joint) {
   const double slide_m =
       joint.kind == JointKind::prismatic ? std::max(std::fabs(joint.limits.lower), std::fabs(joint.limits.upper)) : 0.0;
   return joint.T_parent_joint.translation().norm() + slide_m;
-}
-
-Configuration random_configuration(const ArmModel& arm, std::mt19937& random) {
-  Configuration q{arm.dof()};
-  for (int i = 0; i < arm.dof(); ++i) {
-    const JointLimits& limits = arm.joint(i).limits;
-    const bool endless = arm.joint(i).kind == JointKind::continuous;
-    const double share = static_cast<double>(random()) / static_cast<double>(std::mt19937::max());
-    const double lower = endless ? -std::numbers::pi : limits.lower;
-    const double upper = endless ? std::numbers::pi : limits.upper;
-    q[i] = lower + share * (upper - lower);
-  }
-  return q;
 }
 
 }  // namespace
@@ -119,9 +104,9 @@ void ArmCollision::find_self_pairs() {
     }
   }
   std::vector<int> touched(pairs.size(), 0);
-  std::mt19937 random{kSelfSeed};
+  SeededRandom random{kSelfSeed};
   for (int sample = 0; sample < kSelfSamples; ++sample) {
-    const ArmPoses poses = forward_kinematics(*arm_, random_configuration(*arm_, random));
+    const ArmPoses poses = forward_kinematics(*arm_, sample_configuration(*arm_, random));
     for (std::size_t i = 0; i < pairs.size(); ++i) {
       const auto& [a, b] = pairs[i];
       const Pose& T_world_a = poses.T_world_link[static_cast<std::size_t>(a)];

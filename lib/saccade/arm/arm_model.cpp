@@ -3,6 +3,7 @@
 
 #include <cmath>
 #include <limits>
+#include <numbers>
 #include <utility>
 
 namespace saccade {
@@ -149,6 +150,16 @@ ArmModel slowed(const ArmModel& arm, double share) {
     joint.limits.acceleration *= share * share;
   }
   return ArmModel::create(std::move(description)).value();
+}
+
+Configuration sample_configuration(const ArmModel& arm, SeededRandom& random) {
+  Configuration q{arm.dof()};
+  for (int i = 0; i < arm.dof(); ++i) {
+    const bool endless = arm.joint(i).kind == JointKind::continuous;
+    q[i] = random.uniform(endless ? -std::numbers::pi : arm.joint(i).limits.lower,
+                          endless ? std::numbers::pi : arm.joint(i).limits.upper);
+  }
+  return q;
 }
 
 }  // namespace saccade

@@ -11,6 +11,7 @@
 
 #include "saccade/core/pose.hpp"
 #include "saccade/core/result.hpp"
+#include "saccade/core/seeded_random.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/robot/configuration.hpp"
 
@@ -126,5 +127,8 @@ class ArmModel {
 /// The same arm with this share of its speeds, and accelerations such that every path takes 1 / share as long. Expects
 /// a share in (0, 1].
 [[nodiscard]] ArmModel slowed(const ArmModel& arm, double share);
+
+/// Draws a configuration within the limits, continuous joints within ±π.
+[[nodiscard]] Configuration sample_configuration(const ArmModel& arm, SeededRandom& random);
 
 }  // namespace saccade

@@ -8,7 +8,6 @@
 #include <kdl/chain.hpp>
 #include <kdl/chainiksolverpos_lma.hpp>
 #include <numbers>
-#include <random>
 #include <utility>
 
 #include "saccade/arm/internal/joint_turns.hpp"
@@ -48,26 +47,6 @@ KDL::Chain chain_of(const ArmModel& arm) {
 /// KDL weighs rotations with this length, so that a radian counts as much as half a metre.
 constexpr double kRotationWeight_m{0.5};
 constexpr double kLmaTolerance{1e-6};
-
-/// Configurations within the limits; continuous joints within ±π. The same on every platform.
-class Starts {
- public:
-  Starts(const ArmModel& arm, std::uint64_t seed) : arm_{arm}, engine_{seed} {}
-  Configuration next() {
-    Configuration q{arm_.dof()};
-    for (int i = 0; i < arm_.dof(); ++i) {
-      const bool endless = arm_.joint(i).kind == JointKind::continuous;
-      const double lower = endless ? -std::numbers::pi : arm_.joint(i).limits.lower;
-      const double upper = endless ? std::numbers::pi : arm_.joint(i).limits.upper;
-      q[i] = lower + (upper - lower) * (static_cast<double>(engine_() >> 11U) * 0x1.0p-53);
-    }
-    return q;
-  }
-
- private:
-  const ArmModel& arm_;
-  std::mt19937_64 engine_;
-};
 
 class Lma {
  public:
@@ -142,11 +121,11 @@ std::vector<Configuration> NumericIk::solve(const Pose& T_world_camera, const Co
   if (!may_reach(*arm_, T_world_camera)) return {};
   const KDL::Frame goal = to_kdl(T_world_camera);
   Lma lma{*arm_, config_.iterations};
-  Starts starts{*arm_, config_.seed};
+  SeededRandom random{config_.seed};
   std::vector<Configuration> found;
   std::vector<Configuration> turns;
   for (int start = 0; start <= config_.restarts; ++start) {
-    Configuration q = start == 0 ? reference : starts.next();
+    Configuration q = start == 0 ? reference : sample_configuration(*arm_, random);
     for (const bool again : {false, true}) {
       turns.clear();
       if (lma.solve(goal, q) && refine(*arm_, T_world_camera, q)) append_turns(*arm_, q, reference, 1, turns);

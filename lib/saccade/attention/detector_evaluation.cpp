@@ -6,6 +6,7 @@
 
 #include "saccade/attention/trajectory_changes.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/statistics.hpp"
 
 namespace saccade {
 namespace {
@@ -15,12 +16,8 @@ std::optional<double> share(std::size_t part, std::size_t whole) {
   return static_cast<double>(part) / static_cast<double>(whole);
 }
 
-/// The mean of the two middle values where their number is even.
-std::optional<double> median(std::vector<double> values) {
-  if (values.empty()) return std::nullopt;
-  std::sort(values.begin(), values.end());
-  const std::size_t middle = values.size() / 2;
-  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+std::optional<double> median_if_any(const std::vector<double>& values) {
+  return values.empty() ? std::nullopt : std::optional{median(values)};
 }
 
 void append(std::vector<double>& to, const std::vector<double>& from) { to.insert(to.end(), from.begin(), from.end()); }
@@ -77,9 +74,9 @@ DetectorEvaluation& DetectorEvaluation::operator+=(const DetectorEvaluation& oth
   return *this;
 }
 
-std::optional<double> DetectorEvaluation::median_location_error_m() const { return median(location_errors_m); }
+std::optional<double> DetectorEvaluation::median_location_error_m() const { return median_if_any(location_errors_m); }
 
-std::optional<double> DetectorEvaluation::median_ms() const { return median(ms); }
+std::optional<double> DetectorEvaluation::median_ms() const { return median_if_any(ms); }
 
 Result<DetectorEvaluation> evaluate_detector(const HandActionDetector& detector,
                                              std::span<const LabelledTrajectory> trajectories,

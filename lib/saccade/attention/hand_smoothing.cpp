@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/attention/hand_smoothing.hpp"
 
+#include "saccade/core/statistics.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -42,12 +44,6 @@ bool is_outlier(const WindowDistances& distances_m, std::size_t index, double no
   }
   return index != medoid &&
          distance_m(medoid, index) > limit * std::max({nearest_m, kMedianOfChi3 * noise_m, kLeastSpread_m});
-}
-
-double upper_median(std::span<double> values) {
-  const auto middle = values.begin() + static_cast<std::ptrdiff_t>(values.size() / 2);
-  std::nth_element(values.begin(), middle, values.end());
-  return *middle;
 }
 
 /// Samples summed up by the step nearest to them, with kReach_bins empty bins on both sides. Times are in steps, from

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/cloud/estimated_radii.hpp"
 
+#include "saccade/core/statistics.hpp"
+
 #include <algorithm>
 #include <numbers>
 
@@ -16,10 +18,7 @@ std::vector<float> estimate_radii(const NearestNeighbours& neighbours) {
     radii_m[n] = std::numbers::sqrt2_v<float> *
                  (neighbours.positions_m[neighbours.of(n)[which]] - neighbours.positions_m[n]).norm();
   }
-  std::vector<float> sorted = radii_m;
-  const auto middle = sorted.begin() + static_cast<std::ptrdiff_t>(sorted.size() / 2);
-  std::nth_element(sorted.begin(), middle, sorted.end());
-  const float most_m = kMostMedians * *middle;
+  const float most_m = kMostMedians * upper_median(std::vector<float>{radii_m});
   for (float& radius_m : radii_m) radius_m = std::min(radius_m, most_m);
   return radii_m;
 }

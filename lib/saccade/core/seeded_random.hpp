@@ -1,11 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SeededRandom: uniform and normal numbers that a seed decides, the same on every platform.
+// SeededRandom: the one source of random numbers. A seed decides them, on every platform alike.
 
 #include <cmath>
+#include <cstddef>
 #include <cstdint>
+#include <iterator>
 #include <numbers>
 #include <random>
+#include <utility>
 
 namespace saccade {
 
@@ -14,8 +17,19 @@ class SeededRandom {
  public:
   explicit SeededRandom(std::uint64_t seed) : engine_{seed} {}
 
-  /// Within [low, high).
+  /// Returns a number within [0, 1).
+  [[nodiscard]] double unit() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
+  /// Returns a number within [low, high).
   [[nodiscard]] double uniform(double low, double high) { return low + (high - low) * unit(); }
+
+  /// Returns a whole number below `end`, which must be positive.
+  [[nodiscard]] std::size_t below(std::size_t end) { return static_cast<std::size_t>(engine_() % end); }
+
+  /// Puts the values in random order (Fisher and Yates).
+  template <class Range>
+  void shuffle(Range& values) {
+    for (std::size_t i = std::size(values); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
+  }
 
   /// Mean 0, standard deviation 1, by the method of Box and Muller.
   [[nodiscard]] double normal() {
@@ -31,8 +45,6 @@ class SeededRandom {
   }
 
  private:
-  double unit() { return static_cast<double>(engine_() >> 11U) * 0x1p-53; }
-
   std::mt19937_64 engine_;
   double spare_{0.0};
   bool has_spare_{false};

@@ -36,15 +36,26 @@ std::optional<double> MeanEstimate::high() const {
   return half_width ? std::optional{mean + *half_width} : std::nullopt;
 }
 
+double median(std::vector<double> values) {
+  if (values.empty()) return 0.0;
+  std::sort(values.begin(), values.end());
+  const std::size_t middle = values.size() / 2;
+  return values.size() % 2 == 1 ? values[middle] : 0.5 * (values[middle - 1] + values[middle]);
+}
+
+double mean(std::span<const double> values) {
+  double sum = 0.0;
+  for (const double value : values) sum += value;
+  return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
 MeanEstimate estimate_mean(std::span<const double> values, double confidence) {
   SACCADE_EXPECTS(std::all_of(values.begin(), values.end(), [](double value) { return std::isfinite(value); }));
   MeanEstimate estimate;
   estimate.n = values.size();
   if (values.empty()) return estimate;
   const auto n = static_cast<double>(values.size());
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  estimate.mean = sum / n;
+  estimate.mean = mean(values);
   if (values.size() < 2) return estimate;
   double squares = 0.0;
   for (const double value : values) squares += (value - estimate.mean) * (value - estimate.mean);

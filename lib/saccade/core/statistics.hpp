@@ -1,12 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// MeanEstimate: the mean of a few measurements and how sure it is, by Student's t distribution.
+// Medians and means; MeanEstimate: a mean and how sure it is, by Student's t distribution.
 
+#include <algorithm>
 #include <cstddef>
+#include <iterator>
 #include <optional>
 #include <span>
+#include <vector>
 
 namespace saccade {
+
+/// Returns the value that would be at `index` if the values were sorted. Reorders them. Expects index < size. O(n).
+template <class Range>
+[[nodiscard]] auto nth_smallest(Range&& values, std::size_t index) {
+  const auto nth = std::next(std::begin(values), static_cast<std::ptrdiff_t>(index));
+  std::nth_element(std::begin(values), nth, std::end(values));
+  return *nth;
+}
+
+/// Returns the value in the middle, the larger of the two where the number is even. Reorders. Expects a value. O(n).
+template <class Range>
+[[nodiscard]] auto upper_median(Range&& values) {
+  return nth_smallest(values, std::size(values) / 2);
+}
+
+/// Returns the value in the middle, the mean of the two where the number is even; 0 without values.
+[[nodiscard]] double median(std::vector<double> values);
+
+/// Returns the mean, summed from the first value to the last; 0 without values.
+[[nodiscard]] double mean(std::span<const double> values);
 
 /// Share of repetitions in which an interval holds the true mean.
 constexpr double kConfidence{0.95};

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/report/depth_picture.hpp"
 
+#include "saccade/core/statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 
@@ -13,9 +15,8 @@ DepthScale depth_scale(const DepthImage& depth) {
   }
   if (valid.empty()) return {};
   const auto percentile = [&](double share) {
-    const auto nth = valid.begin() + static_cast<std::ptrdiff_t>(share * static_cast<double>(valid.size() - 1));
-    std::nth_element(valid.begin(), nth, valid.end());
-    return static_cast<double>(*nth);
+    const auto index = static_cast<std::size_t>(share * static_cast<double>(valid.size() - 1));
+    return static_cast<double>(nth_smallest(valid, index));
   };
   constexpr double kStep{0.2};
   const double near_m = std::floor(percentile(0.01) / kStep) * kStep;

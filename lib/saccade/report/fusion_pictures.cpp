@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/report/fusion_pictures.hpp"
 
+#include "saccade/core/statistics.hpp"
+
 #include <algorithm>
 #include <array>
 #include <cmath>
@@ -25,9 +27,7 @@ Residual residual(const DepthImage& measured, const DepthImage& map_cast) {
     if (is_return(c)) differences.push_back(std::abs(c - m));
   }
   if (differences.empty()) return {};
-  const auto middle = differences.begin() + static_cast<std::ptrdiff_t>(differences.size() / 2);
-  std::nth_element(differences.begin(), middle, differences.end());
-  return {*middle, static_cast<double>(differences.size()) / static_cast<double>(valid)};
+  return {upper_median(differences), static_cast<double>(differences.size()) / static_cast<double>(valid)};
 }
 
 ColorImage fusion_picture(const DepthImage& measured, const DepthImage& map_cast, const FusionPictureConfig& config) {

@@ -6,8 +6,8 @@
 #include <array>
 #include <cmath>
 #include <numbers>
-#include <random>
 
+#include "saccade/core/seeded_random.hpp"
 #include "saccade/scene/internal/tabletop.hpp"
 
 namespace saccade {
@@ -16,41 +16,28 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// std::mt19937_64 is the same everywhere; the distributions of the standard library are not.
-class Dice {
- public:
-  explicit Dice(std::uint64_t seed) : engine_{seed} {}
-  double within(double low, double high) {
-    return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1.0p-53);
-  }
-  std::size_t below(std::size_t count) { return static_cast<std::size_t>(engine_() % count); }
-
- private:
-  std::mt19937_64 engine_;
-};
-
 /// A body, and the radius of the circle around its foot.
 struct Body {
   Shape shape;
   double reach_m{0.0};
 };
 
-Body draw_body(Dice& dice, std::size_t kind) {
-  const double r = dice.within(0.03, 0.06);
-  const double h = dice.within(0.06, 0.20);
+Body draw_body(SeededRandom& random, std::size_t kind) {
+  const double r = random.uniform(0.03, 0.06);
+  const double h = random.uniform(0.06, 0.20);
   switch (kind % 7) {
     case 0: {
       const double x = 2.0 * r;
-      const double y = dice.within(0.05, 0.16);
+      const double y = random.uniform(0.05, 0.16);
       return {BoxShape{{x, y, h}}, 0.5 * std::hypot(x, y)};
     }
     case 1: return {CylinderShape{r, h}, r};
     case 2: return {SphereShape{r}, r};
-    case 3: return {ConeShape{r, dice.within(0.0, 0.8) * r, h}, r};
+    case 3: return {ConeShape{r, random.uniform(0.0, 0.8) * r, h}, r};
     case 4: {
-      const double vertical = dice.within(0.3, 1.2);
-      const double horizontal = dice.within(0.3, 1.2);
-      const double y = dice.within(0.03, 0.06);
+      const double vertical = random.uniform(0.3, 1.2);
+      const double horizontal = random.uniform(0.3, 1.2);
+      const double y = random.uniform(0.03, 0.06);
       return {SuperquadricShape{{r, y, 0.5 * h}, vertical, horizontal}, std::hypot(r, y)};
     }
     case 5: return {RevolutionShape{{{0.8 * r, 0.0}, {r, 0.4 * h}, {0.5 * r, 0.8 * h}, {0.5 * r, h}}, 0.004}, r};
@@ -66,7 +53,7 @@ Body draw_body(Dice& dice, std::size_t kind) {
   }
 }
 
-Rgb8 draw_color(Dice& dice) {
+Rgb8 draw_color(SeededRandom& random) {
   constexpr std::array<Rgb8, 8> kPalette{{{198, 60, 52},
                                           {70, 120, 200},
                                           {80, 170, 90},
@@ -75,7 +62,7 @@ Rgb8 draw_color(Dice& dice) {
                                           {60, 170, 170},
                                           {220, 130, 60},
                                           {190, 190, 185}}};
-  return kPalette[dice.below(kPalette.size())];
+  return kPalette[random.below(kPalette.size())];
 }
 
 }  // namespace
@@ -85,16 +72,16 @@ Scene random_clutter(std::uint64_t seed, int objects) {
   const Vector2d kHalfTable_m{0.45, 0.28};  // where bodies stand, away from the edges
   constexpr double kGap_m{0.03};
   constexpr int kTries{200};
-  Dice dice{seed};
+  SeededRandom random{seed};
   Scene scene = empty_tabletop("clutter:" + std::to_string(seed));
   std::vector<std::pair<Vector2d, double>> taken;
-  const std::size_t first_kind = dice.below(7);
+  const std::size_t first_kind = random.below(7);
   for (int i = 0; i < objects; ++i) {
-    const Body body = draw_body(dice, first_kind + static_cast<std::size_t>(i));
+    const Body body = draw_body(random, first_kind + static_cast<std::size_t>(i));
     for (int attempt = 0; attempt < kTries; ++attempt) {
-      const Vector2d foot{dice.within(-kHalfTable_m.x(), kHalfTable_m.x()),
-                          dice.within(-kHalfTable_m.y(), kHalfTable_m.y())};
-      const double turn_rad = dice.within(0.0, 2.0 * std::numbers::pi);
+      const Vector2d foot{random.uniform(-kHalfTable_m.x(), kHalfTable_m.x()),
+                          random.uniform(-kHalfTable_m.y(), kHalfTable_m.y())};
+      const double turn_rad = random.uniform(0.0, 2.0 * std::numbers::pi);
       const bool free = std::all_of(taken.begin(), taken.end(), [&](const auto& other) {
         return (other.first - foot).norm() > other.second + body.reach_m + kGap_m;
       });
@@ -105,7 +92,7 @@ Scene random_clutter(std::uint64_t seed, int objects) {
       object.shape = body.shape;
       object.T_world_object.translation() = Vector3d{foot.x(), foot.y(), 0.0};
       object.T_world_object.linear() = Eigen::AngleAxisd{turn_rad, Vector3d::UnitZ()}.toRotationMatrix();
-      object.color = draw_color(dice);
+      object.color = draw_color(random);
       object.texture = {Texture::Kind::checker, 0.025, 0.6};
       scene.objects.push_back(std::move(object));
       break;

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/scene/rendered_sequence.hpp"
 
+#include "saccade/core/seeded_random.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <numbers>
-#include <random>
 
 namespace saccade {
 namespace {
@@ -16,25 +17,18 @@ constexpr int kRaysAcrossPixel{4};
 constexpr double kLampShare{0.45};  // of the light at the middle of the scene; the rest comes from everywhere
 constexpr double kLampDistance_m{2.5};
 
-/// std::mt19937_64 is the same everywhere; the distributions of the standard library are not.
-class NormalDice {
- public:
-  explicit NormalDice(std::uint64_t seed) : engine_{seed} {}
-  double unit() { return static_cast<double>(engine_() >> 11U) * 0x1.0p-53; }
-  double normal() {
-    double sum = 0.0;
-    for (int i = 0; i < 12; ++i) sum += unit();
-    return sum - 6.0;
-  }
-  Vector3d normals() {
-    const double x = normal();
-    const double y = normal();
-    return {x, y, normal()};
-  }
+/// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers.
+double bounded_normal(SeededRandom& random) {
+  double sum = 0.0;
+  for (int i = 0; i < 12; ++i) sum += random.unit();
+  return sum - 6.0;
+}
 
- private:
-  std::mt19937_64 engine_;
-};
+Vector3d bounded_normals(SeededRandom& random) {
+  const double x = bounded_normal(random);
+  const double y = bounded_normal(random);
+  return {x, y, bounded_normal(random)};
+}
 
 struct Sample {
   Eigen::Vector3f light{Eigen::Vector3f::Zero()};
@@ -104,9 +98,9 @@ bool mixed(const Image<Sample>& centers, int u, int v) {
 
 std::vector<Pose> hand_held_poses(const HandHeldPath& path, std::size_t frames, std::uint64_t seed) {
   SACCADE_EXPECTS(frames >= 1);
-  NormalDice dice{seed};
+  SeededRandom random{seed};
   std::array<double, 12> phases{};
-  for (double& phase : phases) phase = 2.0 * std::numbers::pi * dice.unit();
+  for (double& phase : phases) phase = 2.0 * std::numbers::pi * random.unit();
   const auto between = [](double from, double to, double swing) { return from + 0.5 * (1.0 + swing) * (to - from); };
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < frames; ++i) {
@@ -136,11 +130,11 @@ std::vector<Pose> with_noise(const std::vector<Pose>& T_world_camera, const Pose
     Vector3d m;
     Vector3d rad;
   };
-  NormalDice drift{noise.seed};
-  NormalDice jitter{noise.seed + 0x9E3779B97F4A7C15ULL};
+  SeededRandom drift{noise.seed};
+  SeededRandom jitter{noise.seed + 0x9E3779B97F4A7C15ULL};
   const auto draw = [&] {
-    const Vector3d m = noise.drift_m * drift.normals();
-    return Knot{m, noise.drift_rad * drift.normals()};
+    const Vector3d m = noise.drift_m * bounded_normals(drift);
+    return Knot{m, noise.drift_rad * bounded_normals(drift)};
   };
   std::vector<Knot> knots;
   std::vector<Pose> poses;
@@ -151,8 +145,9 @@ std::vector<Pose> with_noise(const std::vector<Pose>& T_world_camera, const Pose
     const double s = place - static_cast<double>(k);
     const double w = s * s * (3.0 - 2.0 * s);
     const double norm = std::hypot(1.0 - w, w);  // so that the variance is the same between the knots
-    const Vector3d m = ((1.0 - w) * knots[k].m + w * knots[k + 1].m) / norm + noise.jitter_m * jitter.normals();
-    const Vector3d rad = ((1.0 - w) * knots[k].rad + w * knots[k + 1].rad) / norm + noise.jitter_rad * jitter.normals();
+    const Vector3d m = ((1.0 - w) * knots[k].m + w * knots[k + 1].m) / norm + noise.jitter_m * bounded_normals(jitter);
+    const Vector3d rad =
+        ((1.0 - w) * knots[k].rad + w * knots[k + 1].rad) / norm + noise.jitter_rad * bounded_normals(jitter);
     poses.push_back(moved(T_world_camera[i], m, rad));
   }
   return poses;
@@ -239,10 +234,10 @@ DepthImage RenderedSequence::measured(const Pose& T_world_camera) const {
     const std::uint64_t frame_key = config_.depth_noise->seed * 0xD1B54A32D192ED03ULL + next_ * 0x9E3779B97F4A7C15ULL;
     executor_.parallel_for(static_cast<std::size_t>(height), kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
       for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
-        NormalDice dice{frame_key ^ static_cast<std::uint64_t>(v)};
+        SeededRandom random{frame_key ^ static_cast<std::uint64_t>(v)};
         for (int u = 0; u < width; ++u) {
-          const auto du = static_cast<int>(std::lround(config_.lateral_noise_px * dice.normal()));
-          const auto dv = static_cast<int>(std::lround(config_.lateral_noise_px * dice.normal()));
+          const auto du = static_cast<int>(std::lround(config_.lateral_noise_px * bounded_normal(random)));
+          const auto dv = static_cast<int>(std::lround(config_.lateral_noise_px * bounded_normal(random)));
           shifted(u, v) = truth_.depth(std::clamp(u + du, 0, width - 1), std::clamp(v + dv, 0, height - 1));
         }
       }

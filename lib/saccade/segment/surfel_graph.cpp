@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/segment/surfel_graph.hpp"
 
+#include "saccade/core/statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -27,9 +29,7 @@ int least_exponent(std::span<const float> radii_m, std::span<const std::uint32_t
     if (radii_m[surfel] > 0.0F) radii.push_back(radii_m[surfel]);
   }
   if (radii.empty()) return 0;
-  const auto middle = radii.begin() + static_cast<std::ptrdiff_t>(radii.size() / 2);
-  std::nth_element(radii.begin(), middle, radii.end());
-  return size_exponent(*middle) - kBelowMedian;
+  return size_exponent(upper_median(radii)) - kBelowMedian;
 }
 
 }  // namespace

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/sensor/trajectory_check.hpp"
 
+#include "saccade/core/statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <sstream>
@@ -39,9 +41,7 @@ SampleReport check_samples(std::span<const HandSample> samples) {
     }
   }
   if (intervals.empty()) return report;
-  const auto middle = intervals.begin() + static_cast<std::ptrdiff_t>(intervals.size() / 2);
-  std::nth_element(intervals.begin(), middle, intervals.end());
-  report.interval_s = *middle;
+  report.interval_s = upper_median(intervals);
   report.longest_interval_s = *std::max_element(intervals.begin(), intervals.end());
   const double gap_s = SampleReport::kGapIntervals * report.interval_s;
   report.gaps = static_cast<std::size_t>(

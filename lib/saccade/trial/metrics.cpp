@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/trial/metrics.hpp"
 
+#include "saccade/core/statistics.hpp"
+
 #include <algorithm>
 #include <cmath>
 #include <limits>
@@ -177,9 +179,6 @@ Metrics measure(const Truth& truth, const TsdfSnapshot& map, const TriangleMesh&
       wrong_m[i] = truth.to_supports_m(p, truth.to_objects_m(p, farthest_m));
     }
   });
-  const auto mean = [](const std::vector<double>& values) {
-    return std::accumulate(values.begin(), values.end(), 0.0) / static_cast<double>(values.size());
-  };
   metrics.accuracy_m = mean(wrong_m);
   metrics.chamfer_m = 0.5 * (mean(wrong_m) + mean(missing_m));
   const double precision = share(within(wrong_m, kFScoreDistance_m), wrong_m.size());

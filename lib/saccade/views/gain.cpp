@@ -3,8 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <random>
 
+#include "saccade/core/seeded_random.hpp"
 #include "saccade/views/internal/best_views.hpp"
 
 namespace saccade {
@@ -26,11 +26,6 @@ Status tell_gains(Gain& gain, const PlanningContext& context, const Region& regi
   }
   for (std::size_t i = 0; i < views.size(); ++i) views[i].gain = gains[i];
   return {};
-}
-
-void shuffle(std::span<RankedView> views, std::uint64_t seed) {
-  std::mt19937_64 random{seed};
-  for (std::size_t i = views.size(); i > 1; --i) std::swap(views[i - 1], views[random() % i]);
 }
 
 }  // namespace
@@ -105,7 +100,8 @@ Result<RankedViews> RandomOrder::best(const PlanningContext& context, const Regi
   RankedViews ranked;
   ranked.by_gain = false;
   for (const Pose& pose : T_world_camera) ranked.views.push_back({pose});
-  shuffle(ranked.views, config_.seed + context.region + (config_.anew ? kViewStride * context.views_taken : 0));
+  SeededRandom{config_.seed + context.region + (config_.anew ? kViewStride * context.views_taken : 0)}.shuffle(
+      ranked.views);
   std::size_t next = std::min(ranked.views.size(), context.views_taken + count);
   if (config_.anew) {
     std::erase_if(ranked.views, [&](const RankedView& view) { return context.was_attempted(view.T_world_camera); });

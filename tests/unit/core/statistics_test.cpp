@@ -13,6 +13,18 @@
 namespace saccade {
 namespace {
 
+TEST(Statistics, MediansAndMeans) {
+  EXPECT_EQ(median({}), 0.0);
+  EXPECT_EQ(median({7.0}), 7.0);
+  EXPECT_EQ(median({9.0, 1.0, 4.0}), 4.0);
+  EXPECT_EQ(median({9.0, 1.0, 4.0, 2.0}), 3.0);
+  EXPECT_EQ(upper_median(std::vector<int>{9, 1, 4, 2}), 4);
+  EXPECT_EQ(upper_median(std::vector<int>{3}), 3);
+  EXPECT_EQ(nth_smallest(std::vector<float>{9.0F, 1.0F, 4.0F, 2.0F}, 1), 2.0F);
+  EXPECT_EQ(mean(std::vector<double>{}), 0.0);
+  EXPECT_EQ(mean(std::vector<double>{1.0, 2.0, 6.0}), 3.0);
+}
+
 TEST(Statistics, TheQuantilesAreThoseOfThePrintedTables) {
   struct Row {
     std::size_t degrees;

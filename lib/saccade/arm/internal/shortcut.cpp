@@ -1,8 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/arm/internal/shortcut.hpp"
 
+#include "saccade/core/seeded_random.hpp"
+
 #include <algorithm>
-#include <random>
 
 namespace saccade {
 namespace {
@@ -76,11 +77,10 @@ JointPath shortcut(const ArmModel& arm, JointPath path, const MotionIsFree& moti
                    std::uint64_t seed) {
   if (path.size() < 3) return path;
   TimedPath best{arm, skip_corners(path, motion_is_free)};
-  std::mt19937_64 random{seed};
-  const auto share = [&random] { return static_cast<double>(random() >> 11U) * 0x1p-53; };
+  SeededRandom random{seed};
   for (int idle = 0; idle < tries && best.path().size() > 2; ++idle) {
-    const double u = share();
-    const double v = share();
+    const double u = random.unit();
+    const double v = random.unit();
     const TimedPath::Point a = best.at(std::min(u, v));
     const TimedPath::Point b = best.at(std::max(u, v));
     if (a.line == b.line) continue;

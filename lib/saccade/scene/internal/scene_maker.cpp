@@ -10,10 +10,6 @@ namespace saccade {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-double SceneMaker::within(double low, double high) {
-  return low + (high - low) * (static_cast<double>(engine_() >> 11U) * 0x1.0p-53);
-}
-
 Rgb8 SceneMaker::one_of(std::span<const Rgb8> colors) {
   SACCADE_EXPECTS(colors.size() > 1);
   Rgb8 color = colors[below(colors.size())];

@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SceneMaker: bodies with painted parts, put together by dice that fall the same way everywhere; the scenes for
-// surfels.
+// SceneMaker: bodies with painted parts, drawn at random; the scenes for surfels.
 
-#include <random>
 #include <span>
 #include <string>
 #include <string_view>
 
+#include "saccade/core/seeded_random.hpp"
 #include "saccade/scene/surfel_scenes.hpp"
 
 namespace saccade {
@@ -16,10 +15,10 @@ namespace saccade {
 /// compiler's.
 class SceneMaker {
  public:
-  SceneMaker(std::string_view name, std::uint64_t seed) : engine_{seed} { scene_.name = name; }
+  SceneMaker(std::string_view name, std::uint64_t seed) : random_{seed} { scene_.name = name; }
 
-  [[nodiscard]] double within(double low, double high);
-  [[nodiscard]] std::size_t below(std::size_t end) { return engine_() % end; }
+  [[nodiscard]] double within(double low, double high) { return random_.uniform(low, high); }
+  [[nodiscard]] std::size_t below(std::size_t end) { return random_.below(end); }
   /// One of them, never the one of the last call.
   [[nodiscard]] Rgb8 one_of(std::span<const Rgb8> colors);
   /// A little lighter or darker, as no two things of one make are.
@@ -39,7 +38,7 @@ class SceneMaker {
   [[nodiscard]] Scene& scene() { return scene_; }
 
  private:
-  std::mt19937_64 engine_;
+  SeededRandom random_;
   Rgb8 last_{};
   Scene scene_;
 };
