@@ -14,16 +14,22 @@
 #include <vector>
 
 #include "saccade/io/frames/rgbd_folder.hpp"
-#include "saccade/surfel/internal/color_edges.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/surfel/surfel_points.hpp"
 #include "saccade/surfel/surfel_view.hpp"
+#include "support/color_edges.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"
 
 namespace saccade {
 namespace {
+
+using test::ColorEdge;
+using test::edge_sharpness;
+using test::EdgeSharpness;
+using test::find_color_edges;
+using test::luminance;
 
 constexpr std::size_t kLookedAt{10};  ///< frames that edges are looked for in
 

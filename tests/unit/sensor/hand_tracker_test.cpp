@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/sensor/internal/hand_tracker.hpp"
+#include "saccade/sensor/hand_tracker.hpp"
 
 #include <gtest/gtest.h>
 

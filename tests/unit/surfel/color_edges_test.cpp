@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Edges in images and how steep renderings are there: of known ramps, and of a checked plane seen with wrong poses,
 // fused with and without the mode filter.
-#include "saccade/surfel/internal/color_edges.hpp"
 
 #include <gtest/gtest.h>
 
@@ -14,9 +13,17 @@
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/surfel/surfel_points.hpp"
 #include "saccade/surfel/surfel_view.hpp"
+#include "support/color_edges.hpp"
 
 namespace saccade {
 namespace {
+
+using test::ColorEdge;
+using test::ColorEdgesConfig;
+using test::edge_sharpness;
+using test::EdgeSharpness;
+using test::find_color_edges;
+using test::luminance;
 
 constexpr int kEdgeWidth{120};
 constexpr int kEdgeHeight{80};

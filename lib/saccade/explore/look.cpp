@@ -1,25 +1,33 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the explorer does at a view and on its way there: it moves, tilts the camera, takes frames and fuses them.
-#include "saccade/explore/internal/look.hpp"
-
 #include <cmath>
+#include <vector>
+
+#include "saccade/explore/explorer.hpp"
 
 namespace saccade {
+namespace {
 
+/// Returns the view tilted about the camera's x axis.
 Pose tilted(const Pose& T_world_view, double tilt_rad) {
   return T_world_view * Eigen::AngleAxisd{tilt_rad, Eigen::Vector3d::UnitX()};
 }
 
+/// Returns the tilt at the ends of an oscillation; 0 where a view has but one frame, which is taken from the view
+/// itself.
 double oscillation_rad(const ExplorerConfig& config) {
   return config.oscillation_frames > 1 ? config.oscillation_rad : 0.0;
 }
 
+/// Returns the tilts that are tried for one end of an oscillation, the farthest first: halves of halves.
 std::vector<double> tilts_towards(double farthest_rad) {
   constexpr int kHalvings{3};
   std::vector<double> tilts_rad;
   for (int i = 0; farthest_rad != 0.0 && i <= kHalvings; ++i) tilts_rad.push_back(std::ldexp(farthest_rad, -i));
   return tilts_rad;
 }
+
+}  // namespace
 
 Result<double> Explorer::farthest_tilt_rad(const Pose& T_world_view, double wanted_rad) {
   for (const double tilt_rad : tilts_towards(wanted_rad)) {

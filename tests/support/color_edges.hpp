@@ -1,19 +1,49 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/surfel/internal/color_edges.hpp"
+#pragma once
+// find_color_edges, edge_sharpness: how steeply renderings of a reconstruction change where a camera's image has edges.
 
 #include <algorithm>
 #include <cmath>
 #include <limits>
 #include <optional>
+#include <span>
+#include <vector>
 
-namespace saccade {
-namespace {
+#include "saccade/sensor/image.hpp"
+
+namespace saccade::test {
+
+/// Parameters of find_color_edges.
+struct ColorEdgesConfig {
+  double quantile{0.95};         ///< of an image's gradients: edges are steeper than so large a share of the pixels
+  int margin_px{5};              ///< around an edge: all is inside the image, has depth, and no step in depth
+  double max_depth_step{0.025};  ///< between neighbours, relative to depth
+};
+
+/// A pixel on an edge.
+struct ColorEdge {
+  int u{0};
+  int v{0};
+  float du{0.0F};  ///< unit direction across the edge, towards what is brighter
+  float dv{0.0F};
+};
+
+/// Means over edges.
+struct EdgeSharpness {
+  std::size_t edges{0};
+  /// The steepest rise across the edge, within kEdgeSearch_px of it, since what is rendered may be displaced; luminance
+  /// per pixel, over two pixels.
+  double across{0.0};
+  /// The same of rises along the edge, where there is none to be found: what noise alone gives.
+  double along{0.0};
+};
+constexpr int kEdgeSearch_px{2};
 
 struct Gradients {
   Image<float> u, v, size;
 };
 
-Gradients sobel(const Image<float>& image) {
+inline Gradients sobel(const Image<float>& image) {
   const int width = image.width();
   const int height = image.height();
   Gradients gradients{Image<float>{width, height}, Image<float>{width, height}, Image<float>{width, height}};
@@ -30,7 +60,7 @@ Gradients sobel(const Image<float>& image) {
   return gradients;
 }
 
-bool is_smooth_around(const DepthImage& depth, int u, int v, const ColorEdgesConfig& config) {
+inline bool is_smooth_around(const DepthImage& depth, int u, int v, const ColorEdgesConfig& config) {
   for (int y = v - config.margin_px; y <= v + config.margin_px; ++y) {
     for (int x = u - config.margin_px; x <= u + config.margin_px; ++x) {
       const float z = depth(x, y);
@@ -44,7 +74,7 @@ bool is_smooth_around(const DepthImage& depth, int u, int v, const ColorEdgesCon
 }
 
 /// NaN outside the image, and next to what is not known.
-float interpolated(const Image<float>& image, float u, float v) {
+inline float interpolated(const Image<float>& image, float u, float v) {
   const int u0 = static_cast<int>(std::floor(u));
   const int v0 = static_cast<int>(std::floor(v));
   if (u0 < 0 || v0 < 0 || u0 + 1 >= image.width() || v0 + 1 >= image.height()) {
@@ -61,7 +91,7 @@ struct Rises {
 };
 
 /// None where something around is not known.
-std::optional<Rises> steepest(const Image<float>& image, const ColorEdge& edge) {
+inline std::optional<Rises> steepest(const Image<float>& image, const ColorEdge& edge) {
   Rises most{std::numeric_limits<float>::lowest(), std::numeric_limits<float>::lowest()};
   const auto rise = [&](float u, float v, float du, float dv) {
     return 0.5F * (interpolated(image, u + du, v + dv) - interpolated(image, u - du, v - dv));
@@ -78,9 +108,8 @@ std::optional<Rises> steepest(const Image<float>& image, const ColorEdge& edge) 
   return most;
 }
 
-}  // namespace
-
-Image<float> luminance(const ColorImage& image) {
+/// Rec. 709 weights on the values as they are stored, in [0, 1].
+[[nodiscard]] inline Image<float> luminance(const ColorImage& image) {
   Image<float> result{image.width(), image.height()};
   for (std::size_t i = 0; i < image.size(); ++i) {
     const Rgb8& color = image.pixels()[i];
@@ -91,8 +120,10 @@ Image<float> luminance(const ColorImage& image) {
   return result;
 }
 
-std::vector<ColorEdge> find_color_edges(const ColorImage& image, const DepthImage& depth,
-                                        const ColorEdgesConfig& config) {
+/// Maxima of the gradient of luminance (Sobel), across the edge, in row-major order.
+/// @param depth  of the same size; 0 or NaN: no return.
+[[nodiscard]] inline std::vector<ColorEdge> find_color_edges(const ColorImage& image, const DepthImage& depth,
+                                                             const ColorEdgesConfig& config) {
   SACCADE_EXPECTS(image.width() == depth.width() && image.height() == depth.height());
   SACCADE_EXPECTS(config.margin_px >= 1 && config.quantile >= 0.0 && config.quantile < 1.0);
   const Gradients gradients = sobel(luminance(image));
@@ -119,7 +150,10 @@ std::vector<ColorEdge> find_color_edges(const ColorImage& image, const DepthImag
   return edges;
 }
 
-std::vector<EdgeSharpness> edge_sharpness(std::span<const ColorEdge> edges, std::span<const Image<float>> renderings) {
+/// One result per rendering, of the same edges: those around which all renderings are known.
+/// @param renderings  luminance; NaN where nothing is rendered. Expects images of the size in which edges were found.
+[[nodiscard]] inline std::vector<EdgeSharpness> edge_sharpness(std::span<const ColorEdge> edges,
+                                                               std::span<const Image<float>> renderings) {
   std::vector<EdgeSharpness> results(renderings.size());
   std::vector<Rises> rises(renderings.size());
   for (const ColorEdge& edge : edges) {
@@ -144,4 +178,4 @@ std::vector<EdgeSharpness> edge_sharpness(std::span<const ColorEdge> edges, std:
   return results;
 }
 
-}  // namespace saccade
+}  // namespace saccade::test
