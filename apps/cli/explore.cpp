@@ -76,7 +76,7 @@ std::string refused_in(const std::vector<ViewRecord>& views) {
     candidates += view.candidates;
     refused.add(view.refused);
   }
-  const std::string text = refused_text(refused);
+  const std::string text = in_words(refused);
   return text.empty() ? "" : text + " of " + std::to_string(candidates) + " candidates";
 }
 
@@ -122,7 +122,7 @@ void print_summary(const ExploreOptions& options, const ExploreRun& explored, co
   const RunRecord& run = explored.record();
   std::cout << std::fixed << std::setprecision(1);
   if (run.scan.refused.total() > 0) {
-    std::cout << "scan      " << run.scan.views << " taken, passed over: " << refused_text(run.scan.refused) << '\n';
+    std::cout << "scan      " << run.scan.views << " taken, passed over: " << in_words(run.scan.refused) << '\n';
   }
   print_views(run.views);
   print_measures(run, explored.scanned(), final);
@@ -130,7 +130,7 @@ void print_summary(const ExploreOptions& options, const ExploreRun& explored, co
   if (!refused.empty()) std::cout << "refused   " << refused << '\n';
   const std::string tilts = tilts_text(run.views, options.run.exploration);
   if (!tilts.empty()) std::cout << "tilts     " << tilts << '\n';
-  const std::string at_end = refused_text(run.refused_at_end);
+  const std::string at_end = in_words(run.refused_at_end);
   std::cout << "time      " << phases_text(phases_to_json(run.views)) << '\n'
             << "stopped   " << to_string(run.stopped_because) << (at_end.empty() ? "" : ": " + at_end) << '\n'
             << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
@@ -216,7 +216,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
     SACCADE_CHECK(remove_journal(out.path()));
     if (show) show->finish();
     if (!run->record().views.empty() || reason != StopReason::no_candidate) return static_cast<int>(ExitStatus::done);
-    print_error("explore", "not one view could be taken (" + refused_text(run->record().refused_at_end) +
+    print_error("explore", "not one view could be taken (" + in_words(run->record().refused_at_end) +
                                "); does the robot stand where it should?");
     return static_cast<int>(ExitStatus::no_result);
   }

@@ -12,7 +12,6 @@
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/io/runs/refusals_json.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/run_report.hpp"
 #include "saccade/report/saliency_picture.hpp"
@@ -95,7 +94,7 @@ ShownView shown_view(const RunFolder& out, const ViewRecord& view, std::size_t n
     shown.facts.emplace_back("robot", fixed(view.motion_s, 1) + " s, camera's way " + fixed(view.path_m, 2) + " m");
   }
   if (view.retreat_s > 0.0) shown.facts.emplace_back("backed out of a contact for", fixed(view.retreat_s, 1) + " s");
-  if (const std::string refused = refused_text(view.refused); !refused.empty()) {
+  if (const std::string refused = in_words(view.refused); !refused.empty()) {
     shown.facts.emplace_back("refused", refused);
   }
   shown.pictures = pictures_of(
@@ -145,30 +144,6 @@ Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& works
   return write_png(out / picture_name(0, "map"), map_picture(map, workspace, executor, config));
 }
 
-std::string refused_text(const RefusalCounts& refused) {
-  const auto says = [](Refusal reason) {
-    switch (reason) {
-      case Refusal::no_ik: return "out of reach";
-      case Refusal::outside_limits: return "beyond a joint's limits";
-      case Refusal::goal_in_collision: return "in collision there";
-      case Refusal::start_in_collision: return "in collision at the start";
-      case Refusal::no_path: return "without a path";
-      default: return "declined by the robot";
-    }
-  };
-  std::string text;
-  for (const Refusal reason : kRefusals) {
-    if (refused.of(reason) == 0) continue;
-    text += (text.empty() ? "" : ", ") + std::to_string(refused.of(reason)) + " " + says(reason);
-  }
-  return text;
-}
-
-std::string refused_text(const json& refused) {
-  const Result<RefusalCounts> counts = refusals_from_json(refused);
-  return counts ? refused_text(*counts) : "";
-}
-
 bool is_view_file(const std::string& file_name) {
   return file_name.starts_with("view-") &&
          (file_name.ends_with(".png") || file_name.ends_with(".json") || file_name.ends_with(".sacmap"));
@@ -196,7 +171,7 @@ Status write_report(const RunFolder& out, const RunRecord& run, const Measures& 
   report.min_gain = options.run.planner.min_gain;
   report.stop_reason = to_string(run.stopped_because);
   report.initial.measures = run.scan.measures;
-  if (const std::string refused = refused_text(run.scan.refused); !refused.empty()) {
+  if (const std::string refused = in_words(run.scan.refused); !refused.empty()) {
     report.initial.facts.emplace_back("poses passed over", refused);
   }
   report.initial.pictures =

@@ -39,11 +39,6 @@ struct ViewScenes {
 /// "640 × 480, f = 525 px, 0.5–2 m", from the document.
 [[nodiscard]] std::string camera_text(const nlohmann::json& camera);
 
-/// "2 out of reach, 1 without a path"; empty: none.
-[[nodiscard]] std::string refused_text(const RefusalCounts& refused);
-/// As refused_text(counts), for `refused` of the document.
-[[nodiscard]] std::string refused_text(const nlohmann::json& refused);
-
 /// Writes report.html from the record, the document that goes to run.json and the pictures in the folder; pictures that
 /// are not there are left out. io_failure.
 [[nodiscard]] Status write_report(const RunFolder& out, const RunRecord& run, const Measures& final,

@@ -42,7 +42,7 @@ std::optional<std::string> without_result(const WatchedTask& task, const UpdateF
   if (std::all_of(unknown.begin(), unknown.end(), [](std::size_t count) { return count == 0; })) {
     return "the hand acted outside the workspace; nothing was updated";
   }
-  return "not one view of a region could be taken (" + refused_text(explored.refused_at_end) +
+  return "not one view of a region could be taken (" + in_words(explored.refused_at_end) +
          "); does the hand's trajectory lie in the scene's frame, within the robot's reach?";
 }
 

@@ -127,7 +127,7 @@ std::string region_text(const json& region) {
   if (const json& share = region["coverage"]["surfaces"]; !share.is_null()) {
     text += ", " + percent(share.get<double>()) + " of the surface";
   }
-  const std::string refused = refused_text(region["refused"]);
+  const std::string refused = in_words(refusals_from_json(region["refused"]).value());
   return text + (refused.empty() ? "" : "; refused " + refused);
 }
 
@@ -195,7 +195,7 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
 void print_update(const UpdateOptions& options, const WatchedTask& task, const json& result) {
   const Summary summary{std::cout};
   const json& scan = result["scan"];
-  const std::string refused = refused_text(scan["refused"]);
+  const std::string refused = in_words(refusals_from_json(scan["refused"]).value());
   summary.line("scan",
                std::to_string(scan["views"].get<std::size_t>()) + " views" +
                    (refused.empty() ? "" : ", passed over: " + refused) +

@@ -138,7 +138,7 @@ Status write_update_report(const UpdateOptions& options, const WatchedTask& task
   const json& scan = result.at("scan");
   report.before.measures.unknown_left = scan.at("unknown_left").get<std::size_t>();
   report.before.facts.emplace_back("views", std::to_string(figures.scan.views));
-  if (const std::string refused = refused_text(figures.scan.refused); !refused.empty()) {
+  if (const std::string refused = in_words(figures.scan.refused); !refused.empty()) {
     report.before.facts.emplace_back("poses passed over", refused);
   }
   report.before.pictures =

@@ -2,9 +2,7 @@
 #include "server/show/run_facts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
-#include <string_view>
 
 #include "saccade/io/runs/view_choice.hpp"
 #include "server/show/figures.hpp"
@@ -29,74 +27,17 @@ std::optional<std::string> text(const json& object, const char* key) {
   return found != object.end() && found->is_string() ? std::optional{found->get<std::string>()} : std::nullopt;
 }
 
-json part(const json& object, const char* key) {
-  if (!object.is_object()) return nullptr;
-  const auto found = object.find(key);
-  return found == object.end() ? json(nullptr) : *found;
+std::string voxels(std::size_t count) { return grouped(count) + " voxels"; }
+std::string gain_words(double gain) {
+  return gain >= 0.0 && gain == std::floor(gain) ? grouped(static_cast<std::size_t>(gain)) : decimals(gain, 2);
 }
 
-/// Adds facts of numbers and texts where there are any.
-class FactList {
- public:
-  explicit FactList(const json& from) : from_{from} {}
-  void text_of(const char* key, const char* name) {
-    if (const auto value = text(from_, key)) facts_.emplace_back(name, *value);
-  }
-  template <class Words>
-  void number_of(const char* key, const char* name, const Words& words) {
-    number_in(from_, key, name, words);
-  }
-  template <class Words>
-  void number_in(const json& part, const char* key, const char* name, const Words& words) {
-    if (const auto value = number(part, key)) facts_.emplace_back(name, words(*value));
-  }
-  void add(const char* name, std::string words) { facts_.emplace_back(name, std::move(words)); }
-  [[nodiscard]] Facts take() { return std::move(facts_); }
-
- private:
-  const json& from_;
-  Facts facts_;
-};
-
-std::string whole(double count) {
-  constexpr double kMost{1e15};
-  return grouped(static_cast<std::size_t>(std::clamp(count, 0.0, kMost)));
+void add_refused(Facts& facts, const char* name, const RefusalCounts& refused) {
+  if (refused.total() > 0) facts.emplace_back(name, in_words(refused));
 }
-std::string voxels(double count) { return whole(count) + " voxels"; }
-std::string gain_words(double gain) { return gain == std::floor(gain) ? whole(gain) : decimals(gain, 2); }
-
-std::string why_refused(const std::string& reason) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 6> kWords{
-      {{"no_ik", "out of reach"},
-       {"outside_limits", "beyond a joint's limits"},
-       {"goal_in_collision", "in collision there"},
-       {"start_in_collision", "in collision at the start"},
-       {"no_path", "without a path"},
-       {"declined", "declined by the robot"}}};
-  for (const auto& [name, words] : kWords) {
-    if (name == reason) return words;
-  }
-  return reason;
-}
-
-std::string refused_words(const json& refused) {
-  std::string words;
-  if (!refused.is_object()) return words;
-  for (const auto& [reason, count] : refused.items()) {
-    if (!count.is_number()) continue;
-    words += (words.empty() ? "" : ", ") + whole(count.get<double>()) + " " + why_refused(reason);
-  }
-  return words;
-}
-
-/// Sum of the phases that the program itself spent.
-std::optional<double> thinking_ms(const json& view) {
-  const json ms = part(view, "ms");
-  if (!ms.is_object()) return std::nullopt;
-  double sum{0.0};
-  for (const auto& [phase, spent] : ms.items())
-    sum += spent.is_number() && phase != "motion" ? spent.get<double>() : 0.0;
-  return sum;
+void add_map(Facts& facts, const Measures& measures) {
+  if (measures.coverage) facts.emplace_back("coverage", percent(*measures.coverage));
+  facts.emplace_back("unknown left", voxels(measures.unknown_left));
 }
 
 void add_if_there(std::vector<StepPicture>& pictures, const fs::path& folder, const std::string& name,
@@ -108,59 +49,63 @@ void add_if_there(std::vector<StepPicture>& pictures, const fs::path& folder, co
 }  // namespace
 
 Facts facts_of_run(const json& result) {
-  FactList facts{result};
-  facts.text_of("scene", "scene");
-  facts.text_of("strategy", "strategy");
-  facts.text_of("robot", "robot");
-  if (const json views = part(result, "views"); views.is_array()) facts.add("views", std::to_string(views.size()));
-  const json final = part(result, "final");
-  const auto before = number(part(result, "initial"), "coverage");
+  Facts facts;
+  const auto add_text = [&](const char* key) {
+    if (const auto value = text(result, key)) facts.emplace_back(key, *value);
+  };
+  const auto add_number = [&](const json& object, const char* key, const char* name, const auto& words) {
+    if (const auto value = number(object, key)) facts.emplace_back(name, words(*value));
+  };
+  const auto whole = [](double count) { return grouped(static_cast<std::size_t>(std::clamp(count, 0.0, 1e15))); };
+  const auto whole_voxels = [&](double count) { return whole(count) + " voxels"; };
+  for (const char* key : {"scene", "strategy", "robot"}) add_text(key);
+  const json initial = result.value("initial", json());
+  const json final = result.value("final", json());
+  if (const json views = result.value("views", json()); views.is_array()) {
+    facts.emplace_back("views", std::to_string(views.size()));
+  }
+  const auto before = number(initial, "coverage");
   const auto after = number(final, "coverage");
-  if (after) facts.add("coverage", (before ? percent(*before) + " → " : "") + percent(*after));
-  facts.number_in(final, "unknown_left", "unknown left", voxels);
-  facts.number_in(final, "accuracy_m", "accuracy", millimetres);
-  facts.number_in(final, "chamfer_m", "Chamfer distance", millimetres);
-  facts.number_in(final, "f_score", "F-score at 5 mm", [](double score) { return decimals(score, 3); });
-  facts.number_of("voxel_size_m", "voxel size", millimetres);
-  facts.number_of("frames", "frames", whole);
-  facts.text_of("tracking", "tracking");
+  if (after) facts.emplace_back("coverage", (before ? percent(*before) + " → " : "") + percent(*after));
+  add_number(final, "unknown_left", "unknown left", whole_voxels);
+  add_number(final, "accuracy_m", "accuracy", millimetres);
+  add_number(final, "chamfer_m", "Chamfer distance", millimetres);
+  add_number(final, "f_score", "F-score at 5 mm", [](double score) { return decimals(score, 3); });
+  add_number(result, "voxel_size_m", "voxel size", millimetres);
+  add_number(result, "frames", "frames", whole);
+  add_text("tracking");
   if (auto why = text(result, "stopped_because")) {
     std::replace(why->begin(), why->end(), '_', ' ');
-    facts.add("stopped", *why);
+    facts.emplace_back("stopped", *why);
   }
-  facts.number_of("unknown_after_task", "unknown after the task", voxels);
-  return facts.take();
+  add_number(result, "unknown_after_task", "unknown after the task", whole_voxels);
+  return facts;
 }
 
-Facts facts_of_scan(const json& initial) {
-  FactList facts{initial};
-  facts.number_of("views", "poses", whole);
-  facts.number_of("coverage", "coverage", percent);
-  facts.number_of("unknown_left", "unknown left", voxels);
-  if (const std::string refused = refused_words(part(initial, "refused")); !refused.empty()) {
-    facts.add("passed over", refused);
-  }
-  return facts.take();
+Facts facts_of_scan(const ScanRecord& scan) {
+  Facts facts{{"poses", std::to_string(scan.views)}};
+  add_map(facts, scan.measures);
+  add_refused(facts, "passed over", scan.refused);
+  return facts;
 }
 
-Facts facts_of_view(const json& view) {
-  FactList facts{view};
-  facts.number_of("gain", "gain", gain_words);
-  facts.number_of("candidates", "candidates", whole);
-  facts.number_of("evaluated", "evaluated", whole);
-  if (const std::string refused = refused_words(part(view, "refused")); !refused.empty()) {
-    facts.add("refused", refused);
+Facts facts_of_view(const ViewRecord& view) {
+  Facts facts;
+  if (std::isfinite(view.gain_predicted)) facts.emplace_back("gain", gain_words(view.gain_predicted));
+  facts.emplace_back("candidates", grouped(view.candidates));
+  facts.emplace_back("evaluated", grouped(view.evaluated));
+  add_refused(facts, "refused", view.refused);
+  add_map(facts, view.measures);
+  if (view.attention) {
+    facts.emplace_back("saliency", decimals(view.attention->saliency, 2));
+    facts.emplace_back("attention", view.attention->why);
   }
-  facts.number_of("coverage", "coverage", percent);
-  facts.number_of("unknown_left", "unknown left", voxels);
-  const json attention = part(view, "attention");
-  facts.number_in(attention, "saliency", "saliency", [](double saliency) { return decimals(saliency, 2); });
-  if (const auto why = text(attention, "why")) facts.add("attention", *why);
-  facts.number_of("frames", "frames", whole);
-  facts.number_of("motion_s", "motion", [](double s) { return decimals(s, 1) + " s"; });
-  facts.number_of("path_m", "camera's way", [](double m) { return decimals(m, 2) + " m"; });
-  if (const auto ms = thinking_ms(view)) facts.add("computing", whole(std::round(*ms)) + " ms");
-  return facts.take();
+  facts.emplace_back("frames", std::to_string(view.frames));
+  facts.emplace_back("motion", decimals(view.motion_s, 1) + " s");
+  facts.emplace_back("camera's way", decimals(view.path_m, 2) + " m");
+  const double computing_ms = view.times.total_ms() - view.times.ms(Phase::motion);
+  facts.emplace_back("computing", grouped(static_cast<std::size_t>(std::llround(computing_ms))) + " ms");
+  return facts;
 }
 
 std::vector<StepPicture> pictures_of_view(const fs::path& folder, std::size_t view) {

@@ -1,19 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Facts of an exploration and its views, from its JSON; the pictures of a view that lie in the folder.
+// Facts of a run from its JSON, and of its scan and views from their records; the pictures of a view that lie in the folder.
 
 #include <filesystem>
 
+#include "saccade/explore/run_record.hpp"
 #include "server/show/scene_document.hpp"
 
 namespace saccade::server {
 
-/// Of what the JSON says; what it lacks, or says in another way than expected, is left out.
-/// @param result  as in run.json.
+/// Returns what the JSON says; what it lacks, or says in another way than expected, is left out.
+/// @param result  as in run.json, of any command.
 [[nodiscard]] Facts facts_of_run(const nlohmann::json& result);
-[[nodiscard]] Facts facts_of_scan(const nlohmann::json& initial);
-/// @param view  an entry of `views`.
-[[nodiscard]] Facts facts_of_view(const nlohmann::json& view);
+[[nodiscard]] Facts facts_of_scan(const ScanRecord& scan);
+[[nodiscard]] Facts facts_of_view(const ViewRecord& view);
 
 /// Those that are there, the camera's first; 0: of the scan.
 [[nodiscard]] std::vector<StepPicture> pictures_of_view(const std::filesystem::path& folder, std::size_t view);

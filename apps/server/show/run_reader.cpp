@@ -6,6 +6,7 @@
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
+#include "saccade/io/runs/run_json.hpp"
 #include "saccade/io/runs/view_choice.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
@@ -124,7 +125,8 @@ Status RunReader::read_steps(const json& result) {
   const std::size_t count = views.is_array() ? views.size() : 0;
   if (has_scan && steps_.empty()) {
     ReadStep scan;
-    scan.step = {"Scan", std::nullopt, fov_in(result), facts_of_scan(result["initial"]), pictures_of_view(folder_, 0)};
+    SACCADE_TRY(const ScanRecord record, scan_from_json(result["initial"]));
+    scan.step = {"Scan", std::nullopt, fov_in(result), facts_of_scan(record), pictures_of_view(folder_, 0)};
     SACCADE_CHECK(add_map(0, scan));
     steps_.push_back(std::move(scan));
   }
@@ -141,12 +143,12 @@ Status RunReader::read_steps(const json& result) {
 
 Status RunReader::read_step(const json& result, const json& view, std::size_t number) {
   ReadStep read;
-  SACCADE_TRY(const Pose T_world_camera, pose_from_json(view.at("T_world_camera")));
-  read.step = {"View " + std::to_string(number), T_world_camera, fov_in(result), facts_of_view(view),
+  SACCADE_TRY(const ViewRecord record, view_from_json(view));
+  read.step = {"View " + std::to_string(number), record.T_world_camera, fov_in(result), facts_of_view(record),
                pictures_of_view(folder_, number)};
   SACCADE_CHECK(add_choice(result, number, read));
   SACCADE_CHECK(add_map(number, read));
-  add_arm(result, view, read);
+  add_arm(text_in(result, "robot"), record.q, read);
   steps_.push_back(std::move(read));
   return {};
 }
@@ -194,24 +196,20 @@ Status RunReader::add_map(std::size_t number, ReadStep& out) {
   return {};
 }
 
-void RunReader::add_arm(const json& result, const json& view, ReadStep& out) {
-  const json q = entry_in(view, "q");
-  const std::string name = text_in(result, "robot");
-  if (!q.is_array() || name.empty()) return;
+void RunReader::add_arm(const std::string& name, const std::optional<Configuration>& q, ReadStep& out) {
+  if (!q || name.empty()) return;
   if (name != arm_name_) {
     auto read = find_robot(name);
     why_no_arm_ = read ? "" : "not shown: " + read.error().to_string();
     arm_ = read ? std::optional{std::move(read->arm)} : std::nullopt;
     arm_name_ = name;
   }
-  const auto values = q.get<std::vector<double>>();
   if (!arm_) return;
-  if (values.size() != arm_->joints().size()) {
+  if (q->size() != arm_->dof()) {
     why_no_arm_ = "not shown: " + name + " has other joints than the arm of the run";
     return;
   }
-  const Configuration posture = Eigen::Map<const Eigen::VectorXd>{values.data(), std::ssize(values)};
-  if (posture.allFinite()) out.layers.push_back(arm_layer(*arm_, posture, steps_.size()));
+  if (q->allFinite()) out.layers.push_back(arm_layer(*arm_, *q, steps_.size()));
 }
 
 /// Where steps have no maps, what the run came to.

@@ -8,6 +8,7 @@
 #include <numeric>
 #include <optional>
 #include <span>
+#include <string>
 #include <string_view>
 
 namespace saccade {
@@ -56,5 +57,8 @@ class RefusalCounts {
  private:
   std::array<std::size_t, kRefusals.size()> counts_{};
 };
+
+/// Returns "2 out of reach, 1 without a path", in the order of the enumeration; empty where nothing was refused.
+[[nodiscard]] std::string in_words(const RefusalCounts& refused);
 
 }  // namespace saccade
