@@ -52,8 +52,8 @@ ALLOWED = {room: closure(room) for room in TABLE}
 # What an embedder of the loop builds: these rooms need nothing but the libraries below.
 CORE_ROOMS = {"core", "sensor", "cloud", "map", "tracking", "surfel", "segment", "attention", "views", "robot", "explore",
               "annotate"}
-CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "nanoflann.hpp", "zstd.h", "malloc.h"}  # first part of the path in <…>
-CORE_PACKAGES = {"Eigen3", "TBB", "HWY", "hwy", "nanoflann", "zstd"}
+CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "zstd.h", "malloc.h"}  # first part of the path in <…>
+CORE_PACKAGES = {"Eigen3", "TBB", "HWY", "hwy", "zstd"}
 
 MAX_LINES = 400
 SOURCES = {".hpp", ".cpp", ".cu", ".cuh"}
