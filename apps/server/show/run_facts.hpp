@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Facts of a run from its JSON, and of its scan and views from their records; the pictures of a view that lie in the folder.
+// Facts of a run from its JSON, and of its scan and views from their records; the pictures of a view that lie in the
+// folder.
 
 #include <filesystem>
 

@@ -7,7 +7,6 @@
 #include <cmath>
 #include <cstdio>
 #include <limits>
-#include <numeric>
 #include <optional>
 
 namespace saccade {
@@ -205,26 +204,6 @@ SaliencyHeuristic weighted_blend(std::vector<BlendPart> parts) {
     }
     return blended;
   };
-}
-
-Result<std::vector<RegionOfInterest>> salient_regions(const MeasuredSegments& segments,
-                                                      std::span<const Saliency> saliencies, double margin_m) {
-  if (saliencies.size() != segments.measures.size()) {
-    return Error{Errc::size_mismatch, "as many saliencies as segments are needed", "regions"};
-  }
-  if (!is_positive(margin_m)) return Error{Errc::invalid_argument, "the margin must be positive", "regions"};
-  std::vector<std::size_t> order(saliencies.size());
-  std::iota(order.begin(), order.end(), std::size_t{0});
-  std::erase_if(order, [&](std::size_t s) { return segments.measures[s].points == 0; });
-  std::stable_sort(order.begin(), order.end(),
-                   [&](std::size_t a, std::size_t b) { return saliencies[a].value > saliencies[b].value; });
-  std::vector<RegionOfInterest> regions;
-  for (const std::size_t s : order) {
-    const Eigen::Vector3d margin = Eigen::Vector3d::Constant(margin_m);
-    const Box around{segments.measures[s].lowest_m - margin, segments.measures[s].highest_m + margin};
-    regions.push_back({around, saliencies[s].value, AttentionOrigin::segment, saliencies[s].why});
-  }
-  return regions;
 }
 
 }  // namespace saccade

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SaliencyHeuristic and those that there are; salient_regions: segments as regions of interest, the most salient first.
+// SaliencyHeuristic: how much each segment draws attention, and the heuristics that Saccade has.
 
 #include <Eigen/Core>
 #include <functional>
@@ -75,13 +75,5 @@ struct BlendPart {
 };
 /// The mean of heuristics by their weights. Expects at least one, and weights that are finite and positive.
 [[nodiscard]] SaliencyHeuristic weighted_blend(std::vector<BlendPart> parts);
-
-/// A box around each segment that has points, larger by the margin on all sides, the most salient segment first (thesis
-/// Alg. 4 line 6), equal ones in their order.
-/// @param saliencies  one per segment.
-/// @return size_mismatch for unlike numbers; invalid_argument for a margin that is not finite and positive.
-[[nodiscard]] Result<std::vector<RegionOfInterest>> salient_regions(const MeasuredSegments& segments,
-                                                                    std::span<const Saliency> saliencies,
-                                                                    double margin_m = 0.02);
 
 }  // namespace saccade

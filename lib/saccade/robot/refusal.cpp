@@ -4,12 +4,9 @@
 namespace saccade {
 
 std::string in_words(const RefusalCounts& refused) {
-  constexpr std::array<const char*, kRefusals.size()> kWords{"out of reach",
-                                                             "beyond a joint's limits",
-                                                             "in collision there",
-                                                             "in collision at the start",
-                                                             "without a path",
-                                                             "declined by the robot"};
+  constexpr std::array<const char*, kRefusals.size()> kWords{"out of reach",       "beyond a joint's limits",
+                                                             "in collision there", "in collision at the start",
+                                                             "without a path",     "declined by the robot"};
   std::string words;
   for (const Refusal reason : kRefusals) {
     if (refused.of(reason) == 0) continue;

@@ -130,21 +130,6 @@ TEST_F(Saliencies, BlendIsTheWeightedMean) {
   EXPECT_NE(why.find("25 % height"), std::string::npos) << why;
 }
 
-TEST_F(Saliencies, RegionsComeInTheOrderOfSaliency) {
-  const auto saliencies = objectness()(segments());
-  const auto regions = salient_regions(segments(), saliencies).value();
-  ASSERT_EQ(regions.size(), std::size_t{kThings});
-  EXPECT_EQ(regions[0].saliency, saliencies[kBall].value);
-  EXPECT_EQ(regions[0].why, saliencies[kBall].why);
-  EXPECT_EQ(regions[0].origin, AttentionOrigin::segment);
-  for (std::size_t i = 1; i < regions.size(); ++i) EXPECT_LE(regions[i].saliency, regions[i - 1].saliency);
-  for (const RegionOfInterest& region : regions) EXPECT_TRUE(validate(region.bounds));  // one point has a box, too
-  for (std::size_t i = 0; i < labels_.size(); ++i) {
-    if (labels_[i] != kBall) continue;
-    EXPECT_TRUE(contains(regions[0].bounds, Eigen::Vector3d{positions_m_[i].cast<double>()}));
-  }
-}
-
 TEST_F(Saliencies, NothingIsNoError) {
   const SegmentedPoints none = SegmentedPoints::create({}, {}, 0).value();
   const SegmentedPoints empty = SegmentedPoints::create({}, {}, 2).value();
@@ -155,9 +140,6 @@ TEST_F(Saliencies, NothingIsNoError) {
     EXPECT_TRUE(heuristic({none, {}, config_}).empty());
     for (const Saliency& saliency : heuristic({empty, two, config_})) EXPECT_EQ(saliency.value, 0.0);
   }
-  EXPECT_TRUE(salient_regions({empty, two, config_}, std::vector<Saliency>(2)).value().empty());
-  EXPECT_EQ(salient_regions({empty, two, config_}, {}).error().code, Errc::size_mismatch);
-  EXPECT_FALSE(salient_regions(segments(), objectness()(segments()), 0.0));
 }
 
 TEST_F(Saliencies, BadParametersAreRefused) {
