@@ -30,24 +30,10 @@ struct GlobalOptions {
 /// Returns the exit status, or an Error for main() to print.
 using Action = std::function<Result<int>()>;
 
-// `global` and `action` outlive the parsing. Options are checked while they are parsed; what is wrong with them is
-// thrown as CLI::ValidationError.
-void add_annotate(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_attend(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_filter(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_fuse(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_nbv(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_info(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_compare(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_explore(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_robot(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_scene(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_score(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_segment(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_show(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_sample(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action);
-void add_update(CLI::App& program, const GlobalOptions& global, Action& action);
+/// Adds a subcommand. `global` and `action` outlive the parsing. Options are checked while they are parsed; what is
+/// wrong with them is thrown as CLI::ValidationError.
+using AddCommand = void(CLI::App& program, const GlobalOptions& global, Action& action);
+AddCommand add_annotate, add_attend, add_compare, add_explore, add_filter, add_fuse, add_info, add_nbv, add_reproduce,
+    add_robot, add_sample, add_scene, add_score, add_segment, add_show, add_surfels, add_update;
 
 }  // namespace saccade::cli

@@ -55,6 +55,16 @@ int usage(const CLI::App& program, const std::string& text) {
   return fail(program, ExitStatus::usage, text + " (see " + help + ")");
 }
 
+/// "annotate, attend, …, surfels or update".
+std::string names_of(const std::vector<CLI::App*>& commands) {
+  std::string names;
+  for (const CLI::App* command : commands) {
+    if (!names.empty()) names += command == commands.back() ? " or " : ", ";
+    names += command->get_name();
+  }
+  return names;
+}
+
 int run(int argc, char** argv, CLI::App& program, Planners planners) {
   GlobalOptions global;
   global.planners = std::move(planners);
@@ -64,32 +74,17 @@ int run(int argc, char** argv, CLI::App& program, Planners planners) {
   program.fallthrough();
   program.footer(kFooter);
   add_global_options(program, global);
-  add_annotate(program, global, action);
-  add_attend(program, global, action);
-  add_compare(program, global, action);
-  add_explore(program, global, action);
-  add_filter(program, global, action);
-  add_fuse(program, global, action);
-  add_nbv(program, global, action);
-  add_info(program, global, action);
-  add_scene(program, global, action);
-  add_reproduce(program, global, action);
-  add_robot(program, global, action);
-  add_score(program, global, action);
-  add_segment(program, global, action);
-  add_show(program, global, action);
-  add_sample(program, global, action);
-  add_surfels(program, global, action);
-  add_update(program, global, action);
+  for (AddCommand* add : {add_annotate, add_attend, add_compare, add_explore, add_filter, add_fuse, add_nbv, add_info,
+                          add_scene, add_reproduce, add_robot, add_score, add_segment, add_show, add_sample,
+                          add_surfels, add_update}) {
+    add(program, global, action);
+  }
   refuse_empty_values(program);
   try {
     program.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
     if (!program.get_subcommands().empty()) return usage(program, error.what());
-    return usage(program,
-                 "name what to do: annotate, attend, compare, explore, filter, fuse, nbv, reproduce, robot, scene, "
-                 "score, segment, "
-                 "show, info, sample, surfels or update");
+    return usage(program, "name what to do: " + names_of(program.get_subcommands({})));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
     return usage(program, error.what());
