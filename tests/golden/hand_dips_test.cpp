@@ -12,6 +12,7 @@
 #include "support/hand_detectors.hpp"
 #include "support/places.hpp"
 #include "support/recorded_hands.hpp"
+#include "saccade/attention/detector_evaluation.hpp"
 
 namespace saccade {
 namespace {

@@ -13,6 +13,7 @@
 #include "support/places.hpp"
 #include "support/recorded_hands.hpp"
 #include "thesis/hand_figures.hpp"
+#include "saccade/attention/detector_evaluation.hpp"
 
 namespace saccade {
 namespace {
