@@ -6,9 +6,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/trial/made_up_task.hpp"
-#include "saccade/attention/detector_evaluation.hpp"
 #include "support/hand_detectors.hpp"
 #include "support/places.hpp"
 #include "support/recorded_hands.hpp"

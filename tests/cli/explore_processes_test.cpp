@@ -70,7 +70,8 @@ TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
            "    elif request['number'] < 7: say({'number': request['number'], 'bytes': 2400}, depth)\n"
            "    else: "
         << body << "\n";
-    return explore({"--camera-command", "python3 '" + script.string() + "'", "--process-timeout", timeout_s, "--force"});
+    return explore(
+        {"--camera-command", "python3 '" + script.string() + "'", "--process-timeout", timeout_s, "--force"});
   };
   const auto kept = [&] {
     EXPECT_TRUE(fs::exists(run() / "journal.json"));  // with the scan, and the way to go on

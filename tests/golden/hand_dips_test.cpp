@@ -6,13 +6,13 @@
 
 #include <algorithm>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "support/bad_samples.hpp"
 #include "support/dip_reports.hpp"
 #include "support/effort.hpp"
 #include "support/hand_detectors.hpp"
 #include "support/places.hpp"
 #include "support/recorded_hands.hpp"
-#include "saccade/attention/detector_evaluation.hpp"
 
 namespace saccade {
 namespace {

@@ -8,12 +8,12 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "support/effort.hpp"
 #include "support/hand_detectors.hpp"
 #include "support/places.hpp"
 #include "support/recorded_hands.hpp"
 #include "thesis/hand_figures.hpp"
-#include "saccade/attention/detector_evaluation.hpp"
 
 namespace saccade {
 namespace {
