@@ -53,7 +53,7 @@ TEST_F(ExploreProcesses, ACameraAndARobotThatAreProgramsBuildAMap) {
 }
 
 TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
-  const auto camera = [&](const std::string& body) {
+  const auto camera = [&](const std::string& body, const char* timeout_s = "60") {
     const fs::path script = folder_ / "camera.py";
     std::ofstream{script}
         << "import json, sys\n"
@@ -70,7 +70,8 @@ TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
            "    elif request['number'] < 7: say({'number': request['number'], 'bytes': 2400}, depth)\n"
            "    else: "
         << body << "\n";
-    return explore({"--camera-command", "python3 '" + script.string() + "'", "--process-timeout", "2", "--force"});
+    return explore(
+        {"--camera-command", "python3 '" + script.string() + "'", "--process-timeout", timeout_s, "--force"});
   };
   const auto kept = [&] {
     EXPECT_TRUE(fs::exists(run() / "journal.json"));  // with the scan, and the way to go on
@@ -78,7 +79,7 @@ TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
   };
   expect_failure(camera("sys.exit('the cable is out')"), 3, "explore", {"camera", "the cable is out", "--resume"});
   kept();
-  expect_failure(camera("import time; time.sleep(100)"), 3, "explore", {"camera", "2 s"});
+  expect_failure(camera("import time; time.sleep(100)", "5"), 3, "explore", {"camera", "5 s"});
   kept();
   expect_failure(camera("print('hello world', flush=True)"), 3, "explore", {"camera", "hello world"});
   kept();

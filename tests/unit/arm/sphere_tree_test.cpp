@@ -36,13 +36,13 @@ TriangleMesh both(TriangleMesh a, const TriangleMesh& b) {
 /// An L of two boxes that share a side of their surfaces: neither convex nor a simple surface.
 const Vector3d kLow{-0.15, -0.1, 0.0};
 const Vector3d kMiddle{-0.03, 0.12, 0.5};
-const Vector3d kArm{0.21, 0.12, 0.11};
-TriangleMesh l_shape() { return both(box_mesh(kLow, kMiddle), box_mesh({-0.03, -0.1, 0.0}, kArm)); }
+const Vector3d kForearm{0.21, 0.12, 0.11};
+TriangleMesh l_shape() { return both(box_mesh(kLow, kMiddle), box_mesh({-0.03, -0.1, 0.0}, kForearm)); }
 bool in_l_shape(const Vector3d& p) {
   const auto within = [&](const Vector3d& low, const Vector3d& high) {
     return (p.array() >= low.array()).all() && (p.array() <= high.array()).all();
   };
-  return within(kLow, kMiddle) || within({-0.03, -0.1, 0.0}, kArm);
+  return within(kLow, kMiddle) || within({-0.03, -0.1, 0.0}, kForearm);
 }
 
 bool holds(const TreeBall& ball, const Vector3d& p) {
