@@ -12,7 +12,7 @@
 #include <vector>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 #include "support/bad_samples.hpp"
 #include "support/dip_reports.hpp"
 #include "support/hand_detectors.hpp"

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <string_view>
 
-#include "saccade/io/runs/view_choice.hpp"
+#include "saccade/io/runs/run_json.hpp"
 #include "server/show/figures.hpp"
 
 namespace saccade::server {

@@ -6,7 +6,7 @@
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
-#include "saccade/io/runs/view_choice.hpp"
+#include "saccade/io/runs/run_json.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
 #include "server/show/run_layers.hpp"

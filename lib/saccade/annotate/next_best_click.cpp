@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/annotate/next_best_click.hpp"
+#include "saccade/annotate/annotation_margin.hpp"
 
 #include <algorithm>
 #include <utility>

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ArmModel: a serial arm that holds a camera: joints with their limits, links with their collision bodies, the mounts.
+// ArmModel: a serial arm that holds a camera: joints with their limits, links with their collision bodies, the mounts;
+// arm_hash: tells whether two arms are the same to a planner.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -12,7 +13,7 @@
 #include "saccade/core/pose.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/map/mesh.hpp"
-#include "saccade/robot/configuration.hpp"
+#include "saccade/robot/trajectory.hpp"
 
 namespace saccade {
 
@@ -126,5 +127,9 @@ class ArmModel {
 /// The same arm with this share of its speeds, and accelerations such that every path takes 1 / share as long. Expects
 /// a share in (0, 1].
 [[nodiscard]] ArmModel slowed(const ArmModel& arm, double share);
+
+/// 16 hexadecimal digits from all that changes how an arm moves and what it touches: joints, limits, mounts and
+/// bodies. Names do not. Fnv1a. O(vertices).
+[[nodiscard]] std::string arm_hash(const ArmModel& arm);
 
 }  // namespace saccade

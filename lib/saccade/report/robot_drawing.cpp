@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "saccade/report/internal/blend.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/mesh_picture.hpp"
 
 namespace saccade {

@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "saccade/arm/internal/swept_cells.hpp"
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 #include "support/test_arms.hpp"
 
 namespace saccade {

@@ -9,7 +9,7 @@
 #include <numbers>
 
 #include "analytic_map.hpp"
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/sheet.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

@@ -13,7 +13,6 @@
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/surfel/surfel_points.hpp"
-#include "saccade/surfel/surfel_view.hpp"
 
 namespace saccade {
 namespace {

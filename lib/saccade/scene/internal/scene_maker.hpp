@@ -8,7 +8,7 @@
 #include <string>
 #include <string_view>
 
-#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 
 namespace saccade {
 
