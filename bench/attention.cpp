@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/trial/simulated_task.hpp"
 #include "support/hand_detectors.hpp"

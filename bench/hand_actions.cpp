@@ -11,6 +11,7 @@
 #include <utility>
 #include <vector>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "support/bad_samples.hpp"

@@ -6,6 +6,7 @@
 
 #include <algorithm>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "support/bad_samples.hpp"
 #include "support/dip_reports.hpp"
 #include "support/effort.hpp"

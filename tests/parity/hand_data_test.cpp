@@ -8,6 +8,7 @@
 #include <cstdlib>
 #include <iostream>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "support/effort.hpp"
 #include "support/hand_detectors.hpp"
 #include "support/places.hpp"
