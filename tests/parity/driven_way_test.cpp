@@ -3,6 +3,7 @@
 // deeper into any obstacle (by all balls and all boxes) or into another one, and FCL finds them free where the way
 // ends.
 #include "saccade/arm/internal/driven_way.hpp"
+#include "saccade/arm/internal/sphere_tree.hpp"
 
 #include <gtest/gtest.h>
 

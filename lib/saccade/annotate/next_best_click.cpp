@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "saccade/annotate/annotation_error.hpp"
+#include "saccade/annotate/internal/path_buckets.hpp"
 
 namespace saccade {
 namespace {

@@ -6,8 +6,8 @@
 
 #include "saccade/segment/internal/boundary.hpp"
 #include "saccade/segment/internal/boundary_matching.hpp"
-#include "saccade/segment/internal/consistency_error.hpp"
 #include "saccade/segment/internal/surfel_graph.hpp"
+#include "saccade/segment/overlap.hpp"
 
 namespace saccade {
 

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "saccade/arm/arm_mesh.hpp"
+#include "saccade/arm/internal/sphere_tree.hpp"
 #include "support/effort.hpp"
 #include "support/test_arms.hpp"
 

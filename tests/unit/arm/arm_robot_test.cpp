@@ -3,6 +3,7 @@
 
 #include <gtest/gtest.h>
 
+#include "saccade/arm/internal/driven_way.hpp"
 #include "saccade/arm/internal/swept_cells.hpp"
 #include "saccade/arm/motion_planner.hpp"
 #include "support/test_arms.hpp"

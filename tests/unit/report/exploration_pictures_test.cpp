@@ -9,6 +9,7 @@
 #include <numbers>
 
 #include "analytic_map.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/sheet.hpp"
 #include "unit/report/pixels.hpp"
 

@@ -10,8 +10,8 @@
 #include <numeric>
 
 #include "saccade/segment/internal/boundary_matching.hpp"
-#include "saccade/segment/internal/consistency_error.hpp"
 #include "saccade/segment/internal/least_assignment.hpp"
+#include "saccade/segment/overlap.hpp"
 
 namespace saccade {
 namespace {
