@@ -11,7 +11,6 @@
 #include "saccade/annotate/annotation_error.hpp"
 #include "saccade/annotate/annotation_margin.hpp"
 #include "saccade/annotate/label_seeds.hpp"
-#include "saccade/annotate/next_best_click.hpp"
 #include "support/labelled_clouds.hpp"
 #include "support/places.hpp"
 

@@ -8,7 +8,7 @@
 
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "support/hand_detectors.hpp"
 #include "support/places.hpp"
 #include "support/recorded_hands.hpp"

@@ -11,8 +11,7 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/sensor/noise.hpp"
-#include "saccade/views/contour_views.hpp"
-#include "saccade/views/live_contours.hpp"
+#include "saccade/views/contours.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "support/naive_contours.hpp"
 #include "table_map.hpp"

@@ -17,9 +17,8 @@
 
 #include "depth_filter_peer.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/frames/depth_encoding.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/report/filter_picture.hpp"
+#include "saccade/report/depth_picture.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "thesis/depth_baselines.hpp"
 #include "thesis/filter_trials.hpp"

@@ -5,7 +5,6 @@
 #include <benchmark/benchmark.h>
 
 #include "saccade/attention/dip_detector.hpp"
-#include "saccade/attention/dip_stream.hpp"
 #include "support/made_hands.hpp"
 
 namespace {

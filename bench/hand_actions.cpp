@@ -13,7 +13,7 @@
 
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 #include "support/bad_samples.hpp"
 #include "support/dip_reports.hpp"
 #include "support/hand_detectors.hpp"

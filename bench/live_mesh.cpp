@@ -8,8 +8,8 @@
 
 #include "frames.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/map/live_mesh.hpp"
 #include "saccade/map/map_changes.hpp"
+#include "saccade/map/mesh.hpp"
 
 namespace {
 

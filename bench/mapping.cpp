@@ -11,7 +11,6 @@
 #include "saccade/core/simd.hpp"
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/map/view_points.hpp"
 #include "saccade/tracking/icp.hpp"
 #include "saccade/tracking/reconstruction.hpp"
 

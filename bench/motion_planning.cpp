@@ -13,7 +13,6 @@
 #include <iostream>
 
 #include "saccade/arm/reachability.hpp"
-#include "saccade/arm/trajectory_timing.hpp"
 #include "saccade/arm/urdf.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/scene/scene_yaml.hpp"

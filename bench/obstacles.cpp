@@ -9,6 +9,7 @@
 #include <vector>
 
 #include "peers.hpp"
+#include "saccade/arm/internal/obstacle_field.hpp"
 #include "saccade/arm/obstacle_map.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/views/view_gain.hpp"

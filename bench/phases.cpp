@@ -9,7 +9,6 @@
 #include "saccade/map/internal/surface_tiles.hpp"
 #include "saccade/map/ray_walk.hpp"
 #include "saccade/map/raycast.hpp"
-#include "saccade/map/view_points.hpp"
 #include "saccade/tracking/icp.hpp"
 #include "saccade/views/internal/gain_problem.hpp"
 #include "table_map.hpp"

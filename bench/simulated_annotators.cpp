@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "saccade/annotate/annotation_error.hpp"
-#include "saccade/annotate/rectangle_annotator.hpp"
+#include "saccade/annotate/simulated_annotator.hpp"
 #include "support/labelled_clouds.hpp"
 #include "support/places.hpp"
 

@@ -10,7 +10,7 @@
 #include "saccade/scene/ray_scene.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "saccade/trial/simulated_run.hpp"
-#include "saccade/views/contour_views.hpp"
+#include "saccade/views/contours.hpp"
 #include "saccade/views/internal/best_views.hpp"
 
 namespace {

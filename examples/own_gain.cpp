@@ -2,7 +2,7 @@
 // A gain of one's own: what a view shows, divided by how far the camera would have to fly to it.
 #include <cstdio>
 
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/trial/simulated_run.hpp"
 
 using namespace saccade;

@@ -9,7 +9,7 @@
 #include "saccade/annotate/annotation_margin.hpp"
 #include "saccade/annotate/label_seeds.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/sessions/annotation_session.hpp"
 #include "saccade/io/sessions/label_presets.hpp"

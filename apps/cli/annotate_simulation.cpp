@@ -5,7 +5,7 @@
 #include "annotate.hpp"
 #include "interrupt.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::cli {

@@ -5,7 +5,7 @@
 #include <map>
 #include <numbers>
 
-#include "saccade/cloud/estimated_normals.hpp"
+#include "saccade/cloud/nearest_neighbours.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/segment_picture.hpp"
 

@@ -11,8 +11,8 @@
 #include "command.hpp"
 #include "json_output.hpp"
 #include "saccade/attention/detector_evaluation.hpp"
-#include "saccade/io/frames/hand_trajectory_io.hpp"
-#include "saccade/sensor/trajectory_check.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade::cli {
 

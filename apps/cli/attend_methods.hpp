@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "saccade/core/result.hpp"
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/report/attention_picture.hpp"
 #include "saccade/sensor/hand_trajectory.hpp"
 

@@ -15,7 +15,7 @@
 #include "json_output.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade::cli {
 namespace {

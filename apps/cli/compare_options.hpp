@@ -9,7 +9,7 @@
 
 #include "command.hpp"
 #include "run_options.hpp"
-#include "saccade/scene/mesh_scene.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
 

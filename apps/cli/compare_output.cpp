@@ -5,8 +5,8 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/io/files/atomic_file.hpp"
-#include "saccade/trial/campaign_csv.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/trial/campaign_summary.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {

@@ -5,9 +5,9 @@
 #include <nlohmann/json.hpp>
 
 #include "robot_options.hpp"
-#include "saccade/arm/arm_hash.hpp"
+#include "saccade/arm/arm_model.hpp"
 #include "saccade/io/frames/camera_io.hpp"
-#include "saccade/scene/scene_hash.hpp"
+#include "saccade/scene/ray_scene.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {

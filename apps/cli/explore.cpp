@@ -18,7 +18,6 @@
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/io/maps/ternary_export.hpp"
-#include "saccade/io/runs/refusals_json.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/mesh.hpp"
 #include "summary.hpp"

@@ -6,15 +6,15 @@
 #include <sstream>
 #include <utility>
 
-#include "saccade/attention/nearest_segment.hpp"
 #include "saccade/attention/salient_objects.hpp"
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/attention/segmented_points.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/runs/run_json.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/run_report.hpp"
-#include "saccade/report/saliency_picture.hpp"
+#include "saccade/report/segment_picture.hpp"
 #include "saccade/robot/refusal.hpp"
 #include "summary.hpp"
 

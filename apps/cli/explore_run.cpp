@@ -14,9 +14,9 @@
 #include "interrupt.hpp"
 #include "json_output.hpp"
 #include "saccade/io/frames/camera_io.hpp"
-#include "saccade/io/runs/view_choice.hpp"
-#include "saccade/map/count_unknown.hpp"
-#include "saccade/scene/scene_hash.hpp"
+#include "saccade/io/runs/run_json.hpp"
+#include "saccade/map/tsdf_map.hpp"
+#include "saccade/scene/ray_scene.hpp"
 #include "view_json.hpp"
 
 namespace saccade::cli {

@@ -14,7 +14,7 @@
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/report/filter_picture.hpp"
+#include "saccade/report/depth_picture.hpp"
 #include "saccade/sensor/mask.hpp"
 
 namespace saccade::cli {

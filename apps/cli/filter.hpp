@@ -9,7 +9,7 @@
 #include "command.hpp"
 #include "json_output.hpp"
 #include "options.hpp"
-#include "saccade/io/frames/depth_encoding.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
 
 namespace saccade::cli {

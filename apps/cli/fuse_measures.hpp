@@ -8,7 +8,6 @@
 
 #include "fuse_frames.hpp"
 #include "saccade/io/frames/rgbd_folder.hpp"
-#include "saccade/tracking/depth_residual.hpp"
 #include "saccade/tracking/trajectory_error.hpp"
 
 namespace saccade::cli {

@@ -8,8 +8,8 @@
 #include "interrupt.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/map/raycast.hpp"
-#include "saccade/report/fusion_pictures.hpp"
-#include "saccade/report/ternary_picture.hpp"
+#include "saccade/report/depth_picture.hpp"
+#include "saccade/report/view_picture.hpp"
 
 namespace saccade::cli {
 namespace {

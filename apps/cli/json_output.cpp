@@ -7,7 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 
 namespace saccade::cli {

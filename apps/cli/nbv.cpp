@@ -23,7 +23,6 @@
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/report/view_picture.hpp"
 #include "saccade/views/view_gain.hpp"
-#include "saccade/views/view_order.hpp"
 #include "saccade/views/view_sphere.hpp"
 #include "summary.hpp"
 

@@ -17,9 +17,9 @@
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 #include "tables/hand_data.hpp"
 #include "tables/thesis_table.hpp"
 

@@ -11,7 +11,7 @@
 #include "robot_options.hpp"
 #include "saccade/arm/reach_map.hpp"
 #include "saccade/core/region.hpp"
-#include "saccade/scene/fixture_boxes.hpp"
+#include "saccade/scene/scene.hpp"
 
 namespace saccade::cli {
 

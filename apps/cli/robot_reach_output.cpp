@@ -8,12 +8,12 @@
 #include <numbers>
 
 #include "json_output.hpp"
-#include "saccade/arm/body_surface.hpp"
+#include "saccade/arm/arm_mesh.hpp"
 #include "saccade/arm/kinematics.hpp"
 #include "saccade/io/files/csv.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/report/reach_picture.hpp"
+#include "saccade/report/robot_drawing.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {

@@ -11,7 +11,7 @@
 #include <utility>
 #include <vector>
 
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -19,9 +19,9 @@
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/viewpoint.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "saccade/scene/surface_samples.hpp"
-#include "saccade/scene/surfel_scenes.hpp"
 #include "saccade/trial/metrics.hpp"
 #include "scene_sequence.hpp"
 

@@ -20,10 +20,9 @@
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
-#include "saccade/io/frames/depth_encoding.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
-#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -14,8 +14,8 @@
 #include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/segment/flood_fill.hpp"
+#include "saccade/segment/lccp.hpp"
 #include "saccade/segment/score_curve.hpp"
-#include "saccade/segment/sv_lccp.hpp"
 #include "segment_saliency.hpp"
 #include "surfel_input.hpp"
 

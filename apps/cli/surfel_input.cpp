@@ -4,8 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "options.hpp"
-#include "saccade/cloud/estimated_normals.hpp"
-#include "saccade/cloud/estimated_radii.hpp"
+#include "saccade/cloud/nearest_neighbours.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
 
 namespace saccade::cli {

@@ -5,7 +5,7 @@
 #include "attend_methods.hpp"
 #include "explore_options.hpp"
 #include "saccade/explore/environment_update.hpp"
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 
 namespace saccade::cli {
 

@@ -8,10 +8,9 @@
 #include "explore_report.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
-#include "saccade/io/runs/refusals_json.hpp"
 #include "saccade/io/runs/run_json.hpp"
-#include "saccade/map/count_unknown.hpp"
 #include "saccade/map/mesh.hpp"
+#include "saccade/map/tsdf_map.hpp"
 #include "summary.hpp"
 #include "update.hpp"
 

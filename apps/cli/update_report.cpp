@@ -5,11 +5,9 @@
 #include <array>
 
 #include "explore_report.hpp"
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/exploration_pictures.hpp"
-#include "saccade/report/update_pictures.hpp"
 #include "saccade/report/update_report.hpp"
 #include "summary.hpp"
 #include "view_json.hpp"

@@ -2,9 +2,9 @@
 #include "update_run.hpp"
 
 #include "saccade/core/clock.hpp"
-#include "saccade/map/count_unknown.hpp"
+#include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/scene_yaml.hpp"
-#include "saccade/trial/true_contacts.hpp"
+#include "saccade/trial/metrics.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -3,8 +3,7 @@
 // UpdateRun: one user-driven update of a simulated scene, from the scan before the task to the figures after it.
 
 #include "explore_devices.hpp"
-#include "saccade/trial/object_shape.hpp"
-#include "saccade/trial/region_coverage.hpp"
+#include "saccade/trial/metrics.hpp"
 #include "saccade/trial/simulated_task.hpp"
 #include "update_options.hpp"
 

@@ -6,7 +6,7 @@
 #include <array>
 #include <span>
 
-#include "saccade/scene/time_of_flight.hpp"
+#include "saccade/scene/simulated_camera.hpp"
 
 namespace saccade::thesis {
 

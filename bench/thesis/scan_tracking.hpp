@@ -6,7 +6,7 @@
 #include <vector>
 
 #include "saccade/core/progress.hpp"
-#include "saccade/trial/object_shape.hpp"
+#include "saccade/trial/metrics.hpp"
 
 namespace saccade::thesis {
 

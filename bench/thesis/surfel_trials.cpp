@@ -10,6 +10,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/scene/internal/truth_labels.hpp"
 #include "saccade/scene/rendered_sequence.hpp"
+#include "saccade/segment/internal/surfel_graph.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/views/gain.hpp"

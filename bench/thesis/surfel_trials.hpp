@@ -10,7 +10,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/progress.hpp"
-#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 #include "saccade/segment/score_curve.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 

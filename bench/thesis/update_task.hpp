@@ -6,7 +6,7 @@
 
 #include "saccade/core/progress.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/camera.hpp"
 
 namespace saccade::thesis {
 

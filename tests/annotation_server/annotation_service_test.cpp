@@ -6,7 +6,7 @@
 #include <fstream>
 
 #include "annotation_server/annotation_desk.hpp"
-#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade {

@@ -4,7 +4,7 @@
 
 #include "annotation_server/annotation_desk.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 #include "support/small_disk.hpp"
 
 namespace saccade {

@@ -3,8 +3,8 @@
 #include "cli/annotated_boxes.hpp"
 #include "saccade/annotate/annotation.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
-#include "saccade/io/sessions/annotation_journal.hpp"
 #include "saccade/io/sessions/annotation_script.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
 #include "support/places.hpp"
 

@@ -5,7 +5,7 @@
 #include <sstream>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::test {

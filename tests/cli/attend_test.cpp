@@ -6,9 +6,9 @@
 
 #include "cli/run_program.hpp"
 #include "saccade/attention/gmm_as.hpp"
-#include "saccade/io/frames/hand_trajectory_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "support/places.hpp"
 
 namespace saccade::test {

@@ -6,8 +6,8 @@
 
 #include "run_program.hpp"
 #include "saccade/io/files/json_io.hpp"
-#include "saccade/io/runs/refusals_json.hpp"
-#include "saccade/trial/campaign_figures.hpp"
+#include "saccade/io/runs/run_json.hpp"
+#include "saccade/trial/campaign_summary.hpp"
 #include "support/effort.hpp"
 
 namespace saccade::test {

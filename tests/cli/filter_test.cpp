@@ -5,7 +5,7 @@
 #include <map>
 
 #include "cli/run_program.hpp"
-#include "saccade/io/frames/depth_encoding.hpp"
+#include "saccade/io/frames/image_io.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
 #include "saccade/sensor/mask.hpp"

@@ -7,7 +7,7 @@
 #include <limits>
 
 #include "cli/run_program.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"
 

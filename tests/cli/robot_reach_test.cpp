@@ -10,7 +10,7 @@
 #include "saccade/arm/urdf.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/scene/fixture_boxes.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "support/effort.hpp"
 

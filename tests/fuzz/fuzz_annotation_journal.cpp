@@ -4,9 +4,9 @@
 #include <cstdlib>
 #include <cstring>
 
-#include "saccade/annotate/action_history.hpp"
+#include "saccade/annotate/action.hpp"
 #include "saccade/io/files/crc32.hpp"
-#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 
 namespace {
 

@@ -4,7 +4,7 @@
 #include <cstdlib>
 #include <string_view>
 
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 
 extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   if (size == 0) return 0;

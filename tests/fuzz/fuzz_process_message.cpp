@@ -6,8 +6,8 @@
 #include <cstdlib>
 #include <vector>
 
-#include "saccade/devices/process_messages.hpp"
-#include "saccade/io/files/readable_text.hpp"
+#include "saccade/devices/internal/process_messages.hpp"
+#include "saccade/io/files/text_scan.hpp"
 
 namespace {
 

@@ -5,7 +5,7 @@
 #include <span>
 #include <string>
 
-#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/clouds/text_cloud.hpp"
 #include "saccade/io/files/file_io.hpp"
 

@@ -17,7 +17,6 @@
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/surfel/surfel_points.hpp"
-#include "saccade/surfel/surfel_view.hpp"
 #include "support/color_edges.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"

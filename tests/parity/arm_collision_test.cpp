@@ -11,7 +11,7 @@
 #include <optional>
 #include <vector>
 
-#include "saccade/arm/body_surface.hpp"
+#include "saccade/arm/arm_mesh.hpp"
 #include "support/effort.hpp"
 #include "support/fcl_arm.hpp"
 #include "support/shared_arms.hpp"

@@ -2,13 +2,14 @@
 // Arms that back out of what was seen where they stand: the way is the one that they came, no ball of a cover reaches
 // deeper into any obstacle (by all balls and all boxes) or into another one, and FCL finds them free where the way
 // ends.
-#include "saccade/arm/driven_way.hpp"
+#include "saccade/arm/internal/driven_way.hpp"
+#include "saccade/arm/internal/sphere_tree.hpp"
 
 #include <gtest/gtest.h>
 
 #include <iostream>
 
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 #include "saccade/arm/urdf.hpp"
 #include "support/effort.hpp"
 #include "support/fcl_arm.hpp"

@@ -8,7 +8,7 @@
 #include <random>
 
 #include "saccade/core/simd.hpp"
-#include "saccade/map/view_points.hpp"
+#include "saccade/map/raycast.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/icp.hpp"
 #include "saccade/tracking/internal/icp_kernels.hpp"

@@ -7,7 +7,6 @@
 #include <iostream>
 
 #include "saccade/arm/motion_planner.hpp"
-#include "saccade/arm/trajectory_timing.hpp"
 #include "saccade/arm/urdf.hpp"
 #include "saccade/core/clock.hpp"
 #include "support/effort.hpp"

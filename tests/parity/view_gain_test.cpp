@@ -10,7 +10,6 @@
 #include "saccade/core/simd.hpp"
 #include "saccade/views/internal/best_views.hpp"
 #include "saccade/views/view_gain.hpp"
-#include "saccade/views/view_order.hpp"
 #include "saccade/views/view_sphere.hpp"
 #include "support/brute_force_gain.hpp"
 #include "support/effort.hpp"

@@ -10,7 +10,6 @@
 #include <map>
 #include <random>
 
-#include "saccade/annotate/next_best_click.hpp"
 #include "support/annotated_cloud.hpp"
 #include "support/effort.hpp"
 

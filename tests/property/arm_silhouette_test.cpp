@@ -2,6 +2,7 @@
 // The silhouettes of recorded and built-in arms against rays cast at every triangle, and of enlarged ones against
 // points.
 #include "saccade/arm/arm_silhouette.hpp"
+#include "saccade/arm/internal/depth_raster.hpp"
 
 #include <gtest/gtest.h>
 

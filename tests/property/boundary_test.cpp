@@ -6,8 +6,8 @@
 #include <iostream>
 #include <random>
 
-#include "saccade/segment/boundary.hpp"
-#include "saccade/segment/boundary_matching.hpp"
+#include "saccade/segment/internal/boundary.hpp"
+#include "saccade/segment/internal/boundary_matching.hpp"
 #include "saccade/segment/internal/least_assignment.hpp"
 #include "support/effort.hpp"
 #include "support/naive_surfels.hpp"

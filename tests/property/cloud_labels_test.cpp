@@ -8,8 +8,7 @@
 #include <cstdio>
 #include <random>
 
-#include "saccade/io/clouds/label_input.hpp"
-#include "saccade/io/clouds/label_output.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "support/effort.hpp"
 #include "support/temp_folder.hpp"

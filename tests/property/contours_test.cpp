@@ -10,7 +10,7 @@
 #include <optional>
 #include <vector>
 
-#include "saccade/views/live_contours.hpp"
+#include "saccade/views/contours.hpp"
 #include "support/effort.hpp"
 #include "support/naive_contours.hpp"
 #include "support/parallel_backend.hpp"

@@ -1,16 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 // EM on random tasks and on degenerate samples: against the plain reference, what must never happen, what must not
 // matter.
-#include "saccade/attention/gmm_em.hpp"
+#include "saccade/attention/internal/gmm_em.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "saccade/attention/trajectory_changes.hpp"
+#include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/seeded_random.hpp"
 #include "saccade/core/simd.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "support/effort.hpp"
 #include "support/reference_em.hpp"
 

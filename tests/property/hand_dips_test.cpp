@@ -5,8 +5,8 @@
 
 #include <numbers>
 
+#include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/attention/dip_detector.hpp"
-#include "saccade/attention/trajectory_changes.hpp"
 #include "support/bad_samples.hpp"
 #include "support/effort.hpp"
 #include "support/made_hands.hpp"

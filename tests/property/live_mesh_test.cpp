@@ -9,8 +9,8 @@
 #include <random>
 
 #include "analytic_map.hpp"
-#include "saccade/map/live_mesh.hpp"
 #include "saccade/map/map_changes.hpp"
+#include "saccade/map/mesh.hpp"
 #include "support/effort.hpp"
 #include "support/parallel_backend.hpp"
 #include "support/random_map.hpp"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Height and axes of boxes of any size and turn are those of the box, and off by as much as its mesh is.
-#include "saccade/trial/object_shape.hpp"
+#include "saccade/trial/metrics.hpp"
 
 #include <gtest/gtest.h>
 

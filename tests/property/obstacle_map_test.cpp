@@ -10,6 +10,7 @@
 #include <iostream>
 #include <string>
 
+#include "saccade/arm/internal/obstacle_field.hpp"
 #include "saccade/core/simd.hpp"
 #include "support/effort.hpp"
 #include "support/parallel_backend.hpp"

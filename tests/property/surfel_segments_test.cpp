@@ -6,6 +6,7 @@
 #include <random>
 
 #include "saccade/segment/flood_fill.hpp"
+#include "saccade/segment/internal/surfel_graph.hpp"
 #include "support/effort.hpp"
 #include "support/naive_surfels.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Random paths of arms with one to twelve joints: what parametrise makes of them, beside an integration by small steps.
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 
 #include <gtest/gtest.h>
 

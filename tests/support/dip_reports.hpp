@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <vector>
 
-#include "saccade/attention/dip_stream.hpp"
+#include "saccade/attention/dip_detector.hpp"
 
 namespace saccade::test {
 

@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "saccade/attention/hand_smoothing.hpp"
+#include "saccade/attention/internal/hand_smoothing.hpp"
 
 namespace saccade::test {
 

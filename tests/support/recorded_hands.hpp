@@ -6,7 +6,7 @@
 #include <string>
 #include <vector>
 
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 
 namespace saccade::test {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "saccade/attention/gmm_em.hpp"
+#include "saccade/attention/internal/gmm_em.hpp"
 #include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade::test {

@@ -61,7 +61,7 @@ test("what is picked is what is drawn", async ({ page }) => {
     let empty = 0;
     let sure = 0;
     const wrong: string[] = [];
-    // As the program has it: lib/saccade/annotate/selection_view.hpp.
+    // As the program has it: lib/saccade/annotate/selection.hpp.
     // The GPU has borders to 1/16 px and depths to 24 bits; `maybe` are the points that may be in front then.
     const expected = (px: number, py: number) => {
       const { size, clip_world: m, point_size_px: edge } = viewer.picture();

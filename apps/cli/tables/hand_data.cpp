@@ -4,7 +4,7 @@
 #include <array>
 #include <utility>
 
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 
 namespace saccade::cli {
 namespace {

@@ -8,7 +8,7 @@
 
 #include "saccade/annotate/annotation.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
-#include "saccade/io/clouds/label_output.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 
 namespace saccade::server {
 

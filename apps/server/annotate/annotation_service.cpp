@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/annotate/next_best_click.hpp"
+#include "saccade/annotate/annotation_margin.hpp"
 #include "server/annotate/action_question.hpp"
 #include "server/annotate/annotation_answers.hpp"
 #include "server/annotate/label_export.hpp"

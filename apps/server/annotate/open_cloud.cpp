@@ -5,7 +5,7 @@
 
 #include "saccade/annotate/annotation_error.hpp"
 #include "saccade/annotate/annotation_margin.hpp"
-#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {

@@ -3,9 +3,9 @@
 
 #include <algorithm>
 
-#include "saccade/attention/nearest_segment.hpp"
+#include "saccade/attention/segmented_points.hpp"
 #include "saccade/io/maps/ternary_export.hpp"
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/sheet.hpp"
 #include "server/show/figures.hpp"
 
 namespace saccade::server {

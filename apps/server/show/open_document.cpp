@@ -5,7 +5,7 @@
 #include <array>
 #include <cctype>
 
-#include "saccade/scene/mesh_scene.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::server {
 namespace {

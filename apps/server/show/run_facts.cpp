@@ -4,7 +4,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/io/runs/view_choice.hpp"
+#include "saccade/io/runs/run_json.hpp"
 #include "server/show/figures.hpp"
 
 namespace saccade::server {

@@ -7,7 +7,6 @@
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/io/runs/run_json.hpp"
-#include "saccade/io/runs/view_choice.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
 #include "server/show/run_layers.hpp"

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/annotate/action_history.hpp"
+#include "saccade/annotate/action.hpp"
 
 #include <algorithm>
 

@@ -10,7 +10,7 @@
 #include <unordered_map>
 #include <vector>
 
-#include "saccade/annotate/action_history.hpp"
+#include "saccade/annotate/action.hpp"
 #include "saccade/annotate/label_table.hpp"
 #include "saccade/annotate/shortest_path_forest.hpp"
 

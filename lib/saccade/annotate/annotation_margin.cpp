@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "saccade/annotate/internal/path_buckets.hpp"
+
 namespace saccade {
 namespace {
 

@@ -8,7 +8,6 @@
 #include <limits>
 #include <string>
 
-#include "saccade/cloud/estimated_normals.hpp"
 #include "saccade/cloud/nearest_neighbours.hpp"
 #include "saccade/core/statistics.hpp"
 

@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/annotate/next_best_click.hpp"
+#include "saccade/annotate/annotation_margin.hpp"
 
 #include <algorithm>
 #include <utility>
 #include <vector>
 
 #include "saccade/annotate/annotation_error.hpp"
+#include "saccade/annotate/internal/path_buckets.hpp"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/annotate/rectangle_annotator.hpp"
+#include "saccade/annotate/simulated_annotator.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

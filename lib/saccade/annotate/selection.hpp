@@ -1,18 +1,142 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// select_points, select_around: the points that a tool selects in a picture. Thesis §4.2.2.
+// SelectionView and ScreenProjection: the picture in which points are selected; ScreenShape and ScreenMask: what a tool
+// draws on it; select_points, select_around: the points in that. Thesis §4.2.2.
 
 #include <Eigen/Core>
+#include <cmath>
 #include <cstdint>
 #include <limits>
 #include <span>
+#include <variant>
 #include <vector>
 
-#include "saccade/annotate/screen_shape.hpp"
-#include "saccade/annotate/selection_view.hpp"
 #include "saccade/core/executor.hpp"
+#include "saccade/core/result.hpp"
 
 namespace saccade {
+
+/// Image coordinates as in SelectionView. May lie outside the picture, up to a million pixels away.
+using ScreenPoint = Eigen::Vector2d;
+
+/// Between two opposite corners, whichever: contains what is ≥ the lesser and < the greater coordinates.
+struct ScreenRectangle {
+  ScreenPoint corner;
+  ScreenPoint opposite;
+};
+
+/// Closed, by the even-odd rule: a lasso, or the polyline through clicked corners that the thesis' users asked for
+/// (§4.2.3). Of its border, the left and upper parts belong to it, as with a rectangle.
+struct ScreenPolygon {
+  std::vector<ScreenPoint> corners;  ///< 3 to 10,000
+};
+
+/// Whatever lies within the radius of an open line, border included: a brush, or a line of some width.
+struct ScreenStroke {
+  std::vector<ScreenPoint> line;  ///< 1 to 10,000 points
+  double radius_px{10.0};         ///< positive, up to 10,000
+};
+
+using ScreenShape = std::variant<ScreenRectangle, ScreenPolygon, ScreenStroke>;
+
+/// invalid_argument for coordinates, numbers of points and radii that are not as said above.
+[[nodiscard]] Status validate(const ScreenShape& shape);
+
+/// Pixels [left, right) × [top, bottom).
+struct PixelWindow {
+  int left{0};
+  int top{0};
+  int right{0};
+  int bottom{0};
+  [[nodiscard]] int width() const { return right - left; }
+  [[nodiscard]] int height() const { return bottom - top; }
+  [[nodiscard]] bool empty() const { return left >= right || top >= bottom; }
+  [[nodiscard]] bool contains(int u, int v) const { return u >= left && u < right && v >= top && v < bottom; }
+};
+
+/// The pixels of a picture whose centres a shape contains. O(pixels around the shape + rows of its lines).
+class ScreenMask {
+ public:
+  /// Expects a valid shape and a picture of positive size.
+  ScreenMask(const ScreenShape& shape, int width, int height);
+
+  /// Pixels outside of it are not in the shape.
+  [[nodiscard]] const PixelWindow& window() const { return window_; }
+  /// Of any pixel.
+  [[nodiscard]] bool contains(int u, int v) const { return window_.contains(u, v) && pixels_[offset(u, v)] != 0; }
+
+ private:
+  void draw(const ScreenRectangle& rectangle);
+  void draw(const ScreenPolygon& polygon);
+  void draw(const ScreenStroke& stroke);
+  void draw_segment(const ScreenPoint& a, const ScreenPoint& b, double radius_px);
+  [[nodiscard]] std::size_t offset(int u, int v) const {
+    return static_cast<std::size_t>(v - window_.top) * static_cast<std::size_t>(window_.width()) +
+           static_cast<std::size_t>(u - window_.left);
+  }
+  void fill(int v, int first, int end);
+
+  PixelWindow window_;
+  std::vector<std::uint8_t> pixels_;
+};
+
+/// A picture of points as OpenGL draws it. Image coordinates (u, v) are pixels from the upper left corner, v down;
+/// pixel (i, j) covers [i, i + 1) × [j, j + 1), and its centre is (i + ½, j + ½).
+struct SelectionView {
+  /// Maps (x, y, z, 1) of a point in metres to clip coordinates, perspective or orthographic. In view is what has
+  /// w > 0, −w ≤ x < w, −w < y ≤ w and −w ≤ z ≤ w; x / w = −1 is the left border, y / w = 1 the upper one. What is
+  /// farther has the larger w, or with an orthographic view the larger z.
+  Eigen::Matrix4d clip_world{Eigen::Matrix4d::Identity()};
+  int width{1280};       ///< px, 1 to 8192
+  int height{720};       ///< px, 1 to 8192
+  int point_size_px{3};  ///< edge of the square as which a point is drawn, 1 to 64
+
+  /// invalid_argument for sizes out of range, and for a matrix that is not finite or no view of space.
+  [[nodiscard]] Status validate() const;
+};
+
+/// Where a point is seen. Not in view: every member is NaN.
+struct ScreenPosition {
+  double u_px;
+  double v_px;
+  float depth_m;  ///< along the viewing direction, from the camera or, in an orthographic view, from anywhere
+  [[nodiscard]] bool in_view() const { return !std::isnan(depth_m); }
+};
+
+/// The arithmetic of a view.
+class ScreenProjection {
+ public:
+  /// Expects a valid view.
+  explicit ScreenProjection(const SelectionView& view);
+
+  /// Points that are not finite are not in view.
+  [[nodiscard]] ScreenPosition operator()(const Eigen::Vector3f& p_world) const {
+    const double x{p_world.x()}, y{p_world.y()}, z{p_world.z()};
+    const auto row = [&](int i) {
+      return clip_world_(i, 0) * x + clip_world_(i, 1) * y + (clip_world_(i, 2) * z + clip_world_(i, 3));
+    };
+    const double clip_z = row(2);
+    const double w = row(3);
+    const double u_px = (row(0) / w + 1.0) * half_width_;
+    const double v_px = (1.0 - row(1) / w) * half_height_;
+    const bool in_view = w > 0.0 && clip_z >= -w && clip_z <= w && u_px >= 0.0 && u_px < 2.0 * half_width_ &&
+                         v_px >= 0.0 && v_px < 2.0 * half_height_;
+    if (!in_view) return {kNone, kNone, static_cast<float>(kNone)};
+    return {u_px, v_px, static_cast<float>((perspective_ ? w : clip_z) * m_per_clip_)};
+  }
+  /// The place that projects to (u_px, v_px) at that depth.
+  [[nodiscard]] Eigen::Vector3d place(double u_px, double v_px, double depth_m) const;
+
+ private:
+  static constexpr double kNone{std::numeric_limits<double>::quiet_NaN()};
+
+  Eigen::Matrix4d clip_world_;
+  Eigen::Matrix3d world_clip_;  ///< from x, y and what depth is taken from
+  double half_width_;
+  double half_height_;
+  bool perspective_;
+  double m_per_clip_;  ///< depth per w or, in an orthographic view, per z
+};
 
 /// How far behind the visible surface points are still selected: not at all, only what is seen (the thesis' Surface
 /// rect); however far (its Deep rect). What is between takes in what lies slightly below the surface, as its users

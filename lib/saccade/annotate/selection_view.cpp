@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/annotate/selection_view.hpp"
+#include "saccade/annotate/selection.hpp"
 
 #include <Eigen/LU>
 #include <string>

@@ -9,11 +9,12 @@
 #include <vector>
 
 #include "saccade/annotate/neighbourhood.hpp"
-#include "saccade/annotate/path_buckets.hpp"
-#include "saccade/annotate/path_reach.hpp"
 #include "saccade/core/executor.hpp"
+#include "saccade/core/hidden.hpp"
 
 namespace saccade {
+
+class PathBuckets;
 
 /// A point from which a tree grows. It has no label here: labels follow from the root (thesis: L_i = L_{l_i}).
 struct Root {
@@ -56,12 +57,13 @@ class ShortestPathForest {
   [[nodiscard]] std::span<const std::uint32_t> touched() const { return touched_; }
 
  private:
+  using PathReach = std::uint64_t;  ///< path_reach.hpp
   struct Start {
     std::uint32_t point;
     std::uint32_t path;
   };
   void start_at(const Root& root);
-  void reach(std::uint32_t node, PathReach reach);
+  void reach(std::uint32_t node, PathReach reach, PathBuckets& queue);
   void spread();
   [[nodiscard]] PathReach clear_beside(std::uint32_t node, std::uint32_t root);
   [[nodiscard]] bool belongs_to(std::uint32_t node, std::uint32_t root) const;
@@ -75,7 +77,7 @@ class ShortestPathForest {
   std::vector<bool> is_start_;    ///< per node
   std::vector<Start> starts_;     ///< roots, by ascending point
   std::vector<std::uint32_t> touched_;
-  PathBuckets queue_;
+  Hidden<PathBuckets> queue_;
   std::vector<PathReach> entered_;
   Executor executor_;
 };

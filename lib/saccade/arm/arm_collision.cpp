@@ -7,7 +7,9 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/arm/body_surface.hpp"
+#include "saccade/arm/arm_mesh.hpp"
+#include "saccade/arm/internal/arm_front.hpp"
+#include "saccade/arm/internal/cover_separation.hpp"
 
 namespace saccade {
 namespace {
@@ -40,10 +42,11 @@ Status ArmCollisionConfig::validate() const {
 Result<ArmCollision> ArmCollision::create(const ArmModel& arm, const ArmCollisionConfig& config) {
   SACCADE_CHECK(config.validate());
   ArmCollision collision{arm, config};
+  const auto bodies = std::make_shared<CoveredBodies>();
   std::vector<std::vector<Eigen::AlignedBox3d>> upright_boxes;
   for (const ArmLink& link : arm.links()) {
-    std::vector<SphereTree>& covers = collision.covers_.emplace_back();
-    std::vector<BodyBox>& boxes = collision.boxes_.emplace_back();
+    std::vector<SphereTree>& covers = bodies->covers.emplace_back();
+    std::vector<BodyBox>& boxes = bodies->boxes.emplace_back();
     std::vector<Eigen::AlignedBox3d>& upright = upright_boxes.emplace_back();
     for (const CollisionBody& body : link.bodies) {
       const TriangleMesh surface = body_surface(body);
@@ -65,11 +68,12 @@ Result<ArmCollision> ArmCollision::create(const ArmModel& arm, const ArmCollisio
       upright.push_back(along_link);
     }
   }
+  collision.bodies_ = bodies;
   collision.find_levers();
   collision.find_self_pairs();
   const double farthest_m = arm.T_world_base().translation().norm() + reach_bound_m(arm) +
                             *std::max_element(collision.reach_m_.begin(), collision.reach_m_.end());
-  collision.front_ = std::make_shared<const ArmFront>(arm, collision.covers_, upright_boxes, collision.self_pairs_,
+  collision.front_ = std::make_shared<const ArmFront>(arm, bodies->covers, upright_boxes, collision.self_pairs_,
                                                       kFloatSlack * farthest_m);
   return collision;
 }
@@ -77,10 +81,10 @@ Result<ArmCollision> ArmCollision::create(const ArmModel& arm, const ArmCollisio
 /// Of the ways from a joint's origin to the links behind it, and how far those reach.
 void ArmCollision::find_levers() {
   const ArmModel& arm = *arm_;
-  const auto links = covers_.size();
+  const auto links = bodies_->covers.size();
   reach_m_.assign(links, 0.0);
   for (std::size_t link = 0; link < links; ++link) {
-    for (const SphereTree& cover : covers_[link]) {
+    for (const SphereTree& cover : bodies_->covers[link]) {
       const TreeBall& whole = cover.balls().front();
       reach_m_[link] = std::max(reach_m_[link], static_cast<double>(whole.center.norm() + whole.radius_m));
     }
@@ -96,7 +100,7 @@ void ArmCollision::find_levers() {
 }
 
 void ArmCollision::find_self_pairs() {
-  const int links = static_cast<int>(covers_.size());
+  const int links = static_cast<int>(bodies_->covers.size());
   std::vector<std::pair<int, int>> pairs;
   for (int a = 0; a < links; ++a) {
     for (int b = a + 2; b < links; ++b) {
@@ -123,10 +127,10 @@ double ArmCollision::separation_m(const Pose& T_world_a, const Pose& T_world_b, 
   const auto link_a = static_cast<std::size_t>(a);
   const auto link_b = static_cast<std::size_t>(b);
   double least_m = std::numeric_limits<double>::infinity();
-  for (std::size_t i = 0; i < boxes_[link_a].size(); ++i) {
-    const PlacedBody body_a{covers_[link_a][i], boxes_[link_a][i], T_world_a};
-    for (std::size_t j = 0; j < boxes_[link_b].size(); ++j) {
-      const PlacedBody body_b{covers_[link_b][j], boxes_[link_b][j], T_world_b};
+  for (std::size_t i = 0; i < bodies_->boxes[link_a].size(); ++i) {
+    const PlacedBody body_a{bodies_->covers[link_a][i], bodies_->boxes[link_a][i], T_world_a};
+    for (std::size_t j = 0; j < bodies_->boxes[link_b].size(); ++j) {
+      const PlacedBody body_b{bodies_->covers[link_b][j], bodies_->boxes[link_b][j], T_world_b};
       least_m = std::min(least_m, saccade::separation_m(body_a, body_b, enough_m));
     }
   }
@@ -138,7 +142,7 @@ std::string describe(const ArmModel& arm, const Contact& contact) {
   return link(contact.link) + " touches " + (contact.other_link ? link(*contact.other_link) : "an obstacle");
 }
 
-double ArmCollision::separation_m(const ArmFront::Placed& placed, int a, int b, double enough_m) const {
+double ArmCollision::separation_m(const PlacedFront& placed, int a, int b, double enough_m) const {
   const double slack_m = 2.0 * front_->slack_m();
   return separation_m(placed.T_world_link(static_cast<std::size_t>(a)),
                       placed.T_world_link(static_cast<std::size_t>(b)), a, b, enough_m + slack_m) -
@@ -147,14 +151,14 @@ double ArmCollision::separation_m(const ArmFront::Placed& placed, int a, int b, 
 
 std::optional<Contact> ArmCollision::contact(const Configuration& q, const ObstacleMap& obstacles) const {
   SACCADE_EXPECTS(q.size() == arm_->dof());
-  return contact(ArmFront::Placed{*front_, q}, obstacles);
+  return contact(PlacedFront{*front_, q}, obstacles);
 }
 
 std::optional<Contact> ArmCollision::contact(const ArmPoses& poses, const ObstacleMap& obstacles) const {
-  return contact(ArmFront::Placed{*front_, poses}, obstacles);
+  return contact(PlacedFront{*front_, poses}, obstacles);
 }
 
-std::optional<Contact> ArmCollision::contact(const ArmFront::Placed& placed, const ObstacleMap& obstacles) const {
+std::optional<Contact> ArmCollision::contact(const PlacedFront& placed, const ObstacleMap& obstacles) const {
   const std::size_t count = front_->balls().size();
   constexpr std::size_t kAtOnce{64};
   for (std::size_t first = 0; first < count; first += kAtOnce) {
@@ -164,7 +168,7 @@ std::optional<Contact> ArmCollision::contact(const ArmFront::Placed& placed, con
       const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(perhaps));
       std::uint64_t finer = placed.perhaps_touching_finer(i, obstacles);
       for (; finer != 0; finer &= finer - 1) {
-        const ArmFront::Ball& ball = front_->finer(i)[static_cast<std::size_t>(std::countr_zero(finer))];
+        const FrontBall& ball = front_->finer(i)[static_cast<std::size_t>(std::countr_zero(finer))];
         if (touches_obstacle(ball, placed, obstacles)) {
           return Contact{static_cast<int>(ball.link), std::nullopt};
         }
@@ -179,7 +183,24 @@ std::optional<Contact> ArmCollision::contact(const ArmFront::Placed& placed, con
   return std::nullopt;
 }
 
-bool ArmCollision::touches_obstacle(const ArmFront::Ball& of_front, const ArmFront::Placed& placed,
+const std::vector<SphereTree>& ArmCollision::cover(int link) const {
+  return bodies_->covers[static_cast<std::size_t>(link)];
+}
+
+bool ArmCollision::clear(const ArmPoses& poses, const BallIsClear& is_clear) const {
+  for (std::size_t link = 1; link < bodies_->covers.size(); ++link) {
+    for (const SphereTree& cover : bodies_->covers[link]) {
+      const bool clear = cover.clear([&](const TreeBall& ball) {
+        const Vector3d center = poses.T_world_link[link] * ball.center.cast<double>();
+        return is_clear(center, static_cast<double>(ball.radius_m), ball.finest);
+      });
+      if (!clear) return false;
+    }
+  }
+  return true;
+}
+
+bool ArmCollision::touches_obstacle(const FrontBall& of_front, const PlacedFront& placed,
                                     const ObstacleMap& obstacles) const {
   const Pose T_world_link = placed.T_world_link(of_front.link);
   const auto is_clear = [&](const TreeBall& ball) {
@@ -188,13 +209,13 @@ bool ArmCollision::touches_obstacle(const ArmFront::Ball& of_front, const ArmFro
     // The exact answer costs more than a look at the balls below.
     return ball.finest ? obstacles.clear(center, radius_m) : obstacles.distance_bound_m(center) > radius_m;
   };
-  return !covers_[of_front.link][of_front.body].clear(is_clear, of_front.index);
+  return !bodies_->covers[of_front.link][of_front.body].clear(is_clear, of_front.index);
 }
 
 double ArmCollision::travel_bound_m(const Configuration& from, const Configuration& to) const {
   double bound_m = 0.0;
-  for (std::size_t link = 1; link < covers_.size(); ++link) {
-    if (covers_[link].empty()) continue;
+  for (std::size_t link = 1; link < bodies_->covers.size(); ++link) {
+    if (bodies_->covers[link].empty()) continue;
     const Travel travel = travel_of(0, link, from, to);
     bound_m = std::max(bound_m, travel.fixed_m + travel.turn_rad * reach_m_[link]);
   }
@@ -210,7 +231,7 @@ ArmCollision::Travel ArmCollision::travel_of(std::size_t first, std::size_t link
     if (arm_->joint(i).kind == JointKind::prismatic) {
       travel.fixed_m += change;
     } else {
-      travel.fixed_m += change * offsets_m_[joint * covers_.size() + link];
+      travel.fixed_m += change * offsets_m_[joint * bodies_->covers.size() + link];
       travel.turn_rad += change;
     }
   }

@@ -2,16 +2,24 @@
 #pragma once
 // ArmCollision: whether an arm touches the map, fixtures or itself, in a configuration and on the way between two.
 
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
 #include <utility>
 #include <vector>
 
-#include "saccade/arm/arm_front.hpp"
-#include "saccade/arm/cover_separation.hpp"
+#include "saccade/arm/arm_model.hpp"
+#include "saccade/arm/kinematics.hpp"
+#include "saccade/arm/obstacle_map.hpp"
 
 namespace saccade {
+
+class ArmFront;
+class PlacedFront;
+class SphereTree;
+struct CoveredBodies;
+struct FrontBall;
 
 struct ArmCollisionConfig {
   double max_excess_m{0.005};  ///< of the balls that cover the links: SphereTreeConfig
@@ -55,13 +63,18 @@ class ArmCollision {
   [[nodiscard]] std::optional<MotionContact> motion_contact(const Configuration& from, const Configuration& to,
                                                             const ObstacleMap& obstacles) const;
 
+  /// A ball about a part of the arm, in the world; those that are `finest` have none below them.
+  using BallIsClear = std::function<bool(const Eigen::Vector3d& center_world, double radius_m, bool finest)>;
+  /// Whether is_clear holds for balls that cover all links but the base, the coarsest that will do.
+  [[nodiscard]] bool clear(const ArmPoses& poses, const BallIsClear& is_clear) const;
+
   /// No point of the arm moves farther than this between two configurations, metres.
   [[nodiscard]] double travel_bound_m(const Configuration& from, const Configuration& to) const;
 
   [[nodiscard]] const ArmModel& arm() const { return *arm_; }
   [[nodiscard]] const ArmCollisionConfig& config() const { return config_; }
   /// The covers of the bodies of link i, in its frame.
-  [[nodiscard]] const std::vector<SphereTree>& cover(int link) const { return covers_[static_cast<std::size_t>(link)]; }
+  [[nodiscard]] const std::vector<SphereTree>& cover(int link) const;
   /// Pairs of links that are held against each other, lower number first.
   [[nodiscard]] const std::vector<std::pair<int, int>>& self_pairs() const { return self_pairs_; }
 
@@ -78,13 +91,13 @@ class ArmCollision {
 
   explicit ArmCollision(const ArmModel& arm, const ArmCollisionConfig& config)
       : arm_{std::make_shared<const ArmModel>(arm)}, config_{config} {}
-  [[nodiscard]] std::optional<Contact> contact(const ArmFront::Placed& placed, const ObstacleMap& obstacles) const;
+  [[nodiscard]] std::optional<Contact> contact(const PlacedFront& placed, const ObstacleMap& obstacles) const;
   void find_levers();
   void find_self_pairs();
-  [[nodiscard]] bool touches_obstacle(const ArmFront::Ball& of_front, const ArmFront::Placed& placed,
+  [[nodiscard]] bool touches_obstacle(const FrontBall& of_front, const PlacedFront& placed,
                                       const ObstacleMap& obstacles) const;
   /// Of two links, at least; looked for until it is more than enough_m.
-  [[nodiscard]] double separation_m(const ArmFront::Placed& placed, int a, int b, double enough_m) const;
+  [[nodiscard]] double separation_m(const PlacedFront& placed, int a, int b, double enough_m) const;
   [[nodiscard]] double separation_m(const Pose& T_world_a, const Pose& T_world_b, int a, int b, double enough_m) const;
   /// Of a link, seen from link `first`: the joints between them count.
   [[nodiscard]] Travel travel_of(std::size_t first, std::size_t link, const Configuration& from,
@@ -92,8 +105,7 @@ class ArmCollision {
 
   std::shared_ptr<const ArmModel> arm_;
   ArmCollisionConfig config_;
-  std::vector<std::vector<SphereTree>> covers_;  ///< per link
-  std::vector<std::vector<BodyBox>> boxes_;      ///< the same bodies
+  std::shared_ptr<const CoveredBodies> bodies_;
   std::vector<std::pair<int, int>> self_pairs_;
   std::shared_ptr<const ArmFront> front_;
   std::vector<double> reach_m_;    ///< per link, of its bodies from its origin

@@ -1,8 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/arm/arm_mesh.hpp"
 
-#include "saccade/arm/body_surface.hpp"
-
 namespace saccade {
 namespace {
 

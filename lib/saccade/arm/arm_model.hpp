@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ArmModel: a serial arm that holds a camera: joints with their limits, links with their collision bodies, the mounts.
+// ArmModel: a serial arm that holds a camera: joints with their limits, links with their collision bodies, the mounts;
+// arm_hash: tells whether two arms are the same to a planner.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -13,7 +14,7 @@
 #include "saccade/core/result.hpp"
 #include "saccade/core/seeded_random.hpp"
 #include "saccade/map/mesh.hpp"
-#include "saccade/robot/configuration.hpp"
+#include "saccade/robot/trajectory.hpp"
 
 namespace saccade {
 
@@ -130,5 +131,8 @@ class ArmModel {
 
 /// Draws a configuration within the limits, continuous joints within ±π.
 [[nodiscard]] Configuration sample_configuration(const ArmModel& arm, SeededRandom& random);
+/// 16 hexadecimal digits from all that changes how an arm moves and what it touches: joints, limits, mounts and
+/// bodies. Names do not. Fnv1a. O(vertices).
+[[nodiscard]] std::string arm_hash(const ArmModel& arm);
 
 }  // namespace saccade

@@ -6,6 +6,8 @@
 #include <vector>
 
 #include "saccade/arm/arm_collision.hpp"
+#include "saccade/arm/internal/arm_front.hpp"
+#include "saccade/arm/internal/cover_separation.hpp"
 
 namespace saccade {
 
@@ -15,8 +17,8 @@ namespace saccade {
 class ArmCollision::Motion {
  public:
   Motion(const ArmCollision& arm, const Configuration& from, const Configuration& to, const ObstacleMap& obstacles)
-      : arm_{arm}, from_{from}, way_{to - from}, obstacles_{obstacles} {
-    for (std::size_t link = 0; link < arm.covers_.size(); ++link) travel_[link] = arm.travel_of(0, link, from, to);
+      : arm_{arm}, covers_{arm.bodies_->covers}, from_{from}, way_{to - from}, obstacles_{obstacles} {
+    for (std::size_t link = 0; link < covers_.size(); ++link) travel_[link] = arm.travel_of(0, link, from, to);
     for (std::size_t i = 0; i < arm.self_pairs_.size(); ++i) {
       const auto a = static_cast<std::size_t>(arm.self_pairs_[i].first);
       const auto b = static_cast<std::size_t>(arm.self_pairs_[i].second);
@@ -28,7 +30,7 @@ class ArmCollision::Motion {
   [[nodiscard]] std::optional<MotionContact> first() {
     if (const auto found = arm_.contact(from_, obstacles_)) return MotionContact{0.0, *found};
     if (!way_.allFinite()) return at_the_end();  // no half of it would be short enough
-    const std::span<const ArmFront::Ball> front = arm_.front_->balls();
+    const std::span<const FrontBall> front = arm_.front_->balls();
     balls_.assign(front.begin(), front.end());
     for (std::size_t i = 0; i < arm_.self_pairs_.size(); ++i) pairs_.push_back(i);
     if (auto found = first_between(0.0, 1.0, {0, balls_.size(), 0, pairs_.size()})) return found;
@@ -53,7 +55,7 @@ class ArmCollision::Motion {
     if (rest.empty()) return std::nullopt;
     const double middle = 0.5 * (begin + end);
     const Configuration q = from_ + middle * way_;
-    const ArmFront::Placed placed{*arm_.front_, q};
+    const PlacedFront placed{*arm_.front_, q};
     half_ = 0.5 * (end - begin);
     touched_ = false;
     Rest left{balls_.size(), 0, pairs_.size(), 0};
@@ -71,21 +73,21 @@ class ArmCollision::Motion {
     return found;
   }
 
-  void look_at_balls(const Rest& rest, const ArmFront::Placed& placed) {
+  void look_at_balls(const Rest& rest, const PlacedFront& placed) {
     constexpr std::size_t kAtOnce{64};
     std::array<float, kAtOnce> x_m;
     std::array<float, kAtOnce> y_m;
     std::array<float, kAtOnce> z_m;
     std::array<float, kAtOnce> radius_m;
     std::array<float, kAtOnce> clearance_m;
-    std::size_t link = arm_.covers_.size();
+    std::size_t link = covers_.size();
     Pose T_world_link = Pose::Identity();
     for (std::size_t begin = rest.first_ball; begin < rest.end_ball; begin += kAtOnce) {
       const std::size_t count = std::min(kAtOnce, rest.end_ball - begin);
       for (std::size_t i = 0; i < count; ++i) {
-        const ArmFront::Ball& ball = balls_[begin + i];
+        const FrontBall& ball = balls_[begin + i];
         if (ball.link != link) T_world_link = placed.T_world_link(link = ball.link);
-        const TreeBall& of_cover = arm_.covers_[ball.link][ball.body].balls()[ball.index];
+        const TreeBall& of_cover = covers_[ball.link][ball.body].balls()[ball.index];
         const Eigen::Vector3d center = T_world_link * of_cover.center.cast<double>();
         x_m[i] = static_cast<float>(center.x());
         y_m[i] = static_cast<float>(center.y());
@@ -96,7 +98,7 @@ class ArmCollision::Motion {
       obstacles_.clearance_bounds({first(x_m), first(y_m), first(z_m), first(radius_m)},
                                   std::span{clearance_m}.first(count));
       for (std::size_t i = 0; i < count; ++i) {
-        const ArmFront::Ball ball = balls_[begin + i];
+        const FrontBall ball = balls_[begin + i];
         look_at(ball, static_cast<double>(clearance_m[i]), placed);
       }
     }
@@ -108,8 +110,8 @@ class ArmCollision::Motion {
     return half_ * (travel.fixed_m + travel.turn_rad * static_cast<double>(ball.center.norm() + ball.radius_m));
   }
 
-  void look_at(const ArmFront::Ball& ball, double clearance_m, const ArmFront::Placed& placed) {
-    const auto balls = arm_.covers_[ball.link][ball.body].balls();
+  void look_at(const FrontBall& ball, double clearance_m, const PlacedFront& placed) {
+    const auto balls = covers_[ball.link][ball.body].balls();
     const TreeBall& of_cover = balls[ball.index];
     const double moves_m = this->moves_m(ball.link, of_cover);
     if (clearance_m > moves_m) return;
@@ -134,7 +136,7 @@ class ArmCollision::Motion {
     }
   }
 
-  void look_at_pairs(const Rest& rest, const ArmFront::Placed& placed) {
+  void look_at_pairs(const Rest& rest, const PlacedFront& placed) {
     if (rest.first_pair == rest.end_pair) return;
     std::array<float, kMostPairs> margins_m;
     for (std::size_t i = 0; i < arm_.self_pairs_.size(); ++i)
@@ -159,12 +161,13 @@ class ArmCollision::Motion {
   static constexpr double kMostPairMove_m{0.03};
 
   const ArmCollision& arm_;
+  const std::vector<std::vector<SphereTree>>& covers_;
   Configuration from_;
   Configuration way_;
   const ObstacleMap& obstacles_;
   std::array<Travel, kMaxJoints + 1> travel_;
   std::array<float, kMostPairs> pair_travel_m_;
-  std::vector<ArmFront::Ball> balls_;  ///< stacks
+  std::vector<FrontBall> balls_;  ///< stacks
   std::vector<std::size_t> pairs_;
   double half_{0.0};  ///< of the present interval
   bool touched_{false};

@@ -3,8 +3,9 @@
 
 #include <algorithm>
 
+#include "saccade/arm/internal/driven_way.hpp"
 #include "saccade/arm/internal/swept_cells.hpp"
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 
 namespace saccade {
 namespace {
@@ -60,6 +61,15 @@ Result<ArmRobot::Parts> ArmRobot::make_parts(const ArmModel& arm, const TsdfConf
   return Parts{std::move(reachability), std::move(planner), std::move(fixtures), std::move(obstacles), start};
 }
 
+ArmRobot::ArmRobot(Parts parts)
+    : reachability_{std::move(parts.reachability)},
+      planner_{std::move(parts.planner)},
+      fixtures_{std::move(parts.fixtures)},
+      obstacles_{std::move(parts.obstacles)},
+      stand_by_{parts.start},
+      q_{parts.start},
+      way_{DrivenWay{}} {}
+
 Status ArmRobot::place(const Configuration& q) {
   SACCADE_CHECK(check_configuration(arm(), q));
   stand(q);
@@ -67,13 +77,13 @@ Status ArmRobot::place(const Configuration& q) {
 }
 
 void ArmRobot::arrive(const Motion& motion, const Configuration& q) {
-  way_.add(motion.trajectory);
+  way_->add(motion.trajectory);
   q_ = q;
   retreat_.reset();
 }
 
 void ArmRobot::stand(const Configuration& q) {
-  way_.clear();
+  way_->clear();
   q_ = q;
   retreat_.reset();
 }
@@ -82,7 +92,7 @@ Status ArmRobot::follow(const TsdfSnapshot& map, const Executor& executor) {
   SACCADE_TRY([[maybe_unused]] const ObstacleUpdate update, obstacles_.update(map, executor));
   const ArmCollision& collision = reachability_.collision();
   retreat_.reset();
-  if (collision.contact(q_, obstacles_)) retreat_ = way_.back_from(q_, collision, obstacles_);
+  if (collision.contact(q_, obstacles_)) retreat_ = way_->back_from(q_, collision, obstacles_);
   return {};
 }
 

@@ -2,13 +2,15 @@
 #pragma once
 // ArmRobot: an arm that finds its own way through the map; SimulatedRobot: one that moves in simulated time.
 
-#include "saccade/arm/driven_way.hpp"
 #include "saccade/arm/motion_planner.hpp"
 #include "saccade/arm/reachability.hpp"
+#include "saccade/core/hidden.hpp"
 #include "saccade/robot/joint_controller.hpp"
 #include "saccade/robot/robot.hpp"
 
 namespace saccade {
+
+class DrivenWay;
 
 struct ArmRobotConfig {
   IkConfig ik;
@@ -57,13 +59,7 @@ class ArmRobot : public Robot {
     ObstacleMap obstacles;
     Configuration start;
   };
-  explicit ArmRobot(Parts parts)
-      : reachability_{std::move(parts.reachability)},
-        planner_{std::move(parts.planner)},
-        fixtures_{std::move(parts.fixtures)},
-        obstacles_{std::move(parts.obstacles)},
-        stand_by_{parts.start},
-        q_{parts.start} {}
+  explicit ArmRobot(Parts parts);
   [[nodiscard]] static Result<Parts> make_parts(const ArmModel& arm, const TsdfConfig& map,
                                                 const ArmRobotConfig& config);
   /// Whether a motion begins where the arm stands.
@@ -88,7 +84,7 @@ class ArmRobot : public Robot {
   ObstacleMap obstacles_;
   Configuration stand_by_;
   Configuration q_;
-  DrivenWay way_;
+  Hidden<DrivenWay> way_;
   std::optional<Trajectory> retreat_;  ///< out of the contact in which the arm stands
 };
 

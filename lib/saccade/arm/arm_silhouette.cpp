@@ -6,7 +6,8 @@
 #include <map>
 #include <string>
 
-#include "saccade/arm/body_surface.hpp"
+#include "saccade/arm/arm_mesh.hpp"
+#include "saccade/arm/internal/depth_raster.hpp"
 
 namespace saccade {
 namespace {

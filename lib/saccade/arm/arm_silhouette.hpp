@@ -6,13 +6,15 @@
 #include <optional>
 #include <vector>
 
-#include "saccade/arm/depth_raster.hpp"
 #include "saccade/arm/kinematics.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
 
 namespace saccade {
+
+class DepthRaster;
+struct RasterGrowth;
 
 struct ArmSilhouetteConfig {
   double margin_m{0.01};   ///< the bodies are taken for so much larger: models, joints and hand-eye transforms err

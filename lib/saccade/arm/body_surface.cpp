@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/arm/body_surface.hpp"
+#include "saccade/arm/arm_mesh.hpp"
 
 #include <cmath>
 #include <numbers>

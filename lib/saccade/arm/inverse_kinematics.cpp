@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/arm/inverse_kinematics.hpp"
 
+#include <optional>
 #include <utility>
 
 #include "saccade/arm/internal/joint_turns.hpp"
+#include "saccade/arm/internal/numeric_ik.hpp"
+#include "saccade/arm/internal/spherical_wrist.hpp"
 #include "saccade/arm/kinematics.hpp"
 
 namespace saccade {
@@ -35,30 +38,42 @@ Configuration IkTable::solution(std::size_t pose, std::size_t i) const {
   return Eigen::Map<const Eigen::VectorXd>{values.data() + at, dof};
 }
 
+struct InverseKinematics::Solvers {
+  std::optional<SphericalWrist> wrist;
+  NumericIk numeric;
+};
+
 Result<InverseKinematics> InverseKinematics::create(ArmModel arm, const IkConfig& config) {
   if (config.max_turns < 1) return Error{Errc::invalid_argument, "max_turns must be one at least", ""};
   const auto shared = std::make_shared<const ArmModel>(std::move(arm));
   SACCADE_TRY(NumericIk numeric, NumericIk::create(shared, config.numeric));
-  InverseKinematics ik{shared, config.max_turns, std::move(numeric)};
-  if (config.method == IkMethod::numeric) return ik;
-  auto wrist = SphericalWrist::find(*shared);
-  if (wrist) {
-    ik.wrist_ = *std::move(wrist);
-  } else if (config.method == IkMethod::closed_form) {
-    return wrist.error();
-  } else {
-    ik.why_numeric_ = wrist.error().message;
+  InverseKinematics ik{shared, config.max_turns};
+  Solvers solvers{std::nullopt, std::move(numeric)};
+  if (config.method != IkMethod::numeric) {
+    auto wrist = SphericalWrist::find(*shared);
+    if (wrist) {
+      solvers.wrist = *std::move(wrist);
+    } else if (config.method == IkMethod::closed_form) {
+      return wrist.error();
+    } else {
+      ik.why_numeric_ = wrist.error().message;
+    }
   }
+  ik.solvers_ = std::make_shared<const Solvers>(std::move(solvers));
   return ik;
 }
 
+IkMethod InverseKinematics::method() const { return solvers_->wrist ? IkMethod::closed_form : IkMethod::numeric; }
+
+bool InverseKinematics::refines() const { return solvers_->wrist && !solvers_->wrist->is_exact(); }
+
 void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference,
                                std::vector<Configuration>& solutions) const {
-  if (!wrist_) {
-    for (const Configuration& q : numeric_.solve(T_world_camera, reference)) solutions.push_back(q);
+  if (!solvers_->wrist) {
+    for (const Configuration& q : solvers_->numeric.solve(T_world_camera, reference)) solutions.push_back(q);
     return;
   }
-  const WristSolutions found = wrist_->solve(T_world_camera, reference);
+  const WristSolutions found = solvers_->wrist->solve(T_world_camera, reference);
   for (std::size_t i = 0; i < found.count; ++i) {
     Configuration q = found.q[i];
     if (!meets(camera_pose(*arm_, q), T_world_camera) && !refine(*arm_, T_world_camera, q)) continue;

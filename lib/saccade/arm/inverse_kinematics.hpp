@@ -5,14 +5,11 @@
 #include <cstddef>
 #include <cstdint>
 #include <memory>
-#include <optional>
 #include <span>
 #include <string>
 #include <vector>
 
 #include "saccade/arm/arm_model.hpp"
-#include "saccade/arm/numeric_ik.hpp"
-#include "saccade/arm/spherical_wrist.hpp"
 #include "saccade/core/executor.hpp"
 
 namespace saccade {
@@ -24,6 +21,20 @@ enum class IkMethod {
 };
 
 [[nodiscard]] std::string_view to_string(IkMethod method);
+
+/// What a solution may miss its pose by: metres, and radians.
+constexpr double kIkTolerance{1e-9};
+
+/// NumericIk, by iteration from many starts.
+struct NumericIkConfig {
+  int restarts{100};          ///< starts besides the reference, drawn within the limits
+  int max_solutions{1};       ///< stops when it has found so many that differ by more than distinct_rad in some joint
+  int iterations{60};         ///< of each start, at most
+  double distinct_rad{0.05};  ///< rad; m for prismatic joints
+  std::uint64_t seed{1};
+
+  [[nodiscard]] Status validate() const;
+};
 
 struct IkConfig {
   IkMethod method{IkMethod::automatic};
@@ -55,9 +66,9 @@ class InverseKinematics {
 
   [[nodiscard]] const ArmModel& arm() const { return *arm_; }
   /// closed_form or numeric.
-  [[nodiscard]] IkMethod method() const { return wrist_ ? IkMethod::closed_form : IkMethod::numeric; }
+  [[nodiscard]] IkMethod method() const;
   /// Whether the closed form is refined, because the arm's axes only nearly meet or are parallel, as after rounding.
-  [[nodiscard]] bool refines() const { return wrist_ && !wrist_->is_exact(); }
+  [[nodiscard]] bool refines() const;
   /// Why there is no closed form; empty where there is one or none was looked for.
   [[nodiscard]] const std::string& why_numeric() const { return why_numeric_; }
 
@@ -72,14 +83,13 @@ class InverseKinematics {
                                   const Executor& executor) const;
 
  private:
-  InverseKinematics(std::shared_ptr<const ArmModel> arm, int max_turns, NumericIk numeric)
-      : arm_{std::move(arm)}, max_turns_{max_turns}, numeric_{std::move(numeric)} {}
+  struct Solvers;
+  InverseKinematics(std::shared_ptr<const ArmModel> arm, int max_turns) : arm_{std::move(arm)}, max_turns_{max_turns} {}
   void append(const Pose& T_world_camera, const Configuration& reference, std::vector<Configuration>& solutions) const;
 
   std::shared_ptr<const ArmModel> arm_;
   int max_turns_;
-  std::optional<SphericalWrist> wrist_;
-  NumericIk numeric_;
+  std::shared_ptr<const Solvers> solvers_;
   std::string why_numeric_;
 };
 

@@ -7,6 +7,8 @@
 #include <string>
 #include <utility>
 
+#include "saccade/arm/internal/obstacle_field.hpp"
+#include "saccade/arm/internal/obstacle_kernels.hpp"
 #include "saccade/core/clock.hpp"
 
 namespace saccade {
@@ -42,6 +44,12 @@ bool any_set(const std::uint64_t* row, std::int32_t first, std::int32_t last) {
     if (row[word] != 0) return true;
   }
   return (row[end] & to_last) != 0;
+}
+
+/// The spheres from one of them on.
+obstacle::SphereArrays from(const SphereSpans& spheres, std::size_t first) {
+  return {spheres.x_m.data() + first, spheres.y_m.data() + first, spheres.z_m.data() + first,
+          spheres.radius_m.data() + first};
 }
 
 double squared_distance(const Box& box, const Eigen::Vector3d& p) {
@@ -80,19 +88,19 @@ ObstacleMap::ObstacleMap(const TsdfConfig& map, ObstacleConfig config, ObstacleC
       voxel_size_m_{map.voxel_size_m},
       workspace_{map.workspace},
       cells_{std::move(cells)},
-      field_{cells_, reach_cells, config_.fixtures, executor},
-      origin_{cells_.bounds_of(cells_.box().lo).min},
-      half_cells_per_m_{2.0 / cells_.cell_edge_m()} {
+      field_{ObstacleField{*cells_, reach_cells, config_.fixtures, executor}},
+      origin_{cells_->bounds_of(cells_->box().lo).min},
+      half_cells_per_m_{2.0 / cells_->cell_edge_m()} {
   // A float's rounding is 6e-8 of it; the kernel adds a few.
-  const double largest = half_cells_per_m_ *
-                         (origin_.cwiseAbs().maxCoeff() + (cells_.bounds_of(cells_.box().hi).min - origin_).maxCoeff());
+  const double largest = half_cells_per_m_ * (origin_.cwiseAbs().maxCoeff() +
+                                              (cells_->bounds_of(cells_->box().hi).min - origin_).maxCoeff());
   batch_slack_ = static_cast<float>(1e-3 + 1e-6 * largest);
   for (const Box& box : config_.fixtures) {
     const Eigen::Vector3f lo = box.min.cast<float>();
     const Eigen::Vector3f hi = box.max.cast<float>();
     float_fixtures_.push_back({lo.x(), lo.y(), lo.z(), hi.x(), hi.y(), hi.z()});
   }
-  field_.update(cells_, executor);
+  field_->update(*cells_, executor);
 }
 
 Result<ObstacleUpdate> ObstacleMap::update(const TsdfSnapshot& map, const Executor& executor) {
@@ -102,13 +110,13 @@ Result<ObstacleUpdate> ObstacleMap::update(const TsdfSnapshot& map, const Execut
   if (!map.config.workspace || !same_box(*map.config.workspace, *workspace_)) {
     return invalid("the map has another workspace than before");
   }
-  const ObstacleCells::Changes changes = cells_.update(map.grid, executor);
-  if (changes.cells > 0) field_.update(cells_, executor);
+  const ObstacleCells::Changes changes = cells_->update(map.grid, executor);
+  if (changes.cells > 0) field_->update(*cells_, executor);
   return ObstacleUpdate{changes.bricks, changes.cells, stopwatch.elapsed_ms()};
 }
 
 ObstacleMap::Place ObstacleMap::place(const Eigen::Vector3d& p_world) const {
-  const Index3 n = cells_.size();
+  const Index3 n = cells_->size();
   const Eigen::Array3d most{2.0 * n.x, 2.0 * n.y, 2.0 * n.z};
   const Eigen::Array3d at = (p_world - origin_).array() * half_cells_per_m_;
   const Eigen::Array3d inside = at.max(0.0).min(most);
@@ -123,24 +131,24 @@ bool ObstacleMap::clear(const Eigen::Vector3d& center_world, double radius_m) co
   if (!center_world.allFinite() || !std::isfinite(radius_m)) return false;
   const double radius = std::max(radius_m, 0.0);
   const Place at = place(center_world);
-  const double distance = field_.distance(at.cell);
+  const double distance = field_->distance(at.cell);
   const double reach = radius * half_cells_per_m_ + kFieldSlack;
   const double left = squared(reach) - at.outside_squared;
   if (left < 0.0 || distance > at.from_centre + std::sqrt(left)) {
     return at.outside_squared == 0.0 || !touches_fixture(center_world, radius);
   }
   // A distance from a fixture was rounded down by less than one in the square.
-  const bool within_reach = distance < field_.reach() && at.outside_squared == 0.0;
+  const bool within_reach = distance < field_->reach() && at.outside_squared == 0.0;
   if (within_reach && std::sqrt(squared(distance) + 1.0) + at.from_centre < reach - 2.0 * kFieldSlack) return false;
   return !touches_cell(center_world, radius) && !touches_fixture(center_world, radius);
 }
 
 obstacle::FieldView ObstacleMap::view() const {
-  const Index3 n = cells_.size();
+  const Index3 n = cells_->size();
   const Eigen::Vector3f origin = origin_.cast<float>();
-  return {field_.distances().data(),
+  return {field_->distances().data(),
           {n.x, n.y, n.z},
-          static_cast<std::int32_t>(field_.row_stride()),
+          static_cast<std::int32_t>(field_->row_stride()),
           {origin.x(), origin.y(), origin.z()},
           static_cast<float>(half_cells_per_m_),
           batch_slack_,
@@ -150,7 +158,7 @@ obstacle::FieldView ObstacleMap::view() const {
 
 void ObstacleMap::clearance_bounds(const SphereSpans& spheres, std::span<float> out) const {
   SACCADE_EXPECTS(spheres.same_length() && out.size() == spheres.x_m.size());
-  obstacle::clearances(view(), spheres.arrays(0), out.size(), out.data());
+  obstacle::clearances(view(), from(spheres, 0), out.size(), out.data());
 }
 
 void ObstacleMap::perhaps_touching(const SphereSpans& spheres, std::span<std::uint64_t> out) const {
@@ -160,7 +168,7 @@ void ObstacleMap::perhaps_touching(const SphereSpans& spheres, std::span<std::ui
   const obstacle::FieldView field = view();
   for (std::size_t word = 0; word < out.size(); ++word) {
     const std::size_t first = word * kAtOnce;
-    out[word] = obstacle::perhaps_touching(field, spheres.arrays(first), std::min(kAtOnce, count - first));
+    out[word] = obstacle::perhaps_touching(field, from(spheres, first), std::min(kAtOnce, count - first));
   }
 }
 
@@ -170,7 +178,7 @@ std::size_t ObstacleMap::first_touching(const SphereSpans& spheres) const {
   const obstacle::FieldView field = view();
   constexpr std::size_t kAtOnce{64};
   for (std::size_t first = 0; first < count; first += kAtOnce) {
-    std::uint64_t perhaps = obstacle::perhaps_touching(field, spheres.arrays(first), std::min(kAtOnce, count - first));
+    std::uint64_t perhaps = obstacle::perhaps_touching(field, from(spheres, first), std::min(kAtOnce, count - first));
     for (; perhaps != 0; perhaps &= perhaps - 1) {
       const std::size_t i = first + static_cast<std::size_t>(std::countr_zero(perhaps));
       if (!clear({spheres.x_m[i], spheres.y_m[i], spheres.z_m[i]}, spheres.radius_m[i])) return i;
@@ -180,9 +188,9 @@ std::size_t ObstacleMap::first_touching(const SphereSpans& spheres) const {
 }
 
 bool ObstacleMap::touches_cell(const Eigen::Vector3d& center_world, double radius_m) const {
-  const Eigen::Vector3d p = (center_world - origin_) / cells_.cell_edge_m();
-  const double radius = radius_m / cells_.cell_edge_m() + kSlack_cells;
-  const Index3 n = cells_.size();
+  const Eigen::Vector3d p = (center_world - origin_) / cells_->cell_edge_m();
+  const double radius = radius_m / cells_->cell_edge_m() + kSlack_cells;
+  const Index3 n = cells_->size();
   const auto [first_z, last_z] = range_of_cells(p.z() - radius, p.z() + radius, n.z);
   const auto [first_y, last_y] = range_of_cells(p.y() - radius, p.y() + radius, n.y);
   for (std::int32_t z = first_z; z <= last_z; ++z) {
@@ -193,14 +201,14 @@ bool ObstacleMap::touches_cell(const Eigen::Vector3d& center_world, double radiu
       const double half = std::sqrt(left_in_row);
       const auto [first_x, last_x] = range_of_cells(p.x() - half, p.x() + half, n.x);
       const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(n.y) + static_cast<std::size_t>(y);
-      if (first_x <= last_x && any_set(cells_.row(row), first_x, last_x)) return true;
+      if (first_x <= last_x && any_set(cells_->row(row), first_x, last_x)) return true;
     }
   }
   return false;
 }
 
 bool ObstacleMap::touches_fixture(const Eigen::Vector3d& center_world, double radius_m) const {
-  const double reach = radius_m + kSlack_cells * cells_.cell_edge_m();
+  const double reach = radius_m + kSlack_cells * cells_->cell_edge_m();
   return std::any_of(config_.fixtures.begin(), config_.fixtures.end(),
                      [&](const Box& box) { return squared_distance(box, center_world) <= squared(reach); });
 }
@@ -214,7 +222,7 @@ double ObstacleMap::fixture_distance_m(const Eigen::Vector3d& p_world) const {
 double ObstacleMap::distance_bound_m(const Eigen::Vector3d& p_world) const {
   if (!p_world.allFinite()) return 0.0;
   const Place at = place(p_world);
-  const double inside = std::max(field_.distance(at.cell) - at.from_centre, 0.0);
+  const double inside = std::max(field_->distance(at.cell) - at.from_centre, 0.0);
   const double half_cells = std::sqrt(at.outside_squared + squared(inside)) - kFieldSlack;
   const double bound = std::clamp(half_cells / half_cells_per_m_, 0.0, config_.max_distance_m);
   return at.outside_squared == 0.0 ? bound : std::min(bound, fixture_distance_m(p_world));
@@ -223,16 +231,16 @@ double ObstacleMap::distance_bound_m(const Eigen::Vector3d& p_world) const {
 double ObstacleMap::distance_m(const Eigen::Vector3d& p_world) const {
   if (!p_world.allFinite()) return 0.0;
   const Place at = place(p_world);
-  const double distance = field_.distance(at.cell);
-  const double edge_m = cells_.cell_edge_m();
+  const double distance = field_->distance(at.cell);
+  const double edge_m = cells_->cell_edge_m();
   double best_m = fixture_distance_m(p_world);
-  if (at.outside_squared == 0.0 && distance >= field_.reach() + at.from_centre) return best_m;
-  if (distance < field_.reach()) {  // the nearest cell or fixture is no farther than by way of the centre
+  if (at.outside_squared == 0.0 && distance >= field_->reach() + at.from_centre) return best_m;
+  if (distance < field_->reach()) {  // the nearest cell or fixture is no farther than by way of the centre
     const double half_cells = std::sqrt(squared(distance) + 1.0) + at.from_centre + std::sqrt(at.outside_squared);
     best_m = std::min(best_m, half_cells / half_cells_per_m_ + kFieldSlack * edge_m);
   }
   const Eigen::Vector3d p = (p_world - origin_) / edge_m;
-  const Index3 n = cells_.size();
+  const Index3 n = cells_->size();
   double best = squared(best_m / edge_m);
   const double radius = best_m / edge_m;
   const auto [first_z, last_z] = range_of_cells(p.z() - radius, p.z() + radius, n.z);
@@ -245,7 +253,7 @@ double ObstacleMap::distance_m(const Eigen::Vector3d& p_world) const {
       const auto [first_x, last_x] = range_of_cells(p.x() - half, p.x() + half, n.x);
       const auto row = static_cast<std::size_t>(z) * static_cast<std::size_t>(n.y) + static_cast<std::size_t>(y);
       for (std::int32_t x = first_x; x <= last_x; ++x) {
-        if (any_set(cells_.row(row), x, x)) best = std::min(best, aside + squared(gap(p.x(), x)));
+        if (any_set(cells_->row(row), x, x)) best = std::min(best, aside + squared(gap(p.x(), x)));
       }
     }
   }
@@ -254,13 +262,13 @@ double ObstacleMap::distance_m(const Eigen::Vector3d& p_world) const {
 
 std::vector<Box> ObstacleMap::boxes() const {
   std::vector<Box> all;
-  all.reserve(cells_.obstacle_count() + config_.fixtures.size());
-  const Index3 n = cells_.size();
+  all.reserve(cells_->obstacle_count() + config_.fixtures.size());
+  const Index3 n = cells_->size();
   for (std::int32_t z = 0; z < n.z; ++z) {
     for (std::int32_t y = 0; y < n.y; ++y) {
       for (std::int32_t x = 0; x < n.x; ++x) {
-        const Index3 cell = cells_.box().lo + Index3{x, y, z};
-        if (cells_.is_obstacle(cell)) all.push_back(cells_.bounds_of(cell));
+        const Index3 cell = cells_->box().lo + Index3{x, y, z};
+        if (cells_->is_obstacle(cell)) all.push_back(cells_->bounds_of(cell));
       }
     }
   }

@@ -2,14 +2,25 @@
 #pragma once
 // ObstacleMap: what an arm must not touch, by the map and by declared fixtures, and how far spheres are from it.
 
+#include <array>
+#include <cstdint>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "saccade/arm/obstacle_field.hpp"
-#include "saccade/arm/obstacle_kernels.hpp"
+#include "saccade/core/executor.hpp"
+#include "saccade/core/hidden.hpp"
+#include "saccade/core/region.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/map/tsdf_map.hpp"
 
 namespace saccade {
+
+class ObstacleCells;
+class ObstacleField;
+namespace obstacle {
+struct FieldView;
+}
 
 struct ObstacleConfig {
   double cell_size_m{0.04};        ///< thesis §2.1; the nearest whole number of voxels is taken
@@ -36,10 +47,6 @@ struct SphereSpans {
 
   [[nodiscard]] bool same_length() const {
     return y_m.size() == x_m.size() && z_m.size() == x_m.size() && radius_m.size() == x_m.size();
-  }
-  /// From one of them on.
-  [[nodiscard]] obstacle::SphereArrays arrays(std::size_t first) const {
-    return {x_m.data() + first, y_m.data() + first, z_m.data() + first, radius_m.data() + first};
   }
 };
 
@@ -84,8 +91,8 @@ class ObstacleMap {
   [[nodiscard]] double distance_bound_m(const Eigen::Vector3d& p_world) const;
 
   [[nodiscard]] const ObstacleConfig& config() const { return config_; }
-  [[nodiscard]] const ObstacleCells& cells() const { return cells_; }
-  [[nodiscard]] const ObstacleField& field() const { return field_; }
+  [[nodiscard]] const ObstacleCells& cells() const { return *cells_; }
+  [[nodiscard]] const ObstacleField& field() const { return *field_; }
   /// Boxes of all obstacle cells in z-y-x order, then the fixtures.
   [[nodiscard]] std::vector<Box> boxes() const;
 
@@ -107,8 +114,8 @@ class ObstacleMap {
   ObstacleConfig config_;
   double voxel_size_m_;
   std::optional<Box> workspace_;
-  ObstacleCells cells_;
-  ObstacleField field_;
+  Hidden<ObstacleCells> cells_;
+  Hidden<ObstacleField> field_;
   Eigen::Vector3d origin_;  ///< lower corner of the cells
   double half_cells_per_m_;
   float batch_slack_;  ///< in half cells

@@ -11,7 +11,7 @@
 #include "saccade/arm/internal/urdf_document.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/files/readable_text.hpp"
+#include "saccade/io/files/text_scan.hpp"
 
 namespace saccade {
 namespace {

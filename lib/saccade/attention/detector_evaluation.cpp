@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <limits>
 
-#include "saccade/attention/trajectory_changes.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/core/statistics.hpp"
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// evaluate_detector: precision, recall and location error of a detector of hand actions on labelled trajectories.
+// evaluate_detector: precision, recall and location error of a detector of hand actions on labelled trajectories;
+// at_speed, with_noise: slower or faster hands and worse sensors. Thesis §2.4.2.
 
 #include <cstdint>
 #include <functional>
@@ -70,5 +71,17 @@ using HandActionDetector = std::function<Result<std::vector<HandAction>>(const H
 [[nodiscard]] Result<DetectorEvaluation> evaluate_detector(const HandActionDetector& detector,
                                                            std::span<const LabelledTrajectory> trajectories,
                                                            const EvaluationConditions& conditions = {});
+
+/// `multiplier` times as many samples as before, at the sampling intervals of before. Undersampling takes every n-th
+/// sample, so that 0.25 is a hand four times as fast; oversampling is linear from end to end, orientations interpolated
+/// where both neighbours have one, so that 4 is a slow hand. A multiplier of 1 changes nothing.
+/// @return invalid_argument for a multiplier that is not positive and finite, or that gives more than 1e8 samples.
+/// O(samples returned).
+[[nodiscard]] Result<HandTrajectory> at_speed(const HandTrajectory& trajectory, double multiplier);
+
+/// Adds normal noise of this standard deviation to each coordinate, independently. The seed decides it, on every
+/// platform. 0 changes nothing.
+/// @return invalid_argument for a negative or infinite deviation. O(n).
+[[nodiscard]] Result<HandTrajectory> with_noise(HandTrajectory trajectory, double sigma_m, std::uint64_t seed);
 
 }  // namespace saccade

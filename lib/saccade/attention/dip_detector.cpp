@@ -7,7 +7,8 @@
 #include <initializer_list>
 #include <iterator>
 
-#include "saccade/attention/speed_dips.hpp"
+#include "saccade/attention/internal/hand_smoothing.hpp"
+#include "saccade/attention/internal/speed_dips.hpp"
 
 namespace saccade {
 

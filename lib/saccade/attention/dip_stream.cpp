@@ -1,11 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/attention/dip_stream.hpp"
+#include "saccade/attention/dip_detector.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <utility>
 
-#include "saccade/attention/dip_detector.hpp"
+#include "saccade/attention/internal/hand_smoothing.hpp"
+#include "saccade/attention/internal/speed_dips.hpp"
 
 namespace saccade {
 
@@ -44,6 +45,9 @@ Status DipStreamConfig::validate() const {
   }
   return {};
 }
+
+DipStream::DipStream(const DipStreamConfig& config)
+    : config_{config}, dips_{SpeedDips{config.prominence}}, spread_{PositionSpread{}} {}
 
 Result<DipStream> DipStream::create(const DipStreamConfig& config) {
   SACCADE_CHECK(config.validate());
@@ -123,10 +127,10 @@ std::vector<HandAction> DipStream::judge_until(double time_s) {
       weighted_path_ += now.speed_mps * way_m;
     }
     judged_s_ = at_s;
-    spread_.add(now.position_m, position_noise_m(noise_m_, interval_s_, kernel_s_));
+    spread_->add(now.position_m, position_noise_m(noise_m_, interval_s_, kernel_s_));
     if (!judging_) continue;
-    const auto dip = dips_.put(now, config_.speed_floor_share * mean_speed_mps());
-    if (dip && spread_.exceeds_noise()) actions.push_back(action_of(*dip));
+    const auto dip = dips_->put(now, config_.speed_floor_share * mean_speed_mps());
+    if (dip && spread_->exceeds_noise()) actions.push_back(action_of(*dip));
   }
   return actions;
 }

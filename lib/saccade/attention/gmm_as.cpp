@@ -9,7 +9,8 @@
 #include <limits>
 #include <utility>
 
-#include "saccade/sensor/trajectory_check.hpp"
+#include "saccade/attention/internal/gmm_em.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 namespace {

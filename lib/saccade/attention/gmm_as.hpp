@@ -2,11 +2,11 @@
 #pragma once
 // detect_by_gmm: GMM-AS (Gaussian mixture models, activity saliency). Where a hand acted, by the shape of a mixture.
 
+#include <Eigen/Core>
 #include <optional>
 #include <span>
 #include <vector>
 
-#include "saccade/attention/gmm_em.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/hand_trajectory.hpp"
 
@@ -16,6 +16,16 @@ namespace saccade {
 enum class SaliencyFormula {
   cubed,  ///< σ1 σ2 σ3 / (σ1 + σ2 + σ3)³ · π c*: without unit; gives the figures of the thesis' Tables 2.5, 2.6
   as_printed,  ///< σ1 σ2 σ3 / (σ1 + σ2 + σ3) · π c*: eq. 2.13
+};
+
+/// How mixtures are fitted: GmmEm.
+struct GmmEmConfig {
+  double covariance_floor{1e-5};  ///< added to the diagonal of every covariance, squared units of the samples
+  double relative_stop{1e-8};     ///< ends when the log-likelihood rises by less than this share of itself
+  int max_iterations{200};
+
+  /// invalid_argument for a value out of range.
+  [[nodiscard]] Status validate() const;
 };
 
 /// Defaults as measured to give the thesis' Tables 2.2–2.4.

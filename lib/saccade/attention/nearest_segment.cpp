@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/attention/nearest_segment.hpp"
+#include "saccade/attention/segmented_points.hpp"
 
 #include <limits>
 #include <numeric>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/attention/trajectory_changes.hpp"
+#include "saccade/attention/detector_evaluation.hpp"
 
 #include <algorithm>
 #include <cmath>

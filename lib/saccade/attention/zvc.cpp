@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <string>
 
-#include "saccade/sensor/trajectory_check.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/cloud/estimated_normals.hpp"
+#include "saccade/cloud/nearest_neighbours.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/cloud/point_cells.hpp"
+#include "saccade/cloud/cell_index.hpp"
 
 #include <sstream>
 #include <string>

@@ -1,7 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/devices/external_camera.hpp"
 
+#include <utility>
 #include <vector>
+
+#include "saccade/devices/internal/external_process.hpp"
+#include "saccade/devices/internal/process_messages.hpp"
 
 namespace saccade {
 
@@ -9,6 +13,13 @@ Status ExternalCameraConfig::validate() const {
   SACCADE_CHECK(validate_time_limit(start_timeout_s, "camera"));
   return validate_time_limit(capture_timeout_s, "camera");
 }
+
+ExternalCamera::ExternalCamera(ExternalCameraConfig config, std::unique_ptr<ExternalProcess> process,
+                               ExternalCameraFormat format)
+    : config_{std::move(config)}, process_{std::move(process)}, format_{format} {}
+ExternalCamera::ExternalCamera(ExternalCamera&&) noexcept = default;
+ExternalCamera& ExternalCamera::operator=(ExternalCamera&&) noexcept = default;
+ExternalCamera::~ExternalCamera() = default;
 
 Result<ExternalCamera> ExternalCamera::start(const ExternalCameraConfig& config) {
   SACCADE_CHECK(config.validate());

@@ -5,11 +5,26 @@
 #include <memory>
 #include <string>
 
-#include "saccade/devices/external_process.hpp"
-#include "saccade/devices/process_messages.hpp"
+#include "saccade/core/result.hpp"
 #include "saccade/sensor/camera.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
 
 namespace saccade {
+
+class ExternalProcess;
+
+enum class ExternalDepth { float32_m, uint16_mm };
+enum class ExternalColor { none, rgb8 };
+
+/// What a camera says of itself.
+struct ExternalCameraFormat {
+  PinholeCamera camera;
+  ExternalDepth depth{ExternalDepth::float32_m};
+  ExternalColor color{ExternalColor::none};
+
+  /// Of depth and colour together.
+  [[nodiscard]] std::size_t frame_bytes() const;
+};
 
 struct ExternalCameraConfig {
   std::string command;           ///< as a shell would run it
@@ -25,6 +40,9 @@ class ExternalCamera final : public Camera {
   /// Starts the program and asks what it is. unavailable: it reports an error itself; else the errors of
   /// ExternalProcess and parse_camera_hello(). Each names the command and quotes what the program wrote to stderr.
   [[nodiscard]] static Result<ExternalCamera> start(const ExternalCameraConfig& config);
+  ExternalCamera(ExternalCamera&&) noexcept;
+  ExternalCamera& operator=(ExternalCamera&&) noexcept;
+  ~ExternalCamera() override;
 
   [[nodiscard]] const PinholeCamera& intrinsics() const override { return format_.camera; }
   [[nodiscard]] const ExternalCameraFormat& format() const { return format_; }
@@ -36,8 +54,7 @@ class ExternalCamera final : public Camera {
   [[nodiscard]] Result<Frame> capture(const Pose& T_world_camera) override;
 
  private:
-  ExternalCamera(ExternalCameraConfig config, std::unique_ptr<ExternalProcess> process, ExternalCameraFormat format)
-      : config_{std::move(config)}, process_{std::move(process)}, format_{format} {}
+  ExternalCamera(ExternalCameraConfig config, std::unique_ptr<ExternalProcess> process, ExternalCameraFormat format);
 
   ExternalCameraConfig config_;
   std::unique_ptr<ExternalProcess> process_;

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/devices/external_robot.hpp"
 
-#include "saccade/devices/process_messages.hpp"
+#include <utility>
+
+#include "saccade/devices/internal/external_process.hpp"
+#include "saccade/devices/internal/process_messages.hpp"
 
 namespace saccade {
 
@@ -9,6 +12,10 @@ Status ExternalRobotConfig::validate() const {
   SACCADE_CHECK(validate_time_limit(start_timeout_s, "robot"));
   return validate_time_limit(move_timeout_s, "robot");
 }
+
+ExternalRobot::ExternalRobot(ExternalRobotConfig config, std::unique_ptr<ExternalProcess> process)
+    : config_{std::move(config)}, process_{std::move(process)} {}
+ExternalRobot::~ExternalRobot() = default;
 
 Result<std::unique_ptr<ExternalRobot>> ExternalRobot::start(const ExternalRobotConfig& config) {
   SACCADE_CHECK(config.validate());

@@ -5,10 +5,12 @@
 #include <memory>
 #include <string>
 
-#include "saccade/devices/external_process.hpp"
+#include "saccade/core/result.hpp"
 #include "saccade/robot/robot.hpp"
 
 namespace saccade {
+
+class ExternalProcess;
 
 struct ExternalRobotConfig {
   std::string command;           ///< as a shell would run it
@@ -23,6 +25,7 @@ class ExternalRobot final : public Robot {
  public:
   /// Starts the program and waits until it is ready. Errors as ExternalCamera::start().
   [[nodiscard]] static Result<std::unique_ptr<ExternalRobot>> start(const ExternalRobotConfig& config);
+  ~ExternalRobot() override;
 
   /// The first pose: the program finds its own way, or declines when it is asked to go.
   [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) override;
@@ -32,8 +35,7 @@ class ExternalRobot final : public Robot {
   [[nodiscard]] const std::string& why_not_reached() const { return why_not_reached_; }
 
  private:
-  ExternalRobot(ExternalRobotConfig config, std::unique_ptr<ExternalProcess> process)
-      : config_{std::move(config)}, process_{std::move(process)} {}
+  ExternalRobot(ExternalRobotConfig config, std::unique_ptr<ExternalProcess> process);
 
   ExternalRobotConfig config_;
   std::unique_ptr<ExternalProcess> process_;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/explore/environment_update.hpp"
 
-#include "saccade/map/count_unknown.hpp"
+#include "saccade/map/tsdf_map.hpp"
 
 namespace saccade {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/explore/planning_scene.hpp"
+#include "saccade/explore/ranking.hpp"
 
 namespace saccade {
 

@@ -1,17 +1,42 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Ranking: views worth trying, the best first, and the regions that have none left.
+// Ranking: views worth trying, the best first, and the regions that have none left; PlanningScene: what a view is
+// planned with: the map, the robot, and what was attempted.
 
 #include <memory>
 #include <optional>
 #include <span>
 #include <vector>
 
+#include "saccade/attention/attention_source.hpp"
 #include "saccade/attention/region_of_interest.hpp"
-#include "saccade/explore/planning_scene.hpp"
 #include "saccade/explore/run_record.hpp"
+#include "saccade/explore/view_record.hpp"
+#include "saccade/robot/robot.hpp"
 
 namespace saccade {
+
+struct PlanningScene {
+  const TsdfSnapshot& map;
+  const Executor& executor;
+  PhaseTimes* times{nullptr};         ///< nullptr: times are not taken
+  const Robot* robot{nullptr};        ///< nullptr: every pose may be taken
+  const Attempts* attempts{nullptr};  ///< nullptr: there were none
+  std::size_t first_region{0};        ///< regions of a lower index are done
+
+  /// What attention, view generator and gain see of it.
+  [[nodiscard]] PlanningContext context(std::size_t region = 0) const {
+    PlanningContext context{map, executor, times, region, attempts != nullptr ? attempts->views_of(region) : 0, {}};
+    if (attempts != nullptr) {
+      context.attempted = [tried = attempts, region](const Pose& pose) { return tried->contains(region, pose); };
+    }
+    return context;
+  }
+
+  /// Keeps the poses that the robot may take, in their order. Returns the reasons of the others. Costs microseconds per
+  /// pose, less than casting its rays.
+  [[nodiscard]] RefusalCounts remove_unreachable(std::vector<Pose>& T_world_camera) const;
+};
 
 /// Result of ranking the views of a map. Regions of one index (RegionOfInterest::index) are counted together.
 class Ranking {

@@ -7,7 +7,7 @@
 
 #include "saccade/explore/run_record.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/camera.hpp"
 
 namespace saccade {
 

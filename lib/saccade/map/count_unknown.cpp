@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/map/count_unknown.hpp"
+#include "saccade/map/tsdf_map.hpp"
 
 namespace saccade {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/map/live_mesh.hpp"
+#include "saccade/map/mesh.hpp"
 
 #include <utility>
 
@@ -59,6 +59,8 @@ void take(const MeshExtraction& extraction, SectorStep& step) {
 
 }  // namespace
 
+LiveMesh::LiveMesh(const MeshConfig& config) : config_{config}, sectors_{std::vector<MeshSector>{}} {}
+
 MeshUpdate LiveMesh::update(const TsdfSnapshot& map, const Executor& executor) {
   SACCADE_EXPECTS(map_.grid.empty() || map.config.voxel_size_m == map_.config.voxel_size_m);
   const Stopwatch stopwatch;
@@ -66,7 +68,7 @@ MeshUpdate LiveMesh::update(const TsdfSnapshot& map, const Executor& executor) {
   const std::vector<SectorBricks> changed = changed_sectors(map_.grid, map.grid, executor);
   for (const SectorBricks& sector : changed) update.bricks_changed += static_cast<std::size_t>(sector.bricks.count());
   const std::vector<SectorBricks> stale = with_neighbors(changed);
-  std::vector<SectorStep> steps = steps_of(sectors_, stale);
+  std::vector<SectorStep> steps = steps_of(*sectors_, stale);
   const MeshExtraction extraction{map, config_};
   executor.parallel_for(steps.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) take(extraction, steps[i]);
@@ -77,14 +79,14 @@ MeshUpdate LiveMesh::update(const TsdfSnapshot& map, const Executor& executor) {
     update.bricks.insert(update.bricks.end(), step.replaced.begin(), step.replaced.end());
     if (!step.next.sector.bricks.empty()) sectors.push_back(std::move(step.next.sector));
   }
-  sectors_ = std::move(sectors);
+  *sectors_ = std::move(sectors);
   map_ = map;
   update.ms = stopwatch.elapsed_ms();
   return update;
 }
 
-TriangleMesh LiveMesh::mesh(const Executor& executor) const { return join_mesh(sectors_, executor); }
+TriangleMesh LiveMesh::mesh(const Executor& executor) const { return join_mesh(*sectors_, executor); }
 
-TriangleMesh LiveMesh::mesh_of(const Index3& brick) const { return mesh_of_brick(sectors_, brick); }
+TriangleMesh LiveMesh::mesh_of(const Index3& brick) const { return mesh_of_brick(*sectors_, brick); }
 
 }  // namespace saccade

@@ -1,12 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Surface ray cast: what a camera would see of the map (depth, normals, colours).
+// Surface ray cast: what a camera would see of the map (depth, normals, colours); to_points: the same as a PointImage.
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
+#include "saccade/sensor/point_image.hpp"
 
 namespace saccade {
 
@@ -28,5 +29,8 @@ struct RaycastConfig {
 [[nodiscard]] Result<SurfaceView> raycast(const TsdfSnapshot& map, const PinholeCamera& camera,
                                           const Pose& T_world_camera, const Executor& executor,
                                           const RaycastConfig& config = {});
+
+/// A view of the mapped surface in planes, as it is. O(pixels).
+[[nodiscard]] PointImage to_points(const SurfaceView& view, const Executor& executor);
 
 }  // namespace saccade

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// TsdfMap: the map that one thread fuses into; TsdfSnapshot: the same content for readers, taken in microseconds.
+// TsdfMap: the map that one thread fuses into; TsdfSnapshot: the same content for readers, taken in microseconds;
+// count_unknown: how much of a region is unknown.
 
 #include <mutex>
 #include <optional>
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/pose.hpp"
+#include "saccade/core/region.hpp"
 #include "saccade/map/tsdf_grid.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
@@ -69,5 +71,8 @@ class TsdfMap {
   mutable std::mutex mutex_;
   TsdfSnapshot content_;
 };
+
+/// Unknown voxels whose centre lies in the region and in the map's workspace. O(voxels of the region).
+[[nodiscard]] std::size_t count_unknown(const TsdfSnapshot& map, const Region& region);
 
 }  // namespace saccade

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/map/view_points.hpp"
+#include "saccade/map/raycast.hpp"
 
 #include <algorithm>
 #include <cstddef>

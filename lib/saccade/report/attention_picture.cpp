@@ -8,6 +8,7 @@
 #include <numbers>
 
 #include "saccade/core/region.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/plot.hpp"
 
 namespace saccade {

@@ -9,15 +9,15 @@
 #include <string>
 #include <vector>
 
-#include "saccade/attention/speed_dips.hpp"
-#include "saccade/report/canvas.hpp"
-#include "saccade/report/color_map.hpp"
+#include "saccade/attention/dip_detector.hpp"
 #include "saccade/report/sheet.hpp"
 #include "saccade/report/viewpoint.hpp"
 #include "saccade/sensor/hand_trajectory.hpp"
 #include "saccade/sensor/image.hpp"
 
 namespace saccade {
+
+class Canvas;
 
 /// A Gaussian as an ellipsoid of two standard deviations.
 struct DrawnGaussian {

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/sheet.hpp"
 
 #include <algorithm>
 #include <cmath>
 #include <cstdio>
 
 #include "saccade/report/internal/blend.hpp"
-#include "saccade/report/sheet.hpp"
+#include "saccade/report/internal/font.hpp"
 
 namespace saccade {
 namespace {

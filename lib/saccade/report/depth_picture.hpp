@@ -1,9 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// depth_picture, difference_picture: depth images in colours, with what the colours mean.
+// Depth images in colours, with what the colours mean; side by side with the map's ray cast, and before and after the
+// Kinect v2 filter.
+
+#include <optional>
+#include <string>
 
 #include "saccade/report/sheet.hpp"
 #include "saccade/sensor/image.hpp"
+#include "saccade/sensor/kinect_v2_filter.hpp"
 
 namespace saccade {
 
@@ -29,5 +34,30 @@ inline constexpr Rgb8 kNoReturn{34, 36, 42};
 /// The same as panels of a sheet, with their legends.
 [[nodiscard]] Panel depth_panel(const DepthImage& depth, const DepthScale& scale, std::string title);
 [[nodiscard]] Panel difference_panel(const DepthImage& a, const DepthImage& b, double limit_m, std::string title);
+
+struct FusionPictureConfig {
+  std::string title{"Depth frame against the map"};
+  double limit_m{0.02};             ///< of the difference's colours
+  std::optional<DepthScale> scale;  ///< chosen from the measured depth by default
+};
+
+/// How well the map explains a frame.
+struct Residual {
+  double median_m{0.0};  ///< of |ray cast − measured| where both have a return
+  double share{0.0};     ///< of the pixels with a measured return, those where the ray cast has one too
+};
+[[nodiscard]] Residual residual(const DepthImage& measured, const DepthImage& map_cast);
+
+/// A sheet of three panels; the note below says the median residual and its share. Expects equal sizes.
+[[nodiscard]] ColorImage fusion_picture(const DepthImage& measured, const DepthImage& map_cast,
+                                        const FusionPictureConfig& config = {});
+
+constexpr Rgb8 kShadowPointColor{230, 85, 13};
+constexpr Rgb8 kVeilPointColor{49, 130, 189};
+
+/// Three panels: the depth as it came, as it is filtered (one scale for both), and the points that stay in grey,
+/// lighter where nearer, with those removed coloured by step. Expects images of one size.
+[[nodiscard]] ColorImage filter_picture(const DepthImage& before, const FilteredDepth& filtered,
+                                        const std::string& title);
 
 }  // namespace saccade

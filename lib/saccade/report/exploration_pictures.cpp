@@ -6,7 +6,8 @@
 #include <cmath>
 #include <map>
 
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/internal/canvas.hpp"
+#include "saccade/report/sheet.hpp"
 
 namespace saccade {
 namespace {

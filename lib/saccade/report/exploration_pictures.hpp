@@ -12,7 +12,7 @@
 #include "saccade/report/depth_picture.hpp"
 #include "saccade/report/robot_drawing.hpp"
 #include "saccade/report/view_picture.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/camera.hpp"
 
 namespace saccade {
 

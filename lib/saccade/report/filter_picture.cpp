@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/filter_picture.hpp"
+#include "saccade/report/depth_picture.hpp"
 
 #include <algorithm>
-
-#include "saccade/report/depth_picture.hpp"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/fusion_pictures.hpp"
+#include "saccade/report/depth_picture.hpp"
 
 #include "saccade/core/statistics.hpp"
 

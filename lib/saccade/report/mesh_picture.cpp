@@ -5,6 +5,7 @@
 #include <array>
 #include <cmath>
 
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/internal/shading.hpp"
 
 namespace saccade {

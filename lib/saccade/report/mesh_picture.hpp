@@ -4,9 +4,11 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/map/mesh.hpp"
-#include "saccade/report/canvas.hpp"
+#include "saccade/report/viewpoint.hpp"
 
 namespace saccade {
+
+class Canvas;
 
 struct MeshPictureConfig {
   bool use_colors{true};  ///< the mesh's own, where it has them

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/reach_picture.hpp"
+#include "saccade/report/robot_drawing.hpp"
 
 #include <algorithm>
 #include <array>
@@ -9,6 +9,7 @@
 #include <span>
 
 #include "saccade/report/internal/blend.hpp"
+#include "saccade/report/internal/font.hpp"
 #include "saccade/report/internal/plane_drawing.hpp"
 #include "saccade/report/sheet.hpp"
 

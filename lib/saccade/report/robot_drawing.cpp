@@ -5,6 +5,7 @@
 #include <numbers>
 
 #include "saccade/report/internal/blend.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/mesh_picture.hpp"
 
 namespace saccade {
@@ -13,7 +14,7 @@ namespace {
 constexpr Rgb8 kPath{20, 118, 196};
 constexpr double kLine_px{2.4};
 constexpr double kStart_px{8.0};
-constexpr double kHidden{0.4};
+constexpr double kHiddenPath{0.4};
 
 void draw_arm(Canvas& canvas, const RobotDrawing& robot, const Executor& executor) {
   if (robot.arm.triangles.empty() || robot.opacity <= 0.0) return;
@@ -34,8 +35,8 @@ void draw_robot(Canvas& canvas, const RobotDrawing& robot, const Executor& execu
   SACCADE_EXPECTS(robot.opacity >= 0.0 && robot.opacity <= 1.0);
   draw_arm(canvas, robot, executor);
   const auto& path = robot.p_world_path;
-  for (std::size_t i = 1; i < path.size(); ++i) canvas.line(path[i - 1], path[i], {kPath, kLine_px, kHidden});
-  if (!path.empty()) canvas.point(path.front(), kStart_px, kPath, kHidden);
+  for (std::size_t i = 1; i < path.size(); ++i) canvas.line(path[i - 1], path[i], {kPath, kLine_px, kHiddenPath});
+  if (!path.empty()) canvas.point(path.front(), kStart_px, kPath, kHiddenPath);
 }
 
 Rgb8 path_color() { return kPath; }

@@ -6,11 +6,11 @@
 #include <cmath>
 #include <span>
 
-#include "saccade/report/color_map.hpp"
 #include "saccade/report/exploration_pictures.hpp"
 #include "saccade/report/html_text.hpp"
 #include "saccade/report/internal/run_report_curves.hpp"
-#include "saccade/report/ternary_picture.hpp"
+#include "saccade/report/sheet.hpp"
+#include "saccade/report/view_picture.hpp"
 
 namespace saccade {
 namespace {

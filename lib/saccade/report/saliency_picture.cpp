@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/saliency_picture.hpp"
+#include "saccade/report/segment_picture.hpp"
 
 #include <algorithm>
 
-#include "saccade/report/canvas.hpp"
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/mesh_picture.hpp"
+#include "saccade/report/sheet.hpp"
 
 namespace saccade {
 namespace {

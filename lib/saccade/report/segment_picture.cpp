@@ -7,7 +7,7 @@
 #include <numeric>
 
 #include "saccade/cloud/point_cloud.hpp"
-#include "saccade/report/canvas.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/internal/shading.hpp"
 #include "saccade/report/mesh_picture.hpp"
 

@@ -3,7 +3,7 @@
 
 #include <algorithm>
 
-#include "saccade/report/font.hpp"
+#include "saccade/report/internal/font.hpp"
 
 namespace saccade {
 namespace {

@@ -3,7 +3,7 @@
 
 #include <vector>
 
-#include "saccade/report/canvas.hpp"
+#include "saccade/report/internal/canvas.hpp"
 
 namespace saccade {
 

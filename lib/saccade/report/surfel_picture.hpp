@@ -8,7 +8,6 @@
 #include "saccade/report/viewpoint.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/surfel/surfel_points.hpp"
-#include "saccade/surfel/surfel_view.hpp"
 
 namespace saccade {
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/ternary_picture.hpp"
+#include "saccade/report/view_picture.hpp"
 
 #include <algorithm>
 #include <array>
@@ -7,6 +7,7 @@
 
 #include "saccade/map/ray_walk.hpp"
 #include "saccade/report/internal/blend.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/internal/shading.hpp"
 
 namespace saccade {

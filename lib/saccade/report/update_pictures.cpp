@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/update_pictures.hpp"
+#include "saccade/report/update_report.hpp"
 
 #include <algorithm>
 
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/plot.hpp"
-#include "saccade/report/ternary_picture.hpp"
+#include "saccade/report/view_picture.hpp"
 
 namespace saccade {
 namespace {

@@ -4,10 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
-#include "saccade/report/color_map.hpp"
 #include "saccade/report/html_text.hpp"
 #include "saccade/report/internal/run_report_page.hpp"
-#include "saccade/report/update_pictures.hpp"
+#include "saccade/report/sheet.hpp"
 
 namespace saccade {
 namespace {

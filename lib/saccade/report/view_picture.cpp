@@ -7,7 +7,7 @@
 #include <cstdio>
 #include <vector>
 
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/sheet.hpp"
 
 namespace saccade {

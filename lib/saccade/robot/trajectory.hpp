@@ -1,12 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Trajectory: where the joints of an arm are at which time.
+// Configuration: where the joints of an arm are; Trajectory: where they are at which time.
 
+#include <Eigen/Core>
 #include <vector>
 
-#include "saccade/robot/configuration.hpp"
-
 namespace saccade {
+
+/// Joints that an arm has at most. Arms have six or seven, a rail or a torso under them adds one or two; with a bound,
+/// configurations and Jacobians need no heap.
+constexpr int kMaxJoints{12};
+
+/// One value per joint, base first: radians, for prismatic joints metres. Eigen's dynamic vector in its own storage:
+/// copying one, or a vector of them, allocates nothing per element.
+using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 
 /// Straight lines between configurations, the first being the start. Empty, or one configuration: no motion.
 using JointPath = std::vector<Configuration>;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/color_camera.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 
 #include <algorithm>
 #include <array>

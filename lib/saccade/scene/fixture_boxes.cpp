@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/fixture_boxes.hpp"
+#include "saccade/scene/scene.hpp"
 
 #include <algorithm>
 

@@ -1,10 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/mesh_distance.hpp"
+#include "saccade/scene/solids.hpp"
 
 #include <cmath>
 #include <limits>
 
-#include "saccade/map/closest_point.hpp"
+#include "saccade/map/mesh.hpp"
 #include "saccade/scene/internal/embree_handles.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/mesh_scene.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 #include <algorithm>
 #include <array>
@@ -8,7 +8,6 @@
 
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/scene/internal/tabletop.hpp"
-#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/scene/scene.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>

@@ -6,7 +6,7 @@
 #include <limits>
 
 #include "saccade/scene/internal/embree_handles.hpp"
-#include "saccade/scene/paint.hpp"
+#include "saccade/scene/scene.hpp"
 
 namespace saccade {
 namespace {

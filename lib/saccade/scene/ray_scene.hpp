@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RayScene: the triangles of a Scene, ready for rays; rendering of exact depth, colour and labels.
+// RayScene: the triangles of a Scene, ready for rays; rendering of exact depth, colour and labels; scene_hash: tells
+// whether two scenes are the same to a depth camera.
 
 #include <memory>
 #include <optional>
+#include <string>
 
 #include "saccade/core/executor.hpp"
 #include "saccade/scene/scene.hpp"
@@ -51,5 +53,10 @@ class RayScene {
   explicit RayScene(std::shared_ptr<const Impl> impl);
   std::shared_ptr<const Impl> impl_;
 };
+
+/// 16 hexadecimal digits from all that changes an exploration of the scene and its measurement: triangles, which
+/// objects are supports or fixtures, workspace, regions, and the poses of the initial scan. Names, colours and textures
+/// do not. A 64-bit FNV-1a hash: against mistakes, not against forgers. O(triangles).
+[[nodiscard]] std::string scene_hash(const RayScene& scene);
 
 }  // namespace saccade

@@ -1,19 +1,63 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RenderedSequence: a hand-held RGB-D camera moving before a scene, as a CameraSource, with the truth of every pixel.
+// RenderedSequence: a hand-held RGB-D camera moving before a scene, as a CameraSource, with the truth of every pixel;
+// surfel_scene: scenes with small painted parts and a path. Thesis §4.1.3, Fig. 4.4.
 
+#include <array>
 #include <cstdint>
 #include <optional>
+#include <string_view>
 #include <vector>
 
-#include "saccade/scene/color_camera.hpp"
-#include "saccade/scene/paint.hpp"
+#include "saccade/core/executor.hpp"
 #include "saccade/scene/ray_scene.hpp"
-#include "saccade/scene/time_of_flight.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/scene/scene.hpp"
+#include "saccade/scene/simulated_camera.hpp"
+#include "saccade/sensor/camera.hpp"
+#include "saccade/sensor/image.hpp"
 #include "saccade/sensor/noise.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
+#include "saccade/sensor/srgb.hpp"
 
 namespace saccade {
+
+/// Linear light, 1: white.
+using LightImage = Image<std::array<float, 3>>;
+
+enum class Vignetting : std::uint8_t { off, on, corrected };
+
+struct ColorCameraConfig {
+  /// on: light falls off with the fourth power of the cosine of the angle from the axis, to 0.45 in the corners of an
+  /// Xtion; Alexandrov et al. (IROS 2016) measured half. corrected: divided by the same again after the noise, as they
+  /// do with a calibration, which is taken as exact.
+  Vignetting vignetting{Vignetting::on};
+  /// Poissonian and Gaussian noise (Foi et al., IEEE TIP 2008) of so many electrons at white, and to read out.
+  bool noise{true};
+  double electrons_at_white{4000.0};
+  double read_noise_electrons{10.0};
+  /// The gain follows the image's mean light: it moves towards the target with a time constant, within its limits.
+  bool automatic_gain{false};
+  double target_light{0.25};
+  double time_constant_frames{15.0};
+  double max_gain{2.0};  ///< and 1/max_gain at the lower end
+  std::uint64_t seed{1};
+
+  /// invalid_argument for numbers that are not positive, and a largest gain below 1.
+  [[nodiscard]] Status validate() const;
+};
+
+/// Share of the light that reaches an image point.
+[[nodiscard]] double vignetting_at(const PinholeCamera& camera, double u, double v);
+
+/// The gain of the frame after one that was taken with `gain`: mean_light is that of the light before any gain.
+[[nodiscard]] double next_gain(const ColorCameraConfig& config, double gain, double mean_light);
+/// Mean over pixels and channels of light that arrives at the sensor. Expects an image of the camera's size.
+[[nodiscard]] double mean_light(const LightImage& light, const PinholeCamera& camera, const ColorCameraConfig& config);
+
+/// 8-bit sRGB. Noise depends on seed, frame and pixel alone. Expects a valid configuration and an image of the camera's
+/// size. O(pixels).
+[[nodiscard]] ColorImage expose(const LightImage& light, const PinholeCamera& camera, const ColorCameraConfig& config,
+                                double gain, std::uint64_t frame, const Executor& executor = {});
 
 /// Where a hand carries the camera: it looks at a target that wanders in a box, from directions and distances that
 /// swing at rates without a common measure, and trembles by some millimetres.
@@ -93,5 +137,24 @@ class RenderedSequence final : public CameraSource {
   double gain_{1.0};
   SequenceTruth truth_;
 };
+
+constexpr std::array<std::string_view, 5> kSurfelScenes{"workshop-1", "workshop-2", "desk", "magazines-1",
+                                                        "magazines-2"};
+
+struct SurfelScene {
+  Scene scene;
+  HandHeldPath path;
+  std::size_t frames{0};    ///< as many as the thesis' scene has (Table 4.1)
+  std::string_view sensor;  ///< that the thesis used
+  ColorCameraConfig color;  ///< what its colour camera does, and what was corrected
+};
+
+constexpr std::array<std::string_view, 2> kSurfelSensors{"xtion", "kinect-v2"};
+/// The camera of the preset, and the noise of its depth and colour and of poses; docs/surfel-scenes.md says from where
+/// the figures are. not_found with the known names.
+[[nodiscard]] Result<RenderedSequenceConfig> surfel_sensor(std::string_view name);
+
+/// not_found with the known names.
+[[nodiscard]] Result<SurfelScene> surfel_scene(std::string_view name);
 
 }  // namespace saccade

@@ -6,8 +6,6 @@
 #include <cmath>
 #include <set>
 
-#include "saccade/scene/paint.hpp"
-
 namespace saccade {
 namespace {
 

@@ -1,15 +1,85 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Scene: named objects with poses, colours and textures, and what an exploration of it is told.
+// Scene: named objects with poses, colours and textures, and what an exploration of it is told; Shape: the bodies that
+// they are made of; what is painted on them; scenes drawn from a seed.
 
+#include <Eigen/Core>
+#include <cstddef>
+#include <cstdint>
 #include <string>
+#include <variant>
 #include <vector>
 
 #include "saccade/core/pose.hpp"
 #include "saccade/core/region.hpp"
-#include "saccade/scene/shape.hpp"
+#include "saccade/core/result.hpp"
+#include "saccade/map/mesh.hpp"
 
 namespace saccade {
+
+// Every procedural body stands on the plane z = 0 of its own frame, around the z axis.
+
+struct BoxShape {
+  Eigen::Vector3d size_m{Eigen::Vector3d::Zero()};
+};
+
+struct CylinderShape {
+  double radius_m{0.0};
+  double height_m{0.0};
+};
+
+struct SphereShape {
+  double radius_m{0.0};
+};
+
+/// A frustum; the top radius may be 0.
+struct ConeShape {
+  double bottom_radius_m{0.0};
+  double top_radius_m{0.0};
+  double height_m{0.0};
+};
+
+/// (|x/a|^(2/e₂) + |y/b|^(2/e₂))^(e₂/e₁) + |z/c|^(2/e₁) ≤ 1 (Barr 1981): exponents 1 and 1 make an ellipsoid, small
+/// ones a box with rounded edges, 2 and 2 an octahedron.
+struct SuperquadricShape {
+  Eigen::Vector3d semi_axes_m{Eigen::Vector3d::Zero()};
+  double vertical_exponent{1.0};    ///< e₁, within 0.1 and 2
+  double horizontal_exponent{1.0};  ///< e₂, within 0.1 and 2
+};
+
+/// Turns a profile of (radius, height) points, lowest first, around the z axis. With a wall, it is a vessel: open at
+/// the top, wall_m thick all around and at the bottom. Without, it is solid.
+struct RevolutionShape {
+  std::vector<Eigen::Vector2d> profile_m;
+  double wall_m{0.0};
+};
+
+/// A vessel with a handle: half an ellipse of a round bar, from handle_bottom_m up to handle_top_m on the side of +x.
+struct JugShape {
+  RevolutionShape body;
+  double handle_bottom_m{0.0};
+  double handle_top_m{0.0};
+  double handle_reach_m{0.0};  ///< how far the bar's axis stands off the body
+  double handle_radius_m{0.0};
+};
+
+/// Triangles in the object's frame, as they are.
+struct MeshShape {
+  TriangleMesh mesh;
+};
+
+using Shape = std::variant<BoxShape, CylinderShape, SphereShape, ConeShape, SuperquadricShape, RevolutionShape,
+                           JugShape, MeshShape>;
+
+/// invalid_argument when a size is not finite, zero or negative, a profile does not rise or leaves no room for its
+/// wall, a handle does not sit within the wall, or a mesh has no triangles or names vertices that it does not have.
+[[nodiscard]] Status validate(const Shape& shape);
+
+/// A closed mesh, counter-clockwise seen from outside, without normals or colours; a jug is two closed parts, the bar's
+/// ends inside the wall. Circles and spheres stay within max_deviation_m of the true ones, superquadrics are at
+/// least as fine as such an ellipsoid. A MeshShape is returned as it is.
+/// Errors: those of validate, and a deviation that is not positive. O(triangles).
+[[nodiscard]] Result<TriangleMesh> tessellate(const Shape& shape, double max_deviation_m = 1e-4);
 
 /// A pattern through the body, in its own frame, so that every face has some.
 struct Texture {
@@ -75,5 +145,52 @@ struct ObjectMesh {
 
 /// Colour of a point of the object's surface, before lighting.
 [[nodiscard]] Rgb8 surface_color(const SceneObject& object, const Eigen::Vector3d& p_object);
+
+/// invalid_argument for sizes that are not positive, a glyph that there is none of, or a patch without a segment.
+[[nodiscard]] Status validate(const Patch& patch);
+
+struct Paint {
+  Rgb8 color{};                  ///< before lighting
+  std::size_t segment_patch{0};  ///< 1 + index of the patch whose segment it is; 0: the body's
+  bool fine{false};              ///< within small print: one ray does not tell a pixel's colour
+};
+
+/// A point of the object's surface, both in the object's frame. O(patches).
+[[nodiscard]] Paint paint_at(const SceneObject& object, const Eigen::Vector3d& p_object,
+                             const Eigen::Vector3d& normal_object);
+
+/// The true segments of a scene, numbered from 1 in the order of its objects and their patches. Segments of one name
+/// are one segment.
+class SegmentTable {
+ public:
+  explicit SegmentTable(const Scene& scene);
+  /// By label; that of label 0, nothing, is empty.
+  [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
+  /// Expects an object of the scene, and a Paint of it.
+  [[nodiscard]] std::uint16_t label(std::size_t object, const Paint& paint) const {
+    return labels_[object][paint.segment_patch];
+  }
+
+ private:
+  std::vector<std::string> names_;
+  std::vector<std::vector<std::uint16_t>> labels_;  ///< of each object: the body, then its patches
+};
+
+/// An object that is a fixture or a support.
+struct FixtureBox {
+  std::string name;
+  Box box;
+  bool support{false};
+};
+
+/// The bounding boxes, along the world's axes, of a scene's fixtures and supports, in the scene's order; what leans is
+/// given more room than it takes. Whole micrometres; no side is shorter than a millimetre. Errors: those of
+/// true_meshes.
+[[nodiscard]] Result<std::vector<FixtureBox>> fixture_boxes(const Scene& scene);
+
+/// Bodies of every procedural kind, standing apart on a table of 1.2 × 0.8 m with its top at z = 0 in a room, and an
+/// initial scan from one side of the table. 1 ≤ objects ≤ 16; fewer are placed when the table is full. The same on
+/// every machine.
+[[nodiscard]] Scene random_clutter(std::uint64_t seed, int objects = 8);
 
 }  // namespace saccade

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/scene_hash.hpp"
+#include "saccade/scene/ray_scene.hpp"
 
 #include "saccade/core/fnv1a.hpp"
 

@@ -12,8 +12,8 @@
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/yaml_map.hpp"
-#include "saccade/scene/random_clutter.hpp"
-#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
+#include "saccade/scene/scene.hpp"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/shape.hpp"
+#include "saccade/scene/scene.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 
 #include "saccade/scene/internal/scene_maker.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/time_of_flight.hpp"
+#include "saccade/scene/simulated_camera.hpp"
 
 #include <algorithm>
 #include <cmath>

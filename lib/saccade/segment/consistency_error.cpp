@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/segment/consistency_error.hpp"
+#include "saccade/segment/overlap.hpp"
 
 #include <algorithm>
 #include <unordered_map>

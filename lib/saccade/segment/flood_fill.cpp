@@ -3,6 +3,8 @@
 
 #include <cmath>
 
+#include "saccade/segment/internal/surfel_graph.hpp"
+
 namespace saccade {
 
 namespace {

@@ -10,9 +10,16 @@
 #include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/segment/surfel_graph.hpp"
 
 namespace saccade {
+
+class SurfelGraph;
+
+/// Labels count from 0, in the order of the first surfels.
+struct SurfelComponents {
+  std::vector<std::uint32_t> labels;  ///< one per point; kUnlabelled where there is no surfel
+  std::size_t count{0};
+};
 
 /// Parameters of flood_fill: thesis eq. (4.14), Table 4.2.
 struct FloodFillConfig {

@@ -7,6 +7,7 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/map/surface_cells.hpp"
+#include "saccade/segment/internal/surface_block.hpp"
 #include "saccade/segment/surface_points.hpp"
 
 namespace saccade {
@@ -73,6 +74,8 @@ SupervoxelConfig MapSegmentsConfig::supervoxels(double map_voxel_size_m) const {
   return made;
 }
 
+LiveSegments::LiveSegments(const MapSegmentsConfig& config) : config_{config}, blocks_{SurfaceBlocks{}} {}
+
 Result<LiveSegments> LiveSegments::create(const MapSegmentsConfig& config) {
   SACCADE_CHECK(config.validate());
   return LiveSegments{config};
@@ -88,19 +91,19 @@ MapSegmentsUpdate LiveSegments::update(const TsdfSnapshot& map, const Executor& 
   for (const SectorBricks& sector : changed) done.bricks_changed += static_cast<std::size_t>(sector.bricks.count());
 
   const Slots renewed = renew_surface(map, with_neighbors(changed), executor);
-  done.voxels_changed = voxels_in(blocks_, renewed);
+  done.voxels_changed = voxels_in(*blocks_, renewed);
   if (renewed.empty()) {
     map_ = map;
     done.ms = stopwatch.elapsed_ms();
     return done;
   }
-  const Slots stale = blocks_.with_rings(renewed, 2);
-  done.voxels_labelled = voxels_in(blocks_, stale);
+  const Slots stale = blocks_->with_rings(renewed, 2);
+  done.voxels_labelled = voxels_in(*blocks_, stale);
   Slots touched = renew_labels(stale, executor);
   touched.insert(touched.end(), renewed.begin(), renewed.end());
-  touched = blocks_.with_rings(touched, 1);
+  touched = blocks_->with_rings(touched, 1);
   renew_parts(touched, executor);
-  renew_own(blocks_.with_rings(touched, 1), executor);
+  renew_own(blocks_->with_rings(touched, 1), executor);
   reorder(renewed);
   join(executor);
   map_ = map;
@@ -118,7 +121,7 @@ std::vector<Index3> LiveSegments::keys_of(const SectorTable& table, std::span<co
       const Index3 key{brick.x >> shift_, brick.y >> shift_, brick.z >> shift_};
       if (!keys.empty() && keys.back() == key) return;
       if (!is_wanted(key)) return;
-      if (crossed.test(static_cast<int>(i)) || blocks_.find(key) != SurfaceBlocks::kNone) keys.push_back(key);
+      if (crossed.test(static_cast<int>(i)) || blocks_->find(key) != SurfaceBlocks::kNone) keys.push_back(key);
     });
   }
   std::sort(keys.begin(), keys.end(), zyx_less);
@@ -181,13 +184,13 @@ LiveSegments::Slots LiveSegments::renew_surface(const TsdfSnapshot& map, std::sp
   });
   Slots renewed;
   for (SurfaceBlock& block : fresh) {
-    std::uint32_t slot = blocks_.find(block.key);
+    std::uint32_t slot = blocks_->find(block.key);
     if (slot == SurfaceBlocks::kNone) {
       if (block.voxels.empty()) continue;
-      slot = blocks_.insert(std::move(block));
+      slot = blocks_->insert(std::move(block));
     } else {
-      if (blocks_[slot].same_surface(block)) continue;
-      blocks_[slot] = std::move(block);
+      if ((*blocks_)[slot].same_surface(block)) continue;
+      (*blocks_)[slot] = std::move(block);
     }
     renewed.push_back(slot);
   }
@@ -196,7 +199,7 @@ LiveSegments::Slots LiveSegments::renew_surface(const TsdfSnapshot& map, std::sp
 
 std::uint32_t LiveSegments::number(VoxelName name) const {
   const std::uint32_t slot = name / kBrickVoxels;
-  const std::vector<SurfaceBlock::Own>& own = blocks_[slot].own;
+  const std::vector<SurfaceBlock::Own>& own = (*blocks_)[slot].own;
   std::uint32_t position{0};
   while (own[position].name != name) ++position;
   return first_number_[slot] + position;
@@ -204,14 +207,14 @@ std::uint32_t LiveSegments::number(VoxelName name) const {
 
 /// Takes out blocks that are empty and puts in those that are new.
 void LiveSegments::reorder(const Slots& renewed) {
-  std::erase_if(order_, [&](std::uint32_t slot) { return blocks_[slot].voxels.empty(); });
-  std::vector<bool> known(blocks_.slots());
+  std::erase_if(order_, [&](std::uint32_t slot) { return (*blocks_)[slot].voxels.empty(); });
+  std::vector<bool> known(blocks_->slots());
   for (const std::uint32_t slot : order_) known[slot] = true;
-  const auto before = [&](std::uint32_t a, std::uint32_t b) { return blocks_.block_before(a, b); };
+  const auto before = [&](std::uint32_t a, std::uint32_t b) { return blocks_->block_before(a, b); };
   const auto old_end = static_cast<std::ptrdiff_t>(order_.size());
   for (const std::uint32_t slot : renewed) {
-    if (blocks_[slot].voxels.empty()) {
-      blocks_.erase(slot);
+    if ((*blocks_)[slot].voxels.empty()) {
+      blocks_->erase(slot);
     } else if (!known[slot]) {
       order_.push_back(slot);
     }
@@ -222,7 +225,7 @@ void LiveSegments::reorder(const Slots& renewed) {
 
 /// Numbers supervoxels and edges, and joins them.
 void LiveSegments::join(const Executor& executor) {
-  first_number_.assign(blocks_.slots(), 0);
+  first_number_.assign(blocks_->slots(), 0);
   std::vector<std::size_t> first_edges;
   std::size_t supervoxels{0};
   std::size_t edges{0};
@@ -231,16 +234,16 @@ void LiveSegments::join(const Executor& executor) {
   for (const std::uint32_t slot : order_) {
     first_number_[slot] = static_cast<std::uint32_t>(supervoxels);
     first_edges.push_back(edges);
-    supervoxels += blocks_[slot].own.size();
-    edges += blocks_[slot].edges.size();
-    made.voxels += blocks_[slot].voxels.size();
+    supervoxels += (*blocks_)[slot].own.size();
+    edges += (*blocks_)[slot].edges.size();
+    made.voxels += (*blocks_)[slot].voxels.size();
   }
   made.supervoxels.resize(supervoxels);
   made.edges.resize(edges);
   std::vector<std::uint8_t> convex(edges);
   executor.parallel_for(order_.size(), 16 * kBlockGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t b = begin; b < end; ++b) {
-      const SurfaceBlock& block = blocks_[order_[b]];
+      const SurfaceBlock& block = (*blocks_)[order_[b]];
       const std::uint32_t first = first_number_[order_[b]];
       for (std::size_t i = 0; i < block.own.size(); ++i) made.supervoxels[first + i] = block.own[i].supervoxel;
       for (std::size_t i = 0; i < block.edges.size(); ++i) {
@@ -265,14 +268,14 @@ VoxelSegments LiveSegments::voxels(const Executor& executor) const {
   std::size_t voxels{0};
   for (const std::uint32_t slot : order_) {
     firsts.push_back(voxels);
-    voxels += blocks_[slot].voxels.size();
+    voxels += (*blocks_)[slot].voxels.size();
   }
   made.positions_m.resize(voxels);
   made.labels.resize(voxels);
   executor.parallel_for(order_.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
     Slots numbers;
     for (std::size_t b = begin; b < end; ++b) {
-      const SurfaceBlock& block = blocks_[order_[b]];
+      const SurfaceBlock& block = (*blocks_)[order_[b]];
       read_numbers(block, numbers);
       for (std::size_t i = 0; i < numbers.size(); ++i) {
         made.positions_m[firsts[b] + i] = block.voxels[i].position_m;
@@ -290,8 +293,8 @@ MapSegments LiveSegments::segments(const Executor& executor) const {
   bool colored{false};
   for (const std::uint32_t slot : order_) {
     firsts.push_back(points);
-    points += blocks_[slot].positions_m.size();
-    colored = colored || !blocks_[slot].colors.empty();
+    points += (*blocks_)[slot].positions_m.size();
+    colored = colored || !(*blocks_)[slot].colors.empty();
   }
   made.points.positions_m.resize(points);
   made.points.normals.resize(points);
@@ -301,7 +304,7 @@ MapSegments LiveSegments::segments(const Executor& executor) const {
   executor.parallel_for(order_.size(), kBlockGrain, [&](std::size_t begin, std::size_t end) {
     Slots numbers;
     for (std::size_t b = begin; b < end; ++b) {
-      const SurfaceBlock& block = blocks_[order_[b]];
+      const SurfaceBlock& block = (*blocks_)[order_[b]];
       read_numbers(block, numbers);
       const auto first = static_cast<std::ptrdiff_t>(firsts[b]);
       std::copy(block.positions_m.begin(), block.positions_m.end(), made.points.positions_m.begin() + first);

@@ -10,14 +10,16 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/hidden.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/map/map_changes.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/segment/lccp.hpp"
-#include "saccade/segment/supervoxels.hpp"
-#include "saccade/segment/surface_block.hpp"
 
 namespace saccade {
+
+class SurfaceBlocks;
+struct SurfaceBlock;
 
 /// Parameters of segment_map.
 struct MapSegmentsConfig {
@@ -85,7 +87,7 @@ class LiveSegments {
 
  private:
   using Slots = std::vector<std::uint32_t>;
-  explicit LiveSegments(const MapSegmentsConfig& config) : config_{config} {}
+  explicit LiveSegments(const MapSegmentsConfig& config);
 
   [[nodiscard]] std::vector<Index3> keys_of(const SectorTable& table, std::span<const SectorBricks> stale) const;
   [[nodiscard]] bool is_wanted(const Index3& key) const;
@@ -98,14 +100,14 @@ class LiveSegments {
   void renew_own(const Slots& slots, const Executor& executor);
   void reorder(const Slots& renewed);
   void join(const Executor& executor);
-  [[nodiscard]] std::uint32_t number(VoxelName name) const;
+  [[nodiscard]] std::uint32_t number(std::uint32_t voxel_name) const;
   void read_numbers(const SurfaceBlock& block, Slots& numbers) const;
 
   MapSegmentsConfig config_;
   TsdfSnapshot map_;
   SupervoxelConfig supervoxel_config_;
   int shift_{0};  ///< log2 of the voxels of the map along one of ours
-  SurfaceBlocks blocks_;
+  Hidden<SurfaceBlocks> blocks_;
   Slots order_;                              ///< blocks in z-y-x order
   std::vector<std::uint32_t> first_number_;  ///< per slot: of its own supervoxels
   SupervoxelResult supervoxels_;             ///< without labels

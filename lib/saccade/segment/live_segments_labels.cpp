@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "saccade/segment/internal/supervoxel_growth.hpp"
+#include "saccade/segment/internal/surface_block.hpp"
 #include "saccade/segment/live_segments.hpp"
 
 namespace saccade {
@@ -184,25 +185,26 @@ const Supervoxel& supervoxel_of(const SurfaceBlocks& blocks, VoxelName name) {
 
 /// The labels of these blocks of one tile, from the voxels up to two blocks away.
 void LiveSegments::label_blocks(std::span<const std::uint32_t> slots) {
-  Slots region = blocks_.with_rings(slots, 2);
-  std::sort(region.begin(), region.end(), [&](std::uint32_t a, std::uint32_t b) { return blocks_.block_before(a, b); });
-  const BlockCloud part{blocks_, region};
+  Slots region = blocks_->with_rings(slots, 2);
+  std::sort(region.begin(), region.end(),
+            [&](std::uint32_t a, std::uint32_t b) { return blocks_->block_before(a, b); });
+  const BlockCloud part{*blocks_, region};
   SupervoxelGrowth growth{part.cloud, VoxelDifference{supervoxel_config_, supervoxel_config_.seed_spacing_m}};
   growth.seed(part.cell_of, part.cells, kSeedRadius_vox * supervoxel_config_.voxels.voxel_size_m,
               supervoxel_config_.fewest_around_seed(2.0 * kSeedRadius_vox), Executor{});
   // What a seed brings about in the blocks beyond the first ring does not come here within its reach.
   std::vector<std::uint8_t> outside(part.names.size(), 1);
-  for (const std::uint32_t slot : blocks_.with_rings(slots, 1)) {
-    std::fill_n(outside.begin() + part.first_of[slot], blocks_[slot].voxels.size(), std::uint8_t{0});
+  for (const std::uint32_t slot : blocks_->with_rings(slots, 1)) {
+    std::fill_n(outside.begin() + part.first_of[slot], (*blocks_)[slot].voxels.size(), std::uint8_t{0});
   }
   const SupervoxelGrowth::Grown grown = growth.grow(kReach_vox, outside);
   for (const std::uint32_t slot : slots) {
     std::array<VoxelName, 8> rest;  // per cell: the first voxel that no seed reached
     rest.fill(kNobody);
-    std::vector<VoxelName>& labels = blocks_[slot].labels;
+    std::vector<VoxelName>& labels = (*blocks_)[slot].labels;
     labels.clear();
     const std::uint32_t first = part.first_of[slot];
-    for (std::uint32_t v = first; v < first + blocks_[slot].voxels.size(); ++v) {
+    for (std::uint32_t v = first; v < first + (*blocks_)[slot].voxels.size(); ++v) {
       if (grown.labels[v] != kUnlabelled) {
         labels.push_back(part.names[grown.seeds[grown.labels[v]]]);
         continue;
@@ -218,15 +220,15 @@ void LiveSegments::label_blocks(std::span<const std::uint32_t> slots) {
 LiveSegments::Slots LiveSegments::renew_labels(const Slots& slots, const Executor& executor) {
   Slots by_tile = slots;
   std::sort(by_tile.begin(), by_tile.end(), [&](std::uint32_t a, std::uint32_t b) {
-    const Index3 tile_a = tile_of(blocks_[a].key);
-    const Index3 tile_b = tile_of(blocks_[b].key);
+    const Index3 tile_a = tile_of((*blocks_)[a].key);
+    const Index3 tile_b = tile_of((*blocks_)[b].key);
     return tile_a == tile_b ? a < b : zyx_less(tile_a, tile_b);
   });
   std::vector<std::vector<VoxelName>> before;
   std::vector<std::size_t> tiles;  // where they begin, and the end
   for (std::size_t i = 0; i < by_tile.size(); ++i) {
-    before.push_back(std::move(blocks_[by_tile[i]].labels));
-    if (i == 0 || !(tile_of(blocks_[by_tile[i]].key) == tile_of(blocks_[by_tile[i - 1]].key))) tiles.push_back(i);
+    before.push_back(std::move((*blocks_)[by_tile[i]].labels));
+    if (i == 0 || !(tile_of((*blocks_)[by_tile[i]].key) == tile_of((*blocks_)[by_tile[i - 1]].key))) tiles.push_back(i);
   }
   tiles.push_back(by_tile.size());
   executor.parallel_for(tiles.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
@@ -236,7 +238,7 @@ LiveSegments::Slots LiveSegments::renew_labels(const Slots& slots, const Executo
   });
   Slots changed;
   for (std::size_t i = 0; i < by_tile.size(); ++i) {
-    if (blocks_[by_tile[i]].labels != before[i]) changed.push_back(by_tile[i]);
+    if ((*blocks_)[by_tile[i]].labels != before[i]) changed.push_back(by_tile[i]);
   }
   return changed;
 }
@@ -246,10 +248,10 @@ void LiveSegments::renew_parts(const Slots& slots, const Executor& executor) {
     PaddedBlock near;
     NamePairs touching;
     for (std::size_t i = begin; i < end; ++i) {
-      SurfaceBlock& block = blocks_[slots[i]];
+      SurfaceBlock& block = (*blocks_)[slots[i]];
       block.parts = parts_of(block);
-      near.load(blocks_, slots[i],
-                [&](std::uint32_t other, std::size_t position) { return blocks_[other].labels[position]; });
+      near.load(*blocks_, slots[i],
+                [&](std::uint32_t other, std::size_t position) { return (*blocks_)[other].labels[position]; });
       find_touching(block, near, touching);
       block.touching.assign(touching.begin(), touching.end());
     }
@@ -259,20 +261,20 @@ void LiveSegments::renew_parts(const Slots& slots, const Executor& executor) {
 /// Supervoxels with their seeds in these blocks, and edges, with those of others to them.
 void LiveSegments::renew_own(const Slots& slots, const Executor& executor) {
   executor.parallel_for(slots.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) blocks_[slots[i]].own = own_of(blocks_, slots[i]);
+    for (std::size_t i = begin; i < end; ++i) (*blocks_)[slots[i]].own = own_of(*blocks_, slots[i]);
   });
   executor.parallel_for(slots.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) blocks_[slots[i]].edges = edges_of(blocks_, slots[i]);
+    for (std::size_t i = begin; i < end; ++i) (*blocks_)[slots[i]].edges = edges_of(*blocks_, slots[i]);
   });
-  std::vector<bool> renewed(blocks_.slots());
+  std::vector<bool> renewed(blocks_->slots());
   for (const std::uint32_t slot : slots) renewed[slot] = true;
-  const Slots all = blocks_.with_rings(slots, 3);  // a supervoxel touches others whose seeds lie up to 17 voxels away
+  const Slots all = blocks_->with_rings(slots, 3);  // a supervoxel touches others whose seeds lie up to 17 voxels away
   executor.parallel_for(all.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      SurfaceBlock& block = blocks_[all[i]];
+      SurfaceBlock& block = (*blocks_)[all[i]];
       for (SurfaceBlock::Edge& edge : block.edges) {
         if (!renewed[all[i]] && !renewed[edge.to / kBrickVoxels]) continue;
-        edge.convex = is_convex(block.own[edge.from].supervoxel, supervoxel_of(blocks_, edge.to), config_.lccp,
+        edge.convex = is_convex(block.own[edge.from].supervoxel, supervoxel_of(*blocks_, edge.to), config_.lccp,
                                 supervoxel_config_.voxels.voxel_size_m);
       }
     }

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <utility>
 
+#include "saccade/segment/internal/surfel_graph.hpp"
+
 namespace saccade {
 
 namespace {

@@ -8,8 +8,8 @@
 
 #include "saccade/core/progress.hpp"
 #include "saccade/segment/flood_fill.hpp"
+#include "saccade/segment/lccp.hpp"
 #include "saccade/segment/segmentation_truth.hpp"
-#include "saccade/segment/sv_lccp.hpp"
 
 namespace saccade {
 

@@ -4,7 +4,10 @@
 #include <algorithm>
 #include <utility>
 
-#include "saccade/segment/surfel_graph.hpp"
+#include "saccade/segment/internal/boundary.hpp"
+#include "saccade/segment/internal/boundary_matching.hpp"
+#include "saccade/segment/internal/surfel_graph.hpp"
+#include "saccade/segment/overlap.hpp"
 
 namespace saccade {
 
@@ -30,6 +33,8 @@ std::optional<double> SegmentationScore::f() const {
   return share(2.0 * static_cast<double>(matched), boundary + true_boundary);
 }
 
+SegmentationTruth::SegmentationTruth(BoundaryFinder finder) : finder_{std::move(finder)} {}
+
 Result<SegmentationTruth> SegmentationTruth::create(const PointCloud& cloud, std::span<const std::uint32_t> labels,
                                                     const SegmentationTruthConfig& config, const Executor& executor) {
   SACCADE_CHECK(cloud.validate());
@@ -53,7 +58,7 @@ Result<SegmentationTruth> SegmentationTruth::create(const PointCloud& cloud, std
     truth.labels_ = std::move(parts.labels);
   }
   truth.segments_ = count_labels(truth.labels_);
-  truth.boundary_ = truth.finder_.boundary(truth.labels_, executor);
+  truth.boundary_ = truth.finder_->boundary(truth.labels_, executor);
   return truth;
 }
 
@@ -62,7 +67,7 @@ Result<SegmentationScore> SegmentationTruth::score(std::span<const std::uint32_t
   if (labels.size() != labels_.size()) {
     return Error{Errc::size_mismatch, "as many labels as true labels are needed", "score"};
   }
-  const std::vector<std::uint32_t> boundary = finder_.boundary(labels, executor);
+  const std::vector<std::uint32_t> boundary = finder_->boundary(labels, executor);
   SACCADE_TRY(const BoundaryMatching matching, match_boundaries(positions_m_, boundary, boundary_, config_.matching));
   SACCADE_TRY(const ConsistencyError error, consistency_error(labels, labels_));
   SegmentationScore score;

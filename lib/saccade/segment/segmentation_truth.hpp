@@ -11,11 +11,23 @@
 
 #include "saccade/cloud/point_cloud.hpp"
 #include "saccade/core/executor.hpp"
-#include "saccade/segment/boundary.hpp"
-#include "saccade/segment/boundary_matching.hpp"
-#include "saccade/segment/consistency_error.hpp"
+#include "saccade/core/hidden.hpp"
+#include "saccade/core/result.hpp"
 
 namespace saccade {
+
+class BoundaryFinder;
+
+/// Parameters of match_boundaries.
+struct BoundaryMatchingConfig {
+  double tolerance_m{0.02};  ///< T_eval: no farther apart are the two of a pair (thesis Table 4.2)
+  /// Of a cluster of points that could be paired, directly or by way of others: with more points than this in it, the
+  /// distances are not the least.
+  std::size_t exact_cluster{256};
+
+  /// @return invalid_argument for a tolerance that is not finite and positive, or clusters beyond 4096 points.
+  [[nodiscard]] Status validate() const;
+};
 
 /// Parameters of SegmentationTruth.
 struct SegmentationTruthConfig {
@@ -59,14 +71,14 @@ class SegmentationTruth {
   [[nodiscard]] Result<SegmentationScore> score(std::span<const std::uint32_t> labels, const Executor& executor) const;
 
  private:
-  explicit SegmentationTruth(BoundaryFinder finder) : finder_{std::move(finder)} {}
+  explicit SegmentationTruth(BoundaryFinder finder);
 
   SegmentationTruthConfig config_;
   std::vector<Eigen::Vector3f> positions_m_;
   std::vector<std::uint32_t> labels_;
   std::size_t points_{0};
   std::size_t segments_{0};
-  BoundaryFinder finder_;
+  Hidden<BoundaryFinder> finder_;
   std::vector<std::uint32_t> boundary_;
 };
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/segment/supervoxels.hpp"
+#include "saccade/segment/lccp.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/segment/sv_lccp.hpp"
+#include "saccade/segment/lccp.hpp"
 
 #include <utility>
 

@@ -6,6 +6,8 @@
 #include <limits>
 #include <string>
 
+#include "saccade/sensor/internal/shadow_doubt.hpp"
+
 namespace saccade {
 namespace {
 

@@ -13,9 +13,10 @@
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
-#include "saccade/sensor/shadow_doubt.hpp"
 
 namespace saccade {
+
+enum class ShadowVerdict : std::uint8_t;
 
 /// Where the infrared emitter is, seen along the camera's view: left is towards u = 0. The thesis' equations have it on
 /// the left; drivers that mirror the image need the right.

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saccade/sensor/internal/shadow_doubt.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
 
 namespace saccade {

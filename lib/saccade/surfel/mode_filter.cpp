@@ -9,6 +9,7 @@
 #include "saccade/core/clock.hpp"
 #include "saccade/surfel/internal/mode_choice.hpp"
 #include "saccade/surfel/internal/mode_merges.hpp"
+#include "saccade/surfel/internal/mode_sharpening.hpp"
 #include "saccade/surfel/internal/mode_update.hpp"
 
 namespace saccade {

@@ -8,13 +8,22 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/camera.hpp"
 #include "saccade/surfel/guided_filter.hpp"
-#include "saccade/surfel/mode_sharpening.hpp"
 #include "saccade/surfel/mode_store.hpp"
 #include "saccade/surfel/surfel_association.hpp"
 
 namespace saccade {
+
+/// Parameters of sharpened modes: modes of the neighbours decide as well (decision 19).
+struct ModeSharpeningConfig {
+  double strength{2.0};      ///< λ; 0: every surfel by itself
+  double reach_m{0.02};      ///< as far as wrong poses carry colours
+  double color_sigma{0.06};  ///< colours that count as one, in [0, 1] as colours are
+
+  /// invalid_argument for a strength that is negative, a reach or σ that is not positive, or any that is not finite.
+  [[nodiscard]] Status validate() const;
+};
 
 /// Parameters of ModeFilter: Table 4.2. (σ_img is SurfelFusionConfig::image_sigma: both weigh pixels alike.)
 struct ModeFilterConfig {

@@ -10,7 +10,7 @@
 
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/camera.hpp"
 #include "saccade/sensor/point_image.hpp"
 #include "saccade/surfel/exposure_compensation.hpp"
 #include "saccade/surfel/surfel_association.hpp"

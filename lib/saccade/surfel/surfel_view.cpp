@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/surfel/surfel_view.hpp"
+#include "saccade/surfel/surfel_points.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/tracking/depth_residual.hpp"
+#include "saccade/tracking/trajectory_error.hpp"
 
 #include <algorithm>
 #include <cmath>

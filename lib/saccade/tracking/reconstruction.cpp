@@ -2,7 +2,7 @@
 #include "saccade/tracking/reconstruction.hpp"
 
 #include "saccade/core/clock.hpp"
-#include "saccade/map/view_points.hpp"
+#include "saccade/map/raycast.hpp"
 
 namespace saccade {
 

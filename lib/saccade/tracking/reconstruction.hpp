@@ -6,7 +6,7 @@
 #include <string>
 
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/camera.hpp"
 #include "saccade/tracking/icp.hpp"
 
 namespace saccade {

@@ -5,7 +5,7 @@
 #include <limits>
 
 #include "saccade/io/files/json_io.hpp"
-#include "saccade/io/runs/refusals_json.hpp"
+#include "saccade/io/runs/run_json.hpp"
 #include "saccade/trial/internal/campaign_schema.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/trial/campaign_csv.hpp"
+#include "saccade/trial/campaign_summary.hpp"
 
 #include <array>
 #include <cmath>

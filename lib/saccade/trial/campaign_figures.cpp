@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/trial/campaign_figures.hpp"
+#include "saccade/trial/campaign_summary.hpp"
 
 #include <algorithm>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 
 #include <algorithm>
 #include <cmath>

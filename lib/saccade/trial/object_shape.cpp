@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/trial/object_shape.hpp"
+#include "saccade/trial/metrics.hpp"
 
 #include <algorithm>
 #include <cmath>

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/trial/region_coverage.hpp"
+#include "saccade/trial/metrics.hpp"
 
 #include <cmath>
 #include <numeric>

@@ -3,9 +3,9 @@
 
 #include <limits>
 
-#include "saccade/map/count_unknown.hpp"
 #include "saccade/map/mesh.hpp"
-#include "saccade/scene/fixture_boxes.hpp"
+#include "saccade/map/tsdf_map.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/trial/internal/oracle_gain.hpp"
 
 namespace saccade {

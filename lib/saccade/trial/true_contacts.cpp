@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/trial/true_contacts.hpp"
+#include "saccade/trial/metrics.hpp"
 
 #include <algorithm>
 #include <cmath>
@@ -15,18 +15,10 @@ constexpr double kBelieved_m{0.005};
 
 bool touches(const ArmCollision& collision, const Solids& solids, const Configuration& q) {
   const ArmPoses poses = forward_kinematics(collision.arm(), q);
-  for (int link = 1; link <= collision.arm().dof(); ++link) {
-    const Pose& T_world_link = poses.T_world_link[static_cast<std::size_t>(link)];
-    for (const SphereTree& cover : collision.cover(link)) {
-      const bool apart = cover.clear([&](const TreeBall& ball) {
-        const Eigen::Vector3d center = T_world_link * ball.center.cast<double>();
-        const double radius_m = static_cast<double>(ball.radius_m) - (ball.finest ? kBelieved_m : 0.0);
-        return radius_m <= 0.0 || (solids.distance_m(center, 2.0 * radius_m) >= radius_m && !solids.contain(center));
-      });
-      if (!apart) return true;
-    }
-  }
-  return false;
+  return !collision.clear(poses, [&](const Eigen::Vector3d& center, double cover_radius_m, bool finest) {
+    const double radius_m = cover_radius_m - (finest ? kBelieved_m : 0.0);
+    return radius_m <= 0.0 || (solids.distance_m(center, 2.0 * radius_m) >= radius_m && !solids.contain(center));
+  });
 }
 
 }  // namespace

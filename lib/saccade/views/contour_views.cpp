@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/views/contour_views.hpp"
+#include "saccade/views/contours.hpp"
 
 #include <algorithm>
 #include <array>

@@ -1,14 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ContourConfig; ContourVoxel and contour_voxels: empty voxels at the border of incomplete surfaces, with the normal of
-// the frontier; ContourPoint and contour_points: groups of them.
+// contour_voxels, contour_points: empty voxels at the border of incomplete surfaces, and groups of them; LiveContours:
+// those of a map that goes on changing; contour_views: view poses that look at them.
 
 #include <Eigen/Core>
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/pose.hpp"
 #include "saccade/map/map_changes.hpp"
 #include "saccade/map/tsdf_map.hpp"
 
@@ -68,5 +70,67 @@ struct ContourPoint {
 /// O(voxels · groups within D_th of each). One thread.
 [[nodiscard]] std::vector<ContourPoint> contour_points(std::span<const ContourVoxel> voxels, double voxel_size_m,
                                                        const ContourConfig& config);
+
+/// What LiveContours::update did.
+struct ContoursUpdate {
+  std::size_t bricks_changed{0};  ///< in the map
+  double ms{0.0};
+};
+
+/// Follows a map from snapshot to snapshot. After update(map), voxels() equals contour_voxels(map) to the bit.
+/// Thesis §3.1.1.
+///
+/// Whether a voxel belongs to a contour, and its normal, depend on voxels next to it alone, so those of a changed brick
+/// and of the up to 26 around it are found anew, all others are kept. Const use from many threads is safe, one writer
+/// at a time. It holds the snapshot.
+class LiveContours {
+ public:
+  /// invalid_argument when the configuration is.
+  [[nodiscard]] static Result<LiveContours> create(const ContourConfig& config = {});
+
+  /// Follows the map to this state, any later or earlier one, or that of another map; where the configurations of both
+  /// maps differ, from scratch. O(changed_sectors + bricks around changed ones). The same for every thread count.
+  ContoursUpdate update(const TsdfSnapshot& map, const Executor& executor);
+
+  /// All contour voxels. O(voxels).
+  [[nodiscard]] std::vector<ContourVoxel> voxels() const;
+  /// Groups of them, as of contour_points.
+  [[nodiscard]] std::vector<ContourPoint> points() const;
+
+ private:
+  struct Sector {
+    Index3 key;
+    std::vector<ContourVoxel> voxels;  ///< by brick and voxel
+  };
+  explicit LiveContours(const ContourConfig& config) : config_{config} {}
+  void replace(const SectorBricks& stale, const std::vector<ContourVoxel>& fresh);
+
+  ContourConfig config_;
+  TsdfSnapshot map_;
+  std::vector<Sector> sectors_;  ///< that have contour voxels, in z-y-x order
+};
+
+/// Sampling of views around the direction of a contour point. Thesis §3.1, Fig. 3.2; the defaults give 40 per point.
+struct ContourViewConfig {
+  std::vector<double> distances_m{0.8};
+  double cone_rad{0.26179938779914943};       ///< 15°: four further directions are tilted by this
+  double roll_step_rad{0.78539816339744831};  ///< 45°
+
+  /// invalid_argument for distances or a step that are not positive, a cone outside (0, 90°) or more than 10⁷ poses.
+  [[nodiscard]] Status validate() const;
+  /// Five directions · rolls · distances. For a valid configuration.
+  [[nodiscard]] std::size_t views_per_point() const;
+};
+
+/// Poses that look at each point from along its normal, and from four directions tilted away from it. Thesis §3.1,
+/// GetViewpoints of Algorithm 4. Direction 0 is the normal n: the camera stands at p + distance · n and looks along -n.
+/// The others are tilted towards the right, the top, the left and the bottom of its image at roll 0. At roll 0 the
+/// image's up is the world's, as in view_sphere; for a camera that looks straight up or down it is world +y. Roll turns
+/// the camera about its optical axis.
+/// Index order: ((point · distances + distance) · 5 + direction) · rolls + roll.
+/// @return world ← camera; invalid_argument for a bad configuration, a point or normal that is not finite, a normal
+///         without length, or more than 10⁷ poses.
+[[nodiscard]] Result<std::vector<Pose>> contour_views(std::span<const ContourPoint> points,
+                                                      const ContourViewConfig& config = {});
 
 }  // namespace saccade

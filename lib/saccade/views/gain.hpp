@@ -8,7 +8,7 @@
 #include <span>
 #include <vector>
 
-#include "saccade/attention/planning_context.hpp"
+#include "saccade/attention/attention_source.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/views/view_gain.hpp"
 

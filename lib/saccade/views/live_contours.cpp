@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/views/live_contours.hpp"
+#include "saccade/views/contours.hpp"
 
 #include <algorithm>
 

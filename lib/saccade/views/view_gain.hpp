@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// GainConfig, GainResult and evaluate_views: the expected information gain of view poses in a region.
+// GainConfig, GainResult and evaluate_views: the expected information gain of view poses in a region; order_views:
+// poses by decreasing gain.
 
+#include <cstddef>
 #include <cstdint>
 #include <span>
 #include <string>
@@ -79,5 +81,17 @@ struct GainResult {
 [[nodiscard]] Result<GainResult> evaluate_views(const TsdfSnapshot& map, const Region& region,
                                                 std::span<const Pose> T_world_camera, const GainConfig& config,
                                                 const Executor& executor, const Progress& progress = {});
+
+/// A view pose, its gain, and its index among the candidates.
+struct OrderedView {
+  std::size_t index{0};
+  std::uint64_t gain{0};
+  Pose T_world_camera{Pose::Identity()};
+};
+
+/// All poses by decreasing gain, ties by increasing index (OrderViewpointsAndGains, thesis Algorithm 2 line 13).
+/// `gains` and `T_world_camera` have the same length. O(n log n).
+[[nodiscard]] std::vector<OrderedView> order_views(std::span<const std::uint64_t> gains,
+                                                   std::span<const Pose> T_world_camera);
 
 }  // namespace saccade

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/views/view_generator.hpp"
 
-#include "saccade/attention/nearest_segment.hpp"
 #include "saccade/attention/salient_objects.hpp"
+#include "saccade/attention/segmented_points.hpp"
 
 namespace saccade {
 

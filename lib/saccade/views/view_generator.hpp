@@ -5,10 +5,9 @@
 #include <memory>
 #include <vector>
 
-#include "saccade/attention/planning_context.hpp"
+#include "saccade/attention/attention_source.hpp"
 #include "saccade/attention/region_of_interest.hpp"
-#include "saccade/views/contour_views.hpp"
-#include "saccade/views/live_contours.hpp"
+#include "saccade/views/contours.hpp"
 #include "saccade/views/view_sphere.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/views/view_order.hpp"
+#include "saccade/views/view_gain.hpp"
 
 #include <algorithm>
 

@@ -1,9 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/annotate/next_best_click.hpp"
+#include "saccade/annotate/annotation_margin.hpp"
 
 #include <gtest/gtest.h>
-
-#include "saccade/annotate/annotation_margin.hpp"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/annotate/screen_shape.hpp"
+#include "saccade/annotate/selection.hpp"
 
 #include <gtest/gtest.h>
 

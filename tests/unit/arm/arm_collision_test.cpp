@@ -6,7 +6,8 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/arm/body_surface.hpp"
+#include "saccade/arm/arm_mesh.hpp"
+#include "saccade/arm/internal/sphere_tree.hpp"
 #include "support/effort.hpp"
 #include "support/test_arms.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/arm/arm_hash.hpp"
+#include "saccade/arm/arm_model.hpp"
 
 #include <gtest/gtest.h>
 

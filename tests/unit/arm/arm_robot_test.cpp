@@ -3,8 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include "saccade/arm/internal/driven_way.hpp"
 #include "saccade/arm/internal/swept_cells.hpp"
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 #include "support/test_arms.hpp"
 
 namespace saccade {

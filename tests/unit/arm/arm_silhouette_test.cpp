@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "saccade/arm/arm_mesh.hpp"
-#include "saccade/arm/body_surface.hpp"
 #include "support/parallel_backend.hpp"
 
 namespace saccade {

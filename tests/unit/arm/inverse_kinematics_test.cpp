@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "saccade/arm/internal/joint_turns.hpp"
+#include "saccade/arm/internal/numeric_ik.hpp"
 #include "saccade/arm/kinematics.hpp"
 #include "support/effort.hpp"
 #include "support/test_arms.hpp"

@@ -5,7 +5,6 @@
 
 #include <set>
 
-#include "saccade/arm/trajectory_timing.hpp"
 #include "saccade/core/clock.hpp"
 #include "support/effort.hpp"
 #include "support/sliding_arms.hpp"

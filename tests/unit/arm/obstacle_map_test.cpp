@@ -7,6 +7,7 @@
 #include <cmath>
 #include <limits>
 
+#include "saccade/arm/internal/obstacle_cells.hpp"
 #include "saccade/core/simd.hpp"
 
 namespace saccade {

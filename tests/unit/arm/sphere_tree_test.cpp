@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/arm/sphere_tree.hpp"
+#include "saccade/arm/internal/sphere_tree.hpp"
 
 #include <gtest/gtest.h>
 

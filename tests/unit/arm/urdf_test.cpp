@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 using test::replaced;
 
 /// Base, a joint that turns, one that slides, a flange, a camera beside it.
-const std::string kArm{R"(<robot name="small">
+const std::string kUrdf{R"(<robot name="small">
   <link name="base"><collision><origin xyz="0 0 0.1"/><geometry><box size="0.1 0.2 0.3"/></geometry></collision></link>
   <joint name="turn" type="revolute"><parent link="base"/><child link="arm"/><origin xyz="0 0 0.3"/><axis xyz="0 0 2"/>
     <limit lower="-1" upper="2" effort="1" velocity="3" acceleration="4"/></joint>
@@ -32,7 +32,7 @@ const std::string kArm{R"(<robot name="small">
 </robot>)"};
 
 /// The same with more in it.
-std::string with(const std::string& more) { return replaced(kArm, "</robot>", more + "</robot>"); }
+std::string with(const std::string& more) { return replaced(kUrdf, "</robot>", more + "</robot>"); }
 
 const std::string kCamera{
     R"(<joint name="mount" type="fixed"><parent link="flange"/><child link="camera_optical_frame"/>
@@ -79,13 +79,13 @@ TEST(Urdf, ReadsAnArm) {
 }
 
 TEST(Urdf, TakesTheLongestChainWhereNothingIsSaid) {
-  const auto read = parse_urdf(kArm);
+  const auto read = parse_urdf(kUrdf);
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->arm.description().flange_name, "flange");
   EXPECT_NE(read->notes[0].find("no camera is mounted"), std::string::npos);
   UrdfConfig config;
   config.base = "arm";
-  const auto part = parse_urdf(kArm, {}, config);
+  const auto part = parse_urdf(kUrdf, {}, config);
   ASSERT_TRUE(part);
   EXPECT_EQ(part->arm.dof(), 1);
   EXPECT_EQ(part->arm.links()[0].name, "arm");
@@ -112,7 +112,7 @@ TEST(Urdf, FoldsBranchesIntoTheLinkThatTheyHangOn) {
 
 TEST(Urdf, GivesEndlessJointsASpeed) {
   const auto read =
-      parse_urdf(replaced(replaced(kArm, "revolute", "continuous"),
+      parse_urdf(replaced(replaced(kUrdf, "revolute", "continuous"),
                           R"(<limit lower="-1" upper="2" effort="1" velocity="3" acceleration="4"/>)", ""));
   ASSERT_TRUE(read) << read.error().to_string();
   EXPECT_EQ(read->arm.joint(0).kind, JointKind::continuous);
@@ -144,39 +144,39 @@ TEST(Urdf, SaysWhatIsWrongAndWhere) {
                   "loop of joints");
   expect_bad_urdf(with(R"(<joint name="on" type="fixed"><parent link="flange"/><child link="nowhere"/></joint>)"),
                   "nowhere");
-  expect_bad_urdf(replaced(kArm, "0 0 2", "0 0 0"), "joint turn: its axis has no length");
-  expect_bad_urdf(replaced(kArm, "upper=\"2\"", "upper=\"nan\""), "upper");
-  expect_bad_urdf(replaced(kArm, "upper=\"2\"", "upper=\"-2\""), "joint turn: its lower limit must lie below");
-  expect_bad_urdf(replaced(kArm, "velocity=\"3\"", ""), "velocity");
-  expect_bad_urdf(replaced(kArm, "velocity=\"3\"", "velocity=\"0\""), "joint turn: its speed limit must be positive");
-  expect_bad_urdf(replaced(kArm, "acceleration=\"4\"", "acceleration=\"-4\""), "joint turn: its acceleration limit");
-  expect_bad_urdf(replaced(kArm, "acceleration=\"4\"", "acceleration=\"fast\""),
+  expect_bad_urdf(replaced(kUrdf, "0 0 2", "0 0 0"), "joint turn: its axis has no length");
+  expect_bad_urdf(replaced(kUrdf, "upper=\"2\"", "upper=\"nan\""), "upper");
+  expect_bad_urdf(replaced(kUrdf, "upper=\"2\"", "upper=\"-2\""), "joint turn: its lower limit must lie below");
+  expect_bad_urdf(replaced(kUrdf, "velocity=\"3\"", ""), "velocity");
+  expect_bad_urdf(replaced(kUrdf, "velocity=\"3\"", "velocity=\"0\""), "joint turn: its speed limit must be positive");
+  expect_bad_urdf(replaced(kUrdf, "acceleration=\"4\"", "acceleration=\"-4\""), "joint turn: its acceleration limit");
+  expect_bad_urdf(replaced(kUrdf, "acceleration=\"4\"", "acceleration=\"fast\""),
                   "joint turn: acceleration is no number");
-  expect_bad_urdf(replaced(kArm, "radius=\"0.03\"", "radius=\"0\""), "link flange: the radius of a collision sphere");
-  expect_bad_urdf(replaced(kArm, "type=\"revolute\"", "type=\"floating\""), "joint turn: only revolute, continuous",
+  expect_bad_urdf(replaced(kUrdf, "radius=\"0.03\"", "radius=\"0\""), "link flange: the radius of a collision sphere");
+  expect_bad_urdf(replaced(kUrdf, "type=\"revolute\"", "type=\"floating\""), "joint turn: only revolute, continuous",
                   Errc::unsupported);
-  expect_bad_urdf(replaced(kArm, "velocity=\"0.5\"/>", "velocity=\"0.5\"/><mimic joint=\"turn\"/>"),
+  expect_bad_urdf(replaced(kUrdf, "velocity=\"0.5\"/>", "velocity=\"0.5\"/><mimic joint=\"turn\"/>"),
                   "joint slide: follows joint turn", Errc::unsupported);
-  expect_bad_urdf(replaced(kArm, "revolute\">", "revolute\"><parent"), "no XML");
+  expect_bad_urdf(replaced(kUrdf, "revolute\">", "revolute\"><parent"), "no XML");
 }
 
 TEST(Urdf, RefusesFramesThatAreNotThere) {
   UrdfConfig config;
   config.base = "pelvis";
-  expect_bad_urdf(kArm, "pelvis: there is no such link to be the base", Errc::invalid_argument, config);
+  expect_bad_urdf(kUrdf, "pelvis: there is no such link to be the base", Errc::invalid_argument, config);
   config = {};
   config.tip = "hand";
-  expect_bad_urdf(kArm, "hand: there is no such link to be the tip", Errc::invalid_argument, config);
+  expect_bad_urdf(kUrdf, "hand: there is no such link to be the tip", Errc::invalid_argument, config);
   config = {};
   config.camera = "eye";
-  expect_bad_urdf(kArm, "eye: there is no such link to be the camera's frame", Errc::invalid_argument, config);
+  expect_bad_urdf(kUrdf, "eye: there is no such link to be the camera's frame", Errc::invalid_argument, config);
   config.camera = "arm";
   config.tip = "flange";
-  expect_bad_urdf(kArm, "link arm: the camera's frame is not fixed to the tip flange", Errc::invalid_argument, config);
+  expect_bad_urdf(kUrdf, "link arm: the camera's frame is not fixed to the tip flange", Errc::invalid_argument, config);
   config = {};
   config.base = "flange";
   config.tip = "arm";
-  expect_bad_urdf(kArm, "link arm: does not come behind the base flange", Errc::invalid_argument, config);
+  expect_bad_urdf(kUrdf, "link arm: does not come behind the base flange", Errc::invalid_argument, config);
   const std::string fork = R"(<joint name="other" type="continuous"><parent link="arm"/><child link="left"/></joint>
                               <link name="left"/>)";
   expect_bad_urdf(with(fork), "several chains are equally long; name a tip: flange, left", Errc::invalid_argument);
@@ -190,7 +190,7 @@ TEST(Urdf, FindsMeshes) {
   folder.write("arm/meshes/t.obj", triangle);
   folder.write("arm/package.xml", "<package><name>arm_description</name></package>");
   const auto mesh = [](const std::string& name) {
-    return replaced(kArm, "<sphere radius=\"0.03\"/>", "<mesh filename=\"" + name + "\" scale=\"2 3 -1\"/>");
+    return replaced(kUrdf, "<sphere radius=\"0.03\"/>", "<mesh filename=\"" + name + "\" scale=\"2 3 -1\"/>");
   };
   for (const char* name : {"package://arm_description/meshes/t.obj", "package://arm/meshes/t.obj", "../meshes/t.obj"}) {
     const auto read = parse_urdf(mesh(name), folder / "arm" / "urdf");

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 
 namespace saccade {
 namespace {

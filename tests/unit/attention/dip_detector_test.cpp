@@ -5,6 +5,7 @@
 
 #include <limits>
 
+#include "saccade/attention/internal/speed_dips.hpp"
 #include "support/bad_samples.hpp"
 #include "support/made_hands.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/attention/dip_stream.hpp"
+#include "saccade/attention/dip_detector.hpp"
 
 #include <gtest/gtest.h>
 

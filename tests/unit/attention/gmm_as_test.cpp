@@ -6,7 +6,7 @@
 #include <Eigen/Eigenvalues>
 
 #include "saccade/attention/detector_evaluation.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "support/effort.hpp"
 #include "thesis/hand_figures.hpp"
 

@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/attention/trajectory_changes.hpp"
+#include "saccade/attention/detector_evaluation.hpp"
 
 #include <gtest/gtest.h>
 
 #include <cmath>
 
-#include "saccade/attention/hand_smoothing.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/attention/internal/hand_smoothing.hpp"
+#include "saccade/trial/simulated_task.hpp"
 
 namespace saccade {
 namespace {

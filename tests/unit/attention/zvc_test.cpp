@@ -6,7 +6,7 @@
 #include <cmath>
 
 #include "saccade/attention/detector_evaluation.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 
 namespace saccade {
 namespace {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/cloud/estimated_radii.hpp"
+#include "saccade/cloud/nearest_neighbours.hpp"
 
 #include <gtest/gtest.h>
 

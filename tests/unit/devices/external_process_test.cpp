@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/devices/external_process.hpp"
+#include "saccade/devices/internal/external_process.hpp"
 
 #include <gtest/gtest.h>
 #include <signal.h>
@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/io/files/readable_text.hpp"
+#include "saccade/io/files/text_scan.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {

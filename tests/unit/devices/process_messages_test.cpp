@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/devices/process_messages.hpp"
+#include "saccade/devices/internal/process_messages.hpp"
 
 #include <gtest/gtest.h>
 

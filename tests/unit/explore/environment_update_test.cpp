@@ -6,10 +6,10 @@
 #include <algorithm>
 #include <random>
 
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 #include "saccade/arm/urdf.hpp"
-#include "saccade/map/count_unknown.hpp"
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/map/tsdf_map.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/trial/simulated_run.hpp"
 #include "support/effort.hpp"
 

@@ -3,8 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/map/count_unknown.hpp"
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/map/tsdf_map.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/scene/simulated_camera.hpp"
 #include "saccade/trial/metrics.hpp"
 #include "saccade/trial/simulated_run.hpp"

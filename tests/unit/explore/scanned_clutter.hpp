@@ -6,7 +6,7 @@
 
 #include <algorithm>
 
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/trial/internal/oracle_gain.hpp"
 #include "saccade/trial/simulated_run.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/map/closest_point.hpp"
+#include "saccade/map/mesh.hpp"
 
 #include <gtest/gtest.h>
 

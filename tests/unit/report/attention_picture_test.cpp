@@ -4,7 +4,7 @@
 #include <gtest/gtest.h>
 
 #include "saccade/attention/dip_detector.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "unit/report/pixels.hpp"
 #include "unit/report/well_formed.hpp"
 

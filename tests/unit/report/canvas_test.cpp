@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/canvas.hpp"
+#include "saccade/report/internal/canvas.hpp"
 
 #include <gtest/gtest.h>
 
 #include <algorithm>
 
-#include "saccade/report/font.hpp"
 #include "saccade/report/internal/blend.hpp"
+#include "saccade/report/internal/font.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

@@ -9,7 +9,8 @@
 #include <numbers>
 
 #include "analytic_map.hpp"
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/internal/canvas.hpp"
+#include "saccade/report/sheet.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/filter_picture.hpp"
+#include "saccade/report/depth_picture.hpp"
 
 #include <gtest/gtest.h>
 

@@ -7,10 +7,9 @@
 #include <numbers>
 
 #include "analytic_map.hpp"
-#include "saccade/report/color_map.hpp"
-#include "saccade/report/fusion_pictures.hpp"
+#include "saccade/report/depth_picture.hpp"
 #include "saccade/report/mesh_picture.hpp"
-#include "saccade/report/ternary_picture.hpp"
+#include "saccade/report/sheet.hpp"
 #include "saccade/report/view_picture.hpp"
 #include "unit/report/pixels.hpp"
 

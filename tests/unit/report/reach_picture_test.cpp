@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/reach_picture.hpp"
+#include "saccade/report/robot_drawing.hpp"
 
 #include <gtest/gtest.h>
 
 #include <numbers>
 
-#include "saccade/report/color_map.hpp"
 #include "saccade/report/internal/plane_drawing.hpp"
+#include "saccade/report/sheet.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

@@ -8,6 +8,7 @@
 
 #include "analytic_map.hpp"
 #include "saccade/report/exploration_pictures.hpp"
+#include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/mesh_picture.hpp"
 #include "unit/report/pixels.hpp"
 

@@ -7,7 +7,7 @@
 #include <set>
 
 #include "saccade/cloud/point_cloud.hpp"
-#include "saccade/report/color_map.hpp"
+#include "saccade/report/sheet.hpp"
 #include "unit/report/pixels.hpp"
 
 namespace saccade {

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/update_pictures.hpp"
+#include "saccade/report/update_report.hpp"
 
 #include <gtest/gtest.h>
 
 #include "analytic_map.hpp"
-#include "saccade/report/ternary_picture.hpp"
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/report/view_picture.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "unit/report/pixels.hpp"
 #include "unit/report/well_formed.hpp"
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/robot/joint_controller.hpp"
 
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 
 #include <gtest/gtest.h>
 

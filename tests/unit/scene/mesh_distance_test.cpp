@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/mesh_distance.hpp"
+#include "saccade/scene/solids.hpp"
 
 #include <gtest/gtest.h>
 
 #include <random>
 
-#include "saccade/scene/shape.hpp"
+#include "saccade/scene/scene.hpp"
 #include "support/brute_force_distance.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/mesh_scene.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 #include <gtest/gtest.h>
 

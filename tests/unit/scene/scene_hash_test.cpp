@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/scene/scene_hash.hpp"
+#include "saccade/scene/ray_scene.hpp"
 
 #include <gtest/gtest.h>
 
 #include <functional>
 #include <set>
 
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/scene/scene.hpp"
 
 namespace saccade {
 namespace {

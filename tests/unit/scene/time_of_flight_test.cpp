@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // A box before a wall, whose shadows are known, and the depth filter on what the camera measures of them.
-#include "saccade/scene/time_of_flight.hpp"
+#include "saccade/scene/simulated_camera.hpp"
 
 #include <gtest/gtest.h>
 

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/scene/paint.hpp"
+#include "saccade/scene/scene.hpp"
 
 namespace saccade {
 namespace {

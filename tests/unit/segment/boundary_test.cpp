@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Boundaries, their matching and BCE, by hand.
-#include "saccade/segment/boundary.hpp"
+#include "saccade/segment/internal/boundary.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,9 +9,9 @@
 #include <limits>
 #include <numeric>
 
-#include "saccade/segment/boundary_matching.hpp"
-#include "saccade/segment/consistency_error.hpp"
+#include "saccade/segment/internal/boundary_matching.hpp"
 #include "saccade/segment/internal/least_assignment.hpp"
+#include "saccade/segment/overlap.hpp"
 
 namespace saccade {
 namespace {

@@ -5,6 +5,8 @@
 
 #include <limits>
 
+#include "saccade/segment/internal/surfel_graph.hpp"
+
 namespace saccade {
 namespace {
 

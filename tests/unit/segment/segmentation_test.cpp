@@ -11,7 +11,6 @@
 
 #include "saccade/segment/lccp.hpp"
 #include "saccade/segment/overlap.hpp"
-#include "saccade/segment/supervoxels.hpp"
 
 namespace saccade {
 namespace {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Each row beside the definitions of docs/depth-filter.md in plain loops.
-#include "saccade/sensor/shadow_doubt.hpp"
+#include "saccade/sensor/internal/shadow_doubt.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/sensor/trajectory_check.hpp"
+#include "saccade/sensor/hand_trajectory.hpp"
 
 #include <gtest/gtest.h>
 

@@ -12,7 +12,6 @@
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 #include "saccade/surfel/surfel_points.hpp"
-#include "saccade/surfel/surfel_view.hpp"
 #include "support/color_edges.hpp"
 
 namespace saccade {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What surfels are in the end when their neighbours' modes count: narrow things come back, and nothing else changes.
-#include "saccade/surfel/mode_sharpening.hpp"
+#include "saccade/surfel/internal/mode_sharpening.hpp"
 
 #include <gtest/gtest.h>
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Which surfel a pixel sees: outlines of discs, what is in front, overlaps, threads.
-#include "saccade/surfel/surfel_view.hpp"
+#include "saccade/surfel/surfel_points.hpp"
 
 #include <gtest/gtest.h>
 

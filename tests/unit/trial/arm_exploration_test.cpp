@@ -2,14 +2,14 @@
 // An arm in the loop: what it plans with is what it has seen, and it touches nothing that is really there.
 #include <gtest/gtest.h>
 
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 #include "saccade/arm/urdf.hpp"
 #include "saccade/explore/explorer.hpp"
-#include "saccade/map/count_unknown.hpp"
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/map/tsdf_map.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/metrics.hpp"
 #include "saccade/trial/simulated_run.hpp"
-#include "saccade/trial/true_contacts.hpp"
 #include "support/effort.hpp"
 
 namespace saccade {

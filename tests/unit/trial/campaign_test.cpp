@@ -13,7 +13,7 @@
 #include <thread>
 
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/trial/campaign_csv.hpp"
+#include "saccade/trial/campaign_summary.hpp"
 #include "support/places.hpp"
 #include "support/temp_folder.hpp"
 

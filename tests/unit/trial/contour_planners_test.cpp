@@ -5,7 +5,7 @@
 #include <algorithm>
 
 #include "saccade/trial/internal/oracle_gain.hpp"
-#include "saccade/views/view_order.hpp"
+#include "saccade/views/view_gain.hpp"
 #include "unit/explore/scanned_clutter.hpp"
 
 namespace saccade {

@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/scene/scene.hpp"
 #include "saccade/trial/simulated_run.hpp"
 
 namespace saccade {

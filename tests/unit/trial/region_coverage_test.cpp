@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/trial/region_coverage.hpp"
+#include "saccade/trial/metrics.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <cmath>
 
 #include "saccade/scene/solids.hpp"
-#include "saccade/trial/metrics.hpp"
 #include "support/brute_force_distance.hpp"
 #include "support/effort.hpp"
 #include "support/placed_object.hpp"

@@ -7,7 +7,7 @@
 #include <thread>
 
 #include "saccade/arm/urdf.hpp"
-#include "saccade/scene/random_clutter.hpp"
+#include "saccade/scene/scene.hpp"
 #include "support/effort.hpp"
 
 namespace saccade {

@@ -12,12 +12,10 @@
 
 #include "saccade/map/raycast.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/map/view_points.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/tracking/icp.hpp"
 #include "saccade/views/internal/best_views.hpp"
 #include "saccade/views/view_gain.hpp"
-#include "saccade/views/view_order.hpp"
 #include "saccade/views/view_sphere.hpp"
 #include "support/effort.hpp"
 #include "support/parallel_backend.hpp"

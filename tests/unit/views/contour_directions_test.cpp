@@ -12,7 +12,7 @@
 
 #include "saccade/sensor/analytic_scene.hpp"
 #include "saccade/sensor/noise.hpp"
-#include "saccade/views/contour_views.hpp"
+#include "saccade/views/contours.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "support/effort.hpp"
 

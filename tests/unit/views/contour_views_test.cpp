@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Views of contour points: where they stand, where they look, in which order.
-#include "saccade/views/contour_views.hpp"
+#include "saccade/views/contours.hpp"
 
 #include <gtest/gtest.h>
 

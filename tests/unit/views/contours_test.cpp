@@ -9,8 +9,6 @@
 #include <map>
 #include <numbers>
 
-#include "saccade/views/live_contours.hpp"
-
 namespace saccade {
 namespace {
 

@@ -6,7 +6,7 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/views/view_order.hpp"
+#include "saccade/views/view_gain.hpp"
 
 namespace saccade {
 namespace {

@@ -6,8 +6,8 @@
 #include <span>
 #include <vector>
 
-#include "saccade/annotate/path_buckets.hpp"
-#include "saccade/annotate/path_reach.hpp"
+#include "saccade/annotate/internal/path_buckets.hpp"
+#include "saccade/annotate/internal/path_reach.hpp"
 #include "saccade/core/executor.hpp"
 
 namespace saccade {

@@ -5,8 +5,7 @@
 #include <span>
 #include <vector>
 
-#include "saccade/annotate/screen_shape.hpp"
-#include "saccade/annotate/selection_view.hpp"
+#include "saccade/annotate/selection.hpp"
 #include "saccade/core/executor.hpp"
 
 namespace saccade {

@@ -5,7 +5,7 @@
 #include <cstdint>
 #include <functional>
 
-#include "saccade/arm/trajectory_timing.hpp"
+#include "saccade/arm/motion_planner.hpp"
 
 namespace saccade {
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saccade/arm/internal/obstacle_cells.hpp"
+#include "saccade/arm/internal/sphere_tree.hpp"
+
 namespace saccade {
 namespace {
 

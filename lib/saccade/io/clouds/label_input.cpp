@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/clouds/label_input.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 
 #include <cmath>
 #include <limits>
@@ -9,8 +9,6 @@
 #include "saccade/io/clouds/internal/kitti_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/npy_io.hpp"
-#include "saccade/io/files/number_lines.hpp"
-#include "saccade/io/files/text_fields.hpp"
 #include "saccade/io/files/text_scan.hpp"
 #include "saccade/io/files/value_io.hpp"
 

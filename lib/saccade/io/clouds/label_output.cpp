@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/clouds/label_output.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 
 #include <algorithm>
 #include <cstdio>
@@ -8,7 +8,6 @@
 #include <nlohmann/json.hpp>
 #include <string_view>
 
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/npy_io.hpp"
 #include "saccade/io/files/text_scan.hpp"

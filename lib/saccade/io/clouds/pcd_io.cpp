@@ -9,7 +9,6 @@
 #include <optional>
 
 #include "saccade/io/clouds/internal/lzf.hpp"
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
 #include "saccade/io/files/value_io.hpp"

@@ -4,7 +4,6 @@
 
 #include "saccade/io/clouds/internal/ply_header.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/value_io.hpp"
 

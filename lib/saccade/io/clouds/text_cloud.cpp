@@ -9,8 +9,6 @@
 
 #include "saccade/io/clouds/internal/text_column.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/files/number_lines.hpp"
-#include "saccade/io/files/text_fields.hpp"
 #include "saccade/io/files/text_scan.hpp"
 
 namespace saccade {

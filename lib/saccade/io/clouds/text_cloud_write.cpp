@@ -5,9 +5,7 @@
 
 #include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/io/clouds/text_cloud.hpp"
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/files/text_fields.hpp"
 #include "saccade/io/files/text_scan.hpp"
 #include "saccade/io/files/value_io.hpp"
 

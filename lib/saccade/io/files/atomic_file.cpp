@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 #include <fcntl.h>
 #include <sys/stat.h>
@@ -9,8 +9,6 @@
 #include <cerrno>
 #include <cstring>
 #include <utility>
-
-#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 namespace {

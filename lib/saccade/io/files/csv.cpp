@@ -4,7 +4,7 @@
 #include <array>
 #include <charconv>
 
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 namespace {

@@ -8,8 +8,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "saccade/io/files/descriptor.hpp"
-
 namespace saccade {
 namespace {
 

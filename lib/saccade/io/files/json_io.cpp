@@ -3,7 +3,6 @@
 
 #include <string>
 
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade {

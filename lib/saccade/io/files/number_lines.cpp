@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/files/number_lines.hpp"
+#include "saccade/io/files/text_scan.hpp"
 
 #include <utility>
 

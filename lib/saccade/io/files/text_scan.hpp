@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// LineScanner and TokenScanner walk borrowed text; parse_number and parse_integer read one token; in_quotes shows it.
+// Text read token by token: LineScanner, TokenScanner, FieldScanner (one line of a table), numbers, number_lines; and
+// text from elsewhere made fit for one line of a message.
 
 #include <algorithm>
 #include <charconv>
@@ -10,6 +11,9 @@
 #include <optional>
 #include <string>
 #include <string_view>
+#include <vector>
+
+#include "saccade/core/result.hpp"
 
 namespace saccade {
 
@@ -90,5 +94,93 @@ template <class T>
   text.append(token.substr(0, kShown)).push_back('\'');
   return text;
 }
+
+inline constexpr std::string_view kBlanks{" \t"};
+
+/// The separator that stands for any number of blanks and tabs.
+inline constexpr char kBlankSeparator{' '};
+
+[[nodiscard]] inline std::string_view trimmed(std::string_view text) {
+  const std::size_t begin = std::min(text.find_first_not_of(kBlanks), text.size());
+  text.remove_prefix(begin);
+  return text.substr(0, text.find_last_not_of(kBlanks) + 1);
+}
+
+/// Some programs put three bytes in front that say that it is UTF-8.
+[[nodiscard]] inline std::string_view without_byte_order_mark(std::string_view text) {
+  constexpr std::string_view kMark{"\xEF\xBB\xBF"};
+  return text.starts_with(kMark) ? text.substr(kMark.size()) : text;
+}
+
+/// A line that says nothing, or one that starts with # or //.
+[[nodiscard]] inline bool is_comment(std::string_view line) {
+  const std::string_view text = trimmed(line);
+  return text.empty() || text.front() == '#' || text.starts_with("//");
+}
+
+/// A line without what makes it a comment.
+[[nodiscard]] inline std::string_view comment_text(std::string_view line) {
+  return line.substr(std::min(line.find_first_not_of(" \t#/"), line.size()));
+}
+
+/// ; where the line has one, else a comma where it has one, else blanks.
+[[nodiscard]] inline char separator_of(std::string_view line) {
+  if (line.find(';') != std::string_view::npos) return ';';
+  return line.find(',') != std::string_view::npos ? ',' : kBlankSeparator;
+}
+
+/// Goes through the fields of a line. Between commas or semicolons a field may be empty; nothing after the last one is
+/// no field. Borrows the line.
+class FieldScanner {
+ public:
+  FieldScanner(std::string_view line, char separator) : rest_{line}, separator_{separator} {}
+  [[nodiscard]] std::optional<std::string_view> next() {
+    std::size_t begin{0};
+    while (begin < rest_.size() && (rest_[begin] == ' ' || rest_[begin] == '\t')) ++begin;
+    rest_.remove_prefix(begin);
+    if (rest_.empty()) return std::nullopt;
+    std::size_t end{0};
+    while (end < rest_.size() && !ends_field(rest_[end])) ++end;
+    const std::string_view field = rest_.substr(0, end);
+    rest_.remove_prefix(std::min(end + 1, rest_.size()));
+    return separator_ == kBlankSeparator ? field : trimmed(field);
+  }
+
+ private:
+  [[nodiscard]] bool ends_field(char c) const {
+    return c == separator_ || (separator_ == kBlankSeparator && c == '\t');
+  }
+
+  std::string_view rest_;
+  char separator_;
+};
+
+[[nodiscard]] inline std::vector<std::string_view> fields_of(std::string_view line, char separator) {
+  std::vector<std::string_view> fields;
+  FieldScanner scanner{line, separator};
+  while (const auto field = scanner.next()) fields.push_back(*field);
+  return fields;
+}
+
+/// Numbers of one line, separated by blanks or commas.
+struct NumberLine {
+  std::size_t line{0};  ///< from 1
+  std::vector<double> values;
+};
+
+/// The rest of the lines that are neither blank nor comments ('#' to the end of the line).
+/// corrupt_data with the line for a word that is no number.
+[[nodiscard]] Result<std::vector<NumberLine>> number_lines(LineScanner& lines);
+[[nodiscard]] Result<std::vector<NumberLine>> number_lines(std::string_view text);
+
+/// corrupt_data at a line.
+[[nodiscard]] Error bad_line(std::size_t line, std::string what);
+
+/// The first max_bytes of a text that may be anything: control characters become blanks, bytes that are no UTF-8 become
+/// '?', and "..." stands where it was cut. Always valid UTF-8.
+[[nodiscard]] std::string readable(std::string_view text, std::size_t max_bytes);
+
+/// The last lines of a text, at most three, joined by " | ", each made readable; empty when there is none.
+[[nodiscard]] std::string last_lines(std::string_view text);
 
 }  // namespace saccade

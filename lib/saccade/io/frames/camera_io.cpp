@@ -8,7 +8,7 @@
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
-#include "saccade/io/frames/png.hpp"
+#include "saccade/io/frames/image_io.hpp"
 
 namespace saccade {
 namespace {

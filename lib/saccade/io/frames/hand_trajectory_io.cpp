@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 
 #include <algorithm>
 #include <array>
@@ -10,7 +10,7 @@
 #include "saccade/core/pose.hpp"
 #include "saccade/io/files/csv.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/files/number_lines.hpp"
+#include "saccade/io/files/text_scan.hpp"
 
 namespace saccade {
 namespace {

@@ -9,7 +9,6 @@
 #include <string>
 #include <type_traits>
 
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/frames/png.hpp"
+#include "saccade/io/frames/image_io.hpp"
 
 #include <png.h>
 

@@ -9,8 +9,8 @@
 
 #include "saccade/core/result.hpp"
 #include "saccade/io/frames/camera_io.hpp"
-#include "saccade/io/frames/depth_encoding.hpp"
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/io/frames/image_io.hpp"
+#include "saccade/sensor/camera.hpp"
 #include "saccade/sensor/distortion.hpp"
 #include "saccade/sensor/mask.hpp"
 

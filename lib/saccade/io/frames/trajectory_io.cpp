@@ -5,10 +5,9 @@
 #include <cmath>
 #include <cstdio>
 
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
-#include "saccade/io/files/number_lines.hpp"
+#include "saccade/io/files/text_scan.hpp"
 
 namespace saccade {
 namespace {

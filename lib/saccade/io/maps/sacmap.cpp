@@ -11,7 +11,6 @@
 #include <string>
 #include <string_view>
 
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/crc32.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/little_endian.hpp"

@@ -9,7 +9,7 @@
 #include <string>
 #include <vector>
 
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/little_endian.hpp"
 #include "saccade/io/files/npy_io.hpp"
 

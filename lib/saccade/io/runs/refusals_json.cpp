@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/runs/refusals_json.hpp"
+#include "saccade/io/runs/run_json.hpp"
 
 #include <string>
 

@@ -5,8 +5,7 @@
 #include <string>
 
 #include "saccade/io/files/json_io.hpp"
-#include "saccade/io/runs/refusals_json.hpp"
-#include "saccade/robot/configuration.hpp"
+#include "saccade/robot/trajectory.hpp"
 
 namespace saccade {
 namespace {

@@ -1,14 +1,35 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Records of runs as JSON and back: what run.json, update.json and the journal of an interrupted run hold.
+// Records of runs as JSON and back: what run.json, update.json and the journal of an interrupted run hold, what a view
+// was chosen from, and the names of a view's files.
 
+#include <filesystem>
 #include <nlohmann/json.hpp>
 #include <optional>
+#include <string>
 #include <vector>
 
+#include "saccade/core/result.hpp"
 #include "saccade/explore/run_record.hpp"
+#include "saccade/explore/view_record.hpp"
+#include "saccade/robot/refusal.hpp"
 
 namespace saccade {
+
+/// {"no_ik": 3, …}: how many by reason; those that did not occur are left out.
+[[nodiscard]] nlohmann::json refusals_to_json(const RefusalCounts& refused);
+/// The inverse; reasons that are not known are passed over. corrupt_data for anything else.
+[[nodiscard]] Result<RefusalCounts> refusals_from_json(const nlohmann::json& value);
+
+/// "view-03.json", "view-03.sacmap"; 1 for the first view.
+[[nodiscard]] std::string view_file(std::size_t view, const std::string& suffix);
+
+/// Writes the choice and the path of a view (docs/formats.md, "The folder of an exploration"); atomic. Expects a record
+/// with a choice. io_failure.
+[[nodiscard]] Status write_view_choice(const std::filesystem::path& folder, std::size_t view, const ViewRecord& record);
+/// Reads the choice and the path back; the rest of the record keeps its defaults. not_found without a file; unsupported
+/// for another version; corrupt_data.
+[[nodiscard]] Result<ViewRecord> read_view_choice(const std::filesystem::path& folder, std::size_t view);
 
 /// [q1, q2, …]; null where there is no arm.
 [[nodiscard]] nlohmann::json configuration_to_json(const std::optional<Configuration>& q);

@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/runs/view_choice.hpp"
+#include "saccade/io/runs/run_json.hpp"
 
 #include <array>
 #include <cmath>
 #include <cstdio>
 
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 
 #include <sys/file.h>
 #include <sys/stat.h>
@@ -7,7 +7,6 @@
 #include <cerrno>
 #include <cstring>
 
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/sessions/internal/annotation_records.hpp"
 

@@ -11,8 +11,8 @@
 #include "saccade/io/files/crc32.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/little_endian.hpp"
-#include "saccade/io/files/readable_text.hpp"
-#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/files/text_scan.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 #include "saccade/io/sessions/internal/annotation_records.hpp"
 
 namespace saccade {

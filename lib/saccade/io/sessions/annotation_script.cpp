@@ -10,8 +10,7 @@
 #include "saccade/annotate/selection.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
-#include "saccade/io/files/number_lines.hpp"
-#include "saccade/io/files/text_fields.hpp"
+#include "saccade/io/files/text_scan.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
 
 namespace saccade {

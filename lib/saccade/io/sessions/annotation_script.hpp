@@ -14,8 +14,7 @@
 
 #include "saccade/annotate/action.hpp"
 #include "saccade/annotate/annotation.hpp"
-#include "saccade/annotate/screen_shape.hpp"
-#include "saccade/annotate/selection_view.hpp"
+#include "saccade/annotate/selection.hpp"
 #include "saccade/core/executor.hpp"
 
 namespace saccade {

@@ -5,7 +5,7 @@
 #include <span>
 
 #include "saccade/core/executor.hpp"
-#include "saccade/map/mesh_sector.hpp"
+#include "saccade/map/internal/mesh_sector.hpp"
 
 namespace saccade {
 

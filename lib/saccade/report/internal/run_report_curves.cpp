@@ -7,8 +7,8 @@
 #include <cstdio>
 
 #include "saccade/core/result.hpp"
-#include "saccade/report/color_map.hpp"
 #include "saccade/report/html_text.hpp"
+#include "saccade/report/sheet.hpp"
 
 namespace saccade {
 namespace {

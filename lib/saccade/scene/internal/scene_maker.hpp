@@ -7,7 +7,7 @@
 #include <string_view>
 
 #include "saccade/core/seeded_random.hpp"
-#include "saccade/scene/surfel_scenes.hpp"
+#include "saccade/scene/rendered_sequence.hpp"
 
 namespace saccade {
 

@@ -4,9 +4,9 @@
 #include <cmath>
 #include <limits>
 
-#include "saccade/map/closest_point.hpp"
+#include "saccade/map/mesh.hpp"
 #include "saccade/scene/internal/embree_handles.hpp"
-#include "saccade/scene/paint.hpp"
+#include "saccade/scene/scene.hpp"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 #include <utility>
 #include <vector>
 
-#include "saccade/cloud/point_cells.hpp"
+#include "saccade/cloud/cell_index.hpp"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
-#include "saccade/segment/supervoxels.hpp"
+#include "saccade/segment/lccp.hpp"
 
 namespace saccade {
 

@@ -9,7 +9,7 @@
 #include <span>
 #include <vector>
 
-#include "saccade/sensor/camera_source.hpp"
+#include "saccade/sensor/camera.hpp"
 #include "saccade/surfel/internal/mode_merges.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/mode_store.hpp"

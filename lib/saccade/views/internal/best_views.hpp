@@ -5,7 +5,6 @@
 #include <span>
 
 #include "saccade/views/view_gain.hpp"
-#include "saccade/views/view_order.hpp"
 
 namespace saccade {
 

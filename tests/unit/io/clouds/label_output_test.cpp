@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Labels of points into files of every format, with the cloud untouched, and back.
-#include "saccade/io/clouds/label_output.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 
 #include <gtest/gtest.h>
 
@@ -9,7 +9,6 @@
 #include <iostream>
 #include <nlohmann/json.hpp>
 
-#include "saccade/io/clouds/label_input.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "support/places.hpp"

@@ -1,12 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/files/atomic_file.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 #include <gtest/gtest.h>
 #include <sys/stat.h>
 
 #include <algorithm>
 
-#include "saccade/io/files/file_io.hpp"
 #include "support/small_disk.hpp"
 #include "support/temp_folder.hpp"
 

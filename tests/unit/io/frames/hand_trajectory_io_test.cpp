@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/frames/hand_trajectory_io.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,7 @@
 #include <numbers>
 #include <string>
 
-#include "saccade/trial/made_up_task.hpp"
+#include "saccade/trial/simulated_task.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {

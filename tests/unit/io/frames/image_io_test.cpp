@@ -8,7 +8,6 @@
 #include <random>
 
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/frames/depth_encoding.hpp"
 #include "support/places.hpp"
 #include "support/png_maker.hpp"
 #include "support/temp_folder.hpp"

@@ -7,7 +7,6 @@
 #include <limits>
 
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/runs/view_choice.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 
 #include <gtest/gtest.h>
 

@@ -15,7 +15,6 @@
 #include <thread>
 
 #include "saccade/core/clock.hpp"
-#include "saccade/io/files/atomic_file.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "support/annotated_cloud.hpp"
 #include "support/effort.hpp"

@@ -5,7 +5,7 @@
 #include <filesystem>
 
 #include "saccade/arm/urdf.hpp"
-#include "saccade/devices/process_messages.hpp"
+#include "saccade/devices/internal/process_messages.hpp"
 #include "saccade/io/clouds/internal/kitti_io.hpp"
 #include "saccade/io/clouds/pcd_io.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
@@ -13,9 +13,9 @@
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/npy_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
-#include "saccade/io/frames/hand_trajectory_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
-#include "saccade/io/sessions/annotation_journal.hpp"
+#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/io/sessions/annotation_session.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "support/places.hpp"

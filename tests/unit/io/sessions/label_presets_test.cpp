@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/io/clouds/label_output.hpp"
+#include "saccade/io/clouds/label_io.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {

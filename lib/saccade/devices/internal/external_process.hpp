@@ -1,0 +1,102 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// ExternalProcess: a program of the user's that is asked by lines over pipes; Request: one question and its time limit.
+
+#include <sys/types.h>
+
+#include <chrono>
+#include <cstddef>
+#include <memory>
+#include <optional>
+#include <span>
+#include <string>
+#include <string_view>
+
+#include "saccade/core/result.hpp"
+#include "saccade/devices/internal/pipe_tail.hpp"
+#include "saccade/io/files/file_io.hpp"
+
+namespace saccade {
+
+/// One question: its name in messages, and until when all of its answer must be there.
+class Request {
+ public:
+  /// The time runs from here. Expects a valid time limit.
+  Request(std::string name, double limit_s);
+
+  [[nodiscard]] const std::string& name() const { return name_; }
+  [[nodiscard]] double limit_s() const { return limit_s_; }
+  /// Rounded up; 0 when the time is over.
+  [[nodiscard]] int left_ms() const;
+
+ private:
+  std::string name_;
+  double limit_s_;
+  std::chrono::steady_clock::time_point end_;
+};
+
+/// invalid_argument unless it is positive and at most a day; `whose` is the context.
+[[nodiscard]] Status validate_time_limit(double limit_s, const char* whose);
+
+/// Child process with pipes at its standard input and output, in a process group of its own, so that Ctrl-C reaches the
+/// caller alone. Its standard error is drained all the time, and quoted when something goes wrong.
+///
+/// An error of write_line, read_line or read_bytes is final, for nobody knows what the next
+/// byte would mean: every later call returns the same error. Errors are one line. One caller at a time. POSIX.
+class ExternalProcess {
+ public:
+  /// The longest line that is read.
+  static constexpr std::size_t kMaxLineBytes{std::size_t{1} << 16};
+
+  /// Runs /bin/sh -c "exec COMMAND". A program that is not there shows at the first request.
+  /// @param role what messages call it: "camera"
+  /// @return invalid_argument for an empty command; io_failure when the system gives no process, pipe or thread.
+  [[nodiscard]] static Result<std::unique_ptr<ExternalProcess>> start(std::string role, std::string command);
+  ExternalProcess(const ExternalProcess&) = delete;
+  ExternalProcess& operator=(const ExternalProcess&) = delete;
+  /// Ends its input; after 1 s, SIGTERM to its group; after half a second more, SIGKILL. Nothing of the group is left,
+  /// and no zombie.
+  ~ExternalProcess();
+
+  /// Writes a line, its end included. corrupt_data when the process has said something that nobody asked for.
+  [[nodiscard]] Status write_line(const Request& request, std::string_view line);
+  /// The next line of its output, without the end. io_failure: it ended, or time is over; not_found: there is no such
+  /// program; corrupt_data: no end within kMaxLineBytes.
+  [[nodiscard]] Result<std::string> read_line(const Request& request);
+  /// Exactly as many bytes as fit. io_failure as for read_line.
+  [[nodiscard]] Status read_bytes(const Request& request, std::span<std::byte> bytes);
+
+  /// write_line, then read_line.
+  [[nodiscard]] Result<std::string> ask(const Request& request, std::string_view line);
+  /// The error that an answer turned out to be, with the process named. unavailable: the process reports it itself and
+  /// may be asked again. Any other: the answer made no sense; final.
+  [[nodiscard]] Error refused(const Request& request, const Error& error);
+
+  [[nodiscard]] pid_t pid() const { return pid_; }
+
+ private:
+  enum class Arrival { data, end, late };
+
+  ExternalProcess(std::string role, std::string command, pid_t pid, Descriptor to, Descriptor from, Pipe errors,
+                  Pipe stop);
+  [[nodiscard]] Arrival receive(int longest_ms);
+  [[nodiscard]] Status nothing_unasked(const Request& request);
+  [[nodiscard]] bool gone_within(std::chrono::milliseconds longest) const;
+  [[nodiscard]] Error late(const Request& request, const std::string& what);
+  /// @param missing what has not come: "the answer to hello"
+  [[nodiscard]] Error ended(const std::string& missing, const char* stream = "output");
+  [[nodiscard]] Error fail(Errc code, const std::string& what);
+  [[nodiscard]] Error named(Errc code, std::string what) const;
+
+  std::string role_;
+  std::string command_;
+  pid_t pid_;
+  Descriptor to_;
+  Descriptor from_;
+  PipeTail errors_;
+  std::string received_;  ///< and not read yet
+  bool has_answered_{false};
+  std::optional<Error> failure_;
+};
+
+}  // namespace saccade
