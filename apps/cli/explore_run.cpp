@@ -8,11 +8,11 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <numbers>
 
 #include "explore_report.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/runs/view_choice.hpp"
 #include "saccade/map/count_unknown.hpp"
@@ -155,7 +155,7 @@ Approval ExploreRun::ask(const RankedView& view) {
   for (;;) {
     std::cerr << std::fixed << std::setprecision(3) << "move the camera to (" << p.x() << ", " << p.y() << ", " << p.z()
               << ") m, looking along (" << axis.x() << ", " << axis.y() << ", " << axis.z() << "), rolled "
-              << std::setprecision(0) << roll_rad * 180.0 / std::numbers::pi << " degrees";
+              << std::setprecision(0) << to_deg(roll_rad) << " degrees";
     if (view.gain > 0.0) std::cerr << ", gain " << view.gain;
     std::cerr << "? [y]es, [s]kip, [q]uit: " << std::flush;
     const std::optional<std::string> answer = read_answer();

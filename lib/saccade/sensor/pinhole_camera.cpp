@@ -4,6 +4,8 @@
 #include <cmath>
 #include <string>
 
+#include "saccade/core/angle.hpp"
+
 namespace saccade {
 
 Status PinholeCamera::validate() const {
@@ -45,8 +47,7 @@ PinholeCamera widened_vertically(const PinholeCamera& camera, double tilt_rad) {
   // Half fields of view above and below the optical axis, each enlarged by the tilt.
   const double up_rad = std::atan((camera.cy + 0.5) / camera.fy) + tilt_rad;
   const double down_rad = std::atan((camera.height - 0.5 - camera.cy) / camera.fy) + tilt_rad;
-  constexpr double kHalfPi{1.5707963267948966};
-  SACCADE_EXPECTS(up_rad < kHalfPi && down_rad < kHalfPi);
+  SACCADE_EXPECTS(up_rad < 90_deg && down_rad < 90_deg);
   const int added_above = static_cast<int>(std::lround(camera.fy * std::tan(up_rad) - (camera.cy + 0.5)));
   const int added_below =
       static_cast<int>(std::lround(camera.fy * std::tan(down_rad) - (camera.height - 0.5 - camera.cy)));

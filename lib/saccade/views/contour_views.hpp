@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/views/contours.hpp"
 
@@ -13,8 +14,8 @@ namespace saccade {
 /// Sampling of views around the direction of a contour point. Thesis §3.1, Fig. 3.2; the defaults give 40 per point.
 struct ContourViewConfig {
   std::vector<double> distances_m{0.8};
-  double cone_rad{0.26179938779914943};       ///< 15°: four further directions are tilted by this
-  double roll_step_rad{0.78539816339744831};  ///< 45°
+  double cone_rad{15_deg};  ///< four further directions are tilted by this
+  double roll_step_rad{45_deg};
 
   /// invalid_argument for distances or a step that are not positive, a cone outside (0, 90°) or more than 10⁷ poses.
   [[nodiscard]] Status validate() const;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/map/map_changes.hpp"
 #include "saccade/map/tsdf_map.hpp"
@@ -16,9 +17,9 @@ namespace saccade {
 
 /// Parameters of contours. Thesis §3.1.1.
 struct ContourConfig {
-  std::uint16_t known_weight{5};                ///< W_th: voxels observed less often count as unknown
-  double group_distance_m{0.03};                ///< D_th: voxels of a group are nearer to its first one
-  double group_angle_rad{0.52359877559829887};  ///< A_th: 30°, and their normals are nearer to its normal
+  std::uint16_t known_weight{5};   ///< W_th: voxels observed less often count as unknown
+  double group_distance_m{0.03};   ///< D_th: voxels of a group are nearer to its first one
+  double group_angle_rad{30_deg};  ///< A_th: their normals are nearer to its normal
 
   /// invalid_argument for a weight of zero, a distance that is not positive or an angle outside (0, 90°].
   [[nodiscard]] Status validate() const;
