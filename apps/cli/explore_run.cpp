@@ -57,7 +57,7 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
 
 /// The virtual sensor that gains are counted with.
 PinholeCamera gain_sensor(const SimulatedRunConfig& run, const PinholeCamera& camera) {
-  return widened_vertically(coarser(camera, std::min(run.gain_width_px, camera.width)),
+  return widened_vertically(camera.scaled_to_width(std::min(run.gain_width_px, camera.width)),
                             run.exploration.oscillation_rad);
 }
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/sensor/pinhole_camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
 
@@ -21,6 +22,19 @@ Status PinholeCamera::validate() const {
     return fail("ranges must satisfy 0 <= min < max");
   }
   return {};
+}
+
+PinholeCamera PinholeCamera::scaled_to(int new_width, int new_height) const {
+  const double across = static_cast<double>(new_width) / width;
+  const double down = static_cast<double>(new_height) / height;
+  return {new_width,   new_height, fx * across, fy * down, (cx + 0.5) * across - 0.5, (cy + 0.5) * down - 0.5,
+          min_range_m, max_range_m};
+}
+
+PinholeCamera PinholeCamera::scaled_to_width(int new_width) const {
+  SACCADE_EXPECTS(new_width >= 1);
+  const double scale = static_cast<double>(new_width) / width;
+  return scaled_to(new_width, std::max(1, static_cast<int>(std::lround(height * scale))));
 }
 
 const std::vector<CameraPreset>& camera_presets() {
