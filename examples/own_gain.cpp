@@ -27,7 +27,7 @@ int main() {
   const Executor executor;
   SimulatedRunConfig config;
   config.voxel_size_m = 0.012;
-  config.camera = coarser(config.camera, 160);
+  config.camera = config.camera.scaled_to_width(160);
   config.exploration.max_views = 3;
 
   const auto truth = Truth::build(*RayScene::build(random_clutter(5, 4)), 0.006, executor);

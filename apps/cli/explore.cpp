@@ -4,7 +4,6 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "exit_status.hpp"
@@ -13,6 +12,7 @@
 #include "explore_show.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/json_io.hpp"
@@ -91,8 +91,7 @@ std::string tilts_text(const std::vector<ViewRecord>& views, const ExplorerConfi
   }
   if (narrow + left_out == 0) return "";
   return std::to_string(narrow) + " of " + std::to_string(views.size()) + " views tilted less than ±" +
-         fixed(config.oscillation_rad * 180.0 / std::numbers::pi, 0) + "°, " + std::to_string(left_out) +
-         " frames left out";
+         fixed(to_deg(config.oscillation_rad), 0) + "°, " + std::to_string(left_out) + " frames left out";
 }
 
 void print_views(const std::vector<ViewRecord>& views) {

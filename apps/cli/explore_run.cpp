@@ -8,11 +8,11 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <numbers>
 
 #include "explore_report.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/tsdf_map.hpp"
@@ -57,7 +57,7 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
 
 /// The virtual sensor that gains are counted with.
 PinholeCamera gain_sensor(const SimulatedRunConfig& run, const PinholeCamera& camera) {
-  return widened_vertically(coarser(camera, std::min(run.gain_width_px, camera.width)),
+  return widened_vertically(camera.scaled_to_width(std::min(run.gain_width_px, camera.width)),
                             run.exploration.oscillation_rad);
 }
 
@@ -155,7 +155,7 @@ Approval ExploreRun::ask(const RankedView& view) {
   for (;;) {
     std::cerr << std::fixed << std::setprecision(3) << "move the camera to (" << p.x() << ", " << p.y() << ", " << p.z()
               << ") m, looking along (" << axis.x() << ", " << axis.y() << ", " << axis.z() << "), rolled "
-              << std::setprecision(0) << roll_rad * 180.0 / std::numbers::pi << " degrees";
+              << std::setprecision(0) << to_deg(roll_rad) << " degrees";
     if (view.gain > 0.0) std::cerr << ", gain " << view.gain;
     std::cerr << "? [y]es, [s]kip, [q]uit: " << std::flush;
     const std::optional<std::string> answer = read_answer();

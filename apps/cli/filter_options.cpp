@@ -1,13 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <numbers>
+
+#include "saccade/core/angle.hpp"
 
 #include "filter.hpp"
 
 namespace saccade::cli {
 namespace {
-
-constexpr double kRadPerDegree{std::numbers::pi / 180.0};
 
 void add_step_options(CLI::App& command, DepthFilterConfig& filter) {
   command
@@ -36,7 +35,7 @@ void add_step_options(CLI::App& command, DepthFilterConfig& filter) {
       ->type_name("left|right");
   command
       .add_option_function<double>(
-          "--veil-angle", [&filter](const double& angle_deg) { filter.veil_angle_rad = angle_deg * kRadPerDegree; },
+          "--veil-angle", [&filter](const double& angle_deg) { filter.veil_angle_rad = angle_deg * 1_deg; },
           "a point with a neighbour so nearly behind or before it is a veil point, degrees (default: 10)")
       ->type_name("DEGREES");
   command

@@ -6,7 +6,6 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <numbers>
 #include <optional>
 
 #include "command.hpp"
@@ -16,6 +15,7 @@
 #include "options.hpp"
 #include "progress_bar.hpp"
 #include "run_folder.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -30,7 +30,6 @@ namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-using std::numbers::pi;
 
 constexpr std::array<std::string_view, 2> kViewFiles{"views.json", "views.png"};
 constexpr double kDefaultRadius_m{0.2};
@@ -94,8 +93,6 @@ Result<TsdfSnapshot> prepare_map(const NbvOptions& options, const Executor& exec
   return map.snapshot();
 }
 
-double in_degrees(double angle_rad) { return angle_rad * 180.0 / pi; }
-
 json region_json(const NbvOptions& options) {
   const auto point = [](const Eigen::Vector3d& p) { return json{p.x(), p.y(), p.z()}; };
   if (options.box) return {{"kind", "box"}, {"min_m", point(options.box->min)}, {"max_m", point(options.box->max)}};
@@ -144,9 +141,9 @@ void print_table(const NbvOptions& options, const Candidates& candidates, const 
     std::cout << std::right << std::setw(4) << i + 1 << std::setw(10) << view.gain << "  ";
     if (!candidates.sphere.empty()) {
       const ViewCandidate& on_sphere = candidates.sphere[view.index];
-      std::cout << std::setw(8) << fixed(in_degrees(on_sphere.longitude_rad), 0) << "°" << std::setw(9)
-                << fixed(in_degrees(on_sphere.latitude_rad), 0) << "°" << std::setw(6)
-                << fixed(in_degrees(on_sphere.roll_rad), 0) << "°  ";
+      std::cout << std::setw(8) << fixed(to_deg(on_sphere.longitude_rad), 0) << "°" << std::setw(9)
+                << fixed(to_deg(on_sphere.latitude_rad), 0) << "°" << std::setw(6)
+                << fixed(to_deg(on_sphere.roll_rad), 0) << "°  ";
     }
     const Eigen::Vector3d p = view.T_world_camera.translation();
     for (int axis = 0; axis < 3; ++axis) std::cout << std::setw(8) << fixed(p[axis], 3);
@@ -291,7 +288,7 @@ void add_gain_options(CLI::App& command, NbvOptions& options) {
       ->type_name("blocks|transparent");
   command
       .add_option_function<double>(
-          "--tilt", [&options](const double& tilt_deg) { options.gain.tilt_rad = tilt_deg * pi / 180.0; },
+          "--tilt", [&options](const double& tilt_deg) { options.gain.tilt_rad = to_rad(tilt_deg); },
           "the sensor will be tilted up and down by this angle, degrees (default: 0)")
       ->type_name("DEGREES");
 }

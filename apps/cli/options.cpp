@@ -93,16 +93,7 @@ std::optional<PixelPolygon> parse_polygon(const std::string& option, const std::
 
 PinholeCamera CameraOptions::camera(const PinholeCamera& fallback) const {
   PinholeCamera camera = preset.value_or(fallback);
-  if (image_size) {
-    const double scale_x = image_size->first / static_cast<double>(camera.width);
-    const double scale_y = image_size->second / static_cast<double>(camera.height);
-    camera.fx *= scale_x;
-    camera.fy *= scale_y;
-    camera.cx = (camera.cx + 0.5) * scale_x - 0.5;
-    camera.cy = (camera.cy + 0.5) * scale_y - 0.5;
-    camera.width = image_size->first;
-    camera.height = image_size->second;
-  }
+  if (image_size) camera = camera.scaled_to(image_size->first, image_size->second);
   if (intrinsics) {
     camera.fx = (*intrinsics)[0];
     camera.fy = (*intrinsics)[1];

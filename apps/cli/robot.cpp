@@ -6,7 +6,6 @@
 #include <iomanip>
 #include <iostream>
 #include <memory>
-#include <numbers>
 #include <utility>
 #include <vector>
 
@@ -18,6 +17,7 @@
 #include "saccade/arm/inverse_kinematics.hpp"
 #include "saccade/arm/kinematics.hpp"
 #include "saccade/arm/urdf.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "summary.hpp"
@@ -76,7 +76,7 @@ json robot_json(const UrdfArm& read, const InverseKinematics& ik) {
 std::string limits_text(const ArmJoint& joint) {
   const JointLimits& limits = joint.limits;
   const bool slides = joint.kind == JointKind::prismatic;
-  const double unit = slides ? 1.0 : 180.0 / std::numbers::pi;
+  const double unit = slides ? 1.0 : to_deg(1.0);
   const std::string name = slides ? " m" : "°";
   const int decimals = slides ? 3 : 1;
   const std::string range = joint.kind == JointKind::continuous ? "without end"

@@ -6,7 +6,6 @@
 #include <cmath>
 #include <iostream>
 #include <memory>
-#include <numbers>
 
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -14,6 +13,7 @@
 #include "options.hpp"
 #include "progress_bar.hpp"
 #include "robot_reach_output.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/scene_yaml.hpp"
@@ -21,14 +21,12 @@
 namespace saccade::cli {
 namespace {
 
-using std::numbers::pi;
-
 constexpr double kStep_m{0.05};
 constexpr double kNumericStep_m{0.1};
 /// 224 poses around a point instead of 960.
-constexpr double kNumericRollStep_rad{0.5 * pi};
-constexpr double kNumericLongitudeStep_rad{0.25 * pi};
-constexpr double kNumericLatitudeStep_rad{pi / 12.0};
+constexpr double kNumericRollStep_rad{90_deg};
+constexpr double kNumericLongitudeStep_rad{45_deg};
+constexpr double kNumericLatitudeStep_rad{15_deg};
 constexpr double kAboveSupport_m{0.1};
 /// Size of the cells of the free space: nothing is in them, so they need not be small.
 constexpr double kFreeCell_m{0.04};
@@ -157,7 +155,7 @@ Result<int> run_reach(const ReachOptions& options, const GlobalOptions& global) 
 Pose parse_base(const std::string& text) {
   const std::vector<double> n = parse_numbers("--base-at", text, 0);
   if (n.size() != 3 && n.size() != 4) usage_error("--base-at", "needs X,Y,Z or X,Y,Z,DEGREES, not '" + text + "'");
-  const double turn_rad = n.size() == 4 ? n[3] * pi / 180.0 : 0.0;
+  const double turn_rad = n.size() == 4 ? to_rad(n[3]) : 0.0;
   return Eigen::Translation3d{n[0], n[1], n[2]} * Eigen::AngleAxisd{turn_rad, Eigen::Vector3d::UnitZ()};
 }
 

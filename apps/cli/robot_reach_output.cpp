@@ -5,11 +5,11 @@
 #include <cmath>
 #include <iomanip>
 #include <iostream>
-#include <numbers>
 
 #include "json_output.hpp"
 #include "saccade/arm/arm_mesh.hpp"
 #include "saccade/arm/kinematics.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/io/files/csv.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -44,7 +44,7 @@ std::string part_of(std::size_t part, std::size_t all) {
   return percent(all == 0 ? 0.0 : static_cast<double>(part) / static_cast<double>(all));
 }
 
-int whole_degrees(double angle_rad) { return static_cast<int>(std::lround(angle_rad * 180.0 / std::numbers::pi)); }
+int whole_degrees(double angle_rad) { return static_cast<int>(std::lround(to_deg(angle_rad))); }
 
 std::string radii_text(const std::vector<double>& radii_m) {
   std::string text;

@@ -1,16 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <numbers>
 #include <sstream>
 
 #include "options.hpp"
+#include "saccade/core/angle.hpp"
 #include "segment.hpp"
 
 namespace saccade::cli {
 namespace {
-
-constexpr double kDegree_rad{std::numbers::pi / 180.0};
 
 std::string brief(double number) {
   std::ostringstream text;
@@ -60,7 +58,7 @@ void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
 void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
   command
       .add_option_function<double>(
-          "--concavity", [&lccp](const double& angle_deg) { lccp.concavity_tolerance_rad = angle_deg * kDegree_rad; },
+          "--concavity", [&lccp](const double& angle_deg) { lccp.concavity_tolerance_rad = angle_deg * 1_deg; },
           "surfaces that bend inwards by less count as convex, degrees (default: 10)")
       ->type_name("DEGREES");
   command.add_option("--smoothness", lccp.smoothness, "step between supervoxels that is allowed, in voxels")

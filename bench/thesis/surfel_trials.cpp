@@ -43,7 +43,7 @@ Result<RenderedSequence> begin_sequence(const SurfelScene& scene, const RayScene
     sensor.time_of_flight.reset();
   }
   if (config.image_width_px > 0) {
-    sensor.camera = coarser(sensor.camera, std::min(config.image_width_px, sensor.camera.width));
+    sensor.camera = sensor.camera.scaled_to_width(std::min(config.image_width_px, sensor.camera.width));
   }
   return RenderedSequence::create(rays, hand_held_poses(scene.path, frames, config.seed), sensor, executor);
 }

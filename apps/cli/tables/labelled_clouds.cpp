@@ -70,7 +70,7 @@ Result<LabelledCloud> LabelledClouds::make(const CloudJob& job, const Executor& 
   SACCADE_TRY(const RayScene rays, RayScene::build(scene));
   SimulatedCameraConfig config;
   SACCADE_TRY(config.camera, camera_preset("kinect-v1"));
-  if (image_width_px_ > 0) config.camera = coarser(config.camera, image_width_px_);
+  if (image_width_px_ > 0) config.camera = config.camera.scaled_to_width(image_width_px_);
   config.noise = kinect_v1_noise(seed_);
   SACCADE_TRY(SimulatedCamera camera, SimulatedCamera::create(rays, config));
   const Pose T_world_camera = before_table();

@@ -3,9 +3,9 @@
 // here with our tracking, in simulation.
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <optional>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/report/plot.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
@@ -34,7 +34,6 @@ constexpr std::array<UpdateScenario, 2> kScenarios{
     {{1, "bottle", {0.031, 0.040}, {0.005, 0.006}}, {2, "jug", {0.027, 0.041}, {0.006, 0.008}}}};
 constexpr double kThesisDrift_m{0.12};  // "at the end ... about 12 cm"
 
-double in_degrees(double angle_rad) { return angle_rad * 180.0 / std::numbers::pi; }
 double greatest(const std::vector<double>& values) { return *std::max_element(values.begin(), values.end()); }
 
 bool is_as_it_is(const ScanTracking& tracking) { return tracking.depth_scale == 1.0; }
@@ -66,8 +65,8 @@ std::vector<std::string> cells_of(const UpdateScenario& scenario, const ScanTrac
     return cells;
   }
   cells.push_back(fixed(tracking.translation_m.back(), 4) + " (" + fixed(greatest(tracking.translation_m), 4) + ")");
-  cells.push_back(fixed(in_degrees(tracking.rotation_rad.back()), 2) + " (" +
-                  fixed(in_degrees(greatest(tracking.rotation_rad)), 2) + ")");
+  cells.push_back(fixed(to_deg(tracking.rotation_rad.back()), 2) + " (" +
+                  fixed(to_deg(greatest(tracking.rotation_rad)), 2) + ")");
   return cells;
 }
 
@@ -93,8 +92,8 @@ json figures_of(const UpdateScenario& scenario, const ScanTracking& tracking) {
           {"drift",
            {{"end_m", tracking.translation_m.back()},
             {"max_m", greatest(tracking.translation_m)},
-            {"end_deg", in_degrees(tracking.rotation_rad.back())},
-            {"max_deg", in_degrees(greatest(tracking.rotation_rad))}}}};
+            {"end_deg", to_deg(tracking.rotation_rad.back())},
+            {"max_deg", to_deg(greatest(tracking.rotation_rad))}}}};
 }
 
 /// Fig. 2.12, one picture per quantity.
@@ -116,7 +115,7 @@ class DriftPlots {
     }
     PlotSeries turned = series;
     for (const double error_m : tracking.translation_m) series.y.push_back(1e3 * error_m);
-    for (const double error_rad : tracking.rotation_rad) turned.y.push_back(in_degrees(error_rad));
+    for (const double error_rad : tracking.rotation_rad) turned.y.push_back(to_deg(error_rad));
     translation_.series.push_back(std::move(series));
     rotation_.series.push_back(std::move(turned));
   }
@@ -155,7 +154,7 @@ std::vector<std::string> notes_of(const Totals& totals, const ScanTrackingConfig
           "scenario are of the same frames.",
       "Egomotion is our ICP of each frame against the map, begun at the first pose that the arm reports. Robot "
       "kinematics are the true poses but for a hand-eye calibration that is off by " +
-          millimetres(config.calibration_m) + " and " + fixed(in_degrees(config.calibration_rad), 1) +
+          millimetres(config.calibration_m) + " and " + fixed(to_deg(config.calibration_rad), 1) +
           "°: an assumption, what a careful calibration leaves. Drift is against the "
           "camera's true motion since the first frame; in the thesis the robot's poses stand for the truth.",
       "The thesis' egomotion has drifted by about " + fixed(1e3 * kThesisDrift_m, 0) + " mm at the end, ours by " +
@@ -204,7 +203,7 @@ Result<ReproducedTable> reproduce_table_2_1(const ReproduceOptions& options, con
                    {"frame_rate_hz", thesis::kFrameRate_hz},
                    {"pace", config.pace},
                    {"calibration_m", config.calibration_m},
-                   {"calibration_deg", in_degrees(config.calibration_rad)},
+                   {"calibration_deg", to_deg(config.calibration_rad)},
                    {"thesis_drift_m", kThesisDrift_m}};
   return table;
 }

@@ -38,7 +38,7 @@ Result<SimulatedRunConfig> config_of(const NamedPlanner& strategy, const Reprodu
   SACCADE_TRY(config.camera, camera_preset("kinect-v2"));
   config.camera.max_range_m = kMost_m;
   if (options.image_width_px > 0) {
-    config.camera = coarser(config.camera, std::min(options.image_width_px, config.camera.width));
+    config.camera = config.camera.scaled_to_width(std::min(options.image_width_px, config.camera.width));
   }
   config.sensor = DepthSensor::kinect_v2;
   config.gain_width_px = config.camera.width;

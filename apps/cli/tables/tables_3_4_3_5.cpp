@@ -2,8 +2,8 @@
 // Tables 3.4 and 3.5: what filters of a Kinect v2's depth images leave of its wrong points, and how many of the points
 // that they remove were good; the thesis' filter and ours, in simulation.
 #include <algorithm>
-#include <numbers>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/report/plot.hpp"
 #include "summary.hpp"
 #include "tables/thesis_table.hpp"
@@ -41,7 +41,7 @@ struct Rates {
 };
 
 Result<Rates> rates_of(double width_m, int angle_deg, double baseline_m, std::uint64_t seed, const Executor& executor) {
-  SACCADE_TRY(const FilterScene bar, thesis::bar_before_wall(width_m, angle_deg * std::numbers::pi / 180.0));
+  SACCADE_TRY(const FilterScene bar, thesis::bar_before_wall(width_m, to_rad(angle_deg)));
   PinholeCamera camera = sensor();
   camera.max_range_m = kMaxRange_m;
   TimeOfFlightConfig measuring;

@@ -4,7 +4,6 @@
 #include <Eigen/Geometry>
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 
 #include "saccade/annotate/internal/splat_depth.hpp"
 #include "saccade/core/pose.hpp"
@@ -114,7 +113,7 @@ Status RectangleAnnotatorConfig::validate() const {
     return bad_annotator("columns and rows must be 1 to 1024, cell_px 1 to 8");
   }
   if (!is_in(point_size_px, 64)) return bad_annotator("point_size_px must be 1 to 64");
-  if (!(orbit_rad > 0.0 && orbit_rad <= 0.5 * std::numbers::pi)) {
+  if (!(orbit_rad > 0.0 && orbit_rad <= 90_deg)) {
     return bad_annotator("orbit_rad must be positive, and at most π/2");
   }
   return {};

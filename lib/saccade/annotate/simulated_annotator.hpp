@@ -14,6 +14,7 @@
 #include "saccade/annotate/annotation_error.hpp"
 #include "saccade/annotate/selection.hpp"
 #include "saccade/annotate/shortest_path_forest.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 
@@ -55,11 +56,11 @@ class SimulatedAnnotator {
 };
 
 struct RectangleAnnotatorConfig {
-  int columns{160};                      ///< borders of rectangles lie on a grid of so many columns …
-  int rows{120};                         ///< … and rows; each cell is cell_px wide and high; 1 to 1024
-  int cell_px{4};                        ///< 1 to 8
-  int point_size_px{5};                  ///< of the points in the picture: what Surface rect does not select; 1 to 64
-  double orbit_rad{0.5235987755982988};  ///< between the views; positive, at most π/2
+  int columns{160};          ///< borders of rectangles lie on a grid of so many columns …
+  int rows{120};             ///< … and rows; each cell is cell_px wide and high; 1 to 1024
+  int cell_px{4};            ///< 1 to 8
+  int point_size_px{5};      ///< of the points in the picture: what Surface rect does not select; 1 to 64
+  double orbit_rad{30_deg};  ///< between the views; positive, at most 90°
 
   /// invalid_argument for numbers out of range.
   [[nodiscard]] Status validate() const;

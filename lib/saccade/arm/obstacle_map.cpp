@@ -263,15 +263,9 @@ double ObstacleMap::distance_m(const Eigen::Vector3d& p_world) const {
 std::vector<Box> ObstacleMap::boxes() const {
   std::vector<Box> all;
   all.reserve(cells_->obstacle_count() + config_.fixtures.size());
-  const Index3 n = cells_->size();
-  for (std::int32_t z = 0; z < n.z; ++z) {
-    for (std::int32_t y = 0; y < n.y; ++y) {
-      for (std::int32_t x = 0; x < n.x; ++x) {
-        const Index3 cell = cells_->box().lo + Index3{x, y, z};
-        if (cells_->is_obstacle(cell)) all.push_back(cells_->bounds_of(cell));
-      }
-    }
-  }
+  cells_->box().for_each([&](const Index3& cell) {
+    if (cells_->is_obstacle(cell)) all.push_back(cells_->bounds_of(cell));
+  });
   all.insert(all.end(), config_.fixtures.begin(), config_.fixtures.end());
   return all;
 }

@@ -4,7 +4,6 @@
 
 #include <Eigen/Core>
 #include <functional>
-#include <numbers>
 #include <span>
 #include <string>
 #include <utility>
@@ -12,6 +11,7 @@
 
 #include "saccade/attention/region_of_interest.hpp"
 #include "saccade/attention/segmented_points.hpp"
+#include "saccade/core/angle.hpp"
 
 namespace saccade {
 
@@ -54,8 +54,8 @@ struct SizePriorConfig {
 
 struct HeightConfig {
   Eigen::Vector3d up{0.0, 0.0, 1.0};
-  double half_height_m{0.05};                ///< a segment whose mean lies so high has 0.5
-  double level_rad{std::numbers::pi / 6.0};  ///< a support is level within this angle, and flat: roundness below 0.2
+  double half_height_m{0.05};  ///< a segment whose mean lies so high has 0.5
+  double level_rad{30_deg};    ///< a support is level within this angle, and flat: roundness below 0.2
 
   /// @return invalid_argument unless `up` is a direction and the others are positive and finite.
   [[nodiscard]] Status validate() const;

@@ -8,6 +8,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/progress.hpp"
 #include "saccade/explore/recorder.hpp"
 #include "saccade/explore/run_record.hpp"
@@ -39,9 +40,9 @@ struct ExplorerConfig {
   /// Views that gain at least this share of the best one's are as good as the best: among these the robot goes to the
   /// one that it reaches soonest. 1: to the best alone.
   double good_enough{1.0};
-  int max_views{12};                             ///< in all
-  double oscillation_rad{0.087266462599716474};  ///< 5°: at each view the camera is tilted from minus to plus this
-  int oscillation_frames{5};                     ///< frames taken on the way; 1: none but the view itself
+  int max_views{12};              ///< in all
+  double oscillation_rad{5_deg};  ///< at each view the camera is tilted from minus to plus this
+  int oscillation_frames{5};      ///< frames taken on the way; 1: none but the view itself
   /// Seconds of motion between frames that are fused on the way to a view (KFOM of thesis §2.2); 0: none are, the map
   /// learns at views alone (KFOVP). For robots that know their way.
   double frame_on_way_s{0.0};

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <limits>
 
 namespace saccade {
 
@@ -77,30 +76,20 @@ std::vector<Index3> TsdfGrid::sorted_sectors() const {
 }
 
 IndexBox TsdfGrid::sector_bounds() const {
-  if (sectors_.empty()) return {};
-  constexpr std::int32_t kMax{std::numeric_limits<std::int32_t>::max()};
-  IndexBox box{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
-  for (const auto& entry : sectors_) {
-    const Index3& k = entry.first;
-    box.lo = {std::min(box.lo.x, k.x), std::min(box.lo.y, k.y), std::min(box.lo.z, k.z)};
-    box.hi = {std::max(box.hi.x, k.x + 1), std::max(box.hi.y, k.y + 1), std::max(box.hi.z, k.z + 1)};
-  }
+  IndexBox box;
+  for (const auto& entry : sectors_) box = box.hull(IndexBox::cube(entry.first, 1));
   return box;
 }
 
 IndexBox TsdfGrid::known_bounds() const {
-  constexpr std::int32_t kMax{std::numeric_limits<std::int32_t>::max()};
-  IndexBox box{{kMax, kMax, kMax}, {-kMax, -kMax, -kMax}};
+  IndexBox box;
   for (const auto& [key, sector] : sectors_) {
     for (int child = 0; child < kSectorBricks; ++child) {
       if ((*sector).bricks[static_cast<std::size_t>(child)].is_unknown()) continue;
-      const Index3 lo = (key * kSectorEdge + child_offset(child)) * kBrickEdge;
-      box.lo = {std::min(box.lo.x, lo.x), std::min(box.lo.y, lo.y), std::min(box.lo.z, lo.z)};
-      box.hi = {std::max(box.hi.x, lo.x + kBrickEdge), std::max(box.hi.y, lo.y + kBrickEdge),
-                std::max(box.hi.z, lo.z + kBrickEdge)};
+      box = box.hull(IndexBox::cube((key * kSectorEdge + child_offset(child)) * kBrickEdge, kBrickEdge));
     }
   }
-  return box.empty() ? IndexBox{} : box;
+  return box;
 }
 
 TsdfGrid::Usage TsdfGrid::usage() const {
@@ -132,29 +121,20 @@ bool TsdfGrid::operator==(const TsdfGrid& other) const {
 }
 
 SectorTable::SectorTable(const TsdfGrid& grid, const IndexBox& box) {
-  const IndexBox all = grid.sector_bounds();
-  box_ = {{std::max(box.lo.x, all.lo.x), std::max(box.lo.y, all.lo.y), std::max(box.lo.z, all.lo.z)},
-          {std::min(box.hi.x, all.hi.x), std::min(box.hi.y, all.hi.y), std::min(box.hi.z, all.hi.z)}};
+  box_ = box.intersection(grid.sector_bounds());
   if (box_.empty()) {
     box_ = {};
     return;
   }
   constexpr double kLargestTable{1 << 22};
-  const double volume = (static_cast<double>(box_.hi.x) - box_.lo.x) * (static_cast<double>(box_.hi.y) - box_.lo.y) *
-                        (static_cast<double>(box_.hi.z) - box_.lo.z);
-  if (volume > kLargestTable) {
+  if (box_.count() > kLargestTable) {
     sparse_grid_ = &grid;
     return;
   }
-  size_x_ = static_cast<std::size_t>(box_.hi.x - box_.lo.x);
-  size_y_ = static_cast<std::size_t>(box_.hi.y - box_.lo.y);
-  const auto size_z = static_cast<std::size_t>(box_.hi.z - box_.lo.z);
-  sectors_.reserve(size_x_ * size_y_ * size_z);
-  for (std::int32_t z = box_.lo.z; z < box_.hi.z; ++z) {
-    for (std::int32_t y = box_.lo.y; y < box_.hi.y; ++y) {
-      for (std::int32_t x = box_.lo.x; x < box_.hi.x; ++x) sectors_.push_back(grid.find({x, y, z}));
-    }
-  }
+  size_x_ = static_cast<std::size_t>(box_.size().x);
+  size_y_ = static_cast<std::size_t>(box_.size().y);
+  sectors_.reserve(static_cast<std::size_t>(box_.count()));
+  box_.for_each([&](const Index3& sector) { sectors_.push_back(grid.find(sector)); });
 }
 
 }  // namespace saccade

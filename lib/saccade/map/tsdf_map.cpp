@@ -38,19 +38,14 @@ Status check_frame(const PinholeCamera& camera, const DepthImage& depth, const P
 /// Sectors of a box, in z-y-x order; all, or those that are stored.
 std::vector<Index3> sectors_in(const IndexBox& box, const TsdfGrid& grid, bool only_stored) {
   std::vector<Index3> keys;
-  const Index3 size = box.hi - box.lo;
-  if (only_stored && static_cast<double>(size.x) * size.y * size.z > static_cast<double>(grid.sector_count())) {
+  if (only_stored && box.count() > static_cast<double>(grid.sector_count())) {
     keys = grid.sorted_sectors();
     std::erase_if(keys, [&](const Index3& key) { return !box.contains(key); });
     return keys;
   }
-  for (int z = box.lo.z; z < box.hi.z; ++z) {
-    for (int y = box.lo.y; y < box.hi.y; ++y) {
-      for (int x = box.lo.x; x < box.hi.x; ++x) {
-        if (!only_stored || grid.find({x, y, z}) != nullptr) keys.push_back({x, y, z});
-      }
-    }
-  }
+  box.for_each([&](const Index3& key) {
+    if (!only_stored || grid.find(key) != nullptr) keys.push_back(key);
+  });
   return keys;
 }
 
@@ -65,10 +60,9 @@ template <class Edit>
 void edit_region(TsdfGrid& grid, const TsdfConfig& config, const Region& region, Bricks which, const Edit& edit) {
   const IndexBox voxels = voxels_with_center_in(bounds(region), config.voxel_size_m);
   if (voxels.empty()) return;
-  const IndexBox bricks{parent(voxels.lo), parent(voxels.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
-  const IndexBox sectors{parent(bricks.lo), parent(bricks.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
+  const IndexBox bricks = parents(voxels);
   const bool only_known = which == Bricks::known;
-  for (const Index3& key : sectors_in(sectors, grid, only_known)) {
+  for (const Index3& key : sectors_in(parents(bricks), grid, only_known)) {
     const Sector* shared = grid.find(key);
     Sector* sector{nullptr};  // unshared only when a brick of it is written
     for (int i = 0; i < kSectorBricks; ++i) {

@@ -3,6 +3,7 @@
 // Integer coordinates of voxels, bricks (8³ voxels) and sectors (8³ bricks), and how they nest.
 
 #include <Eigen/Core>
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
@@ -28,6 +29,14 @@ struct Index3 {
   [[nodiscard]] SACCADE_HD constexpr Index3 operator+(const Index3& o) const { return {x + o.x, y + o.y, z + o.z}; }
   [[nodiscard]] SACCADE_HD constexpr Index3 operator-(const Index3& o) const { return {x - o.x, y - o.y, z - o.z}; }
   [[nodiscard]] SACCADE_HD constexpr Index3 operator*(std::int32_t s) const { return {x * s, y * s, z * s}; }
+  /// Returns the smaller one of each coordinate.
+  [[nodiscard]] constexpr Index3 cwise_min(const Index3& o) const {
+    return {std::min(x, o.x), std::min(y, o.y), std::min(z, o.z)};
+  }
+  /// Returns the larger one of each coordinate.
+  [[nodiscard]] constexpr Index3 cwise_max(const Index3& o) const {
+    return {std::max(x, o.x), std::max(y, o.y), std::max(z, o.z)};
+  }
 };
 
 /// Order of files and of every deterministic walk: z slowest, x fastest.
@@ -68,7 +77,52 @@ struct IndexBox {
   }
   [[nodiscard]] SACCADE_HD constexpr bool empty() const { return lo.x >= hi.x || lo.y >= hi.y || lo.z >= hi.z; }
   [[nodiscard]] constexpr bool operator==(const IndexBox&) const = default;
+
+  /// Returns the box of `edge` indices along each axis from `lo` on.
+  [[nodiscard]] static constexpr IndexBox cube(const Index3& lo, std::int32_t edge) {
+    return {lo, lo + Index3{edge, edge, edge}};
+  }
+  [[nodiscard]] constexpr Index3 size() const { return hi - lo; }
+  /// Returns the number of indices in a box that is not empty; never overflows.
+  [[nodiscard]] constexpr double count() const {
+    return (static_cast<double>(hi.x) - lo.x) * (static_cast<double>(hi.y) - lo.y) * (static_cast<double>(hi.z) - lo.z);
+  }
+  /// Returns what lies in both boxes; empty where they do not overlap.
+  [[nodiscard]] constexpr IndexBox intersection(const IndexBox& o) const {
+    return {lo.cwise_max(o.lo), hi.cwise_min(o.hi)};
+  }
+  [[nodiscard]] constexpr bool overlaps(const IndexBox& o) const { return !intersection(o).empty(); }
+  [[nodiscard]] constexpr bool contains(const IndexBox& o) const { return o.empty() || intersection(o) == o; }
+  /// Returns the smallest box around both; an empty box adds nothing.
+  [[nodiscard]] constexpr IndexBox hull(const IndexBox& o) const {
+    if (empty()) return o;
+    return o.empty() ? *this : IndexBox{lo.cwise_min(o.lo), hi.cwise_max(o.hi)};
+  }
+  /// Returns the box with `by` indices more on every side.
+  [[nodiscard]] constexpr IndexBox grown(std::int32_t by) const {
+    return {lo - Index3{by, by, by}, hi + Index3{by, by, by}};
+  }
+  /// Returns the indices with z = lo.z + i.
+  [[nodiscard]] constexpr IndexBox layer(std::size_t i) const {
+    const std::int32_t z = lo.z + static_cast<std::int32_t>(i);
+    return {{lo.x, lo.y, z}, {hi.x, hi.y, z + 1}};
+  }
+  /// Calls visit(index) for every index, z slowest, x fastest.
+  template <class Visit>
+  constexpr void for_each(const Visit& visit) const {
+    for (std::int32_t z = lo.z; z < hi.z; ++z) {
+      for (std::int32_t y = lo.y; y < hi.y; ++y) {
+        for (std::int32_t x = lo.x; x < hi.x; ++x) visit(Index3{x, y, z});
+      }
+    }
+  }
 };
+
+/// Returns the bricks that hold the voxels of a box, or the sectors that hold its bricks. Expects a box that is not
+/// empty.
+[[nodiscard]] constexpr IndexBox parents(const IndexBox& box) {
+  return {parent(box.lo), parent(box.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
+}
 
 struct Index3Hash {
   [[nodiscard]] std::size_t operator()(const Index3& i) const noexcept {

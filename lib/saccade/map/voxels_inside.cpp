@@ -144,9 +144,7 @@ Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_
 }
 
 Mask512 voxels_inside(const IndexBox& box, const Index3& lo) {
-  const Index3 first{std::max(box.lo.x - lo.x, 0), std::max(box.lo.y - lo.y, 0), std::max(box.lo.z - lo.z, 0)};
-  const Index3 end{std::min(box.hi.x - lo.x, kBrickEdge), std::min(box.hi.y - lo.y, kBrickEdge),
-                   std::min(box.hi.z - lo.z, kBrickEdge)};
+  const auto [first, end] = IndexBox{box.lo - lo, box.hi - lo}.intersection(IndexBox::cube({}, kBrickEdge));
   Mask512 mask;
   if (IndexBox{first, end}.empty()) return mask;
   const std::uint64_t row = (0xFFU >> (kBrickEdge - end.x)) & (0xFFU << first.x);

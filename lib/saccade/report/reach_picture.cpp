@@ -8,6 +8,7 @@
 #include <numbers>
 #include <span>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/report/internal/blend.hpp"
 #include "saccade/report/internal/font.hpp"
 #include "saccade/report/internal/plane_drawing.hpp"
@@ -213,7 +214,7 @@ class Sky {
   }
 
  private:
-  [[nodiscard]] double step() const { return latitudes_.size() > 1 ? latitudes_[1] - latitudes_[0] : pi / 18.0; }
+  [[nodiscard]] double step() const { return latitudes_.size() > 1 ? latitudes_[1] - latitudes_[0] : 10_deg; }
   static std::size_t nearest(const std::vector<double>& values, double at) {
     const auto closer = [at](double a, double b) { return std::abs(a - at) < std::abs(b - at); };
     return static_cast<std::size_t>(std::min_element(values.begin(), values.end(), closer) - values.begin());
@@ -252,10 +253,10 @@ Panel sky_panel(const ReachScene& scene) {
     return Eigen::Vector2d{kMiddle + r * std::cos(longitude_rad), kMiddle - r * std::sin(longitude_rad)};
   };
   for (const int latitude_deg : {0, 30, 60}) {
-    const double latitude_rad = latitude_deg * pi / 180.0;
+    const double latitude_rad = to_rad(latitude_deg);
     if (latitude_rad < sky.rim_rad()) continue;
     for (int i = 0; i < 180; ++i) {
-      draw_stroke(panel, at(latitude_rad, i * pi / 90.0, 0.0), at(latitude_rad, (i + 0.5) * pi / 90.0, 0.0),
+      draw_stroke(panel, at(latitude_rad, to_rad(2.0 * i), 0.0), at(latitude_rad, to_rad(2.0 * i + 1.0), 0.0),
                   {kPaper, 1.0});
     }
     const Eigen::Vector2d label = at(latitude_rad, 0.25 * pi, 0.0);

@@ -2,8 +2,8 @@
 #include "saccade/report/robot_drawing.hpp"
 
 #include <cmath>
-#include <numbers>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/report/internal/blend.hpp"
 #include "saccade/report/internal/canvas.hpp"
 #include "saccade/report/mesh_picture.hpp"
@@ -42,11 +42,11 @@ void draw_robot(Canvas& canvas, const RobotDrawing& robot, const Executor& execu
 Rgb8 path_color() { return kPath; }
 
 double azimuth_beside(const Eigen::Vector3d& p_world_base, const Eigen::Vector3d& p_world_middle, double azimuth_rad) {
-  constexpr double kApart{100.0 / 180.0 * std::numbers::pi};
+  constexpr double kApart{100_deg};
   const Eigen::Vector3d to_base = p_world_base - p_world_middle;
   if (to_base.head<2>().norm() < 1e-6) return azimuth_rad;
   const double base_rad = std::atan2(to_base.y(), to_base.x());
-  const double turn_rad = std::remainder(azimuth_rad - base_rad, 2.0 * std::numbers::pi);
+  const double turn_rad = std::remainder(azimuth_rad - base_rad, 360_deg);
   return std::fabs(turn_rad) >= kApart ? azimuth_rad : base_rad + std::copysign(kApart, turn_rad);
 }
 

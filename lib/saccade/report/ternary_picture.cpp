@@ -18,20 +18,6 @@ constexpr std::array<Rgb8, 3> kUnknownFaces{{{24, 25, 31}, {14, 14, 18}, {36, 38
 constexpr LineStyle kRegionLine{{214, 92, 22}, 1.6, 0.35};
 constexpr LineStyle kWorkspaceLine{{120, 128, 140}, 1.2, 0.25};
 
-IndexBox intersect(const IndexBox& a, const IndexBox& b) {
-  return {{std::max(a.lo.x, b.lo.x), std::max(a.lo.y, b.lo.y), std::max(a.lo.z, b.lo.z)},
-          {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
-}
-
-IndexBox join(const IndexBox& a, const IndexBox& b) {
-  if (a.empty()) return b;
-  if (b.empty()) return a;
-  return {{std::min(a.lo.x, b.lo.x), std::min(a.lo.y, b.lo.y), std::min(a.lo.z, b.lo.z)},
-          {std::max(a.hi.x, b.hi.x), std::max(a.hi.y, b.hi.y), std::max(a.hi.z, b.hi.z)}};
-}
-
-IndexBox voxels_of(const Index3& cell, int edge) { return {cell * edge, (cell + Index3{1, 1, 1}) * edge}; }
-
 struct Hit {
   Index3 voxel;
   bool occupied{false};
@@ -43,17 +29,17 @@ class TernaryCaster {
   TernaryCaster(const TsdfSnapshot& map, const Viewpoint& view, const TernaryPictureConfig& config)
       : map_{map}, config_{config}, table_{map.grid}, voxel_size_m_{map.config.voxel_size_m} {
     IndexBox known = map.grid.known_bounds();
-    if (!known.empty()) known = {known.lo - Index3{1, 1, 1}, known.hi + Index3{1, 1, 1}};  // beyond begins the unknown
+    if (!known.empty()) known = known.grown(1);  // beyond begins the unknown
     unknown_ = map.config.workspace ? voxels_with_center_in(*map.config.workspace, voxel_size_m_) : known;
     if (!config.unknown_within.empty()) {
       IndexBox inside;
       for (const Region& region : config.unknown_within) {
-        inside = join(inside, voxels_with_center_in(bounds(region), voxel_size_m_));
+        inside = inside.hull(voxels_with_center_in(bounds(region), voxel_size_m_));
       }
-      unknown_ = map.config.workspace ? intersect(unknown_, inside) : inside;
+      unknown_ = map.config.workspace ? unknown_.intersection(inside) : inside;
     }
-    domain_ = join(known, unknown_);
-    if (config.crop) domain_ = intersect(domain_, voxels_with_center_in(*config.crop, voxel_size_m_));
+    domain_ = known.hull(unknown_);
+    if (config.crop) domain_ = domain_.intersection(voxels_with_center_in(*config.crop, voxel_size_m_));
     lamp_ = lamp_of(view);
     const Eigen::Vector3d center = view.T_world_camera.translation() / voxel_size_m_;
     origin_ = lattice_point(center.x(), center.y(), center.z());
@@ -67,7 +53,7 @@ class TernaryCaster {
     const LatticeRay ray = make_lattice_ray(origin_, d.x(), d.y(), d.z());
     std::optional<Hit> hit;
     const auto enter_sector = [&](const Index3& index, const Sector* sector, const RaySpan&) {
-      return sector != nullptr || !intersect(voxels_of(index, kSectorVoxelEdge), unknown_).empty();
+      return sector != nullptr || IndexBox::cube(index * kSectorVoxelEdge, kSectorVoxelEdge).overlaps(unknown_);
     };
     const auto visit_brick = [&](const Index3& brick, const Sector* sector, int child, const RaySpan& span) {
       return cast_in_brick(ray, brick, sector, child, span, hit);
@@ -93,7 +79,7 @@ class TernaryCaster {
   [[nodiscard]] bool cast_in_brick(const LatticeRay& ray, const Index3& brick, const Sector* sector, int child,
                                    const RaySpan& span, std::optional<Hit>& hit) const {
     const bool unknown = (sector == nullptr || sector->has_unknown.test(child)) &&
-                         !intersect(voxels_of(brick, kBrickEdge), unknown_).empty();
+                         IndexBox::cube(brick * kBrickEdge, kBrickEdge).overlaps(unknown_);
     const bool occupied = sector != nullptr && sector->has_occupied.test(child);
     if (!unknown && !occupied) return false;
     const BrickRef* ref = sector == nullptr ? nullptr : &sector->bricks[static_cast<std::size_t>(child)];

@@ -6,9 +6,9 @@
 #include <array>
 #include <cmath>
 #include <functional>
-#include <numbers>
 #include <utility>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/yaml_map.hpp"
@@ -22,8 +22,6 @@ namespace fs = std::filesystem;
 using Eigen::Vector3d;
 
 constexpr std::string_view kClutterPrefix{"clutter:"};
-
-double radians(double degrees) { return degrees * std::numbers::pi / 180.0; }
 
 RevolutionShape read_revolution(YamlMap& map) {
   RevolutionShape body;
@@ -144,9 +142,9 @@ SceneObject read_object(const YAML::Node& node, const fs::path& folder) {
   object.T_world_object.translation() = yaml_point(map.need("at"));
   if (const YAML::Node turn = map.find("turn_deg"); turn.IsDefined()) {
     const Vector3d degrees = yaml_point(turn);
-    object.T_world_object.linear() = (Eigen::AngleAxisd{radians(degrees.z()), Vector3d::UnitZ()} *
-                                      Eigen::AngleAxisd{radians(degrees.y()), Vector3d::UnitY()} *
-                                      Eigen::AngleAxisd{radians(degrees.x()), Vector3d::UnitX()})
+    object.T_world_object.linear() = (Eigen::AngleAxisd{to_rad(degrees.z()), Vector3d::UnitZ()} *
+                                      Eigen::AngleAxisd{to_rad(degrees.y()), Vector3d::UnitY()} *
+                                      Eigen::AngleAxisd{to_rad(degrees.x()), Vector3d::UnitX()})
                                          .toRotationMatrix();
   }
   if (const YAML::Node color = map.find("color"); color.IsDefined()) object.color = read_rgb(color);

@@ -3,7 +3,8 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
+
+#include "saccade/core/angle.hpp"
 
 namespace saccade {
 namespace {
@@ -23,7 +24,7 @@ PinholeCamera far_sighted(const SimulatedCameraConfig& config) {
 DepthNoise kinect_v1_noise(std::uint64_t seed) {
   DepthNoise noise;
   noise.disparity_step_per_m = 348.0;
-  noise.grazing_from_rad = 70.0 * std::numbers::pi / 180.0;
+  noise.grazing_from_rad = 70_deg;
   noise.seed = seed;
   return noise;
 }

@@ -14,15 +14,13 @@ namespace saccade {
 
 namespace {
 
-constexpr double kDegree{std::numbers::pi / 180.0};
-
 /// The least angle between the line of centroids and the line in which the two planes meet, for normals `angle_rad`
 /// apart (Stein et al., section 3.2, with the constants given there).
 double least_sane_angle_rad(double angle_rad) {
-  constexpr double kMost_rad{60.0 * kDegree};
+  constexpr double kMost_rad{60_deg};
   constexpr double kMiddle_deg{25.0};
   constexpr double kSlope_per_deg{0.25};
-  return kMost_rad / (1.0 + std::exp(-kSlope_per_deg * (angle_rad / kDegree - kMiddle_deg)));
+  return kMost_rad / (1.0 + std::exp(-kSlope_per_deg * (angle_rad / 1_deg - kMiddle_deg)));
 }
 
 /// Of those edges, the ones whose ends have a common neighbour by others of them.

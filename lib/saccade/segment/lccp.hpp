@@ -6,12 +6,12 @@
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <utility>
 #include <vector>
 
 #include "saccade/cloud/point_cloud.hpp"
 #include "saccade/cloud/voxel_cloud.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 
@@ -64,13 +64,12 @@ struct SupervoxelResult {
 
 /// Parameters of segment_by_convexity.
 struct LccpConfig {
-  double concavity_tolerance_rad{10.0 * std::numbers::pi /
-                                 180.0};  ///< a smaller angle between normals counts as convex
-  bool sanity{true};                      ///< supervoxels that touch in one point only are kept apart
-  bool extended_convexity{false};         ///< a convex edge needs a third supervoxel with convex edges to both
-  bool smooth{true};                      ///< supervoxels with a step between them are kept apart
-  double smoothness{0.1};                 ///< the step that is allowed, in voxels
-  std::size_t min_supervoxels{0};         ///< a segment with fewer joins the largest one that it touches
+  double concavity_tolerance_rad{10_deg};  ///< a smaller angle between normals counts as convex
+  bool sanity{true};                       ///< supervoxels that touch in one point only are kept apart
+  bool extended_convexity{false};          ///< a convex edge needs a third supervoxel with convex edges to both
+  bool smooth{true};                       ///< supervoxels with a step between them are kept apart
+  double smoothness{0.1};                  ///< the step that is allowed, in voxels
+  std::size_t min_supervoxels{0};          ///< a segment with fewer joins the largest one that it touches
 
   /// @return invalid_argument for a number that is not finite or negative.
   [[nodiscard]] Status validate() const;

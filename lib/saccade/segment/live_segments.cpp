@@ -144,18 +144,14 @@ SurfaceBlock LiveSegments::read_block(const SectorTable& table, const Index3& ke
   SurfaceBlock block;
   block.key = key;
   const int edge = 1 << shift_;
-  for (int z = 0; z < edge; ++z) {
-    for (int y = 0; y < edge; ++y) {
-      for (int x = 0; x < edge; ++x) {
-        for (const SurfaceExtraction::Point& point : extraction.points_of(key * edge + Index3{x, y, z})) {
-          const int voxel = child_index({point.cell.x >> shift_, point.cell.y >> shift_, point.cell.z >> shift_});
-          block.mask.set(voxel);
-          points.emplace_back(static_cast<std::uint16_t>(voxel), point);
-          colored = colored || point.colored;
-        }
-      }
+  IndexBox::cube(key * edge, edge).for_each([&](const Index3& brick) {
+    for (const SurfaceExtraction::Point& point : extraction.points_of(brick)) {
+      const int voxel = child_index({point.cell.x >> shift_, point.cell.y >> shift_, point.cell.z >> shift_});
+      block.mask.set(voxel);
+      points.emplace_back(static_cast<std::uint16_t>(voxel), point);
+      colored = colored || point.colored;
     }
-  }
+  });
   block.voxel_of.reserve(points.size());
   block.positions_m.reserve(points.size());
   block.normals.reserve(points.size());

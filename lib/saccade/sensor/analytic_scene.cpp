@@ -4,7 +4,8 @@
 #include <algorithm>
 #include <cmath>
 #include <limits>
-#include <numbers>
+
+#include "saccade/core/angle.hpp"
 
 namespace saccade {
 namespace {
@@ -221,14 +222,14 @@ AnalyticScene sample_tabletop() {
 
 std::vector<Pose> sample_trajectory(std::size_t n) {
   SACCADE_EXPECTS(n >= 1);
-  constexpr double kHalfArc_rad{70.0 * std::numbers::pi / 180.0};
-  constexpr double kTwoPi{2.0 * std::numbers::pi};
+  constexpr double kHalfArc_rad{70_deg};
+  constexpr double kTwoPi{360_deg};
   const Vector3d target{0.0, 0.0, 0.05};
   std::vector<Pose> poses;
   for (std::size_t i = 0; i < n; ++i) {
     const double s = n > 1 ? static_cast<double>(i) / static_cast<double>(n - 1) : 0.5;
-    const double azimuth_rad = -0.5 * std::numbers::pi + kHalfArc_rad * (2.0 * s - 1.0);
-    const double elevation_rad = (38.0 + 8.0 * std::sin(kTwoPi * s)) * std::numbers::pi / 180.0;
+    const double azimuth_rad = -90_deg + kHalfArc_rad * (2.0 * s - 1.0);
+    const double elevation_rad = to_rad(38.0 + 8.0 * std::sin(kTwoPi * s));
     const double radius_m = 0.85 + 0.10 * std::cos(kTwoPi * s);
     const Vector3d outward{std::cos(elevation_rad) * std::cos(azimuth_rad),
                            std::cos(elevation_rad) * std::sin(azimuth_rad), std::sin(elevation_rad)};

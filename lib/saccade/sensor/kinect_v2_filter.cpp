@@ -77,7 +77,7 @@ Status DepthFilterConfig::validate() const {
   if (!(tolerance_m >= 0.0 && std::isfinite(tolerance_m) && tolerance_per_m >= 0.0 && std::isfinite(tolerance_per_m))) {
     return Error{Errc::invalid_argument, "the tolerance of surfaces must be finite and not negative", {}};
   }
-  if (!(veil_angle_rad > 0.0 && veil_angle_rad < 0.5 * std::numbers::pi)) {
+  if (!(veil_angle_rad > 0.0 && veil_angle_rad < 90_deg)) {
     return Error{Errc::invalid_argument, "the angle of veil points must be above 0 and below 90 degrees", {}};
   }
   return {};

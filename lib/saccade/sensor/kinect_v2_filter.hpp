@@ -5,10 +5,10 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <numbers>
 #include <string_view>
 #include <vector>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/image.hpp"
@@ -35,9 +35,9 @@ struct DepthFilterConfig {
   DepthFilterMethod method{DepthFilterMethod::surface};
   double baseline_m{0.08};                      ///< Δ: from the camera's centre to the emitter, along its x axis
   EmitterSide emitter_side{EmitterSide::left};  ///< shadows fall to the other side of an object
-  double veil_angle_rad{10.0 * std::numbers::pi / 180.0};  ///< Θ_max of eq. 3.19
-  double baseline_uncertainty{0.15};  ///< share of the baseline by which it may be wrong; method surface
-  double tolerance_m{0.004};          ///< a point lies on a surface within tolerance_m + tolerance_per_m · z; the same
+  double veil_angle_rad{10_deg};                ///< Θ_max of eq. 3.19
+  double baseline_uncertainty{0.15};            ///< share of the baseline by which it may be wrong; method surface
+  double tolerance_m{0.004};  ///< a point lies on a surface within tolerance_m + tolerance_per_m · z; the same
   double tolerance_per_m{0.004};
   bool remove_shadow_points{true};
   bool remove_veil_points{true};

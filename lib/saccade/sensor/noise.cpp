@@ -29,7 +29,7 @@ double normal(std::uint64_t key) {
 /// Share of the returns that are lost at an angle of incidence: 0 up to grazing_from_rad, then linear up to 1 at 90°.
 double lost_share(const DepthNoise& noise, double incidence_cosine) {
   const double angle_rad = std::acos(std::clamp(incidence_cosine, 0.0, 1.0));
-  const double span_rad = 0.5 * std::numbers::pi - noise.grazing_from_rad;
+  const double span_rad = 90_deg - noise.grazing_from_rad;
   return span_rad > 0.0 ? std::max(0.0, (angle_rad - noise.grazing_from_rad) / span_rad) : 0.0;
 }
 
@@ -41,7 +41,7 @@ Status DepthNoise::validate() const {
       return Error{Errc::invalid_argument, "its parameters must be finite and not negative", "depth noise"};
     }
   }
-  if (!(grazing_from_rad >= 0.0 && grazing_from_rad <= 0.5 * std::numbers::pi)) {
+  if (!(grazing_from_rad >= 0.0 && grazing_from_rad <= 90_deg)) {
     return Error{Errc::invalid_argument, "the grazing angle is within 0 and 90 degrees", "depth noise"};
   }
   if (dropout > 1.0) return Error{Errc::invalid_argument, "the dropout is a share, at most 1", "depth noise"};

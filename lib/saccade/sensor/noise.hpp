@@ -3,8 +3,8 @@
 // Depth noise for rendered images: axial, growing with the square of the distance; seeded.
 
 #include <cstdint>
-#include <numbers>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/image.hpp"
 
@@ -17,9 +17,9 @@ struct DepthNoise {
   double base_m{0.0012};
   double quadratic_per_m{0.0019};
   double offset_m{0.4};
-  double disparity_step_per_m{0.0};                 ///< depth is rounded to multiples of 1/this in 1/z; 0: not rounded
-  double dropout{0.0};                              ///< share of the returns that are lost
-  double grazing_from_rad{0.5 * std::numbers::pi};  ///< angle of incidence from which returns get lost, all at 90°
+  double disparity_step_per_m{0.0};  ///< depth is rounded to multiples of 1/this in 1/z; 0: not rounded
+  double dropout{0.0};               ///< share of the returns that are lost
+  double grazing_from_rad{90_deg};   ///< angle of incidence from which returns get lost, all at 90°
   std::uint64_t seed{1};
 
   /// invalid_argument for negative or infinite parameters, or a dropout above 1.

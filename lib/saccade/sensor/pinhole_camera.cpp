@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/sensor/pinhole_camera.hpp"
 
+#include <algorithm>
 #include <cmath>
 #include <string>
+
+#include "saccade/core/angle.hpp"
 
 namespace saccade {
 
@@ -19,6 +22,19 @@ Status PinholeCamera::validate() const {
     return fail("ranges must satisfy 0 <= min < max");
   }
   return {};
+}
+
+PinholeCamera PinholeCamera::scaled_to(int new_width, int new_height) const {
+  const double across = static_cast<double>(new_width) / width;
+  const double down = static_cast<double>(new_height) / height;
+  return {new_width,   new_height, fx * across, fy * down, (cx + 0.5) * across - 0.5, (cy + 0.5) * down - 0.5,
+          min_range_m, max_range_m};
+}
+
+PinholeCamera PinholeCamera::scaled_to_width(int new_width) const {
+  SACCADE_EXPECTS(new_width >= 1);
+  const double scale = static_cast<double>(new_width) / width;
+  return scaled_to(new_width, std::max(1, static_cast<int>(std::lround(height * scale))));
 }
 
 const std::vector<CameraPreset>& camera_presets() {
@@ -45,8 +61,7 @@ PinholeCamera widened_vertically(const PinholeCamera& camera, double tilt_rad) {
   // Half fields of view above and below the optical axis, each enlarged by the tilt.
   const double up_rad = std::atan((camera.cy + 0.5) / camera.fy) + tilt_rad;
   const double down_rad = std::atan((camera.height - 0.5 - camera.cy) / camera.fy) + tilt_rad;
-  constexpr double kHalfPi{1.5707963267948966};
-  SACCADE_EXPECTS(up_rad < kHalfPi && down_rad < kHalfPi);
+  SACCADE_EXPECTS(up_rad < 90_deg && down_rad < 90_deg);
   const int added_above = static_cast<int>(std::lround(camera.fy * std::tan(up_rad) - (camera.cy + 0.5)));
   const int added_below =
       static_cast<int>(std::lround(camera.fy * std::tan(down_rad) - (camera.height - 0.5 - camera.cy)));

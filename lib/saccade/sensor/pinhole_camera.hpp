@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// PinholeCamera: intrinsics, image size and range limits; presets; widening for the tilt of the sensor.
+// PinholeCamera: intrinsics, image size and range limits; presets; scaling; widening for the tilt of the sensor.
 
 #include <Eigen/Core>
 #include <string_view>
@@ -31,6 +31,11 @@ struct PinholeCamera {
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const {
     return {fx * p_camera.x() / p_camera.z() + cx, fy * p_camera.y() / p_camera.z() + cy};
   }
+
+  /// Returns the camera with an image of another size, in pixels; field of view and range stay.
+  [[nodiscard]] PinholeCamera scaled_to(int new_width, int new_height) const;
+  /// Returns the camera with `new_width` ≥ 1 pixels across and the nearest whole number of them down.
+  [[nodiscard]] PinholeCamera scaled_to_width(int new_width) const;
 
   [[nodiscard]] bool operator==(const PinholeCamera&) const = default;
 };

@@ -5,9 +5,9 @@
 #include <array>
 #include <bit>
 #include <cmath>
-#include <numbers>
 #include <numeric>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/surfel/internal/surfel_averages.hpp"
 #include "saccade/surfel/internal/surfel_index.hpp"
@@ -59,7 +59,7 @@ Status SurfelFusionConfig::validate() const {
   if (!std::isfinite(depth_tolerance_growth_per_m) || depth_tolerance_growth_per_m < 0.0) {
     return Error{Errc::invalid_argument, "surfel fusion: the growth of the tolerance must not be negative", {}};
   }
-  if (std::max(max_normal_angle_rad, max_view_angle_rad) >= std::numbers::pi / 2.0) {
+  if (std::max(max_normal_angle_rad, max_view_angle_rad) >= 90_deg) {
     return Error{Errc::invalid_argument, "surfel fusion: angles must be less than 90°", {}};
   }
   return {};

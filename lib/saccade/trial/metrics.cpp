@@ -80,8 +80,7 @@ std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, co
   low = (low - Vector3d::Constant(kNearObjects_m)).cwiseMax(workspace.min);
   high = (high + Vector3d::Constant(kNearObjects_m)).cwiseMin(workspace.max);
   if (!(low.array() < high.array()).all()) return 0;
-  const Index3 first = voxel_at(low, e);
-  const Index3 last = voxel_at(high, e);
+  const IndexBox box{voxel_at(low, e), voxel_at(high, e) + Index3{1, 1, 1}};
   const auto counts = [&](const Index3& voxel) {
     const Vector3d p = voxel_center(voxel, e);
     return map.grid.state(voxel) == VoxelState::unknown && contains(workspace, p) &&
@@ -89,13 +88,10 @@ std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, co
   };
   const auto in_layer = [&](std::size_t layer) {
     std::size_t count = 0;
-    Index3 voxel{0, 0, first.z + static_cast<std::int32_t>(layer)};
-    for (voxel.y = first.y; voxel.y <= last.y; ++voxel.y) {
-      for (voxel.x = first.x; voxel.x <= last.x; ++voxel.x) count += counts(voxel) ? 1 : 0;
-    }
+    box.layer(layer).for_each([&](const Index3& voxel) { count += counts(voxel) ? 1 : 0; });
     return count;
   };
-  std::vector<std::size_t> layers(static_cast<std::size_t>(last.z - first.z + 1));
+  std::vector<std::size_t> layers(static_cast<std::size_t>(box.size().z));
   executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t layer = begin; layer < end; ++layer) layers[layer] = in_layer(layer);
   });
@@ -107,17 +103,14 @@ NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const Tsd
   const double e = after.config.voxel_size_m;
   const IndexBox box = voxels_with_center_in(truth.scene().scene().workspace, e);
   if (box.empty()) return {};
-  std::vector<NewlyKnown> layers(static_cast<std::size_t>(box.hi.z - box.lo.z));
+  std::vector<NewlyKnown> layers(static_cast<std::size_t>(box.size().z));
   const auto add_layer = [&](std::size_t layer) {
-    Index3 voxel{0, 0, box.lo.z + static_cast<std::int32_t>(layer)};
-    for (voxel.y = box.lo.y; voxel.y < box.hi.y; ++voxel.y) {
-      for (voxel.x = box.lo.x; voxel.x < box.hi.x; ++voxel.x) {
-        if (after.grid.state(voxel) == VoxelState::unknown || before.grid.state(voxel) != VoxelState::unknown) continue;
-        ++layers[layer].voxels;
-        const bool near = truth.to_objects_m(voxel_center(voxel, e), 2.0 * kAtObject_m) <= kAtObject_m;
-        layers[layer].near_objects += near ? 1 : 0;
-      }
-    }
+    box.layer(layer).for_each([&](const Index3& voxel) {
+      if (after.grid.state(voxel) == VoxelState::unknown || before.grid.state(voxel) != VoxelState::unknown) return;
+      ++layers[layer].voxels;
+      const bool near = truth.to_objects_m(voxel_center(voxel, e), 2.0 * kAtObject_m) <= kAtObject_m;
+      layers[layer].near_objects += near ? 1 : 0;
+    });
   };
   executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t layer = begin; layer < end; ++layer) add_layer(layer);

@@ -6,8 +6,8 @@
 #include <functional>
 #include <iterator>
 #include <limits>
-#include <numbers>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/scene/surface_samples.hpp"
 
@@ -32,9 +32,8 @@ float highest(const std::vector<float>& values, std::size_t trimmed) {
 /// How far the points reach along a horizontal direction.
 double reach_m(const std::vector<Eigen::Vector3f>& points, double direction_deg, std::size_t trimmed,
                std::vector<float>& scratch) {
-  const double direction_rad = direction_deg * std::numbers::pi / 180.0;
-  const auto x = static_cast<float>(std::cos(direction_rad));
-  const auto y = static_cast<float>(std::sin(direction_rad));
+  const auto x = static_cast<float>(std::cos(to_rad(direction_deg)));
+  const auto y = static_cast<float>(std::sin(to_rad(direction_deg)));
   scratch.clear();
   for (const Eigen::Vector3f& p : points) scratch.push_back(x * p.x() + y * p.y());
   return static_cast<double>(highest(scratch, trimmed));

@@ -95,7 +95,7 @@ ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& 
                          const Truth* truth) {
   SACCADE_EXPECTS(!regions.empty() && (truth != nullptr || !config.strategy.needs_truth));
   PlannerSetup setup;
-  setup.gain.sensor = coarser(camera, std::min(config.gain_width_px, camera.width));
+  setup.gain.sensor = camera.scaled_to_width(std::min(config.gain_width_px, camera.width));
   setup.gain.tilt_rad = config.exploration.oscillation_rad;
   setup.sphere = config.sphere;
   setup.contours = config.contours;

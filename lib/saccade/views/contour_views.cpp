@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
-#include <numbers>
 
 namespace saccade {
 namespace {
@@ -13,7 +12,7 @@ constexpr std::size_t kDirections{5};
 constexpr double kRollSlack{1e-9};  // a step that divides the circle to within rounding counts as dividing it
 constexpr double kMostContourViews{1e7};
 
-double rolls_of(double step_rad) { return std::max(1.0, std::ceil(2.0 * std::numbers::pi / step_rad - kRollSlack)); }
+double rolls_of(double step_rad) { return std::max(1.0, std::ceil(360_deg / step_rad - kRollSlack)); }
 bool is_distance(double x) { return std::isfinite(x) && x > 0.0; }
 Error fail(const char* what) { return {Errc::invalid_argument, what, "contour views"}; }
 
@@ -31,7 +30,7 @@ std::array<Eigen::Vector3d, kDirections> directions_around(const Eigen::Vector3d
 Status ContourViewConfig::validate() const {
   if (distances_m.empty()) return fail("at least one distance is needed");
   if (!std::all_of(distances_m.begin(), distances_m.end(), is_distance)) return fail("distances must be positive");
-  if (!(cone_rad > 0.0 && cone_rad < 0.5 * std::numbers::pi)) return fail("cone_rad must lie between 0 and 90 deg");
+  if (!(cone_rad > 0.0 && cone_rad < 90_deg)) return fail("cone_rad must lie between 0 and 90 deg");
   if (!is_distance(roll_step_rad)) return fail("roll_step_rad must be positive");
   if (static_cast<double>(kDirections * distances_m.size()) * rolls_of(roll_step_rad) > kMostContourViews) {
     return fail("the steps give more than ten million poses per point; make them larger");

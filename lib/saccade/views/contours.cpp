@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <numbers>
 #include <unordered_map>
 
 #include "saccade/views/internal/contour_sector.hpp"
@@ -55,7 +54,7 @@ Status ContourConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "contours"}; };
   if (known_weight < 1) return fail("known_weight must be at least 1");
   if (!(std::isfinite(group_distance_m) && group_distance_m > 0.0)) return fail("group_distance_m must be positive");
-  if (!(group_angle_rad > 0.0 && group_angle_rad <= 0.5 * std::numbers::pi)) {
+  if (!(group_angle_rad > 0.0 && group_angle_rad <= 90_deg)) {
     return fail("group_angle_rad must lie above 0 and not above 90 deg");
   }
   return {};

@@ -9,6 +9,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/map/map_changes.hpp"
@@ -18,9 +19,9 @@ namespace saccade {
 
 /// Parameters of contours. Thesis §3.1.1.
 struct ContourConfig {
-  std::uint16_t known_weight{5};                ///< W_th: voxels observed less often count as unknown
-  double group_distance_m{0.03};                ///< D_th: voxels of a group are nearer to its first one
-  double group_angle_rad{0.52359877559829887};  ///< A_th: 30°, and their normals are nearer to its normal
+  std::uint16_t known_weight{5};   ///< W_th: voxels observed less often count as unknown
+  double group_distance_m{0.03};   ///< D_th: voxels of a group are nearer to its first one
+  double group_angle_rad{30_deg};  ///< A_th: their normals are nearer to its normal
 
   /// invalid_argument for a weight of zero, a distance that is not positive or an angle outside (0, 90°].
   [[nodiscard]] Status validate() const;
@@ -113,8 +114,8 @@ class LiveContours {
 /// Sampling of views around the direction of a contour point. Thesis §3.1, Fig. 3.2; the defaults give 40 per point.
 struct ContourViewConfig {
   std::vector<double> distances_m{0.8};
-  double cone_rad{0.26179938779914943};       ///< 15°: four further directions are tilted by this
-  double roll_step_rad{0.78539816339744831};  ///< 45°
+  double cone_rad{15_deg};  ///< four further directions are tilted by this
+  double roll_step_rad{45_deg};
 
   /// invalid_argument for distances or a step that are not positive, a cone outside (0, 90°) or more than 10⁷ poses.
   [[nodiscard]] Status validate() const;

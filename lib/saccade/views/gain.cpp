@@ -2,7 +2,6 @@
 #include "saccade/views/gain.hpp"
 
 #include <algorithm>
-#include <cmath>
 
 #include "saccade/core/seeded_random.hpp"
 #include "saccade/views/internal/best_views.hpp"
@@ -33,20 +32,6 @@ Status tell_gains(Gain& gain, const PlanningContext& context, const Region& regi
 void order_by_gain(std::span<RankedView> views) {
   std::stable_sort(views.begin(), views.end(),
                    [](const RankedView& a, const RankedView& b) { return a.gain > b.gain; });
-}
-
-PinholeCamera coarser(const PinholeCamera& camera, int width_px) {
-  SACCADE_EXPECTS(width_px >= 1 && width_px <= camera.width);
-  const double scale = static_cast<double>(width_px) / camera.width;
-  PinholeCamera coarse = camera;
-  coarse.width = width_px;
-  coarse.height = std::max(1, static_cast<int>(std::lround(camera.height * scale)));
-  const double scale_v = static_cast<double>(coarse.height) / camera.height;
-  coarse.fx *= scale;
-  coarse.fy *= scale_v;
-  coarse.cx = (camera.cx + 0.5) * scale - 0.5;
-  coarse.cy = (camera.cy + 0.5) * scale_v - 0.5;
-  return coarse;
 }
 
 Result<RankedViews> Gain::best(const PlanningContext& context, const Region& region,

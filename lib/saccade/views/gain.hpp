@@ -45,10 +45,6 @@ class Gain {
 /// The largest gain first, ties in their order.
 void order_by_gain(std::span<RankedView> views);
 
-/// Returns a camera of equal field of view and range with `width_px` pixels across: choosing among views needs fewer
-/// rays than seeing. Expects 1 ≤ width_px ≤ the camera's width.
-[[nodiscard]] PinholeCamera coarser(const PinholeCamera& camera, int width_px);
-
 /// Counts rays as evaluate_views does.
 class RayGain final : public Gain {
  public:

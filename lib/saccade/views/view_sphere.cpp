@@ -7,12 +7,10 @@
 namespace saccade {
 namespace {
 
-constexpr double kTwoPi{6.2831853071795865};
-constexpr double kHalfPi{1.5707963267948966};
 constexpr double kSlack{1e-9};  // a step that divides the range to within rounding counts as dividing it
 constexpr double kMostPoses{1e7};
 
-double samples_around(double step_rad) { return std::max(1.0, std::ceil(kTwoPi / step_rad - kSlack)); }
+double samples_around(double step_rad) { return std::max(1.0, std::ceil(360_deg / step_rad - kSlack)); }
 double samples_between(double min_rad, double max_rad, double step_rad) {
   return std::floor((max_rad - min_rad) / step_rad + kSlack) + 1.0;
 }
@@ -43,7 +41,7 @@ Status ViewSphereConfig::validate() const {
   if (!is_positive(longitude_step_rad) || !is_positive(latitude_step_rad) || !is_positive(roll_step_rad)) {
     return fail("the steps of longitude, latitude and roll must be positive");
   }
-  if (!(latitude_min_rad >= -kHalfPi - kSlack && latitude_max_rad <= kHalfPi + kSlack &&
+  if (!(latitude_min_rad >= -90_deg - kSlack && latitude_max_rad <= 90_deg + kSlack &&
         latitude_min_rad <= latitude_max_rad)) {
     return fail("latitudes must satisfy -90 deg <= min <= max <= 90 deg");
   }
@@ -66,7 +64,7 @@ Result<std::vector<ViewCandidate>> view_sphere(const Eigen::Vector3d& center, co
                      static_cast<std::size_t>(longitudes) * static_cast<std::size_t>(rolls));
   for (const double radius_m : config.radii_m) {
     for (int i = 0; i < latitudes; ++i) {
-      const double latitude_rad = std::min(config.latitude_min_rad + i * config.latitude_step_rad, kHalfPi);
+      const double latitude_rad = std::min(config.latitude_min_rad + i * config.latitude_step_rad, 90_deg);
       for (int j = 0; j < longitudes; ++j) {
         const double longitude_rad = j * config.longitude_step_rad;
         for (int k = 0; k < rolls; ++k) {

@@ -4,6 +4,7 @@
 
 #include <vector>
 
+#include "saccade/core/angle.hpp"
 #include "saccade/core/pose.hpp"
 
 namespace saccade {
@@ -12,11 +13,11 @@ namespace saccade {
 /// includes both ends. The defaults give 12 · 10 · 8 = 960 poses.
 struct ViewSphereConfig {
   std::vector<double> radii_m{0.8};
-  double longitude_step_rad{0.52359877559829887};  ///< 30°
-  double latitude_step_rad{0.17453292519943295};   ///< 10°
-  double roll_step_rad{0.78539816339744831};       ///< 45°
+  double longitude_step_rad{30_deg};
+  double latitude_step_rad{10_deg};
+  double roll_step_rad{45_deg};
   double latitude_min_rad{0.0};
-  double latitude_max_rad{1.5707963267948966};  ///< 90°, straight above; keeps all its longitudes
+  double latitude_max_rad{90_deg};  ///< straight above; keeps all its longitudes
 
   /// invalid_argument for radii or steps that are not positive, latitudes outside ±90° or more than 10⁷ poses.
   [[nodiscard]] Status validate() const;

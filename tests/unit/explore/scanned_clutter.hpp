@@ -40,7 +40,7 @@ class ScannedClutter : public ::testing::Test {
   }
   static GainConfig gain() {
     GainConfig gain;
-    gain.sensor = coarser(config().camera, config().gain_width_px);
+    gain.sensor = config().camera.scaled_to_width(config().gain_width_px);
     gain.tilt_rad = config().exploration.oscillation_rad;
     return gain;
   }

@@ -55,7 +55,7 @@ Result<ObstacleCells> ObstacleCells::create(const TsdfConfig& map, double cell_s
     return fail("the workspace holds more than " + std::to_string(std::lround(kMostCells)) +
                 " cells; choose larger cells");
   }
-  made.bricks_ = {parent(voxels.lo), parent(voxels.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
+  made.bricks_ = parents(voxels);
   made.cut_axis(0, voxels.lo.x, voxels.hi.x);
   made.cut_axis(1, voxels.lo.y, voxels.hi.y);
   made.cut_axis(2, voxels.lo.z, voxels.hi.z);
@@ -151,15 +151,15 @@ Mask512 ObstacleCells::may_differ(const Sector* before, const Sector* after) con
 }
 
 ObstacleCells::Changes ObstacleCells::update(const TsdfGrid& map, const Executor& executor) {
-  const Index3 lo = parent(bricks_.lo);
-  const Index3 n = parent(bricks_.hi - Index3{1, 1, 1}) + Index3{1, 1, 1} - lo;
+  const IndexBox around = parents(bricks_);
+  const Index3 n = around.size();
   const std::size_t sectors = unsigned_of(n.x) * unsigned_of(n.y) * unsigned_of(n.z);
   std::vector<Flips> flips(sectors);
   std::vector<std::size_t> bricks(sectors, 0);
   executor.parallel_for(sectors, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const auto k = static_cast<std::int32_t>(i);
-      const Index3 sector = lo + Index3{k % n.x, k / n.x % n.y, k / n.x / n.y};
+      const Index3 sector = around.lo + Index3{k % n.x, k / n.x % n.y, k / n.x / n.y};
       const Sector* before = seen_.find(sector);
       const Sector* after = map.find(sector);
       if (before != after) bricks[i] = compare(sector, before, after, flips[i]);

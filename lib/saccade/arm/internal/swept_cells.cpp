@@ -19,16 +19,6 @@ std::size_t number_of(const Index3& cell, const ObstacleCells& cells) {
          static_cast<std::size_t>(from_corner.x);
 }
 
-/// Calls visit(cell) for the cells of a box.
-template <class Visit>
-void for_each_cell(const IndexBox& box, const Visit& visit) {
-  for (std::int32_t z = box.lo.z; z < box.hi.z; ++z) {
-    for (std::int32_t y = box.lo.y; y < box.hi.y; ++y) {
-      for (std::int32_t x = box.lo.x; x < box.hi.x; ++x) visit(Index3{x, y, z});
-    }
-  }
-}
-
 }  // namespace
 
 SweptCells::SweptCells(const ArmCollision& collision, const ObstacleMap& obstacles, double margin_m)
@@ -81,11 +71,8 @@ void SweptCells::add_cells(const Eigen::Vector3d& center_world, double radius_m)
   const auto last = [&](Eigen::Index axis) {
     return static_cast<std::int32_t>(std::floor((center_world[axis] + radius_m) / edge_m)) + 1;
   };
-  IndexBox around{{first(0), first(1), first(2)}, {last(0), last(1), last(2)}};
-  const IndexBox& all = cells.box();
-  around.lo = {std::max(around.lo.x, all.lo.x), std::max(around.lo.y, all.lo.y), std::max(around.lo.z, all.lo.z)};
-  around.hi = {std::min(around.hi.x, all.hi.x), std::min(around.hi.y, all.hi.y), std::min(around.hi.z, all.hi.z)};
-  for_each_cell(around, [&](const Index3& cell) {
+  const IndexBox around{{first(0), first(1), first(2)}, {last(0), last(1), last(2)}};
+  around.intersection(cells.box()).for_each([&](const Index3& cell) {
     if (!cells.is_obstacle(cell)) return;
     const Box box = cells.bounds_of(cell);
     const Eigen::Vector3d nearest = center_world.cwiseMax(box.min).cwiseMin(box.max);
@@ -98,7 +85,7 @@ void SweptCells::add_cells(const Eigen::Vector3d& center_world, double radius_m)
 
 std::vector<Box> SweptCells::boxes() const {
   std::vector<Box> boxes;
-  for_each_cell(obstacles_.cells().box(), [&](const Index3& cell) {
+  obstacles_.cells().box().for_each([&](const Index3& cell) {
     if (swept_[number_of(cell, obstacles_.cells())]) boxes.push_back(obstacles_.cells().bounds_of(cell));
   });
   return boxes;

@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <array>
-#include <bit>
 #include <cstdio>
 #include <nlohmann/json.hpp>
 #include <string>
@@ -12,6 +11,7 @@
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/little_endian.hpp"
 #include "saccade/io/files/npy_io.hpp"
+#include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {
 namespace {
@@ -29,22 +29,6 @@ Result<IndexBox> voxels_of(const Box& box, double voxel_size_m) {
   const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
   if (largest / voxel_size_m >= kEverything.hi.x) return bad_box("the box reaches too far from the origin");
   return voxels_with_center_in(box, voxel_size_m);
-}
-
-IndexBox intersect(const IndexBox& a, const IndexBox& b) {
-  return {{std::max(a.lo.x, b.lo.x), std::max(a.lo.y, b.lo.y), std::max(a.lo.z, b.lo.z)},
-          {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
-}
-
-/// Voxels of the brick at `lo` that lie in the box.
-Mask512 inside_mask(const IndexBox& box, const Index3& lo) {
-  const IndexBox brick{lo, lo + Index3{kBrickEdge, kBrickEdge, kBrickEdge}};
-  const IndexBox cut = intersect(box, brick);
-  if (cut.empty()) return {};
-  if (cut == brick) return Mask512::all_set();
-  Mask512 mask;
-  for (int i = 0; i < kBrickVoxels; ++i) mask.assign(i, box.contains(lo + child_offset(i)));
-  return mask;
 }
 
 /// The neighbour's bits that touch a brick through one face, and the brick's own bits, moved one voxel along `face`.
@@ -72,7 +56,7 @@ class PointExport {
   PointExport(const TsdfSnapshot& map, const TernaryPointsConfig& config, const IndexBox& box)
       : map_{map}, config_{config}, box_{box}, frontier_box_{box} {
     if (const auto& workspace = map.config.workspace) {
-      frontier_box_ = intersect(box, voxels_with_center_in(*workspace, map.config.voxel_size_m));
+      frontier_box_ = box.intersection(voxels_with_center_in(*workspace, map.config.voxel_size_m));
     }
     sectors_ = map.grid.sorted_sectors();
     if (!config.frontier) return;
@@ -95,7 +79,7 @@ class PointExport {
         const BrickRef& ref = find(brick);
         const Index3 lo = brick * kBrickEdge;
         Mask512 occupied;
-        if (config_.occupied && ref.dense() != nullptr) occupied = ref.dense()->occupied & inside_mask(box_, lo);
+        if (config_.occupied && ref.dense() != nullptr) occupied = ref.dense()->occupied & voxels_inside(box_, lo);
         const Mask512 frontier = config_.frontier ? frontier_of(brick, ref) : Mask512{};
         if (occupied.any() || frontier.any()) SACCADE_CHECK(body(lo, ref, occupied, frontier));
       }
@@ -115,7 +99,7 @@ class PointExport {
   }
 
   Mask512 frontier_of(const Index3& brick, const BrickRef& ref) const {
-    const Mask512 candidates = ref.unknown_mask() & inside_mask(frontier_box_, brick * kBrickEdge);
+    const Mask512 candidates = ref.unknown_mask() & voxels_inside(frontier_box_, brick * kBrickEdge);
     if (candidates.none()) return {};
     const Mask512 own = empty_mask(ref);
     Mask512 next_to_empty;

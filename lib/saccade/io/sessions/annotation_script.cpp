@@ -3,11 +3,11 @@
 
 #include <cmath>
 #include <limits>
-#include <numbers>
 #include <set>
 #include <string>
 
 #include "saccade/annotate/selection.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
@@ -110,7 +110,6 @@ Eigen::Matrix4d matrix_of(const json& value, const std::string& key) {
 }
 
 SelectionView view_of(const json& value) {
-  constexpr double kDegree_rad{std::numbers::pi / 180.0};
   KeyedValues keys{value, "a view"};
   SelectionView view;
   const Eigen::Vector2d size = vector_of<2>(keys.need("size"), "size");
@@ -130,7 +129,7 @@ SelectionView view_of(const json& value) {
     if (!pose) problem("T_world_camera: " + pose.error().message);
     const double fov_deg = number_of(keys.need("fov_deg"), "fov_deg");
     if (!(fov_deg > 0.0 && fov_deg < 180.0)) problem("fov_deg is more than 0 and less than 180");
-    view.clip_world = clip_of(*pose, fov_deg * kDegree_rad, view.width, view.height);
+    view.clip_world = clip_of(*pose, fov_deg * 1_deg, view.width, view.height);
   }
   keys.finish();
   require_valid(view.validate());

@@ -26,16 +26,6 @@ Error too_many_voxels() {
           {}};
 }
 
-/// Calls body(brick index in the sector) for the bricks of a cube within it.
-template <class Body>
-void for_each_brick(const Index3& first_brick, int edge_bricks, const Body& body) {
-  for (int z = 0; z < edge_bricks; ++z) {
-    for (int y = 0; y < edge_bricks; ++y) {
-      for (int x = 0; x < edge_bricks; ++x) body(child_index(first_brick + Index3{x, y, z}));
-    }
-  }
-}
-
 }  // namespace
 
 FrameFuser::FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const Pose& T_world_camera,
@@ -73,11 +63,7 @@ Result<std::vector<Index3>> FrameFuser::candidate_sectors(const Executor& execut
   const Index3 first = voxel_at(lo - Eigen::Vector3d::Constant(kRoundingM), sector_m);
   const Index3 last = voxel_at(hi + Eigen::Vector3d::Constant(kRoundingM), sector_m);
   std::vector<Index3> keys;
-  for (int z = first.z; z <= last.z; ++z) {
-    for (int y = first.y; y <= last.y; ++y) {
-      for (int x = first.x; x <= last.x; ++x) keys.push_back({x, y, z});
-    }
-  }
+  IndexBox{first, last + Index3{1, 1, 1}}.for_each([&](const Index3& key) { keys.push_back(key); });
   std::vector<std::uint8_t> visible(keys.size());
   executor.parallel_for(keys.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -162,7 +148,8 @@ void FrameFuser::fuse_brick(const Index3& brick, bool inside, Sector& sector, Co
 }
 
 void FrameFuser::observe_free(const Cube& cube, Sector& sector, Counts& counts) const {
-  for_each_brick(parent(cube.lo), cube.edge / kBrickEdge, [&](int i) {
+  IndexBox::cube(parent(cube.lo), cube.edge / kBrickEdge).for_each([&](const Index3& brick) {
+    const int i = child_index(brick);
     ++counts.bricks_free;
     if (sector.saturated.test(i)) {
       ++counts.bricks_saturated;

@@ -17,24 +17,13 @@ constexpr double kNear{0.01};        ///< metres; nothing nearer is drawn
 constexpr double kThinnest{0.71};    ///< samples; a thinner line would have gaps
 constexpr double kDepthBias{0.002};  ///< relative; lines on a surface win against it
 
-PinholeCamera enlarged(const PinholeCamera& camera, int factor) {
-  PinholeCamera large = camera;
-  large.width *= factor;
-  large.height *= factor;
-  large.fx *= factor;
-  large.fy *= factor;
-  large.cx = (camera.cx + 0.5) * factor - 0.5;
-  large.cy = (camera.cy + 0.5) * factor - 0.5;
-  return large;
-}
-
 }  // namespace
 
 Canvas::Canvas(const Viewpoint& view, const Rgb8& background, int samples)
     : view_{view},
       T_camera_world_{view.T_world_camera.inverse(Eigen::Isometry)},
       samples_{samples},
-      sample_camera_{enlarged(view.camera, samples)},
+      sample_camera_{view.camera.scaled_to_width(samples * view.camera.width)},
       color_{sample_camera_.width, sample_camera_.height, background},
       depth_{sample_camera_.width, sample_camera_.height, kFar} {
   SACCADE_EXPECTS(samples >= 1 && view.camera.validate().ok());

@@ -5,11 +5,12 @@
 #include <cmath>
 #include <limits>
 
+#include "saccade/core/angle.hpp"
+
 namespace saccade {
 namespace {
 
 constexpr double kInfinity{std::numeric_limits<double>::infinity()};
-constexpr double kQuarterTurn{1.5707963267948966};
 constexpr double kMargin_vox{0.05};
 constexpr double kHalfDiagonal_vox{0.8660254037844387};
 
@@ -57,11 +58,11 @@ Range disc_range(double x, double z, double radius) {
   if (distance <= radius) return {};
   const double middle = std::atan2(x, z);
   const double half = std::asin(radius / distance);
-  if (middle - half >= kQuarterTurn || middle + half <= -kQuarterTurn) {
-    return middle - half <= -3.0 * kQuarterTurn || middle + half >= 3.0 * kQuarterTurn ? Range{} : kNowhere;
+  if (middle - half >= 90_deg || middle + half <= -90_deg) {
+    return middle - half <= -270_deg || middle + half >= 270_deg ? Range{} : kNowhere;
   }
-  return {middle - half <= -kQuarterTurn ? -kInfinity : std::tan(middle - half),
-          middle + half >= kQuarterTurn ? kInfinity : std::tan(middle + half)};
+  return {middle - half <= -90_deg ? -kInfinity : std::tan(middle - half),
+          middle + half >= 90_deg ? kInfinity : std::tan(middle + half)};
 }
 
 struct ImageRange {

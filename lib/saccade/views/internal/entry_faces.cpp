@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/views/internal/entry_faces.hpp"
 
-#include <algorithm>
 #include <array>
 
 namespace saccade {
@@ -113,17 +112,17 @@ Squares squares_of_cell(const StopGrid& grid, const Index3& first) {
 EntryFaces::EntryFaces(const StopGrid& grid, const Executor& executor) {
   const IndexBox& voxels = grid.scoring_voxels();
   if (voxels.empty()) return;
-  const Index3 lo = parent(voxels.lo);
-  const Index3 bricks = parent(voxels.hi - Index3{1, 1, 1}) - lo + Index3{1, 1, 1};
+  const IndexBox bricks = parents(voxels);
+  const Index3 size = bricks.size();
   const auto cells_along = [](std::int32_t n) { return (n + kCellBricks - 1) / kCellBricks; };
-  const Index3 cells{cells_along(bricks.x), cells_along(bricks.y), cells_along(bricks.z)};
+  const Index3 cells{cells_along(size.x), cells_along(size.y), cells_along(size.z)};
   const std::size_t slice = static_cast<std::size_t>(cells.x) * static_cast<std::size_t>(cells.y);
   std::vector<Squares> found(slice * static_cast<std::size_t>(cells.z));
   executor.parallel_for(static_cast<std::size_t>(cells.z), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin * slice; i < end * slice; ++i) {
       const Index3 cell{static_cast<std::int32_t>(i) % cells.x, static_cast<std::int32_t>(i) / cells.x % cells.y,
                         static_cast<std::int32_t>(i / slice)};
-      found[i] = squares_of_cell(grid, lo + cell * kCellBricks);
+      found[i] = squares_of_cell(grid, bricks.lo + cell * kCellBricks);
     }
   });
   for (const Squares& of_cell : found) {
@@ -146,9 +145,8 @@ void EntryFaces::add_group(const std::vector<FaceSquare>& squares, int axis, boo
     add(square);
     Index3 high = square.corner + Index3{1, 1, 1} * square.edge_vox;
     component(high, static_cast<std::size_t>(axis)) -= square.edge_vox;
-    group.lo = {std::min(group.lo.x, square.corner.x), std::min(group.lo.y, square.corner.y),
-                std::min(group.lo.z, square.corner.z)};
-    group.hi = {std::max(group.hi.x, high.x), std::max(group.hi.y, high.y), std::max(group.hi.z, high.z)};
+    group.lo = group.lo.cwise_min(square.corner);
+    group.hi = group.hi.cwise_max(high);
   }
   while (edges_vox_.size() % kLanes != 0) add(squares.back());
   group.end = edges_vox_.size();

@@ -49,15 +49,8 @@ double reach_vox(const PinholeCamera& camera, double voxel_size_m) {
 }
 
 IndexBox region_in_workspace(const Region& region, const TsdfConfig& config) {
-  IndexBox box = voxels_around(region, config.voxel_size_m);
-  if (config.workspace) {
-    const IndexBox workspace = voxels_with_center_in(*config.workspace, config.voxel_size_m);
-    box.lo = {std::max(box.lo.x, workspace.lo.x), std::max(box.lo.y, workspace.lo.y),
-              std::max(box.lo.z, workspace.lo.z)};
-    box.hi = {std::min(box.hi.x, workspace.hi.x), std::min(box.hi.y, workspace.hi.y),
-              std::min(box.hi.z, workspace.hi.z)};
-  }
-  return box;
+  const IndexBox box = voxels_around(region, config.voxel_size_m);
+  return config.workspace ? box.intersection(voxels_with_center_in(*config.workspace, config.voxel_size_m)) : box;
 }
 
 bool within_reach(const Index3& voxel, const IndexBox& box, double reach) {
@@ -82,9 +75,7 @@ Views views_within_reach(std::span<const Pose> poses, const IndexBox& region, do
     if (!within_reach(voxel, region, reach)) continue;
     views.poses.push_back(i);
     views.rays.push_back(rays);
-    IndexBox& box = views.domain;
-    box.lo = {std::min(box.lo.x, voxel.x), std::min(box.lo.y, voxel.y), std::min(box.lo.z, voxel.z)};
-    box.hi = {std::max(box.hi.x, voxel.x + 1), std::max(box.hi.y, voxel.y + 1), std::max(box.hi.z, voxel.z + 1)};
+    views.domain = views.domain.hull(IndexBox::cube(voxel, 1));
   }
   return views;
 }

@@ -1,11 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/views/internal/stop_grid.hpp"
 
-#include <algorithm>
-#include <bit>
 #include <cstring>
-#include <limits>
 
+#include "saccade/map/surface_cells.hpp"
 #include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {
@@ -13,46 +11,12 @@ namespace {
 
 constexpr double kMostSectors{1 << 23};
 
-IndexBox intersection(const IndexBox& a, const IndexBox& b) {
-  return {{std::max(a.lo.x, b.lo.x), std::max(a.lo.y, b.lo.y), std::max(a.lo.z, b.lo.z)},
-          {std::min(a.hi.x, b.hi.x), std::min(a.hi.y, b.hi.y), std::min(a.hi.z, b.hi.z)}};
-}
-bool overlap(const IndexBox& a, const IndexBox& b) { return !intersection(a, b).empty(); }
-bool inside(const IndexBox& a, const IndexBox& b) { return intersection(a, b) == a; }
+IndexBox voxels_of_brick(const Index3& brick) { return IndexBox::cube(brick * kBrickEdge, kBrickEdge); }
 
-/// Smallest box around both; an empty box adds nothing.
-IndexBox hull(const IndexBox& a, const IndexBox& b) {
-  if (a.empty()) return b;
-  if (b.empty()) return a;
-  return {{std::min(a.lo.x, b.lo.x), std::min(a.lo.y, b.lo.y), std::min(a.lo.z, b.lo.z)},
-          {std::max(a.hi.x, b.hi.x), std::max(a.hi.y, b.hi.y), std::max(a.hi.z, b.hi.z)}};
-}
-
-IndexBox voxels_of_brick(const Index3& brick) {
-  return {brick * kBrickEdge, brick * kBrickEdge + Index3{kBrickEdge, kBrickEdge, kBrickEdge}};
-}
-
+/// Returns the smallest box around the bits set in the mask of a brick. Expects at least one.
 IndexBox bounds_of_mask(const Mask512& mask, const Index3& brick) {
-  if (mask.none()) return {};
-  std::uint64_t plane{0};
-  int z0{kBrickEdge};
-  int z1{0};
-  for (int z = 0; z < kBrickEdge; ++z) {
-    const std::uint64_t word = mask.words[static_cast<std::size_t>(z)];
-    plane |= word;
-    if (word != 0) {
-      z0 = std::min(z0, z);
-      z1 = z + 1;
-    }
-  }
-  std::uint64_t row{0};
-  for (int y = 0; y < kBrickEdge; ++y) row |= (plane >> (y * 8)) & 0xFFU;
-  const int y0 = std::countr_zero(plane) / 8;
-  const int y1 = 8 - std::countl_zero(plane) / 8;
-  const int x0 = std::countr_zero(row);
-  const int x1 = 64 - std::countl_zero(row);
-  const Index3 corner = brick * kBrickEdge;
-  return {corner + Index3{x0, y0, z0}, corner + Index3{x1, y1, z1}};
+  const auto [lo, hi] = bounds_of(mask);
+  return {brick * kBrickEdge + lo, brick * kBrickEdge + hi};
 }
 
 /// Bits 0 … 7 at the even bits.
@@ -85,8 +49,7 @@ void write_brick(const StopGrid::Brick& brick, std::byte* at, std::size_t row, s
 }  // namespace
 
 IndexBox voxels_around(const Region& region, double voxel_size_m) {
-  const IndexBox box = voxels_with_center_in(bounds(region), voxel_size_m);
-  return {box.lo - Index3{1, 1, 1}, box.hi + Index3{1, 1, 1}};
+  return voxels_with_center_in(bounds(region), voxel_size_m).grown(1);
 }
 
 /// Turns the sectors of the map into sectors of the stop grid, one at a time.
@@ -102,11 +65,11 @@ class StopGrid::Builder {
 
   enum class Kind { clear, blocked, detailed };
   [[nodiscard]] Kind kind(const Index3& sector) const {
-    const IndexBox voxels{sector * kSectorVoxelEdge, (sector + Index3{1, 1, 1}) * kSectorVoxelEdge};
-    if (workspace_ && !overlap(voxels, *workspace_)) return Kind::clear;
-    if (map_.grid.find(sector) != nullptr || overlap(voxels, region_voxels_)) return Kind::detailed;
+    const IndexBox voxels = IndexBox::cube(sector * kSectorVoxelEdge, kSectorVoxelEdge);
+    if (workspace_ && !voxels.overlaps(*workspace_)) return Kind::clear;
+    if (map_.grid.find(sector) != nullptr || voxels.overlaps(region_voxels_)) return Kind::detailed;
     if (!unknown_blocks_) return Kind::clear;
-    return !workspace_ || inside(voxels, *workspace_) ? Kind::blocked : Kind::detailed;
+    return !workspace_ || workspace_->contains(voxels) ? Kind::blocked : Kind::detailed;
   }
 
   [[nodiscard]] std::unique_ptr<SectorView> detailed(const Index3& index) const {
@@ -126,7 +89,7 @@ class StopGrid::Builder {
     const bool blocks = (masks.stop & ~masks.score).any();
     const bool scores = masks.score.any();
     std::uint16_t& code = view.codes[static_cast<std::size_t>(i)];
-    if (scores) view.scoring = hull(view.scoring, bounds_of_mask(masks.score, brick));
+    if (scores) view.scoring = view.scoring.hull(bounds_of_mask(masks.score, brick));
     if (masks.stop.none()) return;
     const unsigned flags = (scores ? stop_flags::kScores : 0U) | (blocks ? stop_flags::kBlocks : 0U) |
                            (masks.stop.all() ? stop_flags::kSolid : 0U);
@@ -140,13 +103,13 @@ class StopGrid::Builder {
     Mask512 unknown = ref == nullptr ? Mask512::all_set() : ref->unknown_mask();
     Mask512 occupied = ref == nullptr ? Mask512{} : ref->occupied_mask();
     const IndexBox voxels = voxels_of_brick(brick);
-    if (workspace_ && !inside(voxels, *workspace_)) {
+    if (workspace_ && !workspace_->contains(voxels)) {
       const Mask512 within = voxels_inside(*workspace_, brick * kBrickEdge);
       unknown = unknown & within;
       occupied = occupied & within;
     }
     Mask512 score;
-    if (unknown.any() && overlap(voxels, region_voxels_)) {
+    if (unknown.any() && voxels.overlaps(region_voxels_)) {
       score = unknown & voxels_inside(region_, brick * kBrickEdge, map_.config.voxel_size_m);
     }
     const Mask512 stop = occupied | (unknown_blocks_ ? unknown : score);
@@ -163,9 +126,9 @@ class StopGrid::Builder {
 Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, UnknownOutside outside,
                                  const IndexBox& domain, bool only_exposed, const Executor& executor) {
   StopGrid grid;
-  grid.sectors_ = {parent(parent(domain.lo)), parent(parent(domain.hi - Index3{1, 1, 1})) + Index3{1, 1, 1}};
-  const Index3 size = grid.sectors_.hi - grid.sectors_.lo;
-  if (static_cast<double>(size.x) * size.y * size.z > kMostSectors) {
+  grid.sectors_ = parents(parents(domain));
+  const Index3 size = grid.sectors_.size();
+  if (grid.sectors_.count() > kMostSectors) {
     return Error{Errc::invalid_argument,
                  "the space between the view poses and the region holds too many voxels; use a shorter range or larger "
                  "voxels",
@@ -204,7 +167,7 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
   });
   for (std::size_t k = 0; k < places.size(); ++k) grid.table_[places[k]] = grid.views_[k].get();
   if (only_exposed) grid.find_exposed(executor);
-  for (const auto& view : grid.views_) grid.scoring_voxels_ = hull(grid.scoring_voxels_, view->scoring);
+  for (const auto& view : grid.views_) grid.scoring_voxels_ = grid.scoring_voxels_.hull(view->scoring);
   grid.flatten(domain, executor);
   return grid;
 }
@@ -226,13 +189,13 @@ void StopGrid::find_exposed(const Executor& executor) {
           if (buried(brick))
             code = static_cast<std::uint16_t>(stop_flags::kBuried);
           else if ((flags & stop_flags::kScores) != 0)
-            view.scoring = hull(view.scoring, voxels_of_brick(brick));
+            view.scoring = view.scoring.hull(voxels_of_brick(brick));
           continue;
         }
         StopMasks& masks = view.masks[code >> stop_flags::kShift];
         masks.exposed = exposed_voxels(brick, masks.stop);
         const Mask512 scores = masks.exposed & masks.score;
-        if (scores.any()) view.scoring = hull(view.scoring, bounds_of_mask(scores, brick));
+        if (scores.any()) view.scoring = view.scoring.hull(bounds_of_mask(scores, brick));
         code = static_cast<std::uint16_t>((code & ~(stop_flags::kScores | stop_flags::kBlocks)) |
                                           (scores.any() ? stop_flags::kScores : 0U) |
                                           ((masks.exposed & ~masks.score).any() ? stop_flags::kBlocks : 0U));
@@ -279,28 +242,25 @@ Mask512 StopGrid::exposed_voxels(const Index3& brick, const Mask512& stop) const
 
 void StopGrid::flatten(const IndexBox& domain, const Executor& executor) {
   constexpr double kMost{1 << 28};  // voxels: 64 MiB
-  const IndexBox bricks{parent(domain.lo), parent(domain.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}};
+  const IndexBox bricks = parents(domain);
   flat_.voxels = {bricks.lo * kBrickEdge, bricks.hi * kBrickEdge};
-  const Index3 size = flat_.voxels.hi - flat_.voxels.lo;
-  if (scoring_voxels_.empty() || static_cast<double>(size.x) * size.y * size.z > kMost) return;
+  const Index3 size = flat_.voxels.size();
+  if (scoring_voxels_.empty() || flat_.voxels.count() > kMost) return;
   flat_.scoring_voxels = scoring_voxels_;
   const auto row = static_cast<std::size_t>(size.x);
   const std::size_t slice = row * static_cast<std::size_t>(size.y);
   flat_.bits.resize(slice * static_cast<std::size_t>(size.z) / FlatStops::kVoxelsPerWord + 1);
   auto* const bytes = reinterpret_cast<std::byte*>(flat_.bits.data());
-  const auto layers = static_cast<std::size_t>(bricks.hi.z - bricks.lo.z);
-  executor.parallel_for(layers, 1, [&](std::size_t begin, std::size_t end) {
+  executor.parallel_for(static_cast<std::size_t>(bricks.size().z), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t layer = begin; layer < end; ++layer) {
-      for (std::int32_t y = bricks.lo.y; y < bricks.hi.y; ++y) {
-        for (std::int32_t x = bricks.lo.x; x < bricks.hi.x; ++x) {
-          const Brick brick = this->brick({x, y, bricks.lo.z + static_cast<std::int32_t>(layer)});
-          if (brick.flags == stop_flags::kClear) continue;
-          const std::size_t first = layer * kBrickEdge * slice +
-                                    static_cast<std::size_t>(y - bricks.lo.y) * kBrickEdge * row +
-                                    static_cast<std::size_t>(x - bricks.lo.x) * kBrickEdge;
-          write_brick(brick, bytes + first / 4, row / 4, slice / 4);
-        }
-      }
+      bricks.layer(layer).for_each([&](const Index3& index) {
+        const Brick brick = this->brick(index);
+        if (brick.flags == stop_flags::kClear) return;
+        const std::size_t first = layer * kBrickEdge * slice +
+                                  static_cast<std::size_t>(index.y - bricks.lo.y) * kBrickEdge * row +
+                                  static_cast<std::size_t>(index.x - bricks.lo.x) * kBrickEdge;
+        write_brick(brick, bytes + first / 4, row / 4, slice / 4);
+      });
     }
   });
 }

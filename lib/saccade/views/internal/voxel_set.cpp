@@ -4,10 +4,7 @@
 namespace saccade {
 
 VoxelSet::VoxelSet(const IndexBox& voxels)
-    : bricks_{parent(voxels.lo), parent(voxels.hi - Index3{1, 1, 1}) + Index3{1, 1, 1}} {
-  const Index3 size = bricks_.hi - bricks_.lo;
-  masks_.resize(static_cast<std::size_t>(size.x) * static_cast<std::size_t>(size.y) * static_cast<std::size_t>(size.z));
-}
+    : bricks_{parents(voxels)}, masks_(static_cast<std::size_t>(bricks_.count())) {}
 
 void VoxelSet::insert(const Index3& voxel) {
   const Index3 i = parent(voxel) - bricks_.lo;
