@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <map>
 #include <sstream>
 
 #include "annotate.hpp"
@@ -110,28 +109,15 @@ void add_simulation_options(CLI::App& command, AnnotateOptions& options, CLI::Op
       ->group(kWithoutPage)
       ->type_name("N")
       ->capture_default_str();
-  const std::map<std::string, AnnotationMethod> methods{{"control-points", AnnotationMethod::control_points},
-                                                        {"rectangle", AnnotationMethod::rectangle},
-                                                        {"best-rectangle", AnnotationMethod::best_rectangle}};
-  command
-      .add_option("--method", options.method,
-                  "control-points; rectangle: around the largest error, in the best of six views; best-rectangle: "
-                  "of all rectangles the one that corrects most")
-      ->transform(CLI::CheckedTransformer(methods))
+  add_choice(command, "--method", options.method, kAnnotationMethodNames,
+             "control-points; rectangle: around the largest error, in the best of six views; best-rectangle: of all "
+             "rectangles the one that corrects most")
       ->needs(&simulate)
-      ->group(kWithoutPage)
-      ->type_name("METHOD")
-      ->default_str("control-points");
-  const std::map<std::string, Tens> tens{{"detect", Tens::detect}, {"merge", Tens::merge}, {"keep", Tens::keep}};
-  command
-      .add_option("--tens", options.tens,
-                  "true labels of one ten are parts of one object, as in mOSD (1 to 9: the table); merge, keep, or "
-                  "detect")
-      ->transform(CLI::CheckedTransformer(tens))
+      ->group(kWithoutPage);
+  add_choice(command, "--tens", options.tens, kTensNames,
+             "true labels of one ten are parts of one object, as in mOSD (1 to 9: the table); merge, keep, or detect")
       ->needs(&simulate)
-      ->group(kWithoutPage)
-      ->type_name("HOW")
-      ->default_str("detect");
+      ->group(kWithoutPage);
 }
 
 void refuse(const fs::path& given, const std::string& option, const std::string& why) {

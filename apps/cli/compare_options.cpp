@@ -38,6 +38,8 @@ std::optional<std::uint64_t> seed_of(std::string_view text) {
 
 constexpr std::uint64_t kMostInRange{100000};
 constexpr std::string_view kClutter{"clutter:"};
+constexpr auto kNoiseNames = make_names<std::optional<DepthSensor>>(
+    {{std::nullopt, "none"}, {DepthSensor::kinect_v1, "kinect-v1"}, {DepthSensor::kinect_v2, "kinect-v2"}});
 constexpr std::string_view kNoNoise{"none"};
 
 /// "3" and "1-10"; nullopt for anything else.
@@ -93,9 +95,7 @@ std::vector<std::string> noises_of(const CompareOptions& options) {
   if (options.noise_list.empty()) return {noise_key(options.run.run)};
   std::vector<std::string> noises = parts_of("--noise", options.noise_list);
   for (const std::string& noise : noises) {
-    if (noise != kNoNoise && !depth_sensor(noise)) {
-      usage_error("--noise", "there is no noise \"" + noise + "\"; known: none, kinect-v1, kinect-v2");
-    }
+    if (!kNoiseNames.find(noise)) usage_error("--noise", "must be " + kNoiseNames.listed() + ", not '" + noise + "'");
   }
   return noises;
 }
@@ -119,12 +119,13 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
 }
 
 std::string noise_key(const SimulatedRunConfig& run) {
-  return std::string{run.noise ? to_string(run.sensor) : kNoNoise};
+  return std::string{kNoiseNames.of(run.noise ? std::optional{run.sensor} : std::nullopt)};
 }
 
 void set_noise(SimulatedRunConfig& run, const std::string& name) {
-  run.noise = name != kNoNoise;
-  if (run.noise) run.sensor = depth_sensor(name).value();
+  const std::optional<DepthSensor> sensor = kNoiseNames.find(name).value();
+  run.noise = sensor.has_value();
+  run.sensor = sensor.value_or(run.sensor);
 }
 
 void add_compare_options(CLI::App& command, CompareOptions& options, const Planners& planners) {
@@ -156,11 +157,8 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
   command.add_option("--mesh-scale", options.mesh.scale, "metres per unit of mesh files")
       ->type_name("METRES")
       ->capture_default_str();
-  command
-      .add_option("--mesh-up", options.mesh_up,
-                  "the axis of mesh files that points up, y or z (default: z, but y for glTF)")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->type_name("AXIS");
+  add_choice(command, "--mesh-up", options.mesh.up, kUpAxisNames,
+             "the axis of mesh files that points up (default: z, but y for glTF)");
   command
       .add_option("--jobs", options.jobs,
                   "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
@@ -178,7 +176,6 @@ void check_compare_options(CompareOptions& options, const Planners& planners) {
   options.noises = noises_of(options);
   options.seeds = parse_seeds(options.seed_list);
   require_ok(options.mesh.validate(), "--mesh-scale");
-  if (!options.mesh_up.empty()) options.mesh.up = options.mesh_up == "y" ? UpAxis::y : UpAxis::z;
   check_run_options(options.run);
 }
 

@@ -10,11 +10,9 @@ namespace {
 
 /// "attention: views of …; standard: …"
 std::string strategy_help(const Planners& planners) {
-  std::string text;
-  for (const NamedPlanner& planner : planners.all()) {
-    text += (text.empty() ? "" : "; ") + planner.name + (planner.text.empty() ? "" : ": " + planner.text);
-  }
-  return text;
+  return joined(planners.all(), "; ", [](const NamedPlanner& planner) {
+    return planner.name + (planner.text.empty() ? "" : ": " + planner.text);
+  });
 }
 
 }  // namespace

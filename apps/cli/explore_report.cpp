@@ -146,20 +146,11 @@ Status draw_scan(const RunFolder& out, const TsdfSnapshot& map, const Box& works
 }
 
 std::string refused_text(const RefusalCounts& refused) {
-  const auto says = [](Refusal reason) {
-    switch (reason) {
-      case Refusal::no_ik: return "out of reach";
-      case Refusal::outside_limits: return "beyond a joint's limits";
-      case Refusal::goal_in_collision: return "in collision there";
-      case Refusal::start_in_collision: return "in collision at the start";
-      case Refusal::no_path: return "without a path";
-      default: return "declined by the robot";
-    }
-  };
   std::string text;
-  for (const Refusal reason : kRefusals) {
+  for (const Refusal reason : kRefusalTexts.values) {
     if (refused.of(reason) == 0) continue;
-    text += (text.empty() ? "" : ", ") + std::to_string(refused.of(reason)) + " " + says(reason);
+    text.append(text.empty() ? "" : ", ").append(std::to_string(refused.of(reason)) + " ");
+    text.append(kRefusalTexts.of(reason));
   }
   return text;
 }

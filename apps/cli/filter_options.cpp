@@ -10,45 +10,24 @@ namespace {
 constexpr double kRadPerDegree{std::numbers::pi / 180.0};
 
 void add_step_options(CLI::App& command, DepthFilterConfig& filter) {
-  command
-      .add_option_function<std::string>(
-          "--method",
-          [&filter](const std::string& text) {
-            const auto method = depth_filter_method(text);
-            require_ok(method ? Status{} : Status{method.error()}, "--method");
-            filter.method = *method;
-          },
-          "surface keeps what lies on a surface; thesis removes all that may be wrong (default: surface)")
-      ->type_name("surface|thesis");
+  add_choice(command, "--method", filter.method, kDepthFilterMethodNames,
+             "surface keeps what lies on a surface; thesis removes all that may be wrong");
   command.add_option("--baseline", filter.baseline_m, "from the camera to the infrared emitter, metres")
       ->type_name("METRES")
       ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--emitter",
-          [&filter](const std::string& text) {
-            if (text != "left" && text != "right")
-              usage_error("--emitter", "must be left or right, not '" + text + "'");
-            filter.emitter_side = text == "left" ? EmitterSide::left : EmitterSide::right;
-          },
-          "the emitter's side in the image; shadows fall to the other side (default: left; right where the driver "
-          "mirrors images)")
-      ->type_name("left|right");
+  add_choice(command, "--emitter", filter.emitter_side, kEmitterSideNames,
+             "the emitter's side in the image; shadows fall to the other side (right where the driver mirrors images)");
   command
       .add_option_function<double>(
           "--veil-angle", [&filter](const double& angle_deg) { filter.veil_angle_rad = angle_deg * kRadPerDegree; },
           "a point with a neighbour so nearly behind or before it is a veil point, degrees (default: 10)")
       ->type_name("DEGREES");
-  command
-      .add_option_function<std::string>(
-          "--only",
-          [&filter](const std::string& text) {
-            if (text != "shadow" && text != "veil") usage_error("--only", "must be shadow or veil, not '" + text + "'");
-            filter.remove_shadow_points = text == "shadow";
-            filter.remove_veil_points = text == "veil";
-          },
-          "do only one of the two steps")
-      ->type_name("shadow|veil");
+  constexpr std::array<std::string_view, 2> kSteps{"shadow", "veil"};
+  const auto only = [&filter](const std::string& step) {
+    filter.remove_shadow_points = step == "shadow";
+    filter.remove_veil_points = step == "veil";
+  };
+  add_words(command, "--only", kSteps, only, "do only one of the two steps");
 }
 
 }  // namespace

@@ -3,49 +3,17 @@
 
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <map>
 
 namespace saccade::cli {
 namespace {
 
-const std::map<std::string, TrackingMode>& tracking_modes() {
-  static const std::map<std::string, TrackingMode> modes{
-      {"icp", TrackingMode::icp}, {"hint", TrackingMode::hint}, {"forced", TrackingMode::forced}};
-  return modes;
-}
-
-const std::map<std::string, RgbdLayout>& layouts() {
-  static const std::map<std::string, RgbdLayout> names{{"auto", RgbdLayout::automatic},
-                                                       {"seven-scenes", RgbdLayout::seven_scenes},
-                                                       {"tum", RgbdLayout::tum},
-                                                       {"princeton", RgbdLayout::princeton},
-                                                       {"open3d", RgbdLayout::open3d}};
-  return names;
-}
-
-const std::map<std::string, DepthEncoding>& encodings() {
-  static const std::map<std::string, DepthEncoding> names{
-      {"mm", {1000.0, false}}, {"tum", {5000.0, false}}, {"bit-rotated", {10000.0, true}}};
-  return names;
-}
-
-/// An option that takes one of a few words.
-template <class T, class Target>
-void add_choice(CLI::App& command, const std::string& option, Target& target, const std::map<std::string, T>& choices,
-                const std::string& description) {
-  std::string words;
-  for (const auto& [word, value] : choices) words += (words.empty() ? "" : "|") + word;
-  command
-      .add_option_function<std::string>(
-          option,
-          [option, &target, &choices, words](const std::string& text) {
-            const auto found = choices.find(text);
-            if (found == choices.end()) usage_error(option, "must be one of " + words + ", not '" + text + "'");
-            target = found->second;
-          },
-          description)
-      ->type_name(words);
-}
+constexpr auto kLayoutWords = make_names<RgbdLayout>({{RgbdLayout::automatic, "auto"},
+                                                      {RgbdLayout::seven_scenes, "seven-scenes"},
+                                                      {RgbdLayout::tum, "tum"},
+                                                      {RgbdLayout::princeton, "princeton"},
+                                                      {RgbdLayout::open3d, "open3d"}});
+constexpr auto kEncodingWords =
+    make_names<DepthEncoding>({{{1000.0, false}, "mm"}, {{5000.0, false}, "tum"}, {{10000.0, true}, "bit-rotated"}});
 
 void add_reading_options(CLI::App& command, FrameOptions& options) {
   add_camera_options(command, options.camera, false);
@@ -58,8 +26,8 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
           },
           "lens distortion (Brown-Conrady), undone on the way in")
       ->type_name("K1,K2,P1,P2,K3");
-  add_choice(command, "--layout", options.folder.layout, layouts(), "how the files are named (default: recognised)");
-  add_choice(command, "--depth-encoding", options.folder.encoding, encodings(),
+  add_choice(command, "--layout", options.folder.layout, kLayoutWords, "how the files are named; auto: recognised");
+  add_choice(command, "--depth-encoding", options.folder.encoding, kEncodingWords,
              "what depth samples mean (default: the layout's): 1/1000 m, 1/5000 m, 1/10000 m rotated by three bits");
   command.add_option("--depth-scale", options.depth_scale, "depth samples per metre, instead of the encoding's")
       ->type_name("N");
@@ -113,16 +81,9 @@ Result<TrackingMode> choose_tracking(const FrameOptions& options, const RgbdFold
 
 }  // namespace
 
-std::string_view to_string(TrackingMode mode) {
-  for (const auto& [name, value] : tracking_modes()) {
-    if (value == mode) return name;
-  }
-  return "unknown";
-}
-
 void add_frame_options(CLI::App& command, FrameOptions& options) {
   command.add_option("frames", options.frames, "folder of RGB-D frames")->required()->type_name("DIR");
-  add_choice(command, "--tracking", options.tracking, tracking_modes(),
+  add_choice(command, "--tracking", options.tracking, kTrackingModeNames,
              "icp: by the depth images alone; hint: ICP from the given poses; forced: the given poses as they are "
              "(default: forced where there are poses, else icp)");
   add_reading_options(command, options);

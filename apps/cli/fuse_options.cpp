@@ -14,12 +14,7 @@ void add_map_options(CLI::App& command, FuseOptions& options) {
       ->type_name("VOXELS")
       ->capture_default_str();
   add_clearing_option(command, options.map.clearing_percent);
-  command
-      .add_option_function<std::string>(
-          "--workspace",
-          [&options](const std::string& text) { options.map.workspace = parse_box("--workspace", text); },
-          "box outside of which nothing counts as unknown")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  add_box(command, "--workspace", options.map.workspace, "box outside of which nothing counts as unknown");
   command.add_flag("--no-color{false}", options.map.color, "do not fuse colours");
   command.add_option("--continue", options.continue_map, "go on with a saved map")->type_name("MAP");
 }

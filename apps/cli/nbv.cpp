@@ -125,8 +125,8 @@ json result_json(const NbvOptions& options, const Candidates& candidates, const 
           {"forgotten", options.forget},
           {"sensor", camera_to_json(options.gain.sensor)},
           {"tilt_rad", options.gain.tilt_rad},
-          {"count", options.gain.count == GainCount::rays ? "rays" : "voxels"},
-          {"unknown_outside", options.gain.unknown_outside == UnknownOutside::blocks ? "blocks" : "transparent"},
+          {"count", kGainCountNames.of(options.gain.count)},
+          {"unknown_outside", kUnknownOutsideNames.of(options.gain.unknown_outside)},
           {"candidates", candidates.poses.size()},
           {"evaluated", gains.gains.size()},
           {"rays_total", gains.rays_total},
@@ -167,7 +167,7 @@ Status write_outputs(const NbvOptions& options, const RunFolder& out, const Tsdf
   ViewPictureConfig picture;
   picture.sensor = options.gain.sensor;
   picture.overview.up = options.up.value_or(Eigen::Vector3d::UnitZ());
-  picture.gain_unit = options.gain.count == GainCount::rays ? "rays" : "voxels";
+  picture.gain_unit = kGainCountNames.of(options.gain.count);
   SACCADE_CHECK(write_png(out / "views.png", view_picture(map, options.region(), scored, executor, picture)));
   return write_json(out / "views.json", document);
 }
@@ -224,24 +224,14 @@ Result<int> run_nbv(const NbvOptions& options, const GlobalOptions& global) {
 }
 
 void add_region_options(CLI::App& command, NbvOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--poi", [&options](const std::string& text) { options.poi = parse_point("--poi", text); },
-          "point of interest: the centre of the region and of the view sphere, metres")
-      ->type_name("X,Y,Z");
+  add_point(command, "--poi", options.poi,
+            "point of interest: the centre of the region and of the view sphere, metres");
   command.add_option("--radius", options.radius_m, "radius of the region around --poi, metres (default: 0.2)")
       ->type_name("METRES");
-  command
-      .add_option_function<std::string>(
-          "--box", [&options](const std::string& text) { options.box = parse_box("--box", text); },
-          "box region, instead of --poi and --radius")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  add_box(command, "--box", options.box, "box region, instead of --poi and --radius");
   command.add_flag("--forget", options.forget, "set the region back to unknown first (the file stays as it is)");
-  command
-      .add_option_function<std::string>(
-          "--workspace", [&options](const std::string& text) { options.workspace = parse_box("--workspace", text); },
-          "box outside of which nothing counts as unknown, instead of the map's")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  add_box(command, "--workspace", options.workspace,
+          "box outside of which nothing counts as unknown, instead of the map's");
 }
 
 void add_candidate_options(CLI::App& command, NbvOptions& options) {
@@ -271,25 +261,10 @@ void add_candidate_options(CLI::App& command, NbvOptions& options) {
 
 void add_gain_options(CLI::App& command, NbvOptions& options) {
   add_camera_options(command, options.camera, true);
-  command
-      .add_option_function<std::string>(
-          "--count",
-          [&options](const std::string& text) {
-            if (text != "rays" && text != "voxels") usage_error("--count", "must be rays or voxels");
-            options.gain.count = text == "rays" ? GainCount::rays : GainCount::distinct_voxels;
-          },
-          "what counts: rays, or the distinct voxels they end in (default: rays)")
-      ->type_name("rays|voxels");
-  command
-      .add_option_function<std::string>(
-          "--unknown-outside",
-          [&options](const std::string& text) {
-            if (text != "blocks" && text != "transparent")
-              usage_error("--unknown-outside", "must be blocks or transparent");
-            options.gain.unknown_outside = text == "blocks" ? UnknownOutside::blocks : UnknownOutside::transparent;
-          },
-          "what unknown voxels outside the region do to a ray (default: blocks)")
-      ->type_name("blocks|transparent");
+  add_choice(command, "--count", options.gain.count, kGainCountNames,
+             "what counts: rays, or the distinct voxels they end in");
+  add_choice(command, "--unknown-outside", options.gain.unknown_outside, kUnknownOutsideNames,
+             "what unknown voxels outside the region do to a ray");
   command
       .add_option_function<double>(
           "--tilt", [&options](const double& tilt_deg) { options.gain.tilt_rad = tilt_deg * pi / 180.0; },

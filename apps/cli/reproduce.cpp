@@ -166,9 +166,8 @@ void check_numbers(const std::vector<std::string>& numbers, const ReproduceOptio
       usage_error("--hands", "Table " + *number + " is made from recorded hands: get them from " + kHandDataAddress +
                                  ", and name their folder with --hands DIR");
     }
-    std::string known;
-    for (const ThesisTable& table : thesis_tables()) known += (known.empty() ? "" : ", ") + std::string{table.number};
-    usage_error("TABLE", "there is no table \"" + *number + "\"; known: " + known);
+    usage_error("TABLE",
+                "there is no table \"" + *number + "\"; known: " + joined(thesis_tables(), ", ", &ThesisTable::number));
   }
 }
 
@@ -245,11 +244,9 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
                    "the same way; for a quick look (default: all)")
       ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
       ->type_name("N");
-  command
-      ->add_option("--scene", options->surfel_scene,
-                   "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes")
-      ->check(CLI::IsMember(std::vector<std::string>(kSurfelScenes.begin(), kSurfelScenes.end())))
-      ->type_name("NAME");
+  const auto take_scene = [options](const std::string& name) { options->surfel_scene = name; };
+  add_words(*command, "--scene", kSurfelScenes, take_scene,
+            "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes");
   command
       ->add_option("--placements", options->placements,
                    "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: SV-LCCP with the grid of seeds in so many places; "

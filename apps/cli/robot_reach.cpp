@@ -168,11 +168,8 @@ void add_grid_options(CLI::App& command, ReachOptions& options) {
                   "or a YAML file")
       ->type_name("SCENE")
       ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--workspace", [&options](const std::string& text) { options.workspace = parse_box("--workspace", text); },
-          "where the points of interest lie, instead of the scene's workspace")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  add_box(command, "--workspace", options.workspace,
+          "where the points of interest lie, instead of the scene's workspace");
   command
       .add_option("--height", options.height_m,
                   "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)")

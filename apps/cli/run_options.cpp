@@ -57,17 +57,9 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
       ->capture_default_str();
   add_clearing_option(command, options.run.clearing_percent);
   command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of the sensor");
-  command
-      .add_option_function<std::string>(
-          "--sensor",
-          [&options](const std::string& text) {
-            const auto sensor = depth_sensor(text);
-            require_ok(sensor ? Status{} : Status{sensor.error()}, "--sensor");
-            options.run.sensor = *sensor;
-          },
-          "what the simulated camera's depth is like; a Kinect v2's goes through its filter (default: kinect-v1; the "
-          "image is --camera's)")
-      ->type_name("kinect-v1|kinect-v2");
+  add_choice(command, "--sensor", options.run.sensor, kDepthSensorNames,
+             "what the simulated camera's depth is like; a Kinect v2's goes through its filter (the image is "
+             "--camera's)");
   add_camera_options(command, options.camera, true);
 }
 

@@ -61,12 +61,13 @@ Status find_by_supervoxels(const SegmentOptions& options, const SegmentInput& in
   SACCADE_CHECK(stop_if_interrupted());
   bar.update("segments", 0, 0);
   SupervoxelResult pruned;
-  if (options.method == kSvLccp) {
+  if (options.method == SegmentMethod::sv_lccp) {
     pruned = findings.supervoxels;
     prune_by_color(pruned, options.max_color_difference);
   }
-  SACCADE_TRY(LccpResult found,
-              segment_by_convexity(options.method == kSvLccp ? pruned : findings.supervoxels, options.lccp));
+  SACCADE_TRY(
+      LccpResult found,
+      segment_by_convexity(options.method == SegmentMethod::sv_lccp ? pruned : findings.supervoxels, options.lccp));
   findings.labels = std::move(found.labels);
   findings.segments = found.segments;
   findings.lccp_ms = clock.lap_ms();

@@ -49,12 +49,8 @@ void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
       ->capture_default_str();
   command.add_flag("--transform,!--no-transform", supervoxels.voxels.single_camera,
                    "the cloud is one camera's, in its frame (z forwards): voxels grow with depth");
-  command
-      .add_option_function<std::string>(
-          "--viewpoint",
-          [&options](const std::string& text) { options.viewpoint_m = parse_point("--viewpoint", text); },
-          "estimated normals turn towards it (default: the viewpoint in a PCD file, else the origin)")
-      ->type_name("X,Y,Z");
+  add_point(command, "--viewpoint", options.viewpoint_m,
+            "estimated normals turn towards it (default: the viewpoint in a PCD file, else the origin)");
 }
 
 void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
@@ -113,21 +109,22 @@ std::vector<double> default_thresholds() {
   return thresholds;
 }
 
-void refuse(const CLI::App& command, const std::string& method, std::initializer_list<const char*> names) {
+void refuse(const CLI::App& command, SegmentMethod method, std::initializer_list<const char*> names) {
   for (const char* name : names) {
-    if (command.count(name) > 0) usage_error(name, "has no meaning with --method " + method);
+    if (command.count(name) == 0) continue;
+    usage_error(name, "has no meaning with --method " + std::string{kSegmentMethodNames.of(method)});
   }
 }
 
 /// What a method is without, and its own defaults for what was not given.
 void apply_method(const CLI::App& command, SegmentOptions& options) {
-  if (options.method == kLccp) refuse(command, kLccp, {"--threshold", "--radius", "--curve"});
+  if (options.method == SegmentMethod::lccp) refuse(command, options.method, {"--threshold", "--radius", "--curve"});
   if (options.curve_truth.empty()) {
     for (const char* name : {"--thresholds", "--tolerance", "--no-split"}) {
       if (command.count(name) > 0) usage_error(name, "needs --curve TRUTH");
     }
   }
-  if (options.method == kSvLccp) {
+  if (options.method == SegmentMethod::sv_lccp) {
     if (command.count("--radius") > 0 && options.curve_truth.empty()) usage_error("--radius", "needs --curve TRUTH");
     const SupervoxelConfig defaults = SvLccpConfig{}.supervoxels;
     SupervoxelConfig& own = options.supervoxels;
@@ -140,7 +137,7 @@ void apply_method(const CLI::App& command, SegmentOptions& options) {
     options.max_color_difference = options.threshold.value_or(options.max_color_difference);
   }
   if (options.fills()) {
-    refuse(command, kFloodFill,
+    refuse(command, options.method,
            {"--voxel-size", "--seed-size", "--spatial-weight", "--rounds", "--concavity", "--smoothness", "--sanity",
             "--extended", "--min-size"});
     FloodFillConfig& fill = options.flood_fill;
@@ -170,13 +167,9 @@ void add_segment_options(CLI::App& command, SegmentOptions& options) {
   command.add_option("input", options.input, "a point cloud (PCD, PLY, text, KITTI .bin), or a saved map (.sacmap)")
       ->required()
       ->type_name("CLOUD|MAP");
-  command
-      .add_option(
-          "--method", options.method,
-          "how: lccp, supervoxels joined where surfaces bend outwards; sv-lccp, the same kept apart by colours; "
-          "flood-fill, surfels that touch and look alike")
-      ->type_name("NAME")
-      ->capture_default_str();
+  add_choice(command, "--method", options.method, kSegmentMethodNames,
+             "how: lccp, supervoxels joined where surfaces bend outwards; sv-lccp, the same kept apart by colours; "
+             "flood-fill, surfels that touch and look alike");
   command
       .add_option("--out", options.out,
                   "the cloud with a field label more: 1, 2, ... by segment, 0 for no point; PCD, or PLY by its name")
@@ -194,9 +187,6 @@ void add_segment_options(CLI::App& command, SegmentOptions& options) {
 }
 
 void check_segment_options(const CLI::App& command, SegmentOptions& options) {
-  if (options.method != kLccp && options.method != kSvLccp && options.method != kFloodFill) {
-    usage_error("--method", "must be lccp, sv-lccp or flood-fill, not '" + options.method + "'");
-  }
   apply_method(command, options);
   check_extensions(options);
   require_positive(options.supervoxels.voxels.voxel_size_m, "--voxel-size");

@@ -25,13 +25,7 @@ constexpr std::array<NamedHeuristic, 7> kHeuristics{
      {"height", [](const SaliencyOptions& options) { return height_above_support(options.height); }},
      {"region", [](const SaliencyOptions& options) { return inside_region(options.region.value()); }}}};
 
-std::string known_names() {
-  std::string names;
-  for (const NamedHeuristic& heuristic : kHeuristics) {
-    names += (names.empty() ? "" : ", ") + std::string{heuristic.name};
-  }
-  return names;
-}
+std::string known_names() { return joined(kHeuristics, ", ", &NamedHeuristic::name); }
 
 /// "name" or "name=weight".
 BlendPart parse_part(const std::string& text, const SaliencyOptions& options) {
@@ -77,11 +71,8 @@ void add_saliency_options(CLI::App& command, SaliencyOptions& options) {
   command.add_option("--size", options.size.size_m, "saliency size: longest size of what is looked for, metres")
       ->type_name("METRES")
       ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--up", [&options](const std::string& text) { options.up = parse_point("--up", text); },
-          "saliency height, and pictures: which way is up (default: 0,0,1; 0,-1,0 with --transform)")
-      ->type_name("X,Y,Z");
+  add_point(command, "--up", options.up,
+            "saliency height, and pictures: which way is up (default: 0,0,1; 0,-1,0 with --transform)");
   command
       .add_option_function<std::string>(
           "--box",

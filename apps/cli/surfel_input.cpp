@@ -15,15 +15,6 @@ constexpr std::size_t kNearest{10};
 
 }  // namespace
 
-const char* to_string(Origin origin) {
-  switch (origin) {
-    case Origin::file: return "given";
-    case Origin::option: return "option";
-    case Origin::estimate: return "estimated";
-  }
-  return "";
-}
-
 Origin complete_radii(PointCloud& cloud, std::optional<double> radius_m, const Executor& executor) {
   if (radius_m) {
     cloud.radii_m.assign(cloud.positions_m.size(), static_cast<float>(*radius_m));

@@ -43,16 +43,9 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
       ->type_name("SCENE");
   command.add_option("--out", options.out, "folder for the results (default: update-SCENE)")->type_name("DIR");
   add_hand_options(command, options);
-  command
-      .add_option_function<std::string>(
-          "--fuse-when",
-          [&options](const std::string& when) {
-            options.fuse_when = when == "motion" ? FuseWhen::motion : FuseWhen::viewpoints;
-          },
-          "when the camera's frames are fused: at viewpoints alone (the thesis' KFOVP; default), or also in motion, "
-          "which is slower then (KFOM)")
-      ->check(CLI::IsMember({"viewpoints", "motion"}))
-      ->type_name("viewpoints|motion");
+  add_choice(command, "--fuse-when", options.fuse_when, kFuseWhenNames,
+             "when the camera's frames are fused: at viewpoints alone (the thesis' KFOVP), or also in motion, which is "
+             "slower then (KFOM)");
   add_run_options(command, options, fixed(kUpdateMinGain, 0));
   command.add_option("--robot", options.robot, "what carries the camera: comau, a URDF file, or free, which flies")
       ->type_name("ROBOT")

@@ -62,9 +62,7 @@ void add_surfel_notes(const ReproduceOptions& options, bool is_of_sv_lccp, Repro
 void mark_missing(const std::vector<std::string>& scenes, ReproducedTable& table) {
   if (scenes.empty()) return;
   table.complete = false;
-  std::string names;
-  for (const std::string& scene : scenes) names += (names.empty() ? "" : ", ") + scene;
-  table.notes.push_back("Interrupted: without " + names + ".");
+  table.notes.push_back("Interrupted: without " + joined(scenes) + ".");
 }
 
 namespace {

@@ -2,11 +2,11 @@
 #include "server/show/run_facts.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <string_view>
 
 #include "saccade/io/runs/view_choice.hpp"
+#include "saccade/robot/refusal.hpp"
 #include "server/show/figures.hpp"
 
 namespace saccade::server {
@@ -66,17 +66,8 @@ std::string voxels(double count) { return whole(count) + " voxels"; }
 std::string gain_words(double gain) { return gain == std::floor(gain) ? whole(gain) : decimals(gain, 2); }
 
 std::string why_refused(const std::string& reason) {
-  constexpr std::array<std::pair<std::string_view, const char*>, 6> kWords{
-      {{"no_ik", "out of reach"},
-       {"outside_limits", "beyond a joint's limits"},
-       {"goal_in_collision", "in collision there"},
-       {"start_in_collision", "in collision at the start"},
-       {"no_path", "without a path"},
-       {"declined", "declined by the robot"}}};
-  for (const auto& [name, words] : kWords) {
-    if (name == reason) return words;
-  }
-  return reason;
+  const auto refusal = kRefusalNames.find(reason);
+  return refusal ? std::string{kRefusalTexts.of(*refusal)} : reason;
 }
 
 std::string refused_words(const json& refused) {

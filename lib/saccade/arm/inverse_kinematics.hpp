@@ -14,6 +14,7 @@
 #include "saccade/arm/numeric_ik.hpp"
 #include "saccade/arm/spherical_wrist.hpp"
 #include "saccade/core/executor.hpp"
+#include "saccade/core/names.hpp"
 
 namespace saccade {
 
@@ -22,8 +23,9 @@ enum class IkMethod {
   closed_form,  ///< SphericalWrist
   numeric,      ///< NumericIk
 };
-
-[[nodiscard]] std::string_view to_string(IkMethod method);
+inline constexpr auto kIkMethodNames = make_names<IkMethod>(
+    {{IkMethod::automatic, "automatic"}, {IkMethod::closed_form, "closed form"}, {IkMethod::numeric, "numeric"}});
+[[nodiscard]] constexpr std::string_view to_string(IkMethod method) { return kIkMethodNames.of(method); }
 
 struct IkConfig {
   IkMethod method{IkMethod::automatic};

@@ -22,6 +22,10 @@ constexpr std::size_t kMaxFrameBytes{std::size_t{1} << 28};
 
 enum class ExternalDepth { float32_m, uint16_mm };
 enum class ExternalColor { none, rgb8 };
+inline constexpr auto kExternalDepthNames =
+    make_names<ExternalDepth>({{ExternalDepth::float32_m, "float32_m"}, {ExternalDepth::uint16_mm, "uint16_mm"}});
+inline constexpr auto kExternalColorNames =
+    make_names<ExternalColor>({{ExternalColor::none, "none"}, {ExternalColor::rgb8, "rgb8"}});
 
 /// What a camera says of itself.
 struct ExternalCameraFormat {

@@ -3,21 +3,20 @@
 // mesh_scene: an object of the user's, read from a mesh file, on a table.
 
 #include <filesystem>
+#include <optional>
 #include <vector>
 
+#include "saccade/core/names.hpp"
 #include "saccade/scene/scene.hpp"
 
 namespace saccade {
 
-enum class UpAxis : std::uint8_t {
-  as_usual,  ///< y for glTF (.glb, .gltf), whose specification says so; z for all others
-  y,
-  z,
-};
+enum class UpAxis : std::uint8_t { y, z };
+inline constexpr auto kUpAxisNames = make_names<UpAxis>({{UpAxis::y, "y"}, {UpAxis::z, "z"}});
 
 struct MeshSceneConfig {
-  double scale{1.0};  ///< metres per unit of the file
-  UpAxis up{UpAxis::as_usual};
+  double scale{1.0};           ///< metres per unit of the file
+  std::optional<UpAxis> up{};  ///< default: y for glTF (.glb, .gltf), whose specification says so; z for all others
 
   [[nodiscard]] Status validate() const;
 };
