@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "add_value.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
@@ -129,41 +130,29 @@ void set_noise(SimulatedRunConfig& run, const std::string& name) {
 }
 
 void add_compare_options(CLI::App& command, CompareOptions& options, const Planners& planners) {
-  command
-      .add_option("--scenes", options.scene_list,
-                  "scenes, separated by commas: built-in ones or all of them (all), clutter:SEED, clutter:1-30, YAML "
-                  "files, mesh files, and folders of meshes, each of which is put on a table")
-      ->required()
-      ->type_name("LIST");
-  command.add_option("--strategies", options.strategy_list, "strategies, separated by commas: " + planners.names())
-      ->type_name("LIST")
-      ->capture_default_str();
-  command.add_option("--seeds", options.seed_list, "seeds of noise and chance, each makes one run: 1-10,15")
-      ->type_name("LIST")
-      ->capture_default_str();
-  command.add_option("--out", options.out, "folder for the results; runs that are in it already are not repeated")
-      ->required()
-      ->type_name("DIR");
+  add_value(command, "--scenes", options.scene_list, "LIST",
+            "scenes, separated by commas: built-in ones or all of them (all), clutter:SEED, clutter:1-30, YAML files, "
+            "mesh files, and folders of meshes, each of which is put on a table")
+      ->required();
+  add_value(command, "--strategies", options.strategy_list, "LIST",
+            "strategies, separated by commas: " + planners.names());
+  add_value(command, "--seeds", options.seed_list, "LIST", "seeds of noise and chance, each makes one run: 1-10,15");
+  add_value(command, "--out", options.out, "DIR",
+            "folder for the results; runs that are in it already are not repeated")
+      ->required();
   add_run_options(command, options.run, min_gain_by_strategy());
-  command
-      .add_option("--noise", options.noise_list,
-                  "noise of the depth, separated by commas: none, kinect-v1, kinect-v2 (default: that of --sensor)")
-      ->type_name("LIST")
+  add_value(command, "--noise", options.noise_list, "LIST",
+            "noise of the depth, separated by commas: none, kinect-v1, kinect-v2 (default: that of --sensor)")
       ->excludes("--sensor")
       ->excludes("--no-noise");
-  command.add_option("--robot", options.robot, "what carries the camera: free, which flies, comau, or a URDF file")
-      ->type_name("ROBOT")
-      ->capture_default_str();
-  command.add_option("--mesh-scale", options.mesh.scale, "metres per unit of mesh files")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--robot", options.robot, "ROBOT",
+            "what carries the camera: free, which flies, comau, or a URDF file");
+  add_value(command, "--mesh-scale", options.mesh.scale, "METRES", "metres per unit of mesh files");
   add_choice(command, "--mesh-up", options.mesh.up, kUpAxisNames,
              "the axis of mesh files that points up (default: z, but y for glTF)");
-  command
-      .add_option("--jobs", options.jobs,
-                  "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
-      ->check(CLI::Range(1, 256))
-      ->type_name("N");
+  add_value(command, "--jobs", options.jobs, "N",
+            "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
+      ->check(CLI::Range(1, 256));
   command.add_flag("--equal-views", options.equal_views,
                    "every other strategy gets as many views as sphere took, not --max-views");
   command.add_flag("--list", options.list, "say what would be run, and run nothing");

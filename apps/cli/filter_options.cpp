@@ -2,6 +2,7 @@
 #include <CLI/CLI.hpp>
 #include <numbers>
 
+#include "add_value.hpp"
 #include "filter.hpp"
 
 namespace saccade::cli {
@@ -12,9 +13,7 @@ constexpr double kRadPerDegree{std::numbers::pi / 180.0};
 void add_step_options(CLI::App& command, DepthFilterConfig& filter) {
   add_choice(command, "--method", filter.method, kDepthFilterMethodNames,
              "surface keeps what lies on a surface; thesis removes all that may be wrong");
-  command.add_option("--baseline", filter.baseline_m, "from the camera to the infrared emitter, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--baseline", filter.baseline_m, "METRES", "from the camera to the infrared emitter, metres");
   add_choice(command, "--emitter", filter.emitter_side, kEmitterSideNames,
              "the emitter's side in the image; shadows fall to the other side (right where the driver mirrors images)");
   command
@@ -33,23 +32,17 @@ void add_step_options(CLI::App& command, DepthFilterConfig& filter) {
 }  // namespace
 
 void add_filter_options(CLI::App& command, FilterOptions& options) {
-  command.add_option("frames", options.frames, "depth images in 16-bit PNG; a folder stands for those in it")
-      ->required()
-      ->type_name("FRAMES...");
-  command
-      .add_option("--out", options.out,
-                  "folder for the filtered frames, of the same names, filter.json, and pictures before and after")
-      ->required()
-      ->type_name("DIR");
+  add_value(command, "frames", options.frames, "FRAMES...",
+            "depth images in 16-bit PNG; a folder stands for those in it")
+      ->required();
+  add_value(command, "--out", options.out, "DIR",
+            "folder for the filtered frames, of the same names, filter.json, and pictures before and after")
+      ->required();
   add_camera_options(command, options.camera_options, false);
-  command.add_option("--depth-scale", options.encoding.units_per_m, "depth samples per metre")
-      ->type_name("UNITS")
-      ->capture_default_str();
+  add_value(command, "--depth-scale", options.encoding.units_per_m, "UNITS", "depth samples per metre");
   add_step_options(command, options.filter);
-  command.add_option("--pictures", options.pictures, "pictures of the first so many frames; 0: none")
-      ->check(check_whole_number)
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(command, "--pictures", options.pictures, "N", "pictures of the first so many frames; 0: none")
+      ->check(check_whole_number);
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
 

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame_options.hpp"
 
+#include "add_value.hpp"
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 
@@ -29,11 +31,9 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
   add_choice(command, "--layout", options.folder.layout, kLayoutWords, "how the files are named; auto: recognised");
   add_choice(command, "--depth-encoding", options.folder.encoding, kEncodingWords,
              "what depth samples mean (default: the layout's): 1/1000 m, 1/5000 m, 1/10000 m rotated by three bits");
-  command.add_option("--depth-scale", options.depth_scale, "depth samples per metre, instead of the encoding's")
-      ->type_name("N");
-  command
-      .add_option("--poses", options.folder.poses_file, "camera poses, instead of the folder's (TUM, matrices, JSON)")
-      ->type_name("FILE");
+  add_value(command, "--depth-scale", options.depth_scale, "N", "depth samples per metre, instead of the encoding's");
+  add_value(command, "--poses", options.folder.poses_file, "FILE",
+            "camera poses, instead of the folder's (TUM, matrices, JSON)");
   command
       .add_option_function<std::vector<std::string>>(
           "--mask",
@@ -51,20 +51,13 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
           "pixels to ignore, such as the camera's own robot: PNG (0 is ignored), JSON polygons, or U,V;U,V;U,V")
       ->type_name("FILE|POLYGON")
       ->allow_extra_args(false);
-  command
-      .add_option("--fill-gaps", options.fill_gaps_px,
-                  "close gaps of up to so many pixels between similar depths, as registered depth images have them "
-                  "(default: 2 where they are all over the first frame, else 0)")
-      ->type_name("PIXELS");
-  command.add_option("--first", options.folder.first, "leave out so many frames at the beginning")
-      ->check(check_whole_number)
-      ->type_name("N");
-  command.add_option("--count", options.folder.count, "use at most so many frames")
-      ->check(check_whole_number)
-      ->type_name("N");
-  command.add_option("--every", options.folder.every_nth, "use every n-th frame")
-      ->check(check_whole_number)
-      ->type_name("N");
+  add_value(command, "--fill-gaps", options.fill_gaps_px, "PIXELS",
+            "close gaps of up to so many pixels between similar depths, as registered depth images have them (default: "
+            "2 where they are all over the first frame, else 0)");
+  add_value(command, "--first", options.folder.first, "N", "leave out so many frames at the beginning")
+      ->check(check_whole_number);
+  add_value(command, "--count", options.folder.count, "N", "use at most so many frames")->check(check_whole_number);
+  add_value(command, "--every", options.folder.every_nth, "N", "use every n-th frame")->check(check_whole_number);
 }
 
 /// The tracking mode that was asked for or that the folder allows.
@@ -82,7 +75,7 @@ Result<TrackingMode> choose_tracking(const FrameOptions& options, const RgbdFold
 }  // namespace
 
 void add_frame_options(CLI::App& command, FrameOptions& options) {
-  command.add_option("frames", options.frames, "folder of RGB-D frames")->required()->type_name("DIR");
+  add_value(command, "frames", options.frames, "DIR", "folder of RGB-D frames")->required();
   add_choice(command, "--tracking", options.tracking, kTrackingModeNames,
              "icp: by the depth images alone; hint: ICP from the given poses; forced: the given poses as they are "
              "(default: forced where there are poses, else icp)");

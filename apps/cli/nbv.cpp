@@ -9,6 +9,7 @@
 #include <numbers>
 #include <optional>
 
+#include "add_value.hpp"
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -226,8 +227,8 @@ Result<int> run_nbv(const NbvOptions& options, const GlobalOptions& global) {
 void add_region_options(CLI::App& command, NbvOptions& options) {
   add_point(command, "--poi", options.poi,
             "point of interest: the centre of the region and of the view sphere, metres");
-  command.add_option("--radius", options.radius_m, "radius of the region around --poi, metres (default: 0.2)")
-      ->type_name("METRES");
+  add_value(command, "--radius", options.radius_m, "METRES",
+            "radius of the region around --poi, metres (default: 0.2)");
   add_box(command, "--box", options.box, "box region, instead of --poi and --radius");
   command.add_flag("--forget", options.forget, "set the region back to unknown first (the file stays as it is)");
   add_box(command, "--workspace", options.workspace,
@@ -235,9 +236,8 @@ void add_region_options(CLI::App& command, NbvOptions& options) {
 }
 
 void add_candidate_options(CLI::App& command, NbvOptions& options) {
-  command
-      .add_option("--poses", options.poses_file, "candidate poses (TUM, matrices, JSON), instead of the view sphere")
-      ->type_name("FILE");
+  add_value(command, "--poses", options.poses_file, "FILE",
+            "candidate poses (TUM, matrices, JSON), instead of the view sphere");
   command
       .add_option_function<std::string>(
           "--distance",
@@ -286,16 +286,13 @@ void check_nbv_options(NbvOptions& options) {
 void add_nbv(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("nbv", "ranks view poses for a region in a saved map");
   auto options = std::make_shared<NbvOptions>();
-  command->add_option("map", options->map, "saved map (.sacmap)")->required()->type_name("MAP");
+  add_value(*command, "map", options->map, "MAP", "saved map (.sacmap)")->required();
   add_region_options(*command, *options);
   add_candidate_options(*command, *options);
   add_gain_options(*command, *options);
-  command->add_option("--top", options->top, "views to print and to write")
-      ->check(check_whole_number)
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(*command, "--top", options->top, "N", "views to print and to write")->check(check_whole_number);
   command->add_flag("--all", options->all, "print and write all views");
-  command->add_option("--out", options->out, "folder for views.json and views.png")->type_name("DIR");
+  add_value(*command, "--out", options->out, "DIR", "folder for views.json and views.png");
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {
     check_nbv_options(*options);

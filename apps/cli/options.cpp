@@ -6,6 +6,7 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include "add_value.hpp"
 #include "saccade/io/files/atomic_file.hpp"
 
 namespace saccade::cli {
@@ -203,10 +204,10 @@ void add_camera_options(CLI::App& command, CameraOptions& options, bool with_ima
             "image size, pixels; scales the preset's intrinsics along")
         ->type_name("WIDTH,HEIGHT");
   }
-  command.add_option("--min-range", options.min_range_m, "nearest depth that is used, metres along the optical axis")
-      ->type_name("METRES");
-  command.add_option("--max-range", options.max_range_m, "farthest depth that is used, metres along the optical axis")
-      ->type_name("METRES");
+  add_value(command, "--min-range", options.min_range_m, "METRES",
+            "nearest depth that is used, metres along the optical axis");
+  add_value(command, "--max-range", options.max_range_m, "METRES",
+            "farthest depth that is used, metres along the optical axis");
 }
 
 Status check_output(const std::filesystem::path& file, const char* option,

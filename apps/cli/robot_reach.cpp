@@ -8,6 +8,7 @@
 #include <memory>
 #include <numbers>
 
+#include "add_value.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
@@ -162,20 +163,15 @@ Pose parse_base(const std::string& text) {
 }
 
 void add_grid_options(CLI::App& command, ReachOptions& options) {
-  command
-      .add_option("--scene", options.scene,
-                  "gives workspace and obstacles (its fixtures and supports, as boxes): a built-in scene, clutter:SEED "
-                  "or a YAML file")
-      ->type_name("SCENE")
-      ->capture_default_str();
+  add_value(command, "--scene", options.scene, "SCENE",
+            "gives workspace and obstacles (its fixtures and supports, as boxes): a built-in scene, clutter:SEED or a "
+            "YAML file");
   add_box(command, "--workspace", options.workspace,
           "where the points of interest lie, instead of the scene's workspace");
-  command
-      .add_option("--height", options.height_m,
-                  "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)")
-      ->type_name("METRES");
-  command.add_option("--step", options.step_m, "between points (default: 0.05; 0.1 for arms without a closed form)")
-      ->type_name("METRES");
+  add_value(command, "--height", options.height_m, "METRES",
+            "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)");
+  add_value(command, "--step", options.step_m, "METRES",
+            "between points (default: 0.05; 0.1 for arms without a closed form)");
   command
       .add_option_function<std::string>(
           "--radius",
@@ -199,9 +195,7 @@ void add_robot_reach(CLI::App& robot, const GlobalOptions& global, Action& actio
           "where the chain's first link (--base) stands, turned about z by DEGREES (default: the world's origin)")
       ->type_name("X,Y,Z[,DEGREES]");
   add_grid_options(*command, *options);
-  command->add_option("--out", options->out, "folder for reach.png, reach.csv and reach.json")
-      ->required()
-      ->type_name("DIR");
+  add_value(*command, "--out", options->out, "DIR", "folder for reach.png, reach.csv and reach.json")->required();
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {
     check_arm_options(options->arm);

@@ -10,6 +10,7 @@
 #include <memory>
 #include <sstream>
 
+#include "add_value.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
@@ -212,18 +213,15 @@ void add_scene_sequence(CLI::App& scene_command, const GlobalOptions& global, Ac
   CLI::App* command = scene_command.add_subcommand(
       "sequence", "frames of a hand-held camera before a scene, with the truth of every pixel");
   auto options = std::make_shared<SequenceOptions>();
-  command->add_option("scene", options->scene, joined(kSurfelScenes))->required()->type_name("SCENE");
-  command->add_option("--out", options->out, "folder for the frames; made if it is not there")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--frames", options->frames, "number of frames; without it, as many as the thesis' scene has")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
-      ->type_name("N");
+  add_value(*command, "scene", options->scene, "SCENE", joined(kSurfelScenes))->required();
+  add_value(*command, "--out", options->out, "DIR", "folder for the frames; made if it is not there")->required();
+  add_value(*command, "--frames", options->frames, "N",
+            "number of frames; without it, as many as the thesis' scene has")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
   const auto take = [options](const std::string& name) { options->sensor = name; };
   add_words(*command, "--camera", kSurfelSensors, take, "sensor and its noise; without it, that of the thesis' scene");
-  command->add_option("--image-size", options->image_size, "width and height, pixels; the lens stays the same")
-      ->delimiter(',')
-      ->type_name("W,H");
+  add_value(*command, "--image-size", options->image_size, "W,H", "width and height, pixels; the lens stays the same")
+      ->delimiter(',');
   add_choice(*command, "--depth-noise", options->depth_noise, kOnOff, "noise and flaws of the sensor's depth");
   add_choice(*command, "--pose-noise", options->pose_noise, kOnOff, "drift and jitter of the written poses");
   add_choice(*command, "--color-noise", options->color_noise, kOnOff, "noise of colours");

@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "add_value.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
 #include "serve.hpp"
@@ -48,12 +49,10 @@ Result<int> run_show(const ShowOptions& options, const GlobalOptions& global) {
 void add_show(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("show", "shows a run, map, mesh or cloud in the browser");
   auto options = std::make_shared<ShowOptions>();
-  command
-      ->add_option("subject", options->subject,
-                   "the folder of a run, a map (.sacmap), a mesh (.ply, .obj, .stl, .glb) or a cloud (.pcd, .ply, "
-                   ".xyz, .txt, .csv, .pts, .bin)")
-      ->required()
-      ->type_name("RUN|MAP|MESH|CLOUD");
+  add_value(*command, "subject", options->subject, "RUN|MAP|MESH|CLOUD",
+            "the folder of a run, a map (.sacmap), a mesh (.ply, .obj, .stl, .glb) or a cloud (.pcd, .ply, .xyz, .txt, "
+            ".csv, .pts, .bin)")
+      ->required();
   add_serve_options(*command, options->serve);
   command->callback(
       [options, &global, &action] { action = [options, &global] { return run_show(*options, global); }; });

@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "add_value.hpp"
 #include "options.hpp"
 #include "saccade/cloud/estimated_normals.hpp"
 #include "saccade/cloud/estimated_radii.hpp"
@@ -43,11 +44,8 @@ Origin complete_normals(PointCloud& cloud, const Eigen::Vector3d& viewpoint_m, c
 }
 
 void add_truth_options(CLI::App& command, TruthOptions& options) {
-  command
-      .add_option("--tolerance", options.config.matching.tolerance_m,
-                  "boundaries match within this distance, T_eval, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--tolerance", options.config.matching.tolerance_m, "METRES",
+            "boundaries match within this distance, T_eval, metres");
   command.add_flag("!--no-split", options.config.split,
                    "true labels whose surfels do not all touch stay one (default: they are split)");
 }

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surfels_options.hpp"
 
+#include "add_value.hpp"
+
 #include <CLI/CLI.hpp>
 #include <cmath>
 
@@ -23,47 +25,32 @@ void check_options_have_effect(const CLI::App& command, const SurfelsOptions& op
 
 void add_surfels_options(CLI::App& command, SurfelsOptions& options) {
   add_frame_options(command, options);
-  command
-      .add_option("--out", options.out,
-                  "surfels with normals, radius, colour and confidence: PLY, or PCD for a name that ends in .pcd")
-      ->required()
-      ->type_name("CLOUD");
+  add_value(command, "--out", options.out, "CLOUD",
+            "surfels with normals, radius, colour and confidence: PLY, or PCD for a name that ends in .pcd")
+      ->required();
   add_choice(command, "--mode-filter", options.mode_filter, kModeFilterUseNames,
              "on: of each surfel's colours one that was seen, not a blend; off: averages; both: averages, too, in "
              "NAME.average.EXT beside --out");
-  command
-      .add_option("--image-sigma", options.fusion.image_sigma,
-                  "how fast pixels lose weight away from the image's centre: smaller for strong vignetting")
-      ->type_name("SIGMA")
-      ->capture_default_str();
+  add_value(command, "--image-sigma", options.fusion.image_sigma, "SIGMA",
+            "how fast pixels lose weight away from the image's centre: smaller for strong vignetting");
   add_choice(command, "--exposure-compensation", options.exposure_compensation, kOnOff,
              "on: for cameras with automatic gain or exposure: colours of each frame are brought to those of the "
              "first; vignetting must be corrected");
-  command.add_option("--max-modes", options.filter.max_modes, "colours that a surfel remembers, 1 to 32")
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(command, "--max-modes", options.filter.max_modes, "N", "colours that a surfel remembers, 1 to 32");
   add_choice(command, "--choice", options.choice, kModeChoiceNames,
              "what a surfel is in the end: the colour that is densest in its place more than around, where its own "
              "colours are densest, or the heaviest one (thesis, eq. 4.11)");
   add_choice(command, "--places", options.places, kSurfelPlacesNames,
              "where a surfel is: at the average of what was measured, or where its modes are, with depths guided by "
              "colour as in the thesis (default: average; with --choice heaviest modes)");
-  command
-      .add_option(
-          "--max-depth-change", options.filter.max_depth_change_m,
-          "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: "
-          "all move, as in the thesis")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      .add_option("--min-confidence", options.min_confidence,
-                  "surfels that were seen less, by the sum of their observations' weights, are not written: often they "
-                  "are no surfaces; 0: all are (default: 10, or a twentieth of the number of frames if that is less)")
-      ->type_name("W");
-  command
-      .add_option("--picture", options.picture,
-                  "PNG of the surfels as the frame in the middle saw them; with --mode-filter both side by side")
-      ->type_name("FILE");
+  add_value(command, "--max-depth-change", options.filter.max_depth_change_m, "METRES",
+            "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: all "
+            "move, as in the thesis");
+  add_value(command, "--min-confidence", options.min_confidence, "W",
+            "surfels that were seen less, by the sum of their observations' weights, are not written: often they are "
+            "no surfaces; 0: all are (default: 10, or a twentieth of the number of frames if that is less)");
+  add_value(command, "--picture", options.picture, "FILE",
+            "PNG of the surfels as the frame in the middle saw them; with --mode-filter both side by side");
 }
 
 void check_surfels_options(const CLI::App& command, SurfelsOptions& options) {
