@@ -72,10 +72,9 @@ template <class T, std::size_t N, std::size_t... kIndex>
           ...);
 }
 
-/// Makes a table: `inline constexpr auto kSideNames = make_names<Side>({{Side::left, "left"}, …});`. Does not compile
-/// where a word stands for two values, or where an enumerator has no word; those of an enum count up from 0.
+/// Makes a table of words for some values. Does not compile where a word stands for two.
 template <class T, std::size_t N>
-[[nodiscard]] consteval Names<T, N> make_names(const std::pair<T, std::string_view> (&entries)[N]) {
+[[nodiscard]] consteval Names<T, N> make_some_names(const std::pair<T, std::string_view> (&entries)[N]) {
   Names<T, N> names;
   for (std::size_t i = 0; i < N; ++i) {
     for (std::size_t k = 0; k < i; ++k) {
@@ -84,6 +83,14 @@ template <class T, std::size_t N>
     names.values[i] = entries[i].first;
     names.words[i] = entries[i].second;
   }
+  return names;
+}
+
+/// Makes a table: `inline constexpr auto kSideNames = make_names<Side>({{Side::left, "left"}, …});`. Does not compile
+/// where an enumerator has no word; those of an enum count up from 0.
+template <class T, std::size_t N>
+[[nodiscard]] consteval Names<T, N> make_names(const std::pair<T, std::string_view> (&entries)[N]) {
+  const Names<T, N> names = make_some_names<T>(entries);
   if constexpr (std::is_enum_v<T>) {
     if (!has_every(names, std::make_index_sequence<N + 1>{})) throw "an enumerator has no word";
   }

@@ -6,25 +6,23 @@
 namespace saccade {
 namespace {
 
-/// Each type has two names; the first is written.
-constexpr auto kTypeNames = make_names<ColumnType>({
-    {ColumnType::i8, "char"},
-    {ColumnType::u8, "uchar"},
-    {ColumnType::i16, "short"},
-    {ColumnType::u16, "ushort"},
-    {ColumnType::i32, "int"},
-    {ColumnType::u32, "uint"},
-    {ColumnType::f32, "float"},
-    {ColumnType::f64, "double"},
-    {ColumnType::i8, "int8"},
-    {ColumnType::u8, "uint8"},
-    {ColumnType::i16, "int16"},
-    {ColumnType::u16, "uint16"},
-    {ColumnType::i32, "int32"},
-    {ColumnType::u32, "uint32"},
-    {ColumnType::f32, "float32"},
-    {ColumnType::f64, "float64"},
-});
+/// PLY has no integers of 64 bits. Each type has two names; the first is written.
+constexpr auto kTypeNames = make_some_names<ColumnType>({{ColumnType::i8, "char"},
+                                                         {ColumnType::u8, "uchar"},
+                                                         {ColumnType::i16, "short"},
+                                                         {ColumnType::u16, "ushort"},
+                                                         {ColumnType::i32, "int"},
+                                                         {ColumnType::u32, "uint"},
+                                                         {ColumnType::f32, "float"},
+                                                         {ColumnType::f64, "double"},
+                                                         {ColumnType::i8, "int8"},
+                                                         {ColumnType::u8, "uint8"},
+                                                         {ColumnType::i16, "int16"},
+                                                         {ColumnType::u16, "uint16"},
+                                                         {ColumnType::i32, "int32"},
+                                                         {ColumnType::u32, "uint32"},
+                                                         {ColumnType::f32, "float32"},
+                                                         {ColumnType::f64, "float64"}});
 
 /// The words of one header line.
 std::vector<std::string_view> words_of(std::string_view line) {
