@@ -107,8 +107,7 @@ json simulation_json(const AnnotateOptions& options, const SimulatedAnnotation& 
   }
   json noc = json::object();
   for (const int goal : kGoals_percent) {
-    const std::optional<std::size_t> needed = annotation.clicks_to(0.01 * goal);
-    noc[std::to_string(goal)] = needed ? json(*needed) : json(nullptr);
+    noc[std::to_string(goal)] = optional_json(annotation.clicks_to(0.01 * goal));
   }
   json result{{"method", kAnnotationMethodNames.of(options.method)},
               {"points", annotation.points},

@@ -209,8 +209,7 @@ Result<int> run_info(const fs::path& subject, const GlobalOptions& global) {
     SACCADE_TRY(const json content, describe(subject, executor, print));
     result.update(content);
   }
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("info", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result))));
+  SACCADE_CHECK(write_result("info", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result)));
   return static_cast<int>(ExitStatus::done);
 }
 

@@ -99,10 +99,12 @@ Result<TsdfSnapshot> prepare_map(const NbvOptions& options, const Executor& exec
 double in_degrees(double angle_rad) { return angle_rad * 180.0 / pi; }
 
 json region_json(const NbvOptions& options) {
-  const auto point = [](const Eigen::Vector3d& p) { return json{p.x(), p.y(), p.z()}; };
-  if (options.box) return {{"kind", "box"}, {"min_m", point(options.box->min)}, {"max_m", point(options.box->max)}};
-  return {
-      {"kind", "sphere"}, {"center_m", point(*options.poi)}, {"radius_m", options.radius_m.value_or(kDefaultRadius_m)}};
+  if (const auto& box = options.box) {
+    return {{"kind", "box"}, {"min_m", point_json(box->min)}, {"max_m", point_json(box->max)}};
+  }
+  return {{"kind", "sphere"},
+          {"center_m", point_json(*options.poi)},
+          {"radius_m", options.radius_m.value_or(kDefaultRadius_m)}};
 }
 
 json view_json(const OrderedView& view, const Candidates& candidates) {
@@ -238,15 +240,8 @@ void add_region_options(CLI::App& command, NbvOptions& options) {
 void add_candidate_options(CLI::App& command, NbvOptions& options) {
   add_value(command, "--poses", options.poses_file, "FILE",
             "candidate poses (TUM, matrices, JSON), instead of the view sphere");
-  command
-      .add_option_function<std::string>(
-          "--distance",
-          [&options](const std::string& text) {
-            options.sphere.radii_m = parse_numbers("--distance", text, 0);
-            for (const double radius_m : options.sphere.radii_m) require_positive(radius_m, "--distance");
-          },
-          "radius of the view sphere, metres; several separated by commas (default: 0.8)")
-      ->type_name("METRES");
+  add_lengths(command, "--distance", options.sphere.radii_m,
+              "radius of the view sphere, metres; several separated by commas (default: 0.8)");
   command
       .add_option_function<std::string>(
           "--up",

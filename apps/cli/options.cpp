@@ -113,6 +113,15 @@ void add_point(CLI::App& command, const std::string& option, std::optional<Eigen
   command.add_option_function<std::string>(option, take, description)->type_name("X,Y,Z");
 }
 
+void add_lengths(CLI::App& command, const std::string& option, std::vector<double>& lengths_m,
+                 const std::string& description) {
+  const auto take = [option, &lengths_m](const std::string& text) {
+    lengths_m = parse_numbers(option, text, 0);
+    for (const double length_m : lengths_m) require_positive(length_m, option);
+  };
+  command.add_option_function<std::string>(option, take, description)->type_name("METRES");
+}
+
 void add_box(CLI::App& command, const std::string& option, std::optional<Box>& box, const std::string& description) {
   const auto take = [option, &box](const std::string& text) { box = parse_box(option, text); };
   command.add_option_function<std::string>(option, take, description)->type_name("X0,Y0,Z0,X1,Y1,Z1");

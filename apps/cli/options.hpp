@@ -66,6 +66,9 @@ inline constexpr auto kOnOff = make_names<bool>({{true, "on"}, {false, "off"}});
 /// Adds an option for a point: X,Y,Z.
 void add_point(CLI::App& command, const std::string& option, std::optional<Eigen::Vector3d>& point,
                const std::string& description);
+/// Adds an option for lengths above 0, one at least, separated by commas.
+void add_lengths(CLI::App& command, const std::string& option, std::vector<double>& lengths_m,
+                 const std::string& description);
 /// Adds an option for a box: X0,Y0,Z0,X1,Y1,Z1.
 void add_box(CLI::App& command, const std::string& option, std::optional<Box>& box, const std::string& description);
 

@@ -38,8 +38,8 @@ Result<int> list_tables(const GlobalOptions& global) {
     tables.push_back({{"table", table.number}, {"title", table.title}});
     if (!global.json_to_stdout()) std::cout << std::left << std::setw(8) << table.number << table.title << '\n';
   }
-  SACCADE_CHECK(write_json_output(global, json_envelope("reproduce", global, global.executor(),
-                                                        {{"total", clock.elapsed_ms()}}, {{"known", tables}})));
+  SACCADE_CHECK(
+      write_result("reproduce", global, global.executor(), {{"total", clock.elapsed_ms()}}, {{"known", tables}}));
   return static_cast<int>(ExitStatus::done);
 }
 
@@ -144,8 +144,7 @@ Result<int> run_reproduce(const std::vector<std::string>& numbers, const Reprodu
   json tables = json::array();
   for (std::size_t i = 0; i < done.size(); ++i) tables.push_back(json_of(numbers[i], done[i]));
   const Status markdown_status = write_markdown_output(markdown, done, global, executor);
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}})));
+  SACCADE_CHECK(write_result("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}}));
   if (!markdown_status) return markdown_status.error();
   const auto complete = std::count_if(done.begin(), done.end(), [](const auto& table) { return table.complete; });
   if (complete == std::ssize(numbers)) return static_cast<int>(ExitStatus::done);

@@ -172,15 +172,8 @@ void add_grid_options(CLI::App& command, ReachOptions& options) {
             "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)");
   add_value(command, "--step", options.step_m, "METRES",
             "between points (default: 0.05; 0.1 for arms without a closed form)");
-  command
-      .add_option_function<std::string>(
-          "--radius",
-          [&options](const std::string& text) {
-            options.radii_m = parse_numbers("--radius", text, 0);
-            for (const double radius_m : options.radii_m) require_positive(radius_m, "--radius");
-          },
-          "of the view sphere around each point; several separated by commas (default: 0.8)")
-      ->type_name("METRES");
+  add_lengths(command, "--radius", options.radii_m,
+              "of the view sphere around each point; several separated by commas (default: 0.8)");
 }
 
 }  // namespace

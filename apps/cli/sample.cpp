@@ -73,8 +73,7 @@ Result<int> run_sample(const SampleOptions& options, const GlobalOptions& global
   }
   bar.finish();
   const nlohmann::json result{{"out", options.out.string()}, {"frames", done}, {"interrupted", interrupted()}};
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("sample", global, executor, {{"total", stopwatch.elapsed_ms()}}, result)));
+  SACCADE_CHECK(write_result("sample", global, executor, {{"total", stopwatch.elapsed_ms()}}, result));
   if (!global.json_to_stdout()) std::cout << done << " frames in " << options.out.string() << '\n';
   return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
 }

@@ -198,8 +198,7 @@ Result<int> run_sequence(const SequenceOptions& options, const GlobalOptions& gl
       {"segments", camera.segments().names().size() - 1},
       {"interrupted", interrupted()},
       {"ms_per_frame", {{"render", {{"median", median_of(render_ms)}}}, {"write", {{"median", median_of(write_ms)}}}}}};
-  SACCADE_CHECK(
-      write_json_output(global, json_envelope("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, result)));
+  SACCADE_CHECK(write_result("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, result));
   if (!global.json_to_stdout()) {
     std::cout << true_poses.size() << " frames with " << result["segments"] << " true segments in "
               << options.out.string() << '\n';

@@ -218,14 +218,14 @@ struct Figures {
 };
 
 json figures_json(const Figures& figures) {
-  return {{"fos", number_or_null(figures.fos)},
-          {"fus", number_or_null(figures.fus)},
-          {"wov", number_or_null(figures.wov)},
-          {"wov_objects", number_or_null(figures.wov_objects)},
-          {"boundary_precision", number_or_null(figures.precision)},
-          {"boundary_recall", number_or_null(figures.recall)},
-          {"boundary_f", number_or_null(figures.f)},
-          {"bce", number_or_null(figures.bce)}};
+  return {{"fos", optional_json(figures.fos)},
+          {"fus", optional_json(figures.fus)},
+          {"wov", optional_json(figures.wov)},
+          {"wov_objects", optional_json(figures.wov_objects)},
+          {"boundary_precision", optional_json(figures.precision)},
+          {"boundary_recall", optional_json(figures.recall)},
+          {"boundary_f", optional_json(figures.f)},
+          {"bce", optional_json(figures.bce)}};
 }
 
 json pair_json(const ScoredPair& pair, const ScoreOptions& options) {
@@ -279,8 +279,7 @@ Result<int> run_score(const ScoreOptions& options, const GlobalOptions& global) 
     scored.push_back(std::move(found));
   }
   bar.finish();
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("score", global, executor, {{"total", clock.elapsed_ms()}}, scores_json(options, scored))));
+  SACCADE_CHECK(write_result("score", global, executor, {{"total", clock.elapsed_ms()}}, scores_json(options, scored)));
   if (!Figures{scored}.wov) {
     print_error("score", "no point has a true label above 0; there is nothing to score");
     return static_cast<int>(ExitStatus::no_result);

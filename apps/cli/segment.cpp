@@ -152,8 +152,7 @@ Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& glob
   timings_ms["write"] = clock.lap_ms();
   timings_ms["total"] = total.elapsed_ms();
   bar.finish();
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("segment", global, executor, timings_ms, segment_json(options, input, findings))));
+  SACCADE_CHECK(write_result("segment", global, executor, timings_ms, segment_json(options, input, findings)));
   if (findings.points == 0) {
     const bool empty = input.cloud.positions_m.empty();
     print_error(

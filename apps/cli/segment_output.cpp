@@ -38,7 +38,7 @@ json segments_json(const SegmentOptions& options, const SegmentFindings& finding
 json filling_json(const SegmentOptions& options) {
   return {{"threshold", options.flood_fill.threshold},
           {"weights", {{"normal", options.flood_fill.normal_weight}, {"color", options.flood_fill.color_weight}}},
-          {"radius_m", number_or_null(options.truth.radius_m)},
+          {"radius_m", optional_json(options.truth.radius_m)},
           {"saliency", options.saliency.names},
           {"isolation_distance_m", options.measures.isolation_distance_m}};
 }

@@ -34,8 +34,7 @@ Result<int> run_show(const ShowOptions& options, const GlobalOptions& global) {
   SACCADE_CHECK(check_json_output(global));
   SACCADE_TRY(const server::SceneDocument document, server::open_document(options.subject, executor));
   SACCADE_TRY(std::unique_ptr<server::HttpServer> server, listen(options.serve));
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("show", global, executor, {{"open", stopwatch.elapsed_ms()}}, summary_json(document))));
+  SACCADE_CHECK(write_result("show", global, executor, {{"open", stopwatch.elapsed_ms()}}, summary_json(document)));
   if (!global.json_to_stdout() && !global.quiet) print_document(document);
   const auto post = [&server](std::function<void()> work) { server->post(std::move(work)); };
   server::ViewerService service{*server, {SACCADE_VERSION, post}, document};

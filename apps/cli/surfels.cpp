@@ -258,8 +258,7 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
   run.timings_ms["write"] = stopwatch.lap_ms();
   run.timings_ms["total"] = total.elapsed_ms();
   run.progress.finish();
-  SACCADE_CHECK(
-      write_json_output(global, json_envelope("surfels", global, run.executor, run.timings_ms, result_json(run))));
+  SACCADE_CHECK(write_result("surfels", global, run.executor, run.timings_ms, result_json(run)));
   if (!global.json_to_stdout()) print_summary(run);
   warn_of_left_out("surfels", run.record);
   if (!interrupted()) return static_cast<int>(ExitStatus::done);
