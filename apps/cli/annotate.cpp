@@ -73,8 +73,7 @@ json clouds_json(const Run<T>& run, const Json& to_json) {
 Result<int> finish(const GlobalOptions& global, const Executor& executor, const Stopwatch& clock, json result,
                    bool was_interrupted, const std::string& kept) {
   result["interrupted"] = was_interrupted;
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("annotate", global, executor, {{"total", clock.elapsed_ms()}}, std::move(result))));
+  SACCADE_CHECK(write_result("annotate", global, executor, {{"total", clock.elapsed_ms()}}, std::move(result)));
   if (!was_interrupted) return static_cast<int>(ExitStatus::done);
   print_error("annotate", "interrupted; " + kept);
   return interrupt_status();

@@ -18,15 +18,22 @@
 #include "saccade/annotate/annotation_margin.hpp"
 #include "saccade/annotate/neighbourhood.hpp"
 #include "saccade/annotate/simulated_annotator.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/io/sessions/annotation_script.hpp"
 #include "serve.hpp"
 
 namespace saccade::cli {
 
 enum class AnnotationMethod { control_points, rectangle, best_rectangle };
+inline constexpr auto kAnnotationMethodNames =
+    make_names<AnnotationMethod>({{AnnotationMethod::control_points, "control-points"},
+                                  {AnnotationMethod::rectangle, "rectangle"},
+                                  {AnnotationMethod::best_rectangle, "best-rectangle"}});
 
 /// Whether true labels of one ten are parts of one object.
 enum class Tens { detect, merge, keep };
+inline constexpr auto kTensNames =
+    make_names<Tens>({{Tens::detect, "detect"}, {Tens::merge, "merge"}, {Tens::keep, "keep"}});
 
 /// An option of the graph that was given: what is to be said where a session's graph has another value.
 using GivenGraphOption = std::function<std::optional<std::string>(const NeighbourhoodConfig& saved)>;

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <CLI/CLI.hpp>
-#include <map>
 #include <sstream>
 
+#include "add_value.hpp"
 #include "annotate.hpp"
 #include "options.hpp"
 
@@ -34,7 +34,7 @@ void add_graph_option(CLI::App& command, AnnotateOptions& options, const std::st
   if constexpr (std::is_same_v<T, bool>) {
     option = command.add_flag(name, options.graph.*value, description);
   } else {
-    option = command.add_option(name, options.graph.*value, description)->type_name(type)->capture_default_str();
+    option = add_value(command, name, options.graph.*value, type, description);
   }
   option->each(
       [&options, name, value](const std::string&) { options.given_graph.push_back(given(name, value, options)); });
@@ -59,79 +59,53 @@ constexpr const char* kWithoutPage{"Without the page"};
 constexpr const char* kGraph{"The graph (of a session that is begun)"};
 
 void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option& simulate) {
-  CLI::Option* script =
-      command.add_option("--script", options.script, "actions to do, one JSON object per line (docs/annotation.md)")
-          ->check(CLI::ExistingFile)
-          ->type_name("FILE")
-          ->group(kWithoutPage)
-          ->excludes(&simulate);
-  command
-      .add_option(
-          "--session", options.session,
-          "goes on with the annotation in this file, or begins it; every action is in it before it counts. Of a "
-          "folder: a folder of them (.sacann). The page's is beside the cloud, unless it is named here")
-      ->type_name("FILE")
+  CLI::Option* script = add_value(command, "--script", options.script, "FILE",
+                                  "actions to do, one JSON object per line (docs/annotation.md)")
+                            ->check(CLI::ExistingFile)
+                            ->group(kWithoutPage)
+                            ->excludes(&simulate);
+  add_value(command, "--session", options.session, "FILE",
+            "goes on with the annotation in this file, or begins it; every action is in it before it counts. Of a "
+            "folder: a folder of them (.sacann). The page's is beside the cloud, unless it is named here")
       ->excludes(&simulate);
-  command.add_option("--presets", options.presets, "labels that are known: YAML or JSON (docs/formats.md)")
+  add_value(command, "--presets", options.presets, "FILE", "labels that are known: YAML or JSON (docs/formats.md)")
       ->check(CLI::ExistingFile)
-      ->type_name("FILE")
       ->excludes(&simulate);
-  command
-      .add_option("--margins", options.margins,
-                  "the cloud with a field margin, 0 (as near to another label) to 1 (sure), .pcd or .ply; the result "
-                  "says where another control point helps most")
-      ->type_name("FILE")
+  add_value(command, "--margins", options.margins, "FILE",
+            "the cloud with a field margin, 0 (as near to another label) to 1 (sure), .pcd or .ply; the result says "
+            "where another control point helps most")
       ->group(kWithoutPage)
       ->excludes(&simulate);
   CLI::Option* seeds =
-      command
-          .add_option("--seeds", options.seeds,
-                      "labels to begin with, as --simulate takes them: control points are placed that give them back")
+      add_value(command, "--seeds", options.seeds, "LABELS",
+                "labels to begin with, as --simulate takes them: control points are placed that give them back")
           ->check(CLI::ExistingPath)
-          ->type_name("LABELS")
           ->excludes(&simulate);
-  command.add_option("--seed-share", options.seed_share, "how many of them, at least, unless that takes too many")
+  add_value(command, "--seed-share", options.seed_share, "SHARE",
+            "how many of them, at least, unless that takes too many")
       ->check(CLI::Range(0.5, 1.0))
-      ->needs(seeds)
-      ->type_name("SHARE")
-      ->capture_default_str();
-  command.add_option("--client", options.client, "who does the actions that name no client; undo is everyone's own")
+      ->needs(seeds);
+  add_value(command, "--client", options.client, "N",
+            "who does the actions that name no client; undo is everyone's own")
       ->check(check_whole_number)
       ->needs(script)
-      ->type_name("N")
-      ->group(kWithoutPage)
-      ->capture_default_str();
+      ->group(kWithoutPage);
 }
 
 void add_simulation_options(CLI::App& command, AnnotateOptions& options, CLI::Option& simulate) {
-  command.add_option("--clicks", options.clicks, "clicks per label")
+  add_value(command, "--clicks", options.clicks, "N", "clicks per label")
       ->check(CLI::Range(1, 1000))
       ->needs(&simulate)
-      ->group(kWithoutPage)
-      ->type_name("N")
-      ->capture_default_str();
-  const std::map<std::string, AnnotationMethod> methods{{"control-points", AnnotationMethod::control_points},
-                                                        {"rectangle", AnnotationMethod::rectangle},
-                                                        {"best-rectangle", AnnotationMethod::best_rectangle}};
-  command
-      .add_option("--method", options.method,
-                  "control-points; rectangle: around the largest error, in the best of six views; best-rectangle: "
-                  "of all rectangles the one that corrects most")
-      ->transform(CLI::CheckedTransformer(methods))
+      ->group(kWithoutPage);
+  add_choice(command, "--method", options.method, kAnnotationMethodNames,
+             "control-points; rectangle: around the largest error, in the best of six views; best-rectangle: of all "
+             "rectangles the one that corrects most")
       ->needs(&simulate)
-      ->group(kWithoutPage)
-      ->type_name("METHOD")
-      ->default_str("control-points");
-  const std::map<std::string, Tens> tens{{"detect", Tens::detect}, {"merge", Tens::merge}, {"keep", Tens::keep}};
-  command
-      .add_option("--tens", options.tens,
-                  "true labels of one ten are parts of one object, as in mOSD (1 to 9: the table); merge, keep, or "
-                  "detect")
-      ->transform(CLI::CheckedTransformer(tens))
+      ->group(kWithoutPage);
+  add_choice(command, "--tens", options.tens, kTensNames,
+             "true labels of one ten are parts of one object, as in mOSD (1 to 9: the table); merge, keep, or detect")
       ->needs(&simulate)
-      ->group(kWithoutPage)
-      ->type_name("HOW")
-      ->default_str("detect");
+      ->group(kWithoutPage);
 }
 
 void refuse(const fs::path& given, const std::string& option, const std::string& why) {
@@ -146,30 +120,24 @@ bool AnnotateOptions::of_folder() const {
 }
 
 void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
-  command.add_option("cloud", options.cloud, "point cloud (PCD, PLY, text or KITTI .bin), or a folder of clouds")
+  add_value(command, "cloud", options.cloud, "CLOUD",
+            "point cloud (PCD, PLY, text or KITTI .bin), or a folder of clouds")
       ->required()
-      ->check(CLI::ExistingPath)
-      ->type_name("CLOUD");
+      ->check(CLI::ExistingPath);
   CLI::Option* simulate =
-      command
-          .add_option("--simulate", options.truth,
-                      "true labels of its points (PCD, PLY, .label, .npy, text): a simulated annotator clicks at the "
-                      "centre of the largest error, again and again. Of a folder: a folder of them, by the same names")
+      add_value(command, "--simulate", options.truth, "TRUTH",
+                "true labels of its points (PCD, PLY, .label, .npy, text): a simulated annotator clicks at the centre "
+                "of the largest error, again and again. Of a folder: a folder of them, by the same names")
           ->check(CLI::ExistingPath)
-          ->type_name("TRUTH")
           ->group(kWithoutPage);
   add_action_options(command, options, *simulate);
   add_simulation_options(command, options, *simulate);
-  command
-      .add_option("--out", options.out,
-                  "labels: .pcd, .ply, .csv, .xyz, .txt, .label or .npy; of a folder: a folder. Of the page, where its "
-                  "Save puts them: without it NAME_labels beside the cloud, or the folder labels in a folder")
-      ->type_name("FILE");
-  command.add_option("--names", options.names, "what the numbers of labels mean: .txt or .json")->type_name("FILE");
-  command
-      .add_option("--picture", options.picture,
-                  "the cloud in the colours of its labels, with control points: .png; of a folder: a folder")
-      ->type_name("FILE")
+  add_value(command, "--out", options.out, "FILE",
+            "labels: .pcd, .ply, .csv, .xyz, .txt, .label or .npy; of a folder: a folder. Of the page, where its Save "
+            "puts them: without it NAME_labels beside the cloud, or the folder labels in a folder");
+  add_value(command, "--names", options.names, "FILE", "what the numbers of labels mean: .txt or .json");
+  add_value(command, "--picture", options.picture, "FILE",
+            "the cloud in the colours of its labels, with control points: .png; of a folder: a folder")
       ->group(kWithoutPage);
   command.option_defaults()->group(kGraph);
   add_graph_options(command, options);

@@ -17,11 +17,6 @@ using nlohmann::json;
 constexpr std::array<int, 3> kGoals_percent{80, 85, 90};
 constexpr double kPer{100'000.0};
 
-std::string_view name_of(AnnotationMethod method) {
-  if (method == AnnotationMethod::control_points) return "control-points";
-  return method == AnnotationMethod::rectangle ? "rectangle" : "best-rectangle";
-}
-
 std::string action_of(const AnnotateOptions& options) {
   return options.method == AnnotationMethod::control_points ? "clicks" : "rectangles";
 }
@@ -113,11 +108,14 @@ json simulation_json(const AnnotateOptions& options, const SimulatedAnnotation& 
   }
   json noc = json::object();
   for (const int goal : kGoals_percent) {
-    const std::optional<std::size_t> needed = annotation.clicks_to(0.01 * goal);
-    noc[std::to_string(goal)] = needed ? json(*needed) : json(nullptr);
+    noc[std::to_string(goal)] = optional_json(annotation.clicks_to(0.01 * goal));
   }
-  json result{{"method", name_of(options.method)}, {"points", annotation.points},       {"objects", annotation.objects},
-              {"clicks", std::move(clicks)},       {"per_label", std::move(per_label)}, {"noc", std::move(noc)}};
+  json result{{"method", kAnnotationMethodNames.of(options.method)},
+              {"points", annotation.points},
+              {"objects", annotation.objects},
+              {"clicks", std::move(clicks)},
+              {"per_label", std::move(per_label)},
+              {"noc", std::move(noc)}};
   if (options.method == AnnotationMethod::control_points) {
     result["ms"] = {{"graph", annotation.graph_ms},
                     {"full", annotation.full_ms},

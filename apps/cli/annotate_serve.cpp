@@ -137,8 +137,8 @@ Result<int> serve_annotation(const AnnotateOptions& options, const GlobalOptions
     clouds.push_back(
         {{"file", job.cloud.string()}, {"session", job.session.string()}, {"labels", job.files.out.string()}});
   }
-  SACCADE_CHECK(write_json_output(global, json_envelope("annotate", global, global.executor(),
-                                                        {{"total", clock.elapsed_ms()}}, {{"clouds", clouds}})));
+  SACCADE_CHECK(
+      write_result("annotate", global, global.executor(), {{"total", clock.elapsed_ms()}}, {{"clouds", clouds}}));
   return status;
 }
 

@@ -8,6 +8,7 @@
 #include <iostream>
 #include <memory>
 
+#include "add_value.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 #include "options.hpp"
@@ -139,19 +140,13 @@ void add_method_options(CLI::App& command, AttendOptions& options) {
 
 void add_condition_options(CLI::App& command, AttendOptions& options) {
   EvaluationConditions& conditions = options.conditions;
-  command
-      .add_option("--speed", conditions.speed, "resample to so many times as many samples first: 0.25 is a fast hand")
-      ->type_name("K")
-      ->capture_default_str();
-  command.add_option("--noise-m", conditions.sigma_m, "then add noise of this standard deviation, metres (see --seed)")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--speed", conditions.speed, "K",
+            "resample to so many times as many samples first: 0.25 is a fast hand");
+  add_value(command, "--noise-m", conditions.sigma_m, "METRES",
+            "then add noise of this standard deviation, metres (see --seed)");
   command.add_flag("--evaluate", options.evaluate, "compare with the labels in FILE.res: precision and recall");
-  command
-      .add_option("--match-radius", conditions.match_radius_m,
-                  "with --evaluate: an action is found by a point of interest within, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--match-radius", conditions.match_radius_m, "METRES",
+            "with --evaluate: an action is found by a point of interest within, metres");
   command.add_flag("--exclude-mislabelled", conditions.exclude_mislabelled,
                    "with --evaluate: leave out trajectories with a label farther than 0.2 m from every sample");
 }
@@ -174,15 +169,12 @@ void check_attend_options(const AttendOptions& options) {
 void add_attend(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("attend", "finds where hands acted in their trajectories");
   auto options = std::make_shared<AttendOptions>();
-  command->add_option("files", options->files, "trajectories; a folder stands for all .traj files below it")
-      ->required()
-      ->type_name("FILE...");
+  add_value(*command, "files", options->files, "FILE...", "trajectories; a folder stands for all .traj files below it")
+      ->required();
   add_method_options(*command, *options);
   add_condition_options(*command, *options);
-  command
-      ->add_option("--out", options->out,
-                   "folder for attend.json, a picture of each trajectory, and for --method ours its speed")
-      ->type_name("DIR");
+  add_value(*command, "--out", options->out, "DIR",
+            "folder for attend.json, a picture of each trajectory, and for --method ours its speed");
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {
     check_attend_options(*options);

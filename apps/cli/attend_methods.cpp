@@ -58,15 +58,6 @@ constexpr std::array kMethods{
 
 std::span<const AttendMethod> attend_methods() { return kMethods; }
 
-std::string attend_method_names() {
-  std::string names;
-  for (const AttendMethod& method : kMethods) {
-    if (!names.empty()) names += '|';
-    names += method.name;
-  }
-  return names;
-}
-
 const AttendMethod* find_attend_method(std::string_view name) {
   const auto found = std::find_if(kMethods.begin(), kMethods.end(),
                                   [name](const AttendMethod& method) { return method.name == name; });
@@ -75,29 +66,15 @@ const AttendMethod* find_attend_method(std::string_view name) {
 
 void add_method_option(CLI::App& command, const AttendMethod*& method) {
   method = &attend_methods().front();
-  command
-      .add_option_function<std::string>(
-          "--method",
-          [&method](const std::string& name) {
-            method = find_attend_method(name);
-            if (method == nullptr) usage_error("--method", "must be one of " + attend_method_names());
-          },
-          "detector of actions (default: " + std::string{method->name} + ")")
-      ->type_name(attend_method_names());
+  std::vector<std::string_view> names;
+  for (const AttendMethod& known : kMethods) names.push_back(known.name);
+  const auto take = [&method](const std::string& name) { method = find_attend_method(name); };
+  add_words(command, "--method", names, take, "detector of actions", method->name);
 }
 
 void add_hand_format_option(CLI::App& command, std::optional<HandFormat>& format) {
-  command
-      .add_option_function<std::string>(
-          "--format",
-          [&format](const std::string& name) {
-            if (name == "matrices") format = HandFormat::matrices;
-            if (name == "csv") format = HandFormat::csv;
-            if (name == "tum") format = HandFormat::tum;
-            if (!format) usage_error("--format", "must be matrices, csv or tum");
-          },
-          "format of the files of hands (default: by extension; .traj, .csv, .tum or .txt)")
-      ->type_name("matrices|csv|tum");
+  add_choice(command, "--format", format, kHandFormatNames,
+             "format of the files of hands (default: by extension; .traj, .csv, .tum or .txt)");
 }
 
 }  // namespace saccade::cli

@@ -36,9 +36,6 @@ void add_method_option(CLI::App& command, const AttendMethod*& method);
 /// Adds --format, of the files of hands.
 void add_hand_format_option(CLI::App& command, std::optional<HandFormat>& format);
 
-/// Their names, "a|b".
-[[nodiscard]] std::string attend_method_names();
-
 /// nullptr for a name that none has.
 [[nodiscard]] const AttendMethod* find_attend_method(std::string_view name);
 

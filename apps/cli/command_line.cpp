@@ -7,6 +7,7 @@
 #include <iostream>
 #include <new>
 
+#include "add_value.hpp"
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -22,16 +23,12 @@ constexpr const char* kFooter{
     "Lengths are in metres; points and poses are in the map's world frame; angles on the command line are in degrees."};
 
 void add_global_options(CLI::App& program, GlobalOptions& global) {
-  program.add_option("--threads", global.threads, "threads to use; 0: all cores. Results do not depend on it")
-      ->check(CLI::Range(std::size_t{0}, std::size_t{4096}))
-      ->type_name("N");
-  program.add_option("--seed", global.seed, "seed of everything random")
-      ->check(check_whole_number)
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(program, "--threads", global.threads, "N", "threads to use; 0: all cores. Results do not depend on it")
+      ->check(CLI::Range(std::size_t{0}, std::size_t{4096}));
+  add_value(program, "--seed", global.seed, "N", "seed of everything random")->check(check_whole_number);
   program.add_flag("--quiet,-q", global.quiet, "no progress and no notes on standard error");
-  program.add_option("--json", global.json, "write the machine-readable result to a file; -: to standard output")
-      ->type_name("FILE");
+  add_value(program, "--json", global.json, "FILE",
+            "write the machine-readable result to a file; -: to standard output");
 }
 
 /// No option of the program or its subcommands takes an empty value, as a script's unset variable would be.

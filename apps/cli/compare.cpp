@@ -27,12 +27,8 @@ constexpr const char* kReportFile{"index.html"};
 
 json planned_json(const Comparison& comparison, const PlannedRun& run) {
   const ComparedScene& scene = comparison.scenes()[run.scene];
-  return {{"scene", scene.name},
-          {"scene_hash", scene.hash},
-          {"strategy", run.strategy.name},
-          {"noise", run.noise},
-          {"seed", run.seed},
-          {"max_views", run.max_views ? json(*run.max_views) : json(nullptr)},
+  return {{"scene", scene.name}, {"scene_hash", scene.hash}, {"strategy", run.strategy.name},
+          {"noise", run.noise},  {"seed", run.seed},         {"max_views", optional_json(run.max_views)},
           {"found", run.found}};
 }
 
@@ -56,8 +52,8 @@ Result<int> list_runs(const Comparison& comparison, const GlobalOptions& global,
   const auto found = static_cast<std::size_t>(
       std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; }));
   if (!global.json_to_stdout()) std::cout << runs.size() << " runs, " << found << " of them done\n";
-  SACCADE_CHECK(write_json_output(global, json_envelope("compare", global, global.executor(),
-                                                        {{"total", clock.elapsed_ms()}}, {{"runs", std::move(rows)}})));
+  SACCADE_CHECK(
+      write_result("compare", global, global.executor(), {{"total", clock.elapsed_ms()}}, {{"runs", std::move(rows)}}));
   return static_cast<int>(ExitStatus::done);
 }
 
@@ -94,8 +90,8 @@ Result<int> run_compare(const CompareOptions& options, const GlobalOptions& glob
   SACCADE_CHECK(write_comparison(out.path(), results));
   const std::string page = comparison_report_html(comparison_report(comparison, results, planned));
   SACCADE_CHECK(write_file_atomically(out / kReportFile, page));
-  SACCADE_CHECK(write_json_output(global, json_envelope("compare", global, executor, {{"total", clock.elapsed_ms()}},
-                                                        result_json(comparison, planned, now, results))));
+  SACCADE_CHECK(write_result("compare", global, executor, {{"total", clock.elapsed_ms()}},
+                             result_json(comparison, planned, now, results)));
   if (!global.json_to_stdout()) {
     print_comparison(std::cout, results);
     std::cout << "runs      " << now << " done now, " << done - now << " found\n"

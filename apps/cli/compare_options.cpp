@@ -8,6 +8,7 @@
 #include <optional>
 #include <set>
 
+#include "add_value.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
@@ -38,6 +39,8 @@ std::optional<std::uint64_t> seed_of(std::string_view text) {
 
 constexpr std::uint64_t kMostInRange{100000};
 constexpr std::string_view kClutter{"clutter:"};
+constexpr auto kNoiseNames = make_names<std::optional<DepthSensor>>(
+    {{std::nullopt, "none"}, {DepthSensor::kinect_v1, "kinect-v1"}, {DepthSensor::kinect_v2, "kinect-v2"}});
 constexpr std::string_view kNoNoise{"none"};
 
 /// "3" and "1-10"; nullopt for anything else.
@@ -93,9 +96,7 @@ std::vector<std::string> noises_of(const CompareOptions& options) {
   if (options.noise_list.empty()) return {noise_key(options.run.run)};
   std::vector<std::string> noises = parts_of("--noise", options.noise_list);
   for (const std::string& noise : noises) {
-    if (noise != kNoNoise && !depth_sensor(noise)) {
-      usage_error("--noise", "there is no noise \"" + noise + "\"; known: none, kinect-v1, kinect-v2");
-    }
+    if (!kNoiseNames.find(noise)) usage_error("--noise", "must be " + kNoiseNames.listed() + ", not '" + noise + "'");
   }
   return noises;
 }
@@ -119,53 +120,39 @@ std::vector<std::uint64_t> parse_seeds(const std::string& text) {
 }
 
 std::string noise_key(const SimulatedRunConfig& run) {
-  return std::string{run.noise ? to_string(run.sensor) : kNoNoise};
+  return std::string{kNoiseNames.of(run.noise ? std::optional{run.sensor} : std::nullopt)};
 }
 
 void set_noise(SimulatedRunConfig& run, const std::string& name) {
-  run.noise = name != kNoNoise;
-  if (run.noise) run.sensor = depth_sensor(name).value();
+  const std::optional<DepthSensor> sensor = kNoiseNames.find(name).value();
+  run.noise = sensor.has_value();
+  run.sensor = sensor.value_or(run.sensor);
 }
 
 void add_compare_options(CLI::App& command, CompareOptions& options, const Planners& planners) {
-  command
-      .add_option("--scenes", options.scene_list,
-                  "scenes, separated by commas: built-in ones or all of them (all), clutter:SEED, clutter:1-30, YAML "
-                  "files, mesh files, and folders of meshes, each of which is put on a table")
-      ->required()
-      ->type_name("LIST");
-  command.add_option("--strategies", options.strategy_list, "strategies, separated by commas: " + planners.names())
-      ->type_name("LIST")
-      ->capture_default_str();
-  command.add_option("--seeds", options.seed_list, "seeds of noise and chance, each makes one run: 1-10,15")
-      ->type_name("LIST")
-      ->capture_default_str();
-  command.add_option("--out", options.out, "folder for the results; runs that are in it already are not repeated")
-      ->required()
-      ->type_name("DIR");
+  add_value(command, "--scenes", options.scene_list, "LIST",
+            "scenes, separated by commas: built-in ones or all of them (all), clutter:SEED, clutter:1-30, YAML files, "
+            "mesh files, and folders of meshes, each of which is put on a table")
+      ->required();
+  add_value(command, "--strategies", options.strategy_list, "LIST",
+            "strategies, separated by commas: " + planners.names());
+  add_value(command, "--seeds", options.seed_list, "LIST", "seeds of noise and chance, each makes one run: 1-10,15");
+  add_value(command, "--out", options.out, "DIR",
+            "folder for the results; runs that are in it already are not repeated")
+      ->required();
   add_run_options(command, options.run, min_gain_by_strategy());
-  command
-      .add_option("--noise", options.noise_list,
-                  "noise of the depth, separated by commas: none, kinect-v1, kinect-v2 (default: that of --sensor)")
-      ->type_name("LIST")
+  add_value(command, "--noise", options.noise_list, "LIST",
+            "noise of the depth, separated by commas: none, kinect-v1, kinect-v2 (default: that of --sensor)")
       ->excludes("--sensor")
       ->excludes("--no-noise");
-  command.add_option("--robot", options.robot, "what carries the camera: free, which flies, comau, or a URDF file")
-      ->type_name("ROBOT")
-      ->capture_default_str();
-  command.add_option("--mesh-scale", options.mesh.scale, "metres per unit of mesh files")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      .add_option("--mesh-up", options.mesh_up,
-                  "the axis of mesh files that points up, y or z (default: z, but y for glTF)")
-      ->check(CLI::IsMember({"y", "z"}))
-      ->type_name("AXIS");
-  command
-      .add_option("--jobs", options.jobs,
-                  "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
-      ->check(CLI::Range(1, 256))
-      ->type_name("N");
+  add_value(command, "--robot", options.robot, "ROBOT",
+            "what carries the camera: free, which flies, comau, or a URDF file");
+  add_value(command, "--mesh-scale", options.mesh.scale, "METRES", "metres per unit of mesh files");
+  add_choice(command, "--mesh-up", options.mesh.up, kUpAxisNames,
+             "the axis of mesh files that points up (default: z, but y for glTF)");
+  add_value(command, "--jobs", options.jobs, "N",
+            "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
+      ->check(CLI::Range(1, 256));
   command.add_flag("--equal-views", options.equal_views,
                    "every other strategy gets as many views as sphere took, not --max-views");
   command.add_flag("--list", options.list, "say what would be run, and run nothing");
@@ -178,7 +165,6 @@ void check_compare_options(CompareOptions& options, const Planners& planners) {
   options.noises = noises_of(options);
   options.seeds = parse_seeds(options.seed_list);
   require_ok(options.mesh.validate(), "--mesh-scale");
-  if (!options.mesh_up.empty()) options.mesh.up = options.mesh_up == "y" ? UpAxis::y : UpAxis::z;
   check_run_options(options.run);
 }
 

@@ -36,7 +36,6 @@ struct CompareOptions {
   std::string strategy_list{"attention,standard"};
   std::string noise_list;
   std::string seed_list{"1-10"};
-  std::string mesh_up;
 };
 
 void add_compare_options(CLI::App& command, CompareOptions& options, const Planners& planners);

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <limits>
 
+#include "json_output.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/trial/campaign_summary.hpp"
 #include "summary.hpp"
@@ -17,14 +18,11 @@ using nlohmann::json;
 constexpr std::string_view kAllScenes{"all scenes"};
 
 json estimate_json(const MeanEstimate& estimate) {
-  const auto number = [](const std::optional<double>& value) { return value ? json(*value) : json(nullptr); };
   return {{"n", estimate.n},
           {"mean", estimate.n == 0 ? json(nullptr) : json(estimate.mean)},
-          {"low", number(estimate.low())},
-          {"high", number(estimate.high())}};
+          {"low", optional_json(estimate.low())},
+          {"high", optional_json(estimate.high())}};
 }
-
-json scene_json(const CampaignGroup& group) { return group.scene ? json(*group.scene) : json(nullptr); }
 
 /// Filled with blanks up to `width` characters; "±" is one of them.
 std::string padded(const std::string& text, std::size_t width) {
@@ -202,7 +200,7 @@ void print_comparison(std::ostream& out, const ComparedRuns& compared) {
 json comparison_json(const ComparedRuns& compared) {
   json rows = json::array();
   for (const CampaignSummary& summary : compared.summaries) {
-    json row{{"scene", scene_json(summary.group)},
+    json row{{"scene", optional_json(summary.group.scene)},
              {"strategy", summary.group.strategy},
              {"noise", summary.group.noise},
              {"runs", summary.runs},
@@ -219,8 +217,12 @@ json comparison_json(const ComparedRuns& compared) {
   }
   json differences = json::array();
   for (const StrategyGap& gap : compared.gaps) {
-    json row{{"scene", scene_json(gap.a)}, {"noise", gap.a.noise}, {"a", gap.a.strategy},
-             {"b", gap.b.strategy},        {"apart", gap.apart},   {"apart_initially", gap.apart_initially}};
+    json row{{"scene", optional_json(gap.a.scene)},
+             {"noise", gap.a.noise},
+             {"a", gap.a.strategy},
+             {"b", gap.b.strategy},
+             {"apart", gap.apart},
+             {"apart_initially", gap.apart_initially}};
     for (const char* name : {"coverage", "coverage_area", "unknown_near_objects_at_5", "unknown_near_objects"}) {
       row[name] = estimate_json(gap.of(name));
     }

@@ -92,10 +92,11 @@ void add_marks(ComparisonSection& section, const ComparedRuns& compared, const S
 }
 
 void add_times(ComparisonSection& section, const ComparedRuns& compared, const Summaries& summaries) {
-  for (const PhaseName& phase : kPhases) section.phases.push_back(spaced(phase.key));
+  for (const Phase phase : kPhaseNames.values) section.phases.push_back(spaced(to_string(phase)));
   for (const CampaignSummary* summary : summaries) {
     ComparisonTimes times{label_of(summary->group, compared), {}};
-    for (const PhaseName& phase : kPhases) times.ms.push_back(summary->of(std::string{phase.key} + "_ms").mean);
+    for (const Phase phase : kPhaseNames.values)
+      times.ms.push_back(summary->of(std::string{to_string(phase)} + "_ms").mean);
     section.times.push_back(std::move(times));
   }
 }
@@ -121,12 +122,6 @@ ComparisonSection section_of(const ComparedRuns& compared, const std::optional<s
 
 std::string counted(std::size_t count, const std::string& what) {
   return grouped(count) + ' ' + what + (count == 1 ? "" : "s");
-}
-
-std::string joined(const std::vector<std::string>& names) {
-  std::string text;
-  for (const std::string& name : names) text += (text.empty() ? "" : ", ") + name;
-  return text;
 }
 
 /// The first strategy against the others, over all scenes or in the only one.

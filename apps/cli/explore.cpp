@@ -60,8 +60,8 @@ std::string phases_text(const json& phases) {
     if (s <= 0.0) return;
     text += (text.empty() ? "" : ", ") + std::string{name} + " " + fixed(s, s < 10.0 ? 2 : 1) + " s";
   };
-  for (const PhaseName& phase : kPhases) {
-    if (phase.phase != Phase::motion) add(phase.key, phase.text);
+  for (const Phase phase : kPhaseNames.values) {
+    if (phase != Phase::motion) add(to_string(phase), text_of(phase));
   }
   add("robot", "robot's motion (simulated)");
   return text.empty() ? "-" : text;

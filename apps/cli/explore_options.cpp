@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "add_value.hpp"
 #include "robot_options.hpp"
 
 namespace saccade::cli {
@@ -10,36 +11,25 @@ namespace {
 
 /// "attention: views of …; standard: …"
 std::string strategy_help(const Planners& planners) {
-  std::string text;
-  for (const NamedPlanner& planner : planners.all()) {
-    text += (text.empty() ? "" : "; ") + planner.name + (planner.text.empty() ? "" : ": " + planner.text);
-  }
-  return text;
+  return joined(planners.all(), "; ", [](const NamedPlanner& planner) {
+    return planner.name + (planner.text.empty() ? "" : ": " + planner.text);
+  });
 }
 
 }  // namespace
 
 void add_arm_options(CLI::App& command, ExploreOptions& options) {
-  command
-      .add_option("--fixture", options.fixtures,
-                  "a solid box that the arm keeps clear of, besides those of the scene; may be repeated")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-  command
-      .add_option("--free", options.free,
-                  "a box that is known to be empty in the beginning; may be repeated. What the arm sweeps in its "
-                  "initial scan is taken to be empty anyway")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-  command
-      .add_option("--obstacle-cell", options.arm.obstacles.cell_size_m,
-                  "edge of the cells in which the arm plans, metres; one is an obstacle if any voxel in it is")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--fixture", options.fixtures, "X0,Y0,Z0,X1,Y1,Z1",
+            "a solid box that the arm keeps clear of, besides those of the scene; may be repeated");
+  add_value(command, "--free", options.free, "X0,Y0,Z0,X1,Y1,Z1",
+            "a box that is known to be empty in the beginning; may be repeated. What the arm sweeps in its initial "
+            "scan is taken to be empty anyway");
+  add_value(command, "--obstacle-cell", options.arm.obstacles.cell_size_m, "METRES",
+            "edge of the cells in which the arm plans, metres; one is an obstacle if any voxel in it is");
   command.add_flag("--unknown-is-free{false}", options.arm.obstacles.unknown_is_obstacle,
                    "let the arm move through space that was never seen");
-  command.add_option("--planner", options.arm.planner.planner, "OMPL's name of the planner that finds paths")
-      ->check(CLI::IsMember(planner_names()))
-      ->type_name("NAME")
-      ->capture_default_str();
+  add_value(command, "--planner", options.arm.planner.planner, "NAME", "OMPL's name of the planner that finds paths")
+      ->check(CLI::IsMember(planner_names()));
 }
 
 void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
@@ -60,34 +50,24 @@ std::vector<Box> ExploreOptions::free_boxes() const {
 }
 
 void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners) {
-  command.add_option("scene", options.scene, "name of a built-in scene, clutter:SEED, or a YAML file")
-      ->required()
-      ->type_name("SCENE");
-  command.add_option("--out", options.out, "folder for the results; made if it is not there")
-      ->required()
-      ->type_name("RUN");
-  command.add_option("--strategy", options.strategy, strategy_help(planners))->type_name("NAME")->capture_default_str();
+  add_value(command, "scene", options.scene, "SCENE", "name of a built-in scene, clutter:SEED, or a YAML file")
+      ->required();
+  add_value(command, "--out", options.out, "RUN", "folder for the results; made if it is not there")->required();
+  add_value(command, "--strategy", options.strategy, "NAME", strategy_help(planners));
   add_saliency_options(command, options.saliency);
   add_run_options(command, options, min_gain_by_strategy());
 
-  command
-      .add_option("--robot", options.robot,
-                  "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
-                  "--camera-command")
-      ->type_name("ROBOT");
+  add_value(command, "--robot", options.robot, "ROBOT",
+            "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
+            "--camera-command");
   add_arm_options(command, options);
-  command.add_option("--robot-command", options.robot_command, "a program that moves a robot (docs/processes.md)")
-      ->type_name("COMMAND")
+  add_value(command, "--robot-command", options.robot_command, "COMMAND",
+            "a program that moves a robot (docs/processes.md)")
       ->excludes("--robot");
-  command
-      .add_option("--camera-command", options.camera_command,
-                  "a program that has a depth camera (docs/processes.md); there is no truth to compare with then")
-      ->type_name("COMMAND");
-  command
-      .add_option("--process-timeout", options.process_timeout_s,
-                  "seconds after which such a program that does not answer is given up")
-      ->type_name("SECONDS")
-      ->capture_default_str();
+  add_value(command, "--camera-command", options.camera_command, "COMMAND",
+            "a program that has a depth camera (docs/processes.md); there is no truth to compare with then");
+  add_value(command, "--process-timeout", options.process_timeout_s, "SECONDS",
+            "seconds after which such a program that does not answer is given up");
   command.add_flag("--step", options.step, "ask before each move");
   command.add_flag("--resume", options.resume, "go on with the interrupted run in RUN");
   command.add_flag("--no-pictures{false}", options.write_pictures,

@@ -3,73 +3,45 @@
 
 #include "saccade/core/angle.hpp"
 
+#include "add_value.hpp"
 #include "filter.hpp"
 
 namespace saccade::cli {
 namespace {
 
 void add_step_options(CLI::App& command, DepthFilterConfig& filter) {
-  command
-      .add_option_function<std::string>(
-          "--method",
-          [&filter](const std::string& text) {
-            const auto method = depth_filter_method(text);
-            require_ok(method ? Status{} : Status{method.error()}, "--method");
-            filter.method = *method;
-          },
-          "surface keeps what lies on a surface; thesis removes all that may be wrong (default: surface)")
-      ->type_name("surface|thesis");
-  command.add_option("--baseline", filter.baseline_m, "from the camera to the infrared emitter, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--emitter",
-          [&filter](const std::string& text) {
-            if (text != "left" && text != "right")
-              usage_error("--emitter", "must be left or right, not '" + text + "'");
-            filter.emitter_side = text == "left" ? EmitterSide::left : EmitterSide::right;
-          },
-          "the emitter's side in the image; shadows fall to the other side (default: left; right where the driver "
-          "mirrors images)")
-      ->type_name("left|right");
+  add_choice(command, "--method", filter.method, kDepthFilterMethodNames,
+             "surface keeps what lies on a surface; thesis removes all that may be wrong");
+  add_value(command, "--baseline", filter.baseline_m, "METRES", "from the camera to the infrared emitter, metres");
+  add_choice(command, "--emitter", filter.emitter_side, kEmitterSideNames,
+             "the emitter's side in the image; shadows fall to the other side (right where the driver mirrors images)");
   command
       .add_option_function<double>(
           "--veil-angle", [&filter](const double& angle_deg) { filter.veil_angle_rad = angle_deg * 1_deg; },
           "a point with a neighbour so nearly behind or before it is a veil point, degrees (default: 10)")
       ->type_name("DEGREES");
-  command
-      .add_option_function<std::string>(
-          "--only",
-          [&filter](const std::string& text) {
-            if (text != "shadow" && text != "veil") usage_error("--only", "must be shadow or veil, not '" + text + "'");
-            filter.remove_shadow_points = text == "shadow";
-            filter.remove_veil_points = text == "veil";
-          },
-          "do only one of the two steps")
-      ->type_name("shadow|veil");
+  constexpr std::array<std::string_view, 2> kSteps{"shadow", "veil"};
+  const auto only = [&filter](const std::string& step) {
+    filter.remove_shadow_points = step == "shadow";
+    filter.remove_veil_points = step == "veil";
+  };
+  add_words(command, "--only", kSteps, only, "do only one of the two steps");
 }
 
 }  // namespace
 
 void add_filter_options(CLI::App& command, FilterOptions& options) {
-  command.add_option("frames", options.frames, "depth images in 16-bit PNG; a folder stands for those in it")
-      ->required()
-      ->type_name("FRAMES...");
-  command
-      .add_option("--out", options.out,
-                  "folder for the filtered frames, of the same names, filter.json, and pictures before and after")
-      ->required()
-      ->type_name("DIR");
+  add_value(command, "frames", options.frames, "FRAMES...",
+            "depth images in 16-bit PNG; a folder stands for those in it")
+      ->required();
+  add_value(command, "--out", options.out, "DIR",
+            "folder for the filtered frames, of the same names, filter.json, and pictures before and after")
+      ->required();
   add_camera_options(command, options.camera_options, false);
-  command.add_option("--depth-scale", options.encoding.units_per_m, "depth samples per metre")
-      ->type_name("UNITS")
-      ->capture_default_str();
+  add_value(command, "--depth-scale", options.encoding.units_per_m, "UNITS", "depth samples per metre");
   add_step_options(command, options.filter);
-  command.add_option("--pictures", options.pictures, "pictures of the first so many frames; 0: none")
-      ->check(check_whole_number)
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(command, "--pictures", options.pictures, "N", "pictures of the first so many frames; 0: none")
+      ->check(check_whole_number);
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
 

@@ -1,51 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "frame_options.hpp"
 
+#include "add_value.hpp"
+
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <map>
 
 namespace saccade::cli {
 namespace {
 
-const std::map<std::string, TrackingMode>& tracking_modes() {
-  static const std::map<std::string, TrackingMode> modes{
-      {"icp", TrackingMode::icp}, {"hint", TrackingMode::hint}, {"forced", TrackingMode::forced}};
-  return modes;
-}
-
-const std::map<std::string, RgbdLayout>& layouts() {
-  static const std::map<std::string, RgbdLayout> names{{"auto", RgbdLayout::automatic},
-                                                       {"seven-scenes", RgbdLayout::seven_scenes},
-                                                       {"tum", RgbdLayout::tum},
-                                                       {"princeton", RgbdLayout::princeton},
-                                                       {"open3d", RgbdLayout::open3d}};
-  return names;
-}
-
-const std::map<std::string, DepthEncoding>& encodings() {
-  static const std::map<std::string, DepthEncoding> names{
-      {"mm", {1000.0, false}}, {"tum", {5000.0, false}}, {"bit-rotated", {10000.0, true}}};
-  return names;
-}
-
-/// An option that takes one of a few words.
-template <class T, class Target>
-void add_choice(CLI::App& command, const std::string& option, Target& target, const std::map<std::string, T>& choices,
-                const std::string& description) {
-  std::string words;
-  for (const auto& [word, value] : choices) words += (words.empty() ? "" : "|") + word;
-  command
-      .add_option_function<std::string>(
-          option,
-          [option, &target, &choices, words](const std::string& text) {
-            const auto found = choices.find(text);
-            if (found == choices.end()) usage_error(option, "must be one of " + words + ", not '" + text + "'");
-            target = found->second;
-          },
-          description)
-      ->type_name(words);
-}
+constexpr auto kLayoutWords = make_names<RgbdLayout>({{RgbdLayout::automatic, "auto"},
+                                                      {RgbdLayout::seven_scenes, "seven-scenes"},
+                                                      {RgbdLayout::tum, "tum"},
+                                                      {RgbdLayout::princeton, "princeton"},
+                                                      {RgbdLayout::open3d, "open3d"}});
+constexpr auto kEncodingWords =
+    make_names<DepthEncoding>({{{1000.0, false}, "mm"}, {{5000.0, false}, "tum"}, {{10000.0, true}, "bit-rotated"}});
 
 void add_reading_options(CLI::App& command, FrameOptions& options) {
   add_camera_options(command, options.camera, false);
@@ -58,14 +28,12 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
           },
           "lens distortion (Brown-Conrady), undone on the way in")
       ->type_name("K1,K2,P1,P2,K3");
-  add_choice(command, "--layout", options.folder.layout, layouts(), "how the files are named (default: recognised)");
-  add_choice(command, "--depth-encoding", options.folder.encoding, encodings(),
+  add_choice(command, "--layout", options.folder.layout, kLayoutWords, "how the files are named; auto: recognised");
+  add_choice(command, "--depth-encoding", options.folder.encoding, kEncodingWords,
              "what depth samples mean (default: the layout's): 1/1000 m, 1/5000 m, 1/10000 m rotated by three bits");
-  command.add_option("--depth-scale", options.depth_scale, "depth samples per metre, instead of the encoding's")
-      ->type_name("N");
-  command
-      .add_option("--poses", options.folder.poses_file, "camera poses, instead of the folder's (TUM, matrices, JSON)")
-      ->type_name("FILE");
+  add_value(command, "--depth-scale", options.depth_scale, "N", "depth samples per metre, instead of the encoding's");
+  add_value(command, "--poses", options.folder.poses_file, "FILE",
+            "camera poses, instead of the folder's (TUM, matrices, JSON)");
   command
       .add_option_function<std::vector<std::string>>(
           "--mask",
@@ -83,20 +51,13 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
           "pixels to ignore, such as the camera's own robot: PNG (0 is ignored), JSON polygons, or U,V;U,V;U,V")
       ->type_name("FILE|POLYGON")
       ->allow_extra_args(false);
-  command
-      .add_option("--fill-gaps", options.fill_gaps_px,
-                  "close gaps of up to so many pixels between similar depths, as registered depth images have them "
-                  "(default: 2 where they are all over the first frame, else 0)")
-      ->type_name("PIXELS");
-  command.add_option("--first", options.folder.first, "leave out so many frames at the beginning")
-      ->check(check_whole_number)
-      ->type_name("N");
-  command.add_option("--count", options.folder.count, "use at most so many frames")
-      ->check(check_whole_number)
-      ->type_name("N");
-  command.add_option("--every", options.folder.every_nth, "use every n-th frame")
-      ->check(check_whole_number)
-      ->type_name("N");
+  add_value(command, "--fill-gaps", options.fill_gaps_px, "PIXELS",
+            "close gaps of up to so many pixels between similar depths, as registered depth images have them (default: "
+            "2 where they are all over the first frame, else 0)");
+  add_value(command, "--first", options.folder.first, "N", "leave out so many frames at the beginning")
+      ->check(check_whole_number);
+  add_value(command, "--count", options.folder.count, "N", "use at most so many frames")->check(check_whole_number);
+  add_value(command, "--every", options.folder.every_nth, "N", "use every n-th frame")->check(check_whole_number);
 }
 
 /// The tracking mode that was asked for or that the folder allows.
@@ -113,16 +74,9 @@ Result<TrackingMode> choose_tracking(const FrameOptions& options, const RgbdFold
 
 }  // namespace
 
-std::string_view to_string(TrackingMode mode) {
-  for (const auto& [name, value] : tracking_modes()) {
-    if (value == mode) return name;
-  }
-  return "unknown";
-}
-
 void add_frame_options(CLI::App& command, FrameOptions& options) {
-  command.add_option("frames", options.frames, "folder of RGB-D frames")->required()->type_name("DIR");
-  add_choice(command, "--tracking", options.tracking, tracking_modes(),
+  add_value(command, "frames", options.frames, "DIR", "folder of RGB-D frames")->required();
+  add_choice(command, "--tracking", options.tracking, kTrackingModeNames,
              "icp: by the depth images alone; hint: ICP from the given poses; forced: the given poses as they are "
              "(default: forced where there are poses, else icp)");
   add_reading_options(command, options);

@@ -27,8 +27,6 @@ struct FrameOptions {
   std::optional<int> fill_gaps_px;  ///< default: as the first frame needs it
 };
 
-[[nodiscard]] std::string_view to_string(TrackingMode mode);
-
 /// Adds the options to the subcommand; `options` outlives the parsing.
 void add_frame_options(CLI::App& command, FrameOptions& options);
 /// What only shows when all options are known; throws usage errors. Completes options.folder.

@@ -1,35 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuse_options.hpp"
 
+#include "add_value.hpp"
+
 #include <CLI/CLI.hpp>
 
 namespace saccade::cli {
 namespace {
 
 void add_map_options(CLI::App& command, FuseOptions& options) {
-  command.add_option("--voxel-size", options.map.voxel_size_m, "edge of a voxel, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command.add_option("--truncation", options.map.truncation_vox, "truncation distance, voxels")
-      ->type_name("VOXELS")
-      ->capture_default_str();
+  add_value(command, "--voxel-size", options.map.voxel_size_m, "METRES", "edge of a voxel, metres");
+  add_value(command, "--truncation", options.map.truncation_vox, "VOXELS", "truncation distance, voxels");
   add_clearing_option(command, options.map.clearing_percent);
-  command
-      .add_option_function<std::string>(
-          "--workspace",
-          [&options](const std::string& text) { options.map.workspace = parse_box("--workspace", text); },
-          "box outside of which nothing counts as unknown")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  add_box(command, "--workspace", options.map.workspace, "box outside of which nothing counts as unknown");
   command.add_flag("--no-color{false}", options.map.color, "do not fuse colours");
-  command.add_option("--continue", options.continue_map, "go on with a saved map")->type_name("MAP");
+  add_value(command, "--continue", options.continue_map, "MAP", "go on with a saved map");
 }
 
 }  // namespace
 
 void add_fuse_options(CLI::App& command, FuseOptions& options) {
-  command.add_option("--out", options.out, "folder for the results; made if it is not there")
-      ->required()
-      ->type_name("RUN");
+  add_value(command, "--out", options.out, "RUN", "folder for the results; made if it is not there")->required();
   add_frame_options(command, options);
   add_map_options(command, options);
   command.add_flag("--no-mesh{false}", options.write_mesh, "do not extract the mesh");

@@ -12,6 +12,7 @@
 #include <memory>
 #include <thread>
 
+#include "add_value.hpp"
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "json_output.hpp"
@@ -208,8 +209,7 @@ Result<int> run_info(const fs::path& subject, const GlobalOptions& global) {
     SACCADE_TRY(const json content, describe(subject, executor, print));
     result.update(content);
   }
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("info", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result))));
+  SACCADE_CHECK(write_result("info", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result)));
   return static_cast<int>(ExitStatus::done);
 }
 
@@ -218,7 +218,7 @@ Result<int> run_info(const fs::path& subject, const GlobalOptions& global) {
 void add_info(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("info", "versions, processor and back ends; what is in a map or a run");
   auto subject = std::make_shared<fs::path>();
-  command->add_option("subject", *subject, "a saved map (.sacmap) or the folder of a run")->type_name("MAP|RUN");
+  add_value(*command, "subject", *subject, "MAP|RUN", "a saved map (.sacmap) or the folder of a run");
   command->callback(
       [subject, &global, &action] { action = [subject, &global] { return run_info(*subject, global); }; });
 }

@@ -50,8 +50,9 @@ Status write_json_output(const GlobalOptions& global, const nlohmann::json& docu
   return {};
 }
 
-nlohmann::json optional_json(const std::optional<double>& value) {
-  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+Status write_result(const std::string& command, const GlobalOptions& global, const Executor& executor,
+                    const TimingsMs& timings_ms, nlohmann::json result) {
+  return write_json_output(global, json_envelope(command, global, executor, timings_ms, std::move(result)));
 }
 
 nlohmann::json point_json(const Eigen::Vector3d& p) { return {p.x(), p.y(), p.z()}; }

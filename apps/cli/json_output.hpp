@@ -27,12 +27,18 @@ using TimingsMs = std::map<std::string, double>;
 [[nodiscard]] Status check_json_output(const GlobalOptions& global);
 /// Does what --json asks for; nothing without it.
 [[nodiscard]] Status write_json_output(const GlobalOptions& global, const nlohmann::json& document);
+/// Puts a result into its envelope and does the same with it.
+[[nodiscard]] Status write_result(const std::string& command, const GlobalOptions& global, const Executor& executor,
+                                  const TimingsMs& timings_ms, nlohmann::json result);
 
 /// The most memory that the program held so far.
 [[nodiscard]] std::size_t peak_rss_bytes();
 
 /// Null for none.
-[[nodiscard]] nlohmann::json optional_json(const std::optional<double>& value);
+template <class T>
+[[nodiscard]] nlohmann::json optional_json(const std::optional<T>& value) {
+  return value ? nlohmann::json(*value) : nlohmann::json(nullptr);
+}
 
 /// [x, y, z]
 [[nodiscard]] nlohmann::json point_json(const Eigen::Vector3d& p);

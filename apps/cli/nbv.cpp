@@ -8,6 +8,7 @@
 #include <memory>
 #include <optional>
 
+#include "add_value.hpp"
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -94,10 +95,12 @@ Result<TsdfSnapshot> prepare_map(const NbvOptions& options, const Executor& exec
 }
 
 json region_json(const NbvOptions& options) {
-  const auto point = [](const Eigen::Vector3d& p) { return json{p.x(), p.y(), p.z()}; };
-  if (options.box) return {{"kind", "box"}, {"min_m", point(options.box->min)}, {"max_m", point(options.box->max)}};
-  return {
-      {"kind", "sphere"}, {"center_m", point(*options.poi)}, {"radius_m", options.radius_m.value_or(kDefaultRadius_m)}};
+  if (const auto& box = options.box) {
+    return {{"kind", "box"}, {"min_m", point_json(box->min)}, {"max_m", point_json(box->max)}};
+  }
+  return {{"kind", "sphere"},
+          {"center_m", point_json(*options.poi)},
+          {"radius_m", options.radius_m.value_or(kDefaultRadius_m)}};
 }
 
 json view_json(const OrderedView& view, const Candidates& candidates) {
@@ -121,8 +124,8 @@ json result_json(const NbvOptions& options, const Candidates& candidates, const 
           {"forgotten", options.forget},
           {"sensor", camera_to_json(options.gain.sensor)},
           {"tilt_rad", options.gain.tilt_rad},
-          {"count", options.gain.count == GainCount::rays ? "rays" : "voxels"},
-          {"unknown_outside", options.gain.unknown_outside == UnknownOutside::blocks ? "blocks" : "transparent"},
+          {"count", kGainCountNames.of(options.gain.count)},
+          {"unknown_outside", kUnknownOutsideNames.of(options.gain.unknown_outside)},
           {"candidates", candidates.poses.size()},
           {"evaluated", gains.gains.size()},
           {"rays_total", gains.rays_total},
@@ -163,7 +166,7 @@ Status write_outputs(const NbvOptions& options, const RunFolder& out, const Tsdf
   ViewPictureConfig picture;
   picture.sensor = options.gain.sensor;
   picture.overview.up = options.up.value_or(Eigen::Vector3d::UnitZ());
-  picture.gain_unit = options.gain.count == GainCount::rays ? "rays" : "voxels";
+  picture.gain_unit = kGainCountNames.of(options.gain.count);
   SACCADE_CHECK(write_png(out / "views.png", view_picture(map, options.region(), scored, executor, picture)));
   return write_json(out / "views.json", document);
 }
@@ -220,39 +223,21 @@ Result<int> run_nbv(const NbvOptions& options, const GlobalOptions& global) {
 }
 
 void add_region_options(CLI::App& command, NbvOptions& options) {
-  command
-      .add_option_function<std::string>(
-          "--poi", [&options](const std::string& text) { options.poi = parse_point("--poi", text); },
-          "point of interest: the centre of the region and of the view sphere, metres")
-      ->type_name("X,Y,Z");
-  command.add_option("--radius", options.radius_m, "radius of the region around --poi, metres (default: 0.2)")
-      ->type_name("METRES");
-  command
-      .add_option_function<std::string>(
-          "--box", [&options](const std::string& text) { options.box = parse_box("--box", text); },
-          "box region, instead of --poi and --radius")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  add_point(command, "--poi", options.poi,
+            "point of interest: the centre of the region and of the view sphere, metres");
+  add_value(command, "--radius", options.radius_m, "METRES",
+            "radius of the region around --poi, metres (default: 0.2)");
+  add_box(command, "--box", options.box, "box region, instead of --poi and --radius");
   command.add_flag("--forget", options.forget, "set the region back to unknown first (the file stays as it is)");
-  command
-      .add_option_function<std::string>(
-          "--workspace", [&options](const std::string& text) { options.workspace = parse_box("--workspace", text); },
-          "box outside of which nothing counts as unknown, instead of the map's")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
+  add_box(command, "--workspace", options.workspace,
+          "box outside of which nothing counts as unknown, instead of the map's");
 }
 
 void add_candidate_options(CLI::App& command, NbvOptions& options) {
-  command
-      .add_option("--poses", options.poses_file, "candidate poses (TUM, matrices, JSON), instead of the view sphere")
-      ->type_name("FILE");
-  command
-      .add_option_function<std::string>(
-          "--distance",
-          [&options](const std::string& text) {
-            options.sphere.radii_m = parse_numbers("--distance", text, 0);
-            for (const double radius_m : options.sphere.radii_m) require_positive(radius_m, "--distance");
-          },
-          "radius of the view sphere, metres; several separated by commas (default: 0.8)")
-      ->type_name("METRES");
+  add_value(command, "--poses", options.poses_file, "FILE",
+            "candidate poses (TUM, matrices, JSON), instead of the view sphere");
+  add_lengths(command, "--distance", options.sphere.radii_m,
+              "radius of the view sphere, metres; several separated by commas (default: 0.8)");
   command
       .add_option_function<std::string>(
           "--up",
@@ -267,25 +252,10 @@ void add_candidate_options(CLI::App& command, NbvOptions& options) {
 
 void add_gain_options(CLI::App& command, NbvOptions& options) {
   add_camera_options(command, options.camera, true);
-  command
-      .add_option_function<std::string>(
-          "--count",
-          [&options](const std::string& text) {
-            if (text != "rays" && text != "voxels") usage_error("--count", "must be rays or voxels");
-            options.gain.count = text == "rays" ? GainCount::rays : GainCount::distinct_voxels;
-          },
-          "what counts: rays, or the distinct voxels they end in (default: rays)")
-      ->type_name("rays|voxels");
-  command
-      .add_option_function<std::string>(
-          "--unknown-outside",
-          [&options](const std::string& text) {
-            if (text != "blocks" && text != "transparent")
-              usage_error("--unknown-outside", "must be blocks or transparent");
-            options.gain.unknown_outside = text == "blocks" ? UnknownOutside::blocks : UnknownOutside::transparent;
-          },
-          "what unknown voxels outside the region do to a ray (default: blocks)")
-      ->type_name("blocks|transparent");
+  add_choice(command, "--count", options.gain.count, kGainCountNames,
+             "what counts: rays, or the distinct voxels they end in");
+  add_choice(command, "--unknown-outside", options.gain.unknown_outside, kUnknownOutsideNames,
+             "what unknown voxels outside the region do to a ray");
   command
       .add_option_function<double>(
           "--tilt", [&options](const double& tilt_deg) { options.gain.tilt_rad = to_rad(tilt_deg); },
@@ -307,16 +277,13 @@ void check_nbv_options(NbvOptions& options) {
 void add_nbv(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("nbv", "ranks view poses for a region in a saved map");
   auto options = std::make_shared<NbvOptions>();
-  command->add_option("map", options->map, "saved map (.sacmap)")->required()->type_name("MAP");
+  add_value(*command, "map", options->map, "MAP", "saved map (.sacmap)")->required();
   add_region_options(*command, *options);
   add_candidate_options(*command, *options);
   add_gain_options(*command, *options);
-  command->add_option("--top", options->top, "views to print and to write")
-      ->check(check_whole_number)
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(*command, "--top", options->top, "N", "views to print and to write")->check(check_whole_number);
   command->add_flag("--all", options->all, "print and write all views");
-  command->add_option("--out", options->out, "folder for views.json and views.png")->type_name("DIR");
+  add_value(*command, "--out", options->out, "DIR", "folder for views.json and views.png");
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {
     check_nbv_options(*options);

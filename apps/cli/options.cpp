@@ -2,9 +2,11 @@
 #include "options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+#include "add_value.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::cli {
@@ -91,6 +93,40 @@ std::optional<PixelPolygon> parse_polygon(const std::string& option, const std::
   return polygon;
 }
 
+CLI::Option* add_words(CLI::App& command, const std::string& option, std::span<const std::string_view> words,
+                       std::function<void(const std::string&)> take, const std::string& description,
+                       std::string_view preset) {
+  const std::vector<std::string_view> known{words.begin(), words.end()};
+  const auto checked = [option, known, take = std::move(take)](const std::string& word) {
+    if (std::find(known.begin(), known.end(), word) == known.end()) {
+      usage_error(option, "must be " + listed(known) + ", not '" + word + "'");
+    }
+    take(word);
+  };
+  CLI::Option* added = command.add_option_function<std::string>(option, checked, description);
+  return added->type_name(joined(known, "|"))->default_str(std::string{preset});
+}
+
+void add_point(CLI::App& command, const std::string& option, std::optional<Eigen::Vector3d>& point,
+               const std::string& description) {
+  const auto take = [option, &point](const std::string& text) { point = parse_point(option, text); };
+  command.add_option_function<std::string>(option, take, description)->type_name("X,Y,Z");
+}
+
+void add_lengths(CLI::App& command, const std::string& option, std::vector<double>& lengths_m,
+                 const std::string& description) {
+  const auto take = [option, &lengths_m](const std::string& text) {
+    lengths_m = parse_numbers(option, text, 0);
+    for (const double length_m : lengths_m) require_positive(length_m, option);
+  };
+  command.add_option_function<std::string>(option, take, description)->type_name("METRES");
+}
+
+void add_box(CLI::App& command, const std::string& option, std::optional<Box>& box, const std::string& description) {
+  const auto take = [option, &box](const std::string& text) { box = parse_box(option, text); };
+  command.add_option_function<std::string>(option, take, description)->type_name("X0,Y0,Z0,X1,Y1,Z1");
+}
+
 PinholeCamera CameraOptions::camera(const PinholeCamera& fallback) const {
   PinholeCamera camera = preset.value_or(fallback);
   if (image_size) camera = camera.scaled_to(image_size->first, image_size->second);
@@ -132,8 +168,6 @@ void add_clearing_option(CLI::App& command, std::uint8_t& percent) {
 }
 
 void add_camera_options(CLI::App& command, CameraOptions& options, bool with_image_size) {
-  std::string names;
-  for (const CameraPreset& preset : camera_presets()) names += (names.empty() ? "" : ", ") + std::string{preset.name};
   command
       .add_option_function<std::string>(
           "--camera",
@@ -142,7 +176,7 @@ void add_camera_options(CLI::App& command, CameraOptions& options, bool with_ima
             if (!preset) usage_error("--camera", preset.error().message);
             options.preset = *preset;
           },
-          "camera preset: " + names)
+          "camera preset: " + joined(camera_presets(), ", ", &CameraPreset::name))
       ->type_name("NAME");
   command
       .add_option_function<std::string>(
@@ -170,10 +204,10 @@ void add_camera_options(CLI::App& command, CameraOptions& options, bool with_ima
             "image size, pixels; scales the preset's intrinsics along")
         ->type_name("WIDTH,HEIGHT");
   }
-  command.add_option("--min-range", options.min_range_m, "nearest depth that is used, metres along the optical axis")
-      ->type_name("METRES");
-  command.add_option("--max-range", options.max_range_m, "farthest depth that is used, metres along the optical axis")
-      ->type_name("METRES");
+  add_value(command, "--min-range", options.min_range_m, "METRES",
+            "nearest depth that is used, metres along the optical axis");
+  add_value(command, "--max-range", options.max_range_m, "METRES",
+            "farthest depth that is used, metres along the optical axis");
 }
 
 Status check_output(const std::filesystem::path& file, const char* option,

@@ -3,11 +3,15 @@
 // Options that several subcommands share: lists of numbers, boxes, polygons, and the camera.
 
 #include <Eigen/Core>
+#include <functional>
 #include <optional>
+#include <span>
 #include <string>
+#include <type_traits>
 #include <utility>
 #include <vector>
 
+#include "saccade/core/names.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/io/frames/camera_io.hpp"
@@ -16,7 +20,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace saccade::cli {
 
@@ -40,6 +45,32 @@ void require_positive(double value, const std::string& option);
 /// Fails early where a file cannot be written, or where it is one that is read or written besides. Nothing for no file.
 [[nodiscard]] Status check_output(const std::filesystem::path& file, const char* option,
                                   const std::vector<std::filesystem::path>& others);
+
+/// Adds an option for one of a few words, which help and error list. `preset` is shown as the default, unless empty.
+CLI::Option* add_words(CLI::App& command, const std::string& option, std::span<const std::string_view> words,
+                       std::function<void(const std::string&)> take, const std::string& description,
+                       std::string_view preset = {});
+/// Adds an option for one of the values of a table, which outlives the parsing. The default is that of `target`; an
+/// optional one shows none.
+template <class T, std::size_t N, class Target>
+CLI::Option* add_choice(CLI::App& command, const std::string& option, Target& target, const Names<T, N>& names,
+                        const std::string& description) {
+  std::string_view preset;
+  if constexpr (std::is_same_v<Target, T>) preset = names.of(target);
+  const auto take = [&target, &names](const std::string& word) { target = *names.find(word); };
+  return add_words(command, option, names.words, take, description, preset);
+}
+/// Words for switches that are no flags, since what they switch is on by default, or as something else says.
+inline constexpr auto kOnOff = make_names<bool>({{true, "on"}, {false, "off"}});
+
+/// Adds an option for a point: X,Y,Z.
+void add_point(CLI::App& command, const std::string& option, std::optional<Eigen::Vector3d>& point,
+               const std::string& description);
+/// Adds an option for lengths above 0, one at least, separated by commas.
+void add_lengths(CLI::App& command, const std::string& option, std::vector<double>& lengths_m,
+                 const std::string& description);
+/// Adds an option for a box: X0,Y0,Z0,X1,Y1,Z1.
+void add_box(CLI::App& command, const std::string& option, std::optional<Box>& box, const std::string& description);
 
 /// What the camera options say; everything that they leave open is the caller's.
 struct CameraOptions {

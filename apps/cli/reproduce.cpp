@@ -9,6 +9,7 @@
 #include <optional>
 #include <sstream>
 
+#include "add_value.hpp"
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -37,8 +38,8 @@ Result<int> list_tables(const GlobalOptions& global) {
     tables.push_back({{"table", table.number}, {"title", table.title}});
     if (!global.json_to_stdout()) std::cout << std::left << std::setw(8) << table.number << table.title << '\n';
   }
-  SACCADE_CHECK(write_json_output(global, json_envelope("reproduce", global, global.executor(),
-                                                        {{"total", clock.elapsed_ms()}}, {{"known", tables}})));
+  SACCADE_CHECK(
+      write_result("reproduce", global, global.executor(), {{"total", clock.elapsed_ms()}}, {{"known", tables}}));
   return static_cast<int>(ExitStatus::done);
 }
 
@@ -143,8 +144,7 @@ Result<int> run_reproduce(const std::vector<std::string>& numbers, const Reprodu
   json tables = json::array();
   for (std::size_t i = 0; i < done.size(); ++i) tables.push_back(json_of(numbers[i], done[i]));
   const Status markdown_status = write_markdown_output(markdown, done, global, executor);
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}})));
+  SACCADE_CHECK(write_result("reproduce", global, executor, timings_ms, {{"tables", std::move(tables)}}));
   if (!markdown_status) return markdown_status.error();
   const auto complete = std::count_if(done.begin(), done.end(), [](const auto& table) { return table.complete; });
   if (complete == std::ssize(numbers)) return static_cast<int>(ExitStatus::done);
@@ -166,9 +166,8 @@ void check_numbers(const std::vector<std::string>& numbers, const ReproduceOptio
       usage_error("--hands", "Table " + *number + " is made from recorded hands: get them from " + kHandDataAddress +
                                  ", and name their folder with --hands DIR");
     }
-    std::string known;
-    for (const ThesisTable& table : thesis_tables()) known += (known.empty() ? "" : ", ") + std::string{table.number};
-    usage_error("TABLE", "there is no table \"" + *number + "\"; known: " + known);
+    usage_error("TABLE",
+                "there is no table \"" + *number + "\"; known: " + joined(thesis_tables(), ", ", &ThesisTable::number));
   }
 }
 
@@ -201,72 +200,45 @@ void add_reproduce(CLI::App& program, const GlobalOptions& global, Action& actio
   auto options = std::make_shared<ReproduceOptions>();
   auto markdown = std::make_shared<std::string>();
   auto plots = std::make_shared<PlotOptions>();
-  command
-      ->add_option("tables", *numbers,
-                   "tables, and figures, by their number (fig-4.5 where there is a table of that number too); none: "
-                   "lists those that "
-                   "there are")
-      ->type_name("TABLE");
-  command
-      ->add_option("--poses", options->poses,
-                   "evaluate only so many of the view poses of Table 2.9: quicker, but no longer what the thesis did "
-                   "(default: all)")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
-      ->type_name("N");
-  command
-      ->add_option(
-          "--image-width", options->image_width_px,
-          "images of Tables 2.7, 2.8, 3.1 to 3.3, 4.1, 4.3, Figs. 3.17, 4.5 to 4.11 and of made clouds so many "
-          "pixels wide: quicker, but no "
-          "longer what the thesis did (default: 640, and 512 in chapter 3)")
-      ->check(CLI::Range(16, 640))
-      ->type_name("PIXELS");
-  command
-      ->add_option("--hands", options->hands,
-                   std::string{"Tables 2.2 to 2.6: folder of the thesis' recorded hands, from "} + kHandDataAddress)
-      ->type_name("DIR");
-  command
-      ->add_option(
-          "--clouds", options->clouds,
-          "Tables 4.5, 4.6 and 4.8: folder of clouds that hold labels or have files of labels beside them, such "
-          "as mOSD (default: made ones)")
-      ->check(CLI::ExistingDirectory)
-      ->type_name("DIR");
-  command
-      ->add_option("--noise-seeds", options->noise_seeds,
-                   "Table 2.4: seeds of the noise that it is averaged over, from --seed on")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      ->add_option("--frames", options->frames,
-                   "scan of Table 2.1: only so many of its first frames; scenes of Tables 4.1, 4.3 and Figs. 4.5 to "
-                   "4.11: so many along "
-                   "the same way; for a quick look (default: all)")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
-      ->type_name("N");
-  command
-      ->add_option("--scene", options->surfel_scene,
-                   "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes")
-      ->check(CLI::IsMember(std::vector<std::string>(kSurfelScenes.begin(), kSurfelScenes.end())))
-      ->type_name("NAME");
-  command
-      ->add_option("--placements", options->placements,
-                   "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: SV-LCCP with the grid of seeds in so many places; "
-                   "its figures depend on them, and are taken together")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}))
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(*command, "tables", *numbers, "TABLE",
+            "tables, and figures, by their number (fig-4.5 where there is a table of that number too); none: lists "
+            "those that there are");
+  add_value(
+      *command, "--poses", options->poses, "N",
+      "evaluate only so many of the view poses of Table 2.9: quicker, but no longer what the thesis did (default: all)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
+  add_value(*command, "--image-width", options->image_width_px, "PIXELS",
+            "images of Tables 2.7, 2.8, 3.1 to 3.3, 4.1, 4.3, Figs. 3.17, 4.5 to 4.11 and of made clouds so many "
+            "pixels wide: quicker, but no longer what the thesis did (default: 640, and 512 in chapter 3)")
+      ->check(CLI::Range(16, 640));
+  add_value(*command, "--hands", options->hands, "DIR",
+            std::string{"Tables 2.2 to 2.6: folder of the thesis' recorded hands, from "} + kHandDataAddress);
+  add_value(*command, "--clouds", options->clouds, "DIR",
+            "Tables 4.5, 4.6 and 4.8: folder of clouds that hold labels or have files of labels beside them, such as "
+            "mOSD (default: made ones)")
+      ->check(CLI::ExistingDirectory);
+  add_value(*command, "--noise-seeds", options->noise_seeds, "N",
+            "Table 2.4: seeds of the noise that it is averaged over, from --seed on")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
+  add_value(*command, "--frames", options->frames, "N",
+            "scan of Table 2.1: only so many of its first frames; scenes of Tables 4.1, 4.3 and Figs. 4.5 to 4.11: so "
+            "many along the same way; for a quick look (default: all)")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
+  const auto take_scene = [options](const std::string& name) { options->surfel_scene = name; };
+  add_words(*command, "--scene", kSurfelScenes, take_scene,
+            "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: this scene alone; all frames of one take minutes");
+  add_value(*command, "--placements", options->placements, "N",
+            "Tables 4.1, 4.3, 4.gain and Figs. 4.10, 4.11: SV-LCCP with the grid of seeds in so many places; its "
+            "figures depend on them, and are taken together")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000}));
   command->add_flag("--as-printed", options->as_printed,
                     "Tables 4.1, 4.3 and Figs. 4.5 to 4.11: the mode filter as the thesis prints it, without what is "
                     "ours");
-  command
-      ->add_option("--out", plots->folder,
-                   "folder for the plots of Tables 2.1 (Fig. 2.12) and 3.5 and of Figs. 3.17, 4.10, 4.11, and the "
-                   "pictures of Figs. 3.8, 3.9, 4.5 to 4.9")
-      ->type_name("DIR");
+  add_value(*command, "--out", plots->folder, "DIR",
+            "folder for the plots of Tables 2.1 (Fig. 2.12) and 3.5 and of Figs. 3.17, 4.10, 4.11, and the pictures of "
+            "Figs. 3.8, 3.9, 4.5 to 4.9");
   command->add_flag("--force", plots->force, "let --out write among other files");
-  command->add_option("--markdown", *markdown, "write the tables as Markdown to a file")->type_name("FILE");
+  add_value(*command, "--markdown", *markdown, "FILE", "write the tables as Markdown to a file");
   command->callback([numbers, options, markdown, plots, &global, &action] {
     check_numbers(*numbers, *options);
     check_markdown_option(*markdown, *numbers, global);

@@ -133,8 +133,8 @@ Result<int> run_check(const ArmOptions& options, const GlobalOptions& global) {
   SACCADE_TRY(const UrdfArm read, find_robot(options.robot, options.urdf));
   SACCADE_TRY(const InverseKinematics ik, InverseKinematics::create(read.arm));
   if (!global.json_to_stdout()) print_robot(read, ik);
-  SACCADE_CHECK(write_json_output(global, json_envelope("robot", global, global.executor(),
-                                                        {{"total", stopwatch.elapsed_ms()}}, robot_json(read, ik))));
+  SACCADE_CHECK(
+      write_result("robot", global, global.executor(), {{"total", stopwatch.elapsed_ms()}}, robot_json(read, ik)));
   return static_cast<int>(ExitStatus::done);
 }
 

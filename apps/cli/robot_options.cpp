@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "add_value.hpp"
 #include "options.hpp"
 
 namespace saccade::cli {
@@ -19,18 +20,13 @@ void add_package(const std::string& text, UrdfConfig& config) {
 }  // namespace
 
 CLI::Option* add_arm_options(CLI::App& command, ArmOptions& options) {
-  CLI::Option* robot =
-      command.add_option("robot", options.robot, "a URDF file, or the name of a built-in robot (comau_smart_six)")
-          ->type_name("URDF");
-  command.add_option("--base", options.urdf.base, "link that the chain begins with; default: the root")
-      ->type_name("LINK");
-  command.add_option("--tip", options.urdf.tip, "flange; default: the end of the longest chain")->type_name("LINK");
-  command
-      .add_option("--camera-frame", options.urdf.camera,
-                  "the camera's optical frame; default: camera_optical_frame if there is one, else the tip")
-      ->type_name("LINK");
-  command.add_option("--package", options.packages, "where package://NAME/… lies; may be repeated")
-      ->type_name("NAME=FOLDER");
+  CLI::Option* robot = add_value(command, "robot", options.robot, "URDF",
+                                 "a URDF file, or the name of a built-in robot (comau_smart_six)");
+  add_value(command, "--base", options.urdf.base, "LINK", "link that the chain begins with; default: the root");
+  add_value(command, "--tip", options.urdf.tip, "LINK", "flange; default: the end of the longest chain");
+  add_value(command, "--camera-frame", options.urdf.camera, "LINK",
+            "the camera's optical frame; default: camera_optical_frame if there is one, else the tip");
+  add_value(command, "--package", options.packages, "NAME=FOLDER", "where package://NAME/… lies; may be repeated");
   command.add_flag("--drop-beyond-tip", options.drop_beyond_tip, "leave out what is fixed behind the tip");
   return robot;
 }

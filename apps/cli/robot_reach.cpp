@@ -7,6 +7,7 @@
 #include <iostream>
 #include <memory>
 
+#include "add_value.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
@@ -160,32 +161,17 @@ Pose parse_base(const std::string& text) {
 }
 
 void add_grid_options(CLI::App& command, ReachOptions& options) {
-  command
-      .add_option("--scene", options.scene,
-                  "gives workspace and obstacles (its fixtures and supports, as boxes): a built-in scene, clutter:SEED "
-                  "or a YAML file")
-      ->type_name("SCENE")
-      ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--workspace", [&options](const std::string& text) { options.workspace = parse_box("--workspace", text); },
-          "where the points of interest lie, instead of the scene's workspace")
-      ->type_name("X0,Y0,Z0,X1,Y1,Z1");
-  command
-      .add_option("--height", options.height_m,
-                  "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)")
-      ->type_name("METRES");
-  command.add_option("--step", options.step_m, "between points (default: 0.05; 0.1 for arms without a closed form)")
-      ->type_name("METRES");
-  command
-      .add_option_function<std::string>(
-          "--radius",
-          [&options](const std::string& text) {
-            options.radii_m = parse_numbers("--radius", text, 0);
-            for (const double radius_m : options.radii_m) require_positive(radius_m, "--radius");
-          },
-          "of the view sphere around each point; several separated by commas (default: 0.8)")
-      ->type_name("METRES");
+  add_value(command, "--scene", options.scene, "SCENE",
+            "gives workspace and obstacles (its fixtures and supports, as boxes): a built-in scene, clutter:SEED or a "
+            "YAML file");
+  add_box(command, "--workspace", options.workspace,
+          "where the points of interest lie, instead of the scene's workspace");
+  add_value(command, "--height", options.height_m, "METRES",
+            "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)");
+  add_value(command, "--step", options.step_m, "METRES",
+            "between points (default: 0.05; 0.1 for arms without a closed form)");
+  add_lengths(command, "--radius", options.radii_m,
+              "of the view sphere around each point; several separated by commas (default: 0.8)");
 }
 
 }  // namespace
@@ -200,9 +186,7 @@ void add_robot_reach(CLI::App& robot, const GlobalOptions& global, Action& actio
           "where the chain's first link (--base) stands, turned about z by DEGREES (default: the world's origin)")
       ->type_name("X,Y,Z[,DEGREES]");
   add_grid_options(*command, *options);
-  command->add_option("--out", options->out, "folder for reach.png, reach.csv and reach.json")
-      ->required()
-      ->type_name("DIR");
+  add_value(*command, "--out", options->out, "DIR", "folder for reach.png, reach.csv and reach.json")->required();
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {
     check_arm_options(options->arm);

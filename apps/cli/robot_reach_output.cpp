@@ -47,16 +47,11 @@ std::string part_of(std::size_t part, std::size_t all) {
 int whole_degrees(double angle_rad) { return static_cast<int>(std::lround(to_deg(angle_rad))); }
 
 std::string radii_text(const std::vector<double>& radii_m) {
-  std::string text;
-  for (const double radius_m : radii_m) text += (text.empty() ? "" : ", ") + fixed(radius_m, 2);
-  return text + " m";
+  return joined(radii_m, ", ", [](double radius_m) { return fixed(radius_m, 2); }) + " m";
 }
 
 std::string names_of(const std::vector<FixtureBox>& fixtures) {
-  if (fixtures.empty()) return "no fixtures";
-  std::string text;
-  for (const FixtureBox& fixture : fixtures) text += (text.empty() ? "" : ", ") + fixture.name;
-  return text;
+  return fixtures.empty() ? "no fixtures" : joined(fixtures, ", ", &FixtureBox::name);
 }
 
 /// A row of the tables by latitude and radius.

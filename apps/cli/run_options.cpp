@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 #include <algorithm>
 
+#include "add_value.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -19,55 +20,27 @@ std::vector<double> parse_distances(const std::string& text) {
 }  // namespace
 
 void add_run_options(CLI::App& command, RunOptions& options, const std::string& min_gain) {
-  command.add_option("--max-views", options.run.exploration.max_views, "views at most, after the initial scan")
-      ->check(CLI::Range(0, 1000))
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      .add_option("--min-gain", options.min_gain,
-                  "gain below which a view is not worth going to (default: " + min_gain + ")")
-      ->type_name("RAYS");
-  command
-      .add_option("--good-enough", options.run.exploration.good_enough,
-                  "share of the best view's gain at which another is as good, if the robot is there sooner")
-      ->type_name("SHARE")
-      ->capture_default_str();
-  command
-      .add_option("--rivals", options.run.planner.rival_share,
-                  "attention: the view of most gain is looked for among segments at least so salient, as a share of "
-                  "the most salient; 1: of the most salient alone, as in the thesis")
-      ->type_name("SHARE")
-      ->capture_default_str();
-  command
-      .add_option("--gain-width", options.run.gain_width_px,
-                  "pixels across of the virtual sensor that views are chosen with")
-      ->check(CLI::Range(1, 100000))
-      ->type_name("PIXELS")
-      ->capture_default_str();
-  command
-      .add_option("--radius", options.distances,
-                  "distances of views from what they look at, metres: radii of the view sphere, and of contour views")
-      ->type_name("METRES[,METRES...]")
-      ->capture_default_str();
-  command.add_option("--voxel-size", options.run.voxel_size_m, "edge of a voxel, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command.add_option("--truncation", options.run.truncation_vox, "truncation distance, voxels")
-      ->type_name("VOXELS")
-      ->capture_default_str();
+  add_value(command, "--max-views", options.run.exploration.max_views, "N", "views at most, after the initial scan")
+      ->check(CLI::Range(0, 1000));
+  add_value(command, "--min-gain", options.min_gain, "RAYS",
+            "gain below which a view is not worth going to (default: " + min_gain + ")");
+  add_value(command, "--good-enough", options.run.exploration.good_enough, "SHARE",
+            "share of the best view's gain at which another is as good, if the robot is there sooner");
+  add_value(command, "--rivals", options.run.planner.rival_share, "SHARE",
+            "attention: the view of most gain is looked for among segments at least so salient, as a share of the most "
+            "salient; 1: of the most salient alone, as in the thesis");
+  add_value(command, "--gain-width", options.run.gain_width_px, "PIXELS",
+            "pixels across of the virtual sensor that views are chosen with")
+      ->check(CLI::Range(1, 100000));
+  add_value(command, "--radius", options.distances, "METRES[,METRES...]",
+            "distances of views from what they look at, metres: radii of the view sphere, and of contour views");
+  add_value(command, "--voxel-size", options.run.voxel_size_m, "METRES", "edge of a voxel, metres");
+  add_value(command, "--truncation", options.run.truncation_vox, "VOXELS", "truncation distance, voxels");
   add_clearing_option(command, options.run.clearing_percent);
   command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of the sensor");
-  command
-      .add_option_function<std::string>(
-          "--sensor",
-          [&options](const std::string& text) {
-            const auto sensor = depth_sensor(text);
-            require_ok(sensor ? Status{} : Status{sensor.error()}, "--sensor");
-            options.run.sensor = *sensor;
-          },
-          "what the simulated camera's depth is like; a Kinect v2's goes through its filter (default: kinect-v1; the "
-          "image is --camera's)")
-      ->type_name("kinect-v1|kinect-v2");
+  add_choice(command, "--sensor", options.run.sensor, kDepthSensorNames,
+             "what the simulated camera's depth is like; a Kinect v2's goes through its filter (the image is "
+             "--camera's)");
   add_camera_options(command, options.camera, true);
 }
 

@@ -7,6 +7,7 @@
 #include <memory>
 #include <sstream>
 
+#include "add_value.hpp"
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -72,8 +73,7 @@ Result<int> run_sample(const SampleOptions& options, const GlobalOptions& global
   }
   bar.finish();
   const nlohmann::json result{{"out", options.out.string()}, {"frames", done}, {"interrupted", interrupted()}};
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("sample", global, executor, {{"total", stopwatch.elapsed_ms()}}, result)));
+  SACCADE_CHECK(write_result("sample", global, executor, {{"total", stopwatch.elapsed_ms()}}, result));
   if (!global.json_to_stdout()) std::cout << done << " frames in " << options.out.string() << '\n';
   return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
 }
@@ -83,13 +83,9 @@ Result<int> run_sample(const SampleOptions& options, const GlobalOptions& global
 void add_sample(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("sample", "writes a small posed RGB-D sequence of a made-up table");
   auto options = std::make_shared<SampleOptions>();
-  command->add_option("--out", options->out, "folder for the frames; made if it is not there")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--frames", options->frames, "number of frames")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(*command, "--out", options->out, "DIR", "folder for the frames; made if it is not there")->required();
+  add_value(*command, "--frames", options->frames, "N", "number of frames")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
   command->add_flag("--noise", options->noise, "depth noise as of a Kinect v1, drawn from --seed");
   add_camera_options(*command, options->camera_options, true);
   command->add_flag("--force", options->force, "write into a folder that holds other files");

@@ -124,8 +124,7 @@ Status write_surface(const std::filesystem::path& path, const SurfaceSamples& sa
 }
 
 Status finish(const GlobalOptions& global, const Executor& executor, const Stopwatch& stopwatch, json result) {
-  return write_json_output(
-      global, json_envelope("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result)));
+  return write_result("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result));
 }
 
 Result<int> run_list(const GlobalOptions& global) {

@@ -10,6 +10,7 @@
 #include <memory>
 #include <sstream>
 
+#include "add_value.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 #include "json_output.hpp"
@@ -43,11 +44,11 @@ struct SequenceOptions {
   std::optional<std::size_t> frames;
   std::string sensor;
   std::optional<std::pair<int, int>> image_size;
-  std::string depth_noise{"on"};
-  std::string pose_noise{"on"};
-  std::string color_noise{"on"};
-  std::string vignetting;
-  std::string automatic_gain;
+  bool depth_noise{true};
+  bool pose_noise{true};
+  bool color_noise{true};
+  std::optional<Vignetting> vignetting;
+  std::optional<bool> automatic_gain;
   bool force{false};
 };
 
@@ -72,29 +73,24 @@ Result<Sequence> sequence_of(const SequenceOptions& options, std::uint64_t seed)
   config.camera = CameraOptions{{}, {}, options.image_size, {}, {}}.camera(config.camera);
   SACCADE_CHECK(config.camera.validate());
   config.color = scene.color;
-  config.color.noise = options.color_noise == "on";
-  if (!options.automatic_gain.empty()) config.color.automatic_gain = options.automatic_gain == "on";
-  if (!options.vignetting.empty()) {
-    config.color.vignetting = options.vignetting == "on"    ? Vignetting::on
-                              : options.vignetting == "off" ? Vignetting::off
-                                                            : Vignetting::corrected;
-  }
-  if (options.depth_noise == "off") {
+  config.color.noise = options.color_noise;
+  config.color.automatic_gain = options.automatic_gain.value_or(config.color.automatic_gain);
+  config.color.vignetting = options.vignetting.value_or(config.color.vignetting);
+  if (!options.depth_noise) {
     config.depth_noise.reset();
     config.time_of_flight.reset();
   }
-  if (options.pose_noise == "off") config.pose_noise.reset();
+  if (!options.pose_noise) config.pose_noise.reset();
   config.color.seed = seed;
   if (config.pose_noise) config.pose_noise->seed = seed;
   if (config.depth_noise) config.depth_noise->seed = seed;
   if (config.time_of_flight) config.time_of_flight->noise.seed = seed;
-  constexpr std::array<const char*, 3> kVignetting{"off", "on", "corrected"};
   json switches{{"sensor", sensor},
-                {"depth_noise", options.depth_noise},
-                {"pose_noise", options.pose_noise},
-                {"color_noise", options.color_noise},
-                {"vignetting", kVignetting[static_cast<std::size_t>(config.color.vignetting)]},
-                {"auto_gain", config.color.automatic_gain ? "on" : "off"}};
+                {"depth_noise", kOnOff.of(options.depth_noise)},
+                {"pose_noise", kOnOff.of(options.pose_noise)},
+                {"color_noise", kOnOff.of(options.color_noise)},
+                {"vignetting", kVignettingNames.of(config.color.vignetting)},
+                {"auto_gain", kOnOff.of(config.color.automatic_gain)}};
   const std::size_t frames = options.frames.value_or(scene.frames);
   return Sequence{std::move(scene), frames, config, std::move(switches)};
 }
@@ -202,35 +198,12 @@ Result<int> run_sequence(const SequenceOptions& options, const GlobalOptions& gl
       {"segments", camera.segments().names().size() - 1},
       {"interrupted", interrupted()},
       {"ms_per_frame", {{"render", {{"median", median(render_ms)}}}, {"write", {{"median", median(write_ms)}}}}}};
-  SACCADE_CHECK(
-      write_json_output(global, json_envelope("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, result)));
+  SACCADE_CHECK(write_result("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, result));
   if (!global.json_to_stdout()) {
     std::cout << true_poses.size() << " frames with " << result["segments"] << " true segments in "
               << options.out.string() << '\n';
   }
   return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
-}
-
-std::string joined(std::span<const std::string_view> words, const char* between) {
-  std::string text;
-  for (const std::string_view word : words) text += (text.empty() ? "" : between) + std::string{word};
-  return text;
-}
-
-void add_words(CLI::App& command, const std::string& option, std::string& target,
-               const std::vector<std::string_view>& words, const std::string& description) {
-  const std::string type = joined(words, "|");
-  command
-      .add_option_function<std::string>(
-          option,
-          [option, &target, words, type](const std::string& text) {
-            if (std::find(words.begin(), words.end(), text) == words.end()) {
-              usage_error(option, "must be one of " + type + ", not '" + text + "'");
-            }
-            target = text;
-          },
-          description)
-      ->type_name(type);
 }
 
 }  // namespace
@@ -239,26 +212,22 @@ void add_scene_sequence(CLI::App& scene_command, const GlobalOptions& global, Ac
   CLI::App* command = scene_command.add_subcommand(
       "sequence", "frames of a hand-held camera before a scene, with the truth of every pixel");
   auto options = std::make_shared<SequenceOptions>();
-  command->add_option("scene", options->scene, joined(kSurfelScenes, ", "))->required()->type_name("SCENE");
-  command->add_option("--out", options->out, "folder for the frames; made if it is not there")
-      ->required()
-      ->type_name("DIR");
-  command->add_option("--frames", options->frames, "number of frames; without it, as many as the thesis' scene has")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}))
-      ->type_name("N");
-  add_words(*command, "--camera", options->sensor, {kSurfelSensors.begin(), kSurfelSensors.end()},
-            "sensor and its noise; without it, that of the thesis' scene");
-  command->add_option("--image-size", options->image_size, "width and height, pixels; the lens stays the same")
-      ->delimiter(',')
-      ->type_name("W,H");
-  const std::vector<std::string_view> on_off{"on", "off"};
-  add_words(*command, "--depth-noise", options->depth_noise, on_off, "noise and flaws of the sensor's depth (on)");
-  add_words(*command, "--pose-noise", options->pose_noise, on_off, "drift and jitter of the written poses (on)");
-  add_words(*command, "--color-noise", options->color_noise, on_off, "noise of colours (on)");
-  add_words(*command, "--vignetting", options->vignetting, {"on", "off", "corrected"},
-            "darker corners; without it, as in the thesis' scene");
-  add_words(*command, "--auto-gain", options->automatic_gain, on_off,
-            "the gain follows the image's light; without it, as in the thesis' scene");
+  add_value(*command, "scene", options->scene, "SCENE", joined(kSurfelScenes))->required();
+  add_value(*command, "--out", options->out, "DIR", "folder for the frames; made if it is not there")->required();
+  add_value(*command, "--frames", options->frames, "N",
+            "number of frames; without it, as many as the thesis' scene has")
+      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
+  const auto take = [options](const std::string& name) { options->sensor = name; };
+  add_words(*command, "--camera", kSurfelSensors, take, "sensor and its noise; without it, that of the thesis' scene");
+  add_value(*command, "--image-size", options->image_size, "W,H", "width and height, pixels; the lens stays the same")
+      ->delimiter(',');
+  add_choice(*command, "--depth-noise", options->depth_noise, kOnOff, "noise and flaws of the sensor's depth");
+  add_choice(*command, "--pose-noise", options->pose_noise, kOnOff, "drift and jitter of the written poses");
+  add_choice(*command, "--color-noise", options->color_noise, kOnOff, "noise of colours");
+  add_choice(*command, "--vignetting", options->vignetting, kVignettingNames,
+             "darker corners; without it, as in the thesis' scene");
+  add_choice(*command, "--auto-gain", options->automatic_gain, kOnOff,
+             "the gain follows the image's light; without it, as in the thesis' scene");
   command->add_flag("--force", options->force, "write into a folder that holds other files");
   command->callback([options, &global, &action] {
     if (options->image_size) {

@@ -7,6 +7,7 @@
 #include <map>
 #include <memory>
 
+#include "add_value.hpp"
 #include "command.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
@@ -217,14 +218,14 @@ struct Figures {
 };
 
 json figures_json(const Figures& figures) {
-  return {{"fos", number_or_null(figures.fos)},
-          {"fus", number_or_null(figures.fus)},
-          {"wov", number_or_null(figures.wov)},
-          {"wov_objects", number_or_null(figures.wov_objects)},
-          {"boundary_precision", number_or_null(figures.precision)},
-          {"boundary_recall", number_or_null(figures.recall)},
-          {"boundary_f", number_or_null(figures.f)},
-          {"bce", number_or_null(figures.bce)}};
+  return {{"fos", optional_json(figures.fos)},
+          {"fus", optional_json(figures.fus)},
+          {"wov", optional_json(figures.wov)},
+          {"wov_objects", optional_json(figures.wov_objects)},
+          {"boundary_precision", optional_json(figures.precision)},
+          {"boundary_recall", optional_json(figures.recall)},
+          {"boundary_f", optional_json(figures.f)},
+          {"bce", optional_json(figures.bce)}};
 }
 
 json pair_json(const ScoredPair& pair, const ScoreOptions& options) {
@@ -278,8 +279,7 @@ Result<int> run_score(const ScoreOptions& options, const GlobalOptions& global) 
     scored.push_back(std::move(found));
   }
   bar.finish();
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("score", global, executor, {{"total", clock.elapsed_ms()}}, scores_json(options, scored))));
+  SACCADE_CHECK(write_result("score", global, executor, {{"total", clock.elapsed_ms()}}, scores_json(options, scored)));
   if (!Figures{scored}.wov) {
     print_error("score", "no point has a true label above 0; there is nothing to score");
     return static_cast<int>(ExitStatus::no_result);
@@ -303,23 +303,17 @@ void check_score_options(const ScoreOptions& options) {
 void add_score(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("score", "how well labels of clouds match true ones");
   auto options = std::make_shared<ScoreOptions>();
-  command
-      ->add_option("clouds", options->paths,
-                   "clouds with a field label each, of the same points; two folders: the clouds of the same names")
-      ->required()
-      ->type_name("PREDICTED TRUTH...");
-  command
-      ->add_option("--objects-from", options->objects_from,
-                   "of the true labels these and larger ones are objects (default: 1, all; 20 with --merge-tens)")
-      ->check(CLI::Range(std::uint32_t{1}, kUnlabelled - 1))
-      ->type_name("LABEL");
+  add_value(*command, "clouds", options->paths, "PREDICTED TRUTH...",
+            "clouds with a field label each, of the same points; two folders: the clouds of the same names")
+      ->required();
+  add_value(*command, "--objects-from", options->objects_from, "LABEL",
+            "of the true labels these and larger ones are objects (default: 1, all; 20 with --merge-tens)")
+      ->check(CLI::Range(std::uint32_t{1}, kUnlabelled - 1));
   command->add_flag("--merge-tens", options->merge_tens,
                     "the true labels are mOSD's: 1 to 9 are the table, each ten from 20 on are parts of one object");
   add_truth_options(*command, options->truth);
-  command
-      ->add_option("--radius", options->truth.radius_m,
-                   "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)")
-      ->type_name("METRES");
+  add_value(*command, "--radius", options->truth.radius_m, "METRES",
+            "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)");
   command->callback([options, &global, &action] {
     check_score_options(*options);
     action = [options, &global] { return run_score(*options, global); };

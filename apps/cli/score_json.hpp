@@ -10,7 +10,6 @@
 
 namespace saccade::cli {
 
-[[nodiscard]] nlohmann::json number_or_null(const std::optional<double>& number);
 /// Three decimals, or a dash.
 [[nodiscard]] std::string fixed_or_dash(const std::optional<double>& number);
 

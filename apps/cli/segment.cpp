@@ -61,12 +61,13 @@ Status find_by_supervoxels(const SegmentOptions& options, const SegmentInput& in
   SACCADE_CHECK(stop_if_interrupted());
   bar.update("segments", 0, 0);
   SupervoxelResult pruned;
-  if (options.method == kSvLccp) {
+  if (options.method == SegmentMethod::sv_lccp) {
     pruned = findings.supervoxels;
     prune_by_color(pruned, options.max_color_difference);
   }
-  SACCADE_TRY(LccpResult found,
-              segment_by_convexity(options.method == kSvLccp ? pruned : findings.supervoxels, options.lccp));
+  SACCADE_TRY(
+      LccpResult found,
+      segment_by_convexity(options.method == SegmentMethod::sv_lccp ? pruned : findings.supervoxels, options.lccp));
   findings.labels = std::move(found.labels);
   findings.segments = found.segments;
   findings.lccp_ms = clock.lap_ms();
@@ -151,8 +152,7 @@ Result<int> run_segment(const SegmentOptions& options, const GlobalOptions& glob
   timings_ms["write"] = clock.lap_ms();
   timings_ms["total"] = total.elapsed_ms();
   bar.finish();
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("segment", global, executor, timings_ms, segment_json(options, input, findings))));
+  SACCADE_CHECK(write_result("segment", global, executor, timings_ms, segment_json(options, input, findings)));
   if (findings.points == 0) {
     const bool empty = input.cloud.positions_m.empty();
     print_error(

@@ -11,6 +11,7 @@
 #include "command.hpp"
 #include "json_output.hpp"
 #include "saccade/attention/saliency.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/segment/flood_fill.hpp"
@@ -23,13 +24,14 @@ namespace saccade::cli {
 
 class ProgressBar;
 
-inline constexpr const char* kLccp{"lccp"};
-inline constexpr const char* kSvLccp{"sv-lccp"};        ///< the thesis' of surfels, with colours
-inline constexpr const char* kFloodFill{"flood-fill"};  ///< as well
+/// How a cloud is cut into segments; sv_lccp and flood_fill as the thesis does it with surfels.
+enum class SegmentMethod { lccp, sv_lccp, flood_fill };
+inline constexpr auto kSegmentMethodNames = make_names<SegmentMethod>(
+    {{SegmentMethod::lccp, "lccp"}, {SegmentMethod::sv_lccp, "sv-lccp"}, {SegmentMethod::flood_fill, "flood-fill"}});
 
 struct SegmentOptions {
   std::filesystem::path input;  ///< a cloud, or a map
-  std::string method{kLccp};
+  SegmentMethod method{SegmentMethod::lccp};
   std::filesystem::path out;      ///< empty: no labelled cloud
   std::filesystem::path picture;  ///< empty: none
   SupervoxelConfig supervoxels;
@@ -45,7 +47,7 @@ struct SegmentOptions {
   MeasureConfig measures;
   SaliencyOptions saliency;
 
-  [[nodiscard]] bool fills() const { return method == kFloodFill; }
+  [[nodiscard]] bool fills() const { return method == SegmentMethod::flood_fill; }
 };
 
 /// What there is to segment: a cloud with all its fields, or the surface of a map.

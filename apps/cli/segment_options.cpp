@@ -3,6 +3,7 @@
 #include <cmath>
 #include <sstream>
 
+#include "add_value.hpp"
 #include "options.hpp"
 #include "saccade/core/angle.hpp"
 #include "segment.hpp"
@@ -18,41 +19,22 @@ std::string brief(double number) {
 
 void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
   SupervoxelConfig& supervoxels = options.supervoxels;
-  command.add_option("--voxel-size", supervoxels.voxels.voxel_size_m, "edge of the voxels, metres (sv-lccp: 0.01)")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      .add_option("--seed-size", supervoxels.seed_spacing_m, "between the seeds of supervoxels, metres (sv-lccp: 0.05)")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      .add_option("--spatial-weight", supervoxels.spatial_weight,
-                  "of the distance from a supervoxel's centre (sv-lccp: 0.1)")
-      ->type_name("WEIGHT")
-      ->capture_default_str();
-  command
-      .add_option("--normal-weight", supervoxels.normal_weight,
-                  "of the angle between normals (sv-lccp, flood-fill: 0.5)")
-      ->type_name("WEIGHT")
-      ->capture_default_str();
-  command
-      .add_option("--color-weight", supervoxels.color_weight,
-                  "of the difference of colours, where there are any (sv-lccp, flood-fill: 1)")
-      ->type_name("WEIGHT")
-      ->capture_default_str();
-  command
-      .add_option("--rounds", supervoxels.rounds,
-                  "of growth; before each but the first, supervoxels move to the means of their voxels (sv-lccp: 5)")
-      ->type_name("COUNT")
-      ->capture_default_str();
+  add_value(command, "--voxel-size", supervoxels.voxels.voxel_size_m, "METRES",
+            "edge of the voxels, metres (sv-lccp: 0.01)");
+  add_value(command, "--seed-size", supervoxels.seed_spacing_m, "METRES",
+            "between the seeds of supervoxels, metres (sv-lccp: 0.05)");
+  add_value(command, "--spatial-weight", supervoxels.spatial_weight, "WEIGHT",
+            "of the distance from a supervoxel's centre (sv-lccp: 0.1)");
+  add_value(command, "--normal-weight", supervoxels.normal_weight, "WEIGHT",
+            "of the angle between normals (sv-lccp, flood-fill: 0.5)");
+  add_value(command, "--color-weight", supervoxels.color_weight, "WEIGHT",
+            "of the difference of colours, where there are any (sv-lccp, flood-fill: 1)");
+  add_value(command, "--rounds", supervoxels.rounds, "COUNT",
+            "of growth; before each but the first, supervoxels move to the means of their voxels (sv-lccp: 5)");
   command.add_flag("--transform,!--no-transform", supervoxels.voxels.single_camera,
                    "the cloud is one camera's, in its frame (z forwards): voxels grow with depth");
-  command
-      .add_option_function<std::string>(
-          "--viewpoint",
-          [&options](const std::string& text) { options.viewpoint_m = parse_point("--viewpoint", text); },
-          "estimated normals turn towards it (default: the viewpoint in a PCD file, else the origin)")
-      ->type_name("X,Y,Z");
+  add_point(command, "--viewpoint", options.viewpoint_m,
+            "estimated normals turn towards it (default: the viewpoint in a PCD file, else the origin)");
 }
 
 void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
@@ -61,39 +43,27 @@ void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
           "--concavity", [&lccp](const double& angle_deg) { lccp.concavity_tolerance_rad = angle_deg * 1_deg; },
           "surfaces that bend inwards by less count as convex, degrees (default: 10)")
       ->type_name("DEGREES");
-  command.add_option("--smoothness", lccp.smoothness, "step between supervoxels that is allowed, in voxels")
-      ->type_name("VOXELS")
-      ->capture_default_str();
+  add_value(command, "--smoothness", lccp.smoothness, "VOXELS", "step between supervoxels that is allowed, in voxels");
   command.add_flag("--sanity,!--no-sanity", lccp.sanity, "keep apart what touches at a corner only (default: on)");
   command.add_flag("--extended,!--no-extended", lccp.extended_convexity,
                    "a convex edge needs a third supervoxel with convex edges to both (default: off)");
-  command.add_option("--min-size", lccp.min_supervoxels, "segments of fewer supervoxels join a neighbour")
-      ->check(check_whole_number)
-      ->type_name("N")
-      ->capture_default_str();
+  add_value(command, "--min-size", lccp.min_supervoxels, "N", "segments of fewer supervoxels join a neighbour")
+      ->check(check_whole_number);
 }
 
 void add_surfel_options(CLI::App& command, SegmentOptions& options) {
-  command
-      .add_option("--threshold", options.threshold,
-                  "flood-fill: surfels that touch and differ by less are of one segment (default: " +
-                      brief(FloodFillConfig{}.threshold) +
-                      "); sv-lccp: supervoxels whose colours differ by more are kept apart (default: " +
-                      brief(SvLccpConfig{}.max_color_difference) + ")")
-      ->type_name("DIFFERENCE");
-  command
-      .add_option("--radius", options.truth.radius_m,
-                  "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)")
-      ->type_name("METRES");
-  command
-      .add_option("--list-from", options.list_from,
-                  "points of the smallest segment in the JSON result (default: 1; flood-fill: 10)")
-      ->check(check_whole_number)
-      ->type_name("N");
-  command
-      .add_option("--curve", options.curve_truth,
-                  "a cloud of the same points with true labels: flood-fill and sv-lccp are scored at many thresholds")
-      ->type_name("TRUTH");
+  add_value(command, "--threshold", options.threshold, "DIFFERENCE",
+            "flood-fill: surfels that touch and differ by less are of one segment (default: " +
+                brief(FloodFillConfig{}.threshold) +
+                "); sv-lccp: supervoxels whose colours differ by more are kept apart (default: " +
+                brief(SvLccpConfig{}.max_color_difference) + ")");
+  add_value(command, "--radius", options.truth.radius_m, "METRES",
+            "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)");
+  add_value(command, "--list-from", options.list_from, "N",
+            "points of the smallest segment in the JSON result (default: 1; flood-fill: 10)")
+      ->check(check_whole_number);
+  add_value(command, "--curve", options.curve_truth, "TRUTH",
+            "a cloud of the same points with true labels: flood-fill and sv-lccp are scored at many thresholds");
   command
       .add_option_function<std::string>(
           "--thresholds",
@@ -111,21 +81,22 @@ std::vector<double> default_thresholds() {
   return thresholds;
 }
 
-void refuse(const CLI::App& command, const std::string& method, std::initializer_list<const char*> names) {
+void refuse(const CLI::App& command, SegmentMethod method, std::initializer_list<const char*> names) {
   for (const char* name : names) {
-    if (command.count(name) > 0) usage_error(name, "has no meaning with --method " + method);
+    if (command.count(name) == 0) continue;
+    usage_error(name, "has no meaning with --method " + std::string{kSegmentMethodNames.of(method)});
   }
 }
 
 /// What a method is without, and its own defaults for what was not given.
 void apply_method(const CLI::App& command, SegmentOptions& options) {
-  if (options.method == kLccp) refuse(command, kLccp, {"--threshold", "--radius", "--curve"});
+  if (options.method == SegmentMethod::lccp) refuse(command, options.method, {"--threshold", "--radius", "--curve"});
   if (options.curve_truth.empty()) {
     for (const char* name : {"--thresholds", "--tolerance", "--no-split"}) {
       if (command.count(name) > 0) usage_error(name, "needs --curve TRUTH");
     }
   }
-  if (options.method == kSvLccp) {
+  if (options.method == SegmentMethod::sv_lccp) {
     if (command.count("--radius") > 0 && options.curve_truth.empty()) usage_error("--radius", "needs --curve TRUTH");
     const SupervoxelConfig defaults = SvLccpConfig{}.supervoxels;
     SupervoxelConfig& own = options.supervoxels;
@@ -138,7 +109,7 @@ void apply_method(const CLI::App& command, SegmentOptions& options) {
     options.max_color_difference = options.threshold.value_or(options.max_color_difference);
   }
   if (options.fills()) {
-    refuse(command, kFloodFill,
+    refuse(command, options.method,
            {"--voxel-size", "--seed-size", "--spatial-weight", "--rounds", "--concavity", "--smoothness", "--sanity",
             "--extended", "--min-size"});
     FloodFillConfig& fill = options.flood_fill;
@@ -165,36 +136,24 @@ void check_extensions(const SegmentOptions& options) {
 }  // namespace
 
 void add_segment_options(CLI::App& command, SegmentOptions& options) {
-  command.add_option("input", options.input, "a point cloud (PCD, PLY, text, KITTI .bin), or a saved map (.sacmap)")
-      ->required()
-      ->type_name("CLOUD|MAP");
-  command
-      .add_option(
-          "--method", options.method,
-          "how: lccp, supervoxels joined where surfaces bend outwards; sv-lccp, the same kept apart by colours; "
-          "flood-fill, surfels that touch and look alike")
-      ->type_name("NAME")
-      ->capture_default_str();
-  command
-      .add_option("--out", options.out,
-                  "the cloud with a field label more: 1, 2, ... by segment, 0 for no point; PCD, or PLY by its name")
-      ->type_name("FILE");
-  command.add_option("--picture", options.picture, "PNG of the segments and of their saliency")->type_name("FILE");
+  add_value(command, "input", options.input, "CLOUD|MAP",
+            "a point cloud (PCD, PLY, text, KITTI .bin), or a saved map (.sacmap)")
+      ->required();
+  add_choice(command, "--method", options.method, kSegmentMethodNames,
+             "how: lccp, supervoxels joined where surfaces bend outwards; sv-lccp, the same kept apart by colours; "
+             "flood-fill, surfels that touch and look alike");
+  add_value(command, "--out", options.out, "FILE",
+            "the cloud with a field label more: 1, 2, ... by segment, 0 for no point; PCD, or PLY by its name");
+  add_value(command, "--picture", options.picture, "FILE", "PNG of the segments and of their saliency");
   add_supervoxel_options(command, options);
   add_lccp_options(command, options.lccp);
   add_surfel_options(command, options);
   add_saliency_options(command, options.saliency);
-  command
-      .add_option("--isolation-distance", options.measures.isolation_distance_m,
-                  "a point is isolated where no other segment is so near, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--isolation-distance", options.measures.isolation_distance_m, "METRES",
+            "a point is isolated where no other segment is so near, metres");
 }
 
 void check_segment_options(const CLI::App& command, SegmentOptions& options) {
-  if (options.method != kLccp && options.method != kSvLccp && options.method != kFloodFill) {
-    usage_error("--method", "must be lccp, sv-lccp or flood-fill, not '" + options.method + "'");
-  }
   apply_method(command, options);
   check_extensions(options);
   require_positive(options.supervoxels.voxels.voxel_size_m, "--voxel-size");

@@ -38,7 +38,7 @@ json segments_json(const SegmentOptions& options, const SegmentFindings& finding
 json filling_json(const SegmentOptions& options) {
   return {{"threshold", options.flood_fill.threshold},
           {"weights", {{"normal", options.flood_fill.normal_weight}, {"color", options.flood_fill.color_weight}}},
-          {"radius_m", number_or_null(options.truth.radius_m)},
+          {"radius_m", optional_json(options.truth.radius_m)},
           {"saliency", options.saliency.names},
           {"isolation_distance_m", options.measures.isolation_distance_m}};
 }
@@ -61,7 +61,7 @@ json parameters_json(const SegmentOptions& options) {
                   {"min_size", options.lccp.min_supervoxels},
                   {"saliency", options.saliency.names},
                   {"isolation_distance_m", options.measures.isolation_distance_m}};
-  if (options.method == kSvLccp) parameters["threshold"] = options.max_color_difference;
+  if (options.method == SegmentMethod::sv_lccp) parameters["threshold"] = options.max_color_difference;
   return parameters;
 }
 
@@ -129,7 +129,7 @@ json segment_json(const SegmentOptions& options, const SegmentInput& input, cons
   const bool has_normals = options.fills() ? input.normals != Origin::estimate : !input.cloud.normals.empty();
   json result{{"input", options.input.string()},
               {"kind", input.is_map ? "map" : "cloud"},
-              {"method", options.method},
+              {"method", kSegmentMethodNames.of(options.method)},
               {"parameters", parameters_json(options)},
               {"rows", input.cloud.positions_m.size()},
               {"points", findings.points},

@@ -6,6 +6,7 @@
 #include <array>
 #include <sstream>
 
+#include "add_value.hpp"
 #include "options.hpp"
 
 namespace saccade::cli {
@@ -25,13 +26,7 @@ constexpr std::array<NamedHeuristic, 7> kHeuristics{
      {"height", [](const SaliencyOptions& options) { return height_above_support(options.height); }},
      {"region", [](const SaliencyOptions& options) { return inside_region(options.region.value()); }}}};
 
-std::string known_names() {
-  std::string names;
-  for (const NamedHeuristic& heuristic : kHeuristics) {
-    names += (names.empty() ? "" : ", ") + std::string{heuristic.name};
-  }
-  return names;
-}
+std::string known_names() { return joined(kHeuristics, ", ", &NamedHeuristic::name); }
 
 /// "name" or "name=weight".
 BlendPart parse_part(const std::string& text, const SaliencyOptions& options) {
@@ -69,19 +64,12 @@ bool has_part(const std::vector<BlendPart>& parts, const char* name) {
 }  // namespace
 
 void add_saliency_options(CLI::App& command, SaliencyOptions& options) {
-  command
-      .add_option("--saliency", options.names,
-                  "what draws attention: " + known_names() + "; several with weights are blended, as size=2,height=1")
-      ->type_name("NAME[=WEIGHT],...")
-      ->capture_default_str();
-  command.add_option("--size", options.size.size_m, "saliency size: longest size of what is looked for, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      .add_option_function<std::string>(
-          "--up", [&options](const std::string& text) { options.up = parse_point("--up", text); },
-          "saliency height, and pictures: which way is up (default: 0,0,1; 0,-1,0 with --transform)")
-      ->type_name("X,Y,Z");
+  add_value(command, "--saliency", options.names, "NAME[=WEIGHT],...",
+            "what draws attention: " + known_names() + "; several with weights are blended, as size=2,height=1");
+  add_value(command, "--size", options.size.size_m, "METRES",
+            "saliency size: longest size of what is looked for, metres");
+  add_point(command, "--up", options.up,
+            "saliency height, and pictures: which way is up (default: 0,0,1; 0,-1,0 with --transform)");
   command
       .add_option_function<std::string>(
           "--box",

@@ -17,6 +17,7 @@
 #include <string_view>
 #include <thread>
 
+#include "add_value.hpp"
 #include "exit_status.hpp"
 #include "interrupt.hpp"
 
@@ -113,27 +114,19 @@ void add_serve_options(CLI::App& command, ServeOptions& options) {
       if (options.given.empty()) options.given = name;
     };
   };
-  command
-      .add_option("--listen", options.address,
-                  "address that the page is served on; 0.0.0.0: all of this machine's. The token is always needed, and "
-                  "travels unencrypted: beyond this machine, prefer ssh -L")
-      ->each(given("--listen"))
-      ->type_name("ADDRESS")
-      ->capture_default_str();
-  command.add_option("--port", options.port, "port of the page; 0: any that is free")
+  add_value(command, "--listen", options.address, "ADDRESS",
+            "address that the page is served on; 0.0.0.0: all of this machine's. The token is always needed, and "
+            "travels unencrypted: beyond this machine, prefer ssh -L")
+      ->each(given("--listen"));
+  add_value(command, "--port", options.port, "N", "port of the page; 0: any that is free")
       ->check(CLI::Range(0, 65535))
-      ->each(given("--port"))
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      .add_option("--token-file", options.token_file,
-                  "the page's token; made (for you alone to read) where it is not there. With --port, the page keeps "
-                  "its address")
-      ->each(given("--token-file"))
-      ->type_name("FILE");
-  command
-      .add_option("--host", options.host_names,
-                  "name by which browsers may reach the page, besides localhost and the address; may be given again")
+      ->each(given("--port"));
+  add_value(
+      command, "--token-file", options.token_file, "FILE",
+      "the page's token; made (for you alone to read) where it is not there. With --port, the page keeps its address")
+      ->each(given("--token-file"));
+  add_value(command, "--host", options.host_names, "NAME",
+            "name by which browsers may reach the page, besides localhost and the address; may be given again")
       ->check([](const std::string& name) {
         server::ServerConfig config;
         config.token = "0123456789abcdef";
@@ -141,8 +134,7 @@ void add_serve_options(CLI::App& command, ServeOptions& options) {
         return std::string{config.validate() ? "" : "is no name of a machine"};
       })
       ->each(given("--host"))
-      ->allow_extra_args(false)
-      ->type_name("NAME");
+      ->allow_extra_args(false);
   command.add_flag("--no-browser", options.no_browser, "only say where the page is")->each(given("--no-browser"));
 }
 

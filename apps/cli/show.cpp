@@ -5,6 +5,7 @@
 #include <iostream>
 #include <memory>
 
+#include "add_value.hpp"
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
 #include "serve.hpp"
@@ -33,8 +34,7 @@ Result<int> run_show(const ShowOptions& options, const GlobalOptions& global) {
   SACCADE_CHECK(check_json_output(global));
   SACCADE_TRY(const server::SceneDocument document, server::open_document(options.subject, executor));
   SACCADE_TRY(std::unique_ptr<server::HttpServer> server, listen(options.serve));
-  SACCADE_CHECK(write_json_output(
-      global, json_envelope("show", global, executor, {{"open", stopwatch.elapsed_ms()}}, summary_json(document))));
+  SACCADE_CHECK(write_result("show", global, executor, {{"open", stopwatch.elapsed_ms()}}, summary_json(document)));
   if (!global.json_to_stdout() && !global.quiet) print_document(document);
   const auto post = [&server](std::function<void()> work) { server->post(std::move(work)); };
   server::ViewerService service{*server, {SACCADE_VERSION, post}, document};
@@ -48,12 +48,10 @@ Result<int> run_show(const ShowOptions& options, const GlobalOptions& global) {
 void add_show(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("show", "shows a run, map, mesh or cloud in the browser");
   auto options = std::make_shared<ShowOptions>();
-  command
-      ->add_option("subject", options->subject,
-                   "the folder of a run, a map (.sacmap), a mesh (.ply, .obj, .stl, .glb) or a cloud (.pcd, .ply, "
-                   ".xyz, .txt, .csv, .pts, .bin)")
-      ->required()
-      ->type_name("RUN|MAP|MESH|CLOUD");
+  add_value(*command, "subject", options->subject, "RUN|MAP|MESH|CLOUD",
+            "the folder of a run, a map (.sacmap), a mesh (.ply, .obj, .stl, .glb) or a cloud (.pcd, .ply, .xyz, .txt, "
+            ".csv, .pts, .bin)")
+      ->required();
   add_serve_options(*command, options->serve);
   command->callback(
       [options, &global, &action] { action = [options, &global] { return run_show(*options, global); }; });

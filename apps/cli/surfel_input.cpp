@@ -3,6 +3,7 @@
 
 #include <CLI/CLI.hpp>
 
+#include "add_value.hpp"
 #include "options.hpp"
 #include "saccade/cloud/nearest_neighbours.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
@@ -13,15 +14,6 @@ namespace {
 constexpr std::size_t kNearest{10};
 
 }  // namespace
-
-const char* to_string(Origin origin) {
-  switch (origin) {
-    case Origin::file: return "given";
-    case Origin::option: return "option";
-    case Origin::estimate: return "estimated";
-  }
-  return "";
-}
 
 Origin complete_radii(PointCloud& cloud, std::optional<double> radius_m, const Executor& executor) {
   if (radius_m) {
@@ -51,11 +43,8 @@ Origin complete_normals(PointCloud& cloud, const Eigen::Vector3d& viewpoint_m, c
 }
 
 void add_truth_options(CLI::App& command, TruthOptions& options) {
-  command
-      .add_option("--tolerance", options.config.matching.tolerance_m,
-                  "boundaries match within this distance, T_eval, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--tolerance", options.config.matching.tolerance_m, "METRES",
+            "boundaries match within this distance, T_eval, metres");
   command.add_flag("!--no-split", options.config.split,
                    "true labels whose surfels do not all touch stay one (default: they are split)");
 }

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/io/files/column_table.hpp"
 #include "saccade/segment/segmentation_truth.hpp"
 
@@ -18,7 +19,9 @@ namespace saccade::cli {
 
 /// Where a cloud's radii or normals come from, for the result.
 enum class Origin { file, option, estimate };
-[[nodiscard]] const char* to_string(Origin origin);
+inline constexpr auto kOriginNames =
+    make_names<Origin>({{Origin::file, "given"}, {Origin::option, "option"}, {Origin::estimate, "estimated"}});
+[[nodiscard]] constexpr std::string_view to_string(Origin origin) { return kOriginNames.of(origin); }
 
 /// The radius that was asked for, or those of the file, or estimates.
 Origin complete_radii(PointCloud& cloud, std::optional<double> radius_m, const Executor& executor);

@@ -53,7 +53,7 @@ struct SurfelsRun {
 /// Fuses a frame whose pose is known.
 Status add_frame(SurfelsRun& run, Frame& frame) {
   const PinholeCamera& camera = run.frames.source->camera();
-  SACCADE_TRY(const SurfelFusionReport fused, run.options.compensated()
+  SACCADE_TRY(const SurfelFusionReport fused, run.options.exposure_compensation
                                                   ? run.fusion.add_frame(frame, camera, run.exposure, run.executor)
                                                   : run.fusion.add_frame(frame, camera, run.executor));
   if (fused.exposure) run.exposures.push_back(*fused.exposure);
@@ -111,7 +111,7 @@ Status write_picture(const SurfelsRun& run, std::span<const SurfelMode> winners)
     const SurfelPoints points = surfel_points(run.fusion.map(), modes, run.min_weight());
     sheet.panels.push_back({draw_surfels(points, view, run.executor), title, {}, {}, {}});
   };
-  if (run.options.mode_filter != "on") add("averages", {});
+  if (run.options.mode_filter != ModeFilterUse::on) add("averages", {});
   if (run.options.filtered()) add("mode filter", winners);
   return write_png(run.options.picture, compose(sheet));
 }
@@ -147,7 +147,7 @@ Result<int> nothing_written(const SurfelsRun& run) {
 
 /// Gains relative to the first frame; null without compensation.
 json exposure_json(const SurfelsRun& run) {
-  if (!run.options.compensated()) return nullptr;
+  if (!run.options.exposure_compensation) return nullptr;
   const auto [least, most] =
       std::minmax_element(run.exposures.begin(), run.exposures.end(),
                           [](const ExposureReport& a, const ExposureReport& b) { return a.gain < b.gain; });
@@ -162,10 +162,11 @@ json exposure_json(const SurfelsRun& run) {
 json result_json(const SurfelsRun& run) {
   const auto median = [](const std::vector<double>& ms) -> json { return {{"median", median(ms)}}; };
   const std::filesystem::path average = run.options.average_out();
+  const SurfelPlaces places = run.options.places_of_modes() ? SurfelPlaces::modes : SurfelPlaces::average;
   return {{"folder", run.options.frames.string()},
           {"out", run.options.out.string()},
           {"average_out", average.empty() ? json(nullptr) : json(average.string())},
-          {"mode_filter", run.options.mode_filter},
+          {"mode_filter", kModeFilterUseNames.of(run.options.mode_filter)},
           {"tracking", to_string(run.frames.tracking)},
           {"interrupted", interrupted()},
           {"frames", run.record.fused.size()},
@@ -182,8 +183,8 @@ json result_json(const SurfelsRun& run) {
            {{"map", double(run.fusion.map().memory_bytes()) / double(run.fusion.map().size())},
             {"modes", double(run.filter.memory_bytes()) / double(run.fusion.map().size())}}},
           {"image_sigma", run.options.fusion.image_sigma},
-          {"choice", run.options.filtered() ? json(run.options.choice) : json(nullptr)},
-          {"places", run.options.places_of_modes() ? "modes" : "average"},
+          {"choice", run.options.filtered() ? json(kModeChoiceNames.of(run.options.choice)) : json(nullptr)},
+          {"places", kSurfelPlacesNames.of(places)},
           {"exposure", exposure_json(run)},
           {"ms_per_frame",
            {{"associate", median(run.times.associate)},
@@ -214,7 +215,7 @@ void print_summary(const SurfelsRun& run) {
                                  fixed(exposure["max"].get<double>(), 2) + " of the first frame's");
   }
   summary.line("cloud", run.options.out.string());
-  if (run.options.mode_filter == "both") summary.line("average", run.options.average_out().string());
+  if (run.options.mode_filter == ModeFilterUse::both) summary.line("average", run.options.average_out().string());
   if (!run.options.picture.empty()) summary.line("picture", run.options.picture.string());
 }
 
@@ -243,7 +244,8 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
   SACCADE_CHECK(check_color(run));
   const std::filesystem::path json_file = global.json_to_stdout() ? "" : global.json;
   SACCADE_CHECK(check_output(options.out, "--json", {json_file}));
-  if (options.mode_filter == "both") SACCADE_CHECK(check_output(options.average_out(), "--json", {json_file}));
+  if (options.mode_filter == ModeFilterUse::both)
+    SACCADE_CHECK(check_output(options.average_out(), "--json", {json_file}));
   if (!options.picture.empty()) SACCADE_CHECK(check_output(options.picture, "--picture", {options.out, json_file}));
   SACCADE_CHECK(check_beside_frames(options, options.picture, "--picture"));
   SACCADE_CHECK(check_json_output(global));
@@ -257,8 +259,7 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
   run.timings_ms["write"] = stopwatch.lap_ms();
   run.timings_ms["total"] = total.elapsed_ms();
   run.progress.finish();
-  SACCADE_CHECK(
-      write_json_output(global, json_envelope("surfels", global, run.executor, run.timings_ms, result_json(run))));
+  SACCADE_CHECK(write_result("surfels", global, run.executor, run.timings_ms, result_json(run)));
   if (!global.json_to_stdout()) print_summary(run);
   warn_of_left_out("surfels", run.record);
   if (!interrupted()) return static_cast<int>(ExitStatus::done);

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "surfels_options.hpp"
 
+#include "add_value.hpp"
+
 #include <CLI/CLI.hpp>
 #include <cmath>
-#include <initializer_list>
-#include <string_view>
 
 namespace saccade::cli {
 namespace {
-
-void require_word(const char* option, const std::string& given, std::initializer_list<std::string_view> words) {
-  if (std::find(words.begin(), words.end(), given) != words.end()) return;
-  std::string known;
-  for (const std::string_view word : words) known.append(known.empty() ? "" : "|").append(word);
-  usage_error(option, "must be one of " + known + ", not '" + given + "'");
-}
 
 /// What a run without the mode filter, or with surfels at their averages, does not look at.
 void check_options_have_effect(const CLI::App& command, const SurfelsOptions& options) {
@@ -32,70 +25,38 @@ void check_options_have_effect(const CLI::App& command, const SurfelsOptions& op
 
 void add_surfels_options(CLI::App& command, SurfelsOptions& options) {
   add_frame_options(command, options);
-  command
-      .add_option("--out", options.out,
-                  "surfels with normals, radius, colour and confidence: PLY, or PCD for a name that ends in .pcd")
-      ->required()
-      ->type_name("CLOUD");
-  command
-      .add_option("--mode-filter", options.mode_filter,
-                  "on: of each surfel's colours one that was seen, not a blend; off: averages; both: averages, too, "
-                  "in NAME.average.EXT beside --out")
-      ->type_name("on|off|both")
-      ->capture_default_str();
-  command
-      .add_option("--image-sigma", options.fusion.image_sigma,
-                  "how fast pixels lose weight away from the image's centre: smaller for strong vignetting")
-      ->type_name("SIGMA")
-      ->capture_default_str();
-  command
-      .add_option("--exposure-compensation", options.exposure_compensation,
-                  "on: for cameras with automatic gain or exposure: colours of each frame are brought to those of the "
-                  "first; vignetting must be corrected")
-      ->type_name("on|off")
-      ->capture_default_str();
-  command.add_option("--max-modes", options.filter.max_modes, "colours that a surfel remembers, 1 to 32")
-      ->type_name("N")
-      ->capture_default_str();
-  command
-      .add_option(
-          "--choice", options.choice,
-          "what a surfel is in the end: the colour that is densest in its place more than around, where its own "
-          "colours are densest, or the heaviest one (thesis, eq. 4.11)")
-      ->type_name("sharpened|densest|heaviest")
-      ->capture_default_str();
-  command
-      .add_option(
-          "--places", options.places,
-          "where a surfel is: at the average of what was measured, or where its modes are, with depths guided by "
-          "colour as in the thesis (default: average; with --choice heaviest modes)")
-      ->type_name("average|modes");
-  command
-      .add_option(
-          "--max-depth-change", options.filter.max_depth_change_m,
-          "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: "
-          "all move, as in the thesis")
-      ->type_name("METRES")
-      ->capture_default_str();
-  command
-      .add_option("--min-confidence", options.min_confidence,
-                  "surfels that were seen less, by the sum of their observations' weights, are not written: often they "
-                  "are no surfaces; 0: all are (default: 10, or a twentieth of the number of frames if that is less)")
-      ->type_name("W");
-  command
-      .add_option("--picture", options.picture,
-                  "PNG of the surfels as the frame in the middle saw them; with --mode-filter both side by side")
-      ->type_name("FILE");
+  add_value(command, "--out", options.out, "CLOUD",
+            "surfels with normals, radius, colour and confidence: PLY, or PCD for a name that ends in .pcd")
+      ->required();
+  add_choice(command, "--mode-filter", options.mode_filter, kModeFilterUseNames,
+             "on: of each surfel's colours one that was seen, not a blend; off: averages; both: averages, too, in "
+             "NAME.average.EXT beside --out");
+  add_value(command, "--image-sigma", options.fusion.image_sigma, "SIGMA",
+            "how fast pixels lose weight away from the image's centre: smaller for strong vignetting");
+  add_choice(command, "--exposure-compensation", options.exposure_compensation, kOnOff,
+             "on: for cameras with automatic gain or exposure: colours of each frame are brought to those of the "
+             "first; vignetting must be corrected");
+  add_value(command, "--max-modes", options.filter.max_modes, "N", "colours that a surfel remembers, 1 to 32");
+  add_choice(command, "--choice", options.choice, kModeChoiceNames,
+             "what a surfel is in the end: the colour that is densest in its place more than around, where its own "
+             "colours are densest, or the heaviest one (thesis, eq. 4.11)");
+  add_choice(command, "--places", options.places, kSurfelPlacesNames,
+             "where a surfel is: at the average of what was measured, or where its modes are, with depths guided by "
+             "colour as in the thesis (default: average; with --choice heaviest modes)");
+  add_value(command, "--max-depth-change", options.filter.max_depth_change_m, "METRES",
+            "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: all "
+            "move, as in the thesis");
+  add_value(command, "--min-confidence", options.min_confidence, "W",
+            "surfels that were seen less, by the sum of their observations' weights, are not written: often they are "
+            "no surfaces; 0: all are (default: 10, or a twentieth of the number of frames if that is less)");
+  add_value(command, "--picture", options.picture, "FILE",
+            "PNG of the surfels as the frame in the middle saw them; with --mode-filter both side by side");
 }
 
 void check_surfels_options(const CLI::App& command, SurfelsOptions& options) {
   check_frame_options(options);
   const std::string extension = options.out.extension().string();
   if (extension != ".ply" && extension != ".pcd") usage_error("--out", "must end in .ply or .pcd");
-  require_word("--mode-filter", options.mode_filter, {"on", "off", "both"});
-  require_word("--exposure-compensation", options.exposure_compensation, {"on", "off"});
-  require_word("--choice", options.choice, {"sharpened", "densest", "heaviest"});
-  if (!options.places.empty()) require_word("--places", options.places, {"average", "modes"});
   check_options_have_effect(command, options);
   if (!options.picture.empty() && options.picture.extension() != ".png") {
     usage_error("--picture", "needs a name that ends in .png, not '" + options.picture.string() + "'");
@@ -106,8 +67,8 @@ void check_surfels_options(const CLI::App& command, SurfelsOptions& options) {
   require_ok(options.fusion.validate(), "--image-sigma");
   if (!(options.filter.max_depth_change_m > 0.0)) usage_error("--max-depth-change", "must be positive");
   options.filter.enhance_depth = options.places_of_modes();
-  if (options.choice != "sharpened") options.filter.sharpening.strength = 0.0;
-  if (options.choice == "heaviest") options.filter.choice_sigmas = 0.0;
+  if (options.choice != ModeChoice::sharpened) options.filter.sharpening.strength = 0.0;
+  if (options.choice == ModeChoice::heaviest) options.filter.choice_sigmas = 0.0;
   require_ok(options.filter.validate(), "--max-modes");
 }
 

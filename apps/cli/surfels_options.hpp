@@ -8,6 +8,7 @@
 #include <string>
 
 #include "frame_options.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
 
@@ -17,25 +18,41 @@ class App;
 
 namespace saccade::cli {
 
+/// What is written: the colours that the mode filter chose, averages, or both.
+enum class ModeFilterUse { on, off, both };
+inline constexpr auto kModeFilterUseNames =
+    make_names<ModeFilterUse>({{ModeFilterUse::on, "on"}, {ModeFilterUse::off, "off"}, {ModeFilterUse::both, "both"}});
+
+/// Which of its colours a surfel has in the end.
+enum class ModeChoice { sharpened, densest, heaviest };
+inline constexpr auto kModeChoiceNames = make_names<ModeChoice>(
+    {{ModeChoice::sharpened, "sharpened"}, {ModeChoice::densest, "densest"}, {ModeChoice::heaviest, "heaviest"}});
+
+/// Where a surfel is.
+enum class SurfelPlaces { average, modes };
+inline constexpr auto kSurfelPlacesNames =
+    make_names<SurfelPlaces>({{SurfelPlaces::average, "average"}, {SurfelPlaces::modes, "modes"}});
+
 struct SurfelsOptions : FrameOptions {
   std::filesystem::path out;
   std::filesystem::path picture;
-  std::string mode_filter{"on"};
+  ModeFilterUse mode_filter{ModeFilterUse::on};
   std::optional<double> min_confidence;  ///< default: min_weight
-  std::string exposure_compensation{"off"};
-  std::string choice{"sharpened"};
-  std::string places;  ///< average, modes, or empty: as the choice needs it
+  bool exposure_compensation{false};
+  ModeChoice choice{ModeChoice::sharpened};
+  std::optional<SurfelPlaces> places;  ///< default: as the choice needs it
   SurfelFusionConfig fusion;
   ModeFilterConfig filter;
 
-  [[nodiscard]] bool filtered() const { return mode_filter != "off"; }
+  [[nodiscard]] bool filtered() const { return mode_filter != ModeFilterUse::off; }
   /// Guided depths go into the modes' places alone.
-  [[nodiscard]] bool places_of_modes() const { return places.empty() ? choice == "heaviest" : places == "modes"; }
-  [[nodiscard]] bool compensated() const { return exposure_compensation == "on"; }
+  [[nodiscard]] bool places_of_modes() const {
+    return places ? *places == SurfelPlaces::modes : choice == ModeChoice::heaviest;
+  }
   /// Where the averages go: nowhere, to --out, or beside it.
   [[nodiscard]] std::filesystem::path average_out() const {
-    if (mode_filter == "on") return {};
-    if (mode_filter == "off") return out;
+    if (mode_filter == ModeFilterUse::on) return {};
+    if (mode_filter == ModeFilterUse::off) return out;
     std::filesystem::path beside = out;
     return beside.replace_extension(".average" + out.extension().string());
   }

@@ -3,24 +3,19 @@
 
 #include <CLI/CLI.hpp>
 
+#include "add_value.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
 
 void add_hand_options(CLI::App& command, UpdateOptions& options) {
-  command
-      .add_option("--trajectory", options.trajectory,
-                  "how the hand moved in the task: a file (docs/formats.md), in the scene's frame, or simulated")
-      ->type_name("FILE|simulated")
-      ->capture_default_str();
+  add_value(command, "--trajectory", options.trajectory, "FILE|simulated",
+            "how the hand moved in the task: a file (docs/formats.md), in the scene's frame, or simulated");
   add_hand_format_option(command, options.format);
   add_method_option(command, options.method);
-  command
-      .add_option("--region-radius", options.region_radius_m,
-                  "radius of what is forgotten around each action of the hand, metres")
-      ->type_name("METRES")
-      ->capture_default_str();
+  add_value(command, "--region-radius", options.region_radius_m, "METRES",
+            "radius of what is forgotten around each action of the hand, metres");
 }
 
 }  // namespace
@@ -34,29 +29,18 @@ UpdateOptions::UpdateOptions() {
 }
 
 void add_update_options(CLI::App& command, UpdateOptions& options) {
-  command
-      .add_option("--scene", options.scene,
-                  "the scene after the task: bottle, jug, another built-in one or a YAML file")
-      ->required()
-      ->type_name("SCENE");
-  command.add_option("--before", options.before, "the scene before the task (default: SCENE-before)")
-      ->type_name("SCENE");
-  command.add_option("--out", options.out, "folder for the results (default: update-SCENE)")->type_name("DIR");
+  add_value(command, "--scene", options.scene, "SCENE",
+            "the scene after the task: bottle, jug, another built-in one or a YAML file")
+      ->required();
+  add_value(command, "--before", options.before, "SCENE", "the scene before the task (default: SCENE-before)");
+  add_value(command, "--out", options.out, "DIR", "folder for the results (default: update-SCENE)");
   add_hand_options(command, options);
-  command
-      .add_option_function<std::string>(
-          "--fuse-when",
-          [&options](const std::string& when) {
-            options.fuse_when = when == "motion" ? FuseWhen::motion : FuseWhen::viewpoints;
-          },
-          "when the camera's frames are fused: at viewpoints alone (the thesis' KFOVP; default), or also in motion, "
-          "which is slower then (KFOM)")
-      ->check(CLI::IsMember({"viewpoints", "motion"}))
-      ->type_name("viewpoints|motion");
+  add_choice(command, "--fuse-when", options.fuse_when, kFuseWhenNames,
+             "when the camera's frames are fused: at viewpoints alone (the thesis' KFOVP), or also in motion, which is "
+             "slower then (KFOM)");
   add_run_options(command, options, fixed(kUpdateMinGain, 0));
-  command.add_option("--robot", options.robot, "what carries the camera: comau, a URDF file, or free, which flies")
-      ->type_name("ROBOT")
-      ->capture_default_str();
+  add_value(command, "--robot", options.robot, "ROBOT",
+            "what carries the camera: comau, a URDF file, or free, which flies");
   add_arm_options(command, options);
   command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
   command.add_flag("--force", options.force, "write into a folder that holds other files");

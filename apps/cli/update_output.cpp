@@ -6,6 +6,7 @@
 
 #include "attend.hpp"
 #include "explore_report.hpp"
+#include "json_output.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/runs/run_json.hpp"
@@ -18,8 +19,6 @@ namespace saccade::cli {
 namespace {
 
 using nlohmann::json;
-
-json share_json(const std::optional<double>& share) { return share ? json(*share) : json(nullptr); }
 
 json task_json(const UpdateOptions& options, const WatchedTask& task) {
   json actions = json::array();
@@ -60,7 +59,7 @@ Result<json> coverage_json(const UpdateCase& subject, const UpdateFigures& figur
     SACCADE_TRY(const RegionSurface surface, observable_in(*subject.after.rays, region, kTruthSpacing_m, executor));
     coverage = measure_coverage(surface, mesh, figures.after.config.voxel_size_m, executor);
   }
-  return json{{"objects", share_json(coverage.objects)}, {"surfaces", share_json(coverage.surfaces)}};
+  return json{{"objects", optional_json(coverage.objects)}, {"surfaces", optional_json(coverage.surfaces)}};
 }
 
 json region_json(const WatchedTask& task, const UpdateFigures& figures, std::size_t i) {

@@ -145,7 +145,7 @@ TEST_F(Attend, BadInputIsOneLine) {
   expect_failure(run_program({"attend", (folder_ / "none.traj").string(), "--quiet"}), 3, "attend", {"none.traj"});
   expect_failure(run_program({"attend", (folder_ / "empty").string(), "--quiet"}), 3, "attend", {"no .traj file"});
   expect_failure(run_program({"attend", alone, "--evaluate", "--quiet"}), 3, "attend", {"alone.csv.res"});
-  expect_failure(run_program({"attend", good, "--method", "best"}), 2, "attend", {"--method", "ours|gmm-as|zvc"});
+  expect_failure(run_program({"attend", good, "--method", "best"}), 2, "attend", {"--method", "ours, gmm-as or zvc"});
   expect_failure(run_program({"attend", good, "--speed", "0"}), 2, "attend", {"--speed"});
   expect_failure(run_program({"attend", good, "--noise-m", "-1"}), 2, "attend", {"--noise-m"});
   expect_failure(run_program({"attend", good, "--exclude-mislabelled"}), 2, "attend", {"--evaluate"});

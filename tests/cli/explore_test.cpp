@@ -40,7 +40,7 @@ TEST(ExploreCommand, TakesAKinectV2) {
   EXPECT_NE(v1.json().at("result").at("initial"), v2.json().at("result").at("initial"));
   EXPECT_NE(text_of(folder / "v2" / "report.html").find("Kinect v2"), std::string::npos);
   expect_failure(run_program(explore(folder / "v3", {"--sensor", "kinect-v3"})), 2, "explore",
-                 {"--sensor", "kinect-v1, kinect-v2"});
+                 {"--sensor", "kinect-v1 or kinect-v2"});
 }
 
 TEST(ExploreCommand, GoesFromViewToView) {

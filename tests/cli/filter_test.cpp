@@ -208,7 +208,7 @@ TEST_F(Filter, UsageErrorsAreOneLine) {
   expect_failure(run_program({"filter", frames().string()}), 2, "filter", {"--out"});
   expect_failure(run_program(filter({"--baseline", "-0.08"})), 2, "filter", {"--baseline"});
   expect_failure(run_program(filter({"--veil-angle", "90"})), 2, "filter", {"--veil-angle"});
-  expect_failure(run_program(filter({"--method", "median"})), 2, "filter", {"--method", "surface, thesis"});
+  expect_failure(run_program(filter({"--method", "median"})), 2, "filter", {"--method", "surface or thesis"});
   expect_failure(run_program(filter({"--emitter", "above"})), 2, "filter", {"--emitter", "left or right"});
   expect_failure(run_program(filter({"--only", "both"})), 2, "filter", {"--only"});
   expect_failure(run_program(filter({"--depth-scale", "0"})), 2, "filter", {"--depth-scale"});

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "attend_methods.hpp"
+#include "json_output.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -137,14 +138,12 @@ std::vector<std::string> cells_of(const RatedHands& rated, const HandRatesRow& r
   return cells;
 }
 
-json optional_share(const std::optional<double>& share) { return share ? json(*share) : json(nullptr); }
-
 json json_of(const DetectionCounts& counts) {
   return {{"ground_truth", counts.labels},
           {"true_positives", counts.true_positives},
           {"false_positives", counts.false_positives},
-          {"precision", optional_share(counts.precision())},
-          {"recall", optional_share(counts.recall())}};
+          {"precision", optional_json(counts.precision())},
+          {"recall", optional_json(counts.recall())}};
 }
 
 json difference_json(const std::optional<double>& share, double thesis) {
@@ -303,7 +302,7 @@ Result<ReproducedTable> hand_rates_table(HandRatesSpec spec, const ReproduceOpti
                    {"users", rated.users},
                    {"ground_truth", labels.labels},
                    {"mislabelled", {{"labels", labels.unreachable}, {"trajectories", labels.unsound}}},
-                   {"recall_ceiling", optional_share(labels.recall_ceiling())},
+                   {"recall_ceiling", optional_json(labels.recall_ceiling())},
                    {"match_radius_m", EvaluationConditions{}.match_radius_m},
                    {"rows", std::move(rows)}};
   return table;

@@ -4,6 +4,7 @@
 #include <limits>
 #include <sstream>
 
+#include "json_output.hpp"
 #include "saccade/report/plot.hpp"
 #include "saccade/surfel/mode_filter.hpp"
 #include "saccade/surfel/surfel_fusion.hpp"
@@ -62,9 +63,7 @@ void add_surfel_notes(const ReproduceOptions& options, bool is_of_sv_lccp, Repro
 void mark_missing(const std::vector<std::string>& scenes, ReproducedTable& table) {
   if (scenes.empty()) return;
   table.complete = false;
-  std::string names;
-  for (const std::string& scene : scenes) names += (names.empty() ? "" : ", ") + scene;
-  table.notes.push_back("Interrupted: without " + names + ".");
+  table.notes.push_back("Interrupted: without " + joined(scenes) + ".");
 }
 
 namespace {
@@ -118,20 +117,19 @@ std::string least(const ScoreCurve& curve) {
 
 json json_of(const ScoreCurve& curve) {
   json points = json::array();
-  const auto number = [](const std::optional<double>& value) { return value ? json(*value) : json(nullptr); };
   for (const CurvePoint& point : curve.points) {
     points.push_back({{"threshold", point.threshold},
                       {"segments", point.segments},
-                      {"precision", number(point.score.precision())},
-                      {"recall", number(point.score.recall())},
-                      {"f", number(point.score.f())},
+                      {"precision", optional_json(point.score.precision())},
+                      {"recall", optional_json(point.score.recall())},
+                      {"f", optional_json(point.score.f())},
                       {"bce", point.score.bce}});
   }
   const std::optional<CurvePoint> best_f = curve.best_f();
   const std::optional<CurvePoint> least_bce = curve.least_bce();
   return {{"points", std::move(points)},
           {"area", curve.area()},
-          {"best_f", best_f ? number(best_f->score.f()) : json(nullptr)},
+          {"best_f", best_f ? optional_json(best_f->score.f()) : json(nullptr)},
           {"least_bce", least_bce ? json(least_bce->score.bce) : json(nullptr)}};
 }
 

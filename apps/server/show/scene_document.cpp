@@ -51,16 +51,6 @@ Layer layer_of(std::string id, std::string name, LayerKind kind, std::size_t cou
   return layer;
 }
 
-const char* text_of(LayerKind kind) {
-  switch (kind) {
-    case LayerKind::triangles: return "triangles";
-    case LayerKind::points: return "points";
-    case LayerKind::voxels: return "voxels";
-    case LayerKind::lines: return "lines";
-    default: return "views";
-  }
-}
-
 std::string hex(const Rgb8& color) {
   std::array<char, 8> text{};
   std::snprintf(text.data(), text.size(), "#%02x%02x%02x", color[0], color[1], color[2]);
@@ -68,7 +58,7 @@ std::string hex(const Rgb8& color) {
 }
 
 json layer_json(const Layer& layer) {
-  json out{{"id", layer.id},       {"name", layer.name},       {"kind", text_of(layer.kind)},
+  json out{{"id", layer.id},       {"name", layer.name},       {"kind", kLayerKindNames.of(layer.kind)},
            {"count", layer.count}, {"visible", layer.visible}, {"buffer", layer.buffer->name}};
   if (layer.step) out["step"] = *layer.step;
   if (layer.kind == LayerKind::views) {
@@ -111,15 +101,6 @@ json frame_of(const SceneDocument& document) {
 
 }  // namespace
 
-std::string to_string(DocumentKind kind) {
-  switch (kind) {
-    case DocumentKind::run: return "run";
-    case DocumentKind::mesh: return "mesh";
-    case DocumentKind::map: return "map";
-    default: return "cloud";
-  }
-}
-
 json document_json(const SceneDocument& document) {
   json out = frame_of(document);
   for (const Layer& layer : document.layers) out["layers"].push_back(layer_json(layer));
@@ -131,7 +112,7 @@ json summary_json(const SceneDocument& document) {
   json out = frame_of(document);
   for (const Layer& layer : document.layers) {
     json shown{{"name", layer.name},
-               {"kind", text_of(layer.kind)},
+               {"kind", kLayerKindNames.of(layer.kind)},
                {"count", layer.count},
                {"bytes", layer.buffer->bytes.size()}};
     if (layer.step) shown["step"] = *layer.step;

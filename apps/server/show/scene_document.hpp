@@ -14,6 +14,7 @@
 #include <utility>
 #include <vector>
 
+#include "saccade/core/names.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/map/mesh.hpp"
@@ -22,6 +23,11 @@
 namespace saccade::server {
 
 enum class LayerKind : std::uint8_t { triangles, points, voxels, lines, views };
+inline constexpr auto kLayerKindNames = make_names<LayerKind>({{LayerKind::triangles, "triangles"},
+                                                               {LayerKind::points, "points"},
+                                                               {LayerKind::voxels, "voxels"},
+                                                               {LayerKind::lines, "lines"},
+                                                               {LayerKind::views, "views"}});
 
 /// Arrays as docs/protocol.md has them, never changed. The name is that of the content: equal bytes, equal names.
 struct LayerBuffer {
@@ -70,6 +76,11 @@ struct Step {
 };
 
 enum class DocumentKind : std::uint8_t { run, mesh, map, cloud };
+inline constexpr auto kDocumentKindNames = make_names<DocumentKind>({{DocumentKind::run, "run"},
+                                                                     {DocumentKind::mesh, "mesh"},
+                                                                     {DocumentKind::map, "map"},
+                                                                     {DocumentKind::cloud, "cloud"}});
+[[nodiscard]] constexpr std::string_view to_string(DocumentKind kind) { return kDocumentKindNames.of(kind); }
 
 struct SceneDocument {
   std::string title;
@@ -86,7 +97,6 @@ struct SceneDocument {
 [[nodiscard]] nlohmann::json document_json(const SceneDocument& document);
 /// The same without what makes it long: counts of layers in place of buffers, for --json.
 [[nodiscard]] nlohmann::json summary_json(const SceneDocument& document);
-[[nodiscard]] std::string to_string(DocumentKind kind);
 
 /// With the mesh's colours where it has some. Expects indices within the vertices.
 [[nodiscard]] Layer triangles_layer(std::string id, std::string name, const TriangleMesh& mesh);

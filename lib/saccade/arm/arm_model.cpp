@@ -89,15 +89,6 @@ Status check_link(const ArmLink& link) {
 
 }  // namespace
 
-std::string_view to_string(JointKind kind) {
-  switch (kind) {
-    case JointKind::revolute: return "revolute";
-    case JointKind::continuous: return "continuous";
-    case JointKind::prismatic: return "prismatic";
-  }
-  return "unknown";
-}
-
 std::string_view kind_of(const CollisionBody& body) {
   constexpr std::string_view kNames[]{"box", "sphere", "cylinder", "mesh"};
   return kNames[body.shape.index()];

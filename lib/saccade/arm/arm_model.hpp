@@ -23,8 +23,9 @@ enum class JointKind {
   continuous,  ///< turns without end; its position limits are infinite
   prismatic,
 };
-
-[[nodiscard]] std::string_view to_string(JointKind kind);
+inline constexpr auto kJointKindNames = make_names<JointKind>(
+    {{JointKind::revolute, "revolute"}, {JointKind::continuous, "continuous"}, {JointKind::prismatic, "prismatic"}});
+[[nodiscard]] constexpr std::string_view to_string(JointKind kind) { return kJointKindNames.of(kind); }
 
 /// rad, rad/s, rad/s², for prismatic joints m, m/s, m/s².
 struct JointLimits {

@@ -23,15 +23,6 @@ bool meets(const Pose& T_world_a, const Pose& T_world_b) {
 
 }  // namespace
 
-std::string_view to_string(IkMethod method) {
-  switch (method) {
-    case IkMethod::automatic: return "automatic";
-    case IkMethod::closed_form: return "closed form";
-    case IkMethod::numeric: return "numeric";
-  }
-  return "unknown";
-}
-
 Configuration IkTable::solution(std::size_t pose, std::size_t i) const {
   SACCADE_EXPECTS(pose < poses() && i < count(pose));
   const std::size_t at = (first[pose] + i) * static_cast<std::size_t>(dof);

@@ -11,6 +11,7 @@
 
 #include "saccade/arm/arm_model.hpp"
 #include "saccade/core/executor.hpp"
+#include "saccade/core/names.hpp"
 
 namespace saccade {
 
@@ -19,8 +20,9 @@ enum class IkMethod {
   closed_form,  ///< SphericalWrist
   numeric,      ///< NumericIk
 };
-
-[[nodiscard]] std::string_view to_string(IkMethod method);
+inline constexpr auto kIkMethodNames = make_names<IkMethod>(
+    {{IkMethod::automatic, "automatic"}, {IkMethod::closed_form, "closed form"}, {IkMethod::numeric, "numeric"}});
+[[nodiscard]] constexpr std::string_view to_string(IkMethod method) { return kIkMethodNames.of(method); }
 
 /// What a solution may miss its pose by: metres, and radians.
 constexpr double kIkTolerance{1e-9};

@@ -28,9 +28,7 @@ Status MotionPlannerConfig::validate() const {
   const auto fail = [](std::string what) { return Error{Errc::invalid_argument, std::move(what), "motion planning"}; };
   const std::vector<std::string> names = planner_names();
   if (std::find(names.begin(), names.end(), planner) == names.end()) {
-    std::string known;
-    for (const std::string& name : names) known += (known.empty() ? "" : ", ") + name;
-    return fail("there is no planner \"" + planner + "\"; known: " + known);
+    return fail("there is no planner \"" + planner + "\"; known: " + joined(names));
   }
   if (max_motions < 1) return fail("a search needs one motion at least");
   if (!(budget_s > 0.0)) return fail("the time of a search must be positive");

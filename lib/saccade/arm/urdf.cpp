@@ -83,14 +83,10 @@ class Tree {
     }
     if (most == 0) return wrong(Errc::corrupt_data, "no joint moves behind " + base, "");
     if (ends.size() == 1) return ends.front();
-    std::string names;
     std::set<std::string> last;
-    for (const std::string& end : ends) {
-      names += (names.empty() ? "" : ", ") + end;
-      last.insert(last_moving(base, end));
-    }
+    for (const std::string& end : ends) last.insert(last_moving(base, end));
     if (last.size() == 1) return *last.begin();
-    return wrong(Errc::invalid_argument, "several chains are equally long; name a tip: " + names, "");
+    return wrong(Errc::invalid_argument, "several chains are equally long; name a tip: " + joined(ends), "");
   }
 
  private:

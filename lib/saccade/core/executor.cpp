@@ -13,6 +13,7 @@
 #include <thread>
 #include <vector>
 
+#include "saccade/core/names.hpp"
 #include "saccade/core/result.hpp"
 
 namespace saccade {
@@ -94,12 +95,9 @@ std::size_t Executor::threads() const { return impl_->threads; }
 Executor::Backend Executor::backend() const { return impl_->backend; }
 
 std::string_view Executor::backend_name() const {
-  switch (impl_->backend) {
-    case Backend::sequential: return "sequential";
-    case Backend::tbb: return "tbb";
-    case Backend::std_thread: return "std-thread";
-  }
-  return "unknown";
+  constexpr auto kNames = make_names<Backend>(
+      {{Backend::sequential, "sequential"}, {Backend::tbb, "tbb"}, {Backend::std_thread, "std-thread"}});
+  return kNames.of(impl_->backend);
 }
 
 void Executor::parallel_for(std::size_t count, std::size_t grain, const Body& body) const {

@@ -11,6 +11,7 @@
 #include <string_view>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/core/names.hpp"
 
 namespace saccade {
 
@@ -27,23 +28,22 @@ enum class Phase : std::uint8_t {
   fusion,        ///< frames are taken and fused
 };
 
-/// A phase and its names.
-struct PhaseName {
-  Phase phase;
-  std::string_view key;   ///< in files: keys of JSON, columns of tables
-  std::string_view text;  ///< for people
-};
-
-/// The one list of phases, in their order.
-inline constexpr std::array<PhaseName, 9> kPhases{{{Phase::obstacles, "planner_map", "planner's map"},
-                                                   {Phase::candidates, "candidates", "candidates"},
-                                                   {Phase::segmentation, "segmentation", "segmentation"},
-                                                   {Phase::saliency, "saliency", "saliency"},
-                                                   {Phase::reachability, "reachability", "reachability"},
-                                                   {Phase::gain, "evaluation", "evaluation"},
-                                                   {Phase::planning, "planning", "motion planning"},
-                                                   {Phase::motion, "motion", "motion"},
-                                                   {Phase::fusion, "fusion", "fusion"}}};
+/// In files: keys of JSON, columns of tables.
+inline constexpr auto kPhaseNames = make_names<Phase>({{Phase::obstacles, "planner_map"},
+                                                       {Phase::candidates, "candidates"},
+                                                       {Phase::segmentation, "segmentation"},
+                                                       {Phase::saliency, "saliency"},
+                                                       {Phase::reachability, "reachability"},
+                                                       {Phase::gain, "evaluation"},
+                                                       {Phase::planning, "planning"},
+                                                       {Phase::motion, "motion"},
+                                                       {Phase::fusion, "fusion"}});
+[[nodiscard]] constexpr std::string_view to_string(Phase phase) { return kPhaseNames.of(phase); }
+/// Returns the name for people.
+[[nodiscard]] constexpr std::string_view text_of(Phase phase) {
+  if (phase == Phase::obstacles) return "planner's map";
+  return phase == Phase::planning ? "motion planning" : to_string(phase);
+}
 
 /// Milliseconds per phase. One thread.
 class PhaseTimes {
@@ -73,7 +73,7 @@ class PhaseTimes {
     Stopwatch stopwatch{};
     ~Measured() { times.add(phase, std::max(0.0, stopwatch.elapsed_ms() - (times.total_ms() - before_ms))); }
   };
-  std::array<double, kPhases.size()> ms_{};
+  std::array<double, kPhaseNames.values.size()> ms_{};
 };
 
 }  // namespace saccade

@@ -9,6 +9,8 @@
 #include <utility>
 #include <variant>
 
+#include "saccade/core/names.hpp"
+
 namespace saccade {
 
 /// What kind of thing went wrong; the command line maps these to exit statuses, the server to HTTP ones.
@@ -23,7 +25,15 @@ enum class Errc {
   cancelled,         ///< the caller asked to stop
 };
 
-[[nodiscard]] std::string_view to_string(Errc code);
+inline constexpr auto kErrcNames = make_names<Errc>({{Errc::invalid_argument, "invalid argument"},
+                                                     {Errc::not_found, "not found"},
+                                                     {Errc::io_failure, "input/output failure"},
+                                                     {Errc::corrupt_data, "corrupt data"},
+                                                     {Errc::unsupported, "unsupported"},
+                                                     {Errc::size_mismatch, "size mismatch"},
+                                                     {Errc::unavailable, "unavailable"},
+                                                     {Errc::cancelled, "cancelled"}});
+[[nodiscard]] constexpr std::string_view to_string(Errc code) { return kErrcNames.of(code); }
 
 /// What is wrong, where, and what to do.
 struct Error {

@@ -5,6 +5,7 @@
 #include <memory>
 #include <string>
 
+#include "saccade/core/names.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/camera.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
@@ -15,6 +16,10 @@ class ExternalProcess;
 
 enum class ExternalDepth { float32_m, uint16_mm };
 enum class ExternalColor { none, rgb8 };
+inline constexpr auto kExternalDepthNames =
+    make_names<ExternalDepth>({{ExternalDepth::float32_m, "float32_m"}, {ExternalDepth::uint16_mm, "uint16_mm"}});
+inline constexpr auto kExternalColorNames =
+    make_names<ExternalColor>({{ExternalColor::none, "none"}, {ExternalColor::rgb8, "rgb8"}});
 
 /// What a camera says of itself.
 struct ExternalCameraFormat {

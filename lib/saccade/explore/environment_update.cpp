@@ -5,8 +5,6 @@
 
 namespace saccade {
 
-std::string_view to_string(FuseWhen when) { return when == FuseWhen::viewpoints ? "viewpoints" : "motion"; }
-
 UnknownOfRegions count_unknown(const TsdfSnapshot& map, std::span<const RegionOfInterest> regions) {
   UnknownOfRegions counts;
   counts.reserve(regions.size());

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saccade/attention/region_of_interest.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/explore/recorder.hpp"
 
 namespace saccade {
@@ -17,7 +18,9 @@ enum class FuseWhen : std::uint8_t {
   viewpoints,  ///< KFOVP: while the camera oscillates at a view
   motion,      ///< KFOM: on the way to a view as well, for which the arm moves more slowly
 };
-[[nodiscard]] std::string_view to_string(FuseWhen when);
+inline constexpr auto kFuseWhenNames =
+    make_names<FuseWhen>({{FuseWhen::viewpoints, "viewpoints"}, {FuseWhen::motion, "motion"}});
+[[nodiscard]] constexpr std::string_view to_string(FuseWhen when) { return kFuseWhenNames.of(when); }
 
 /// Share of its speed that an arm has while frames are fused on the way. The thesis' arm took about four times as long
 /// (Table 2.8).

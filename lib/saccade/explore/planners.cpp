@@ -57,11 +57,7 @@ Result<NamedPlanner> Planners::find(std::string_view name) const {
   return Error{Errc::invalid_argument, "there is no strategy \"" + std::string{name} + "\"; known: " + names(), ""};
 }
 
-std::string Planners::names() const {
-  std::string names;
-  for (const NamedPlanner& planner : planners_) names += (names.empty() ? "" : ", ") + planner.name;
-  return names;
-}
+std::string Planners::names() const { return joined(planners_, ", ", &NamedPlanner::name); }
 
 NamedPlanner attention_planner() {
   const auto make = [](const PlannerSetup& setup) {

@@ -17,9 +17,11 @@ enum class StopReason : std::uint8_t {
   no_candidate,   ///< no view of a region can be reached, or none of those that would gain enough
   cancelled,      ///< the caller's progress or approval said so
 };
-[[nodiscard]] std::string_view to_string(StopReason reason);
-/// The inverse. corrupt_data for any other text.
-[[nodiscard]] Result<StopReason> stop_reason(std::string_view text);
+inline constexpr auto kStopReasonNames = make_names<StopReason>({{StopReason::regions_done, "regions_done"},
+                                                                 {StopReason::views_used_up, "views_used_up"},
+                                                                 {StopReason::no_candidate, "no_candidate"},
+                                                                 {StopReason::cancelled, "cancelled"}});
+[[nodiscard]] constexpr std::string_view to_string(StopReason reason) { return kStopReasonNames.of(reason); }
 
 /// How the exploration of one region ended.
 enum class RegionStatus : std::uint8_t {
@@ -28,7 +30,11 @@ enum class RegionStatus : std::uint8_t {
   out_of_reach,  ///< some would gain as much, but the robot could not take them
   interrupted,   ///< the run ended before the region was done
 };
-[[nodiscard]] std::string_view to_string(RegionStatus status);
+inline constexpr auto kRegionStatusNames = make_names<RegionStatus>({{RegionStatus::not_begun, "not_begun"},
+                                                                     {RegionStatus::done, "done"},
+                                                                     {RegionStatus::out_of_reach, "out_of_reach"},
+                                                                     {RegionStatus::interrupted, "interrupted"}});
+[[nodiscard]] constexpr std::string_view to_string(RegionStatus status) { return kRegionStatusNames.of(status); }
 
 /// Result of exploring one region.
 struct RegionResult {

@@ -126,11 +126,11 @@ std::optional<double> gain_of(const ShownView& view) {
   return std::isnan(gain) ? std::nullopt : std::optional{gain};
 }
 
-std::vector<PhaseName> phases_of(std::span<const ShownView> views) {
-  std::vector<PhaseName> phases;
-  std::copy_if(kPhases.begin(), kPhases.end(), std::back_inserter(phases), [&](const PhaseName& phase) {
+std::vector<Phase> phases_of(std::span<const ShownView> views) {
+  std::vector<Phase> phases;
+  std::copy_if(kPhaseNames.values.begin(), kPhaseNames.values.end(), std::back_inserter(phases), [&](Phase phase) {
     return std::any_of(views.begin(), views.end(),
-                       [&](const ShownView& view) { return view.record.times.ms(phase.phase) > 0.0; });
+                       [&](const ShownView& view) { return view.record.times.ms(phase) > 0.0; });
   });
   return phases;
 }
@@ -138,12 +138,12 @@ std::vector<PhaseName> phases_of(std::span<const ShownView> views) {
 double total_ms(const ShownView& view) { return view.record.times.total_ms(); }
 
 std::string phases_text(const ShownView& view) {
-  std::string text;
-  for (const PhaseName& phase : phases_of(std::span{&view, 1})) {
-    text +=
-        (text.empty() ? "" : ", ") + std::string{phase.text} + ' ' + duration_text(view.record.times.ms(phase.phase));
-  }
-  return text.empty() ? text : " (" + text + ")";
+  const std::vector<Phase> phases = phases_of(std::span{&view, 1});
+  if (phases.empty()) return {};
+  const auto shown = [&](Phase phase) {
+    return std::string{text_of(phase)} + ' ' + duration_text(view.record.times.ms(phase));
+  };
+  return " (" + joined(phases, ", ", shown) + ")";
 }
 
 void FactList::add(std::string_view name, std::string_view value) {
@@ -216,12 +216,12 @@ std::string charts_html(const RunReport& report) {
 
 std::string time_chart_html(std::span<const ShownView> views, const std::string& first) {
   PhaseCurve curve{"Time per view", {}, {{}}, positions_of(views, first)};
-  const std::vector<PhaseName> phases = phases_of(views);
+  const std::vector<Phase> phases = phases_of(views);
   if (phases.empty()) return {};
-  for (const PhaseName& phase : phases) curve.names.emplace_back(phase.text);
+  for (const Phase phase : phases) curve.names.emplace_back(text_of(phase));
   for (const ShownView& view : views) {
     std::vector<double>& ms = curve.ms.emplace_back();
-    for (const PhaseName& phase : phases) ms.push_back(view.record.times.ms(phase.phase));
+    for (const Phase phase : phases) ms.push_back(view.record.times.ms(phase));
   }
   std::string key = "<ul class=\"key\">";
   for (std::size_t i = 0; i < curve.names.size(); ++i) {

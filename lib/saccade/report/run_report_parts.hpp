@@ -25,7 +25,7 @@ namespace saccade {
 /// nullopt: not evaluated.
 [[nodiscard]] std::optional<double> gain_of(const ShownView& view);
 /// Phases that took time in one of the views.
-[[nodiscard]] std::vector<PhaseName> phases_of(std::span<const ShownView> views);
+[[nodiscard]] std::vector<Phase> phases_of(std::span<const ShownView> views);
 [[nodiscard]] double total_ms(const ShownView& view);
 /// " (candidates 0.4 ms, evaluation 31 ms)".
 [[nodiscard]] std::string phases_text(const ShownView& view);

@@ -184,10 +184,10 @@ std::string task_section(const UpdateReport& report) {
 std::string phases_html(const UpdateReport& report) {
   Lines lines{{"phase", "per view", "in all"}, {}};
   for (const auto& [name, ms] : report.once_ms) lines.rows.push_back({name, kNothing, duration_text(ms)});
-  for (const PhaseName& phase : phases_of(report.views)) {
+  for (const Phase phase : phases_of(report.views)) {
     double sum_ms = 0.0;
-    for (const ShownView& view : report.views) sum_ms += view.record.times.ms(phase.phase);
-    lines.rows.push_back({std::string{phase.text}, duration_text(sum_ms / static_cast<double>(report.views.size())),
+    for (const ShownView& view : report.views) sum_ms += view.record.times.ms(phase);
+    lines.rows.push_back({std::string{text_of(phase)}, duration_text(sum_ms / static_cast<double>(report.views.size())),
                           duration_text(sum_ms)});
   }
   return lines.rows.empty() ? std::string{} : "<h3>Time by phase</h3>" + lines.html();

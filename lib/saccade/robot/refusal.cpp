@@ -4,14 +4,11 @@
 namespace saccade {
 
 std::string in_words(const RefusalCounts& refused) {
-  constexpr std::array<const char*, kRefusals.size()> kWords{"out of reach",       "beyond a joint's limits",
-                                                             "in collision there", "in collision at the start",
-                                                             "without a path",     "declined by the robot"};
   std::string words;
-  for (const Refusal reason : kRefusals) {
+  for (const Refusal reason : kRefusalTexts.values) {
     if (refused.of(reason) == 0) continue;
-    words += (words.empty() ? "" : ", ") + std::to_string(refused.of(reason)) + " ";
-    words += kWords[static_cast<std::size_t>(reason)];
+    words.append(words.empty() ? "" : ", ").append(std::to_string(refused.of(reason)) + " ");
+    words.append(kRefusalTexts.of(reason));
   }
   return words;
 }

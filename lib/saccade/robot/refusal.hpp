@@ -11,6 +11,8 @@
 #include <string>
 #include <string_view>
 
+#include "saccade/core/names.hpp"
+
 namespace saccade {
 
 enum class Refusal : std::uint8_t {
@@ -21,21 +23,20 @@ enum class Refusal : std::uint8_t {
   no_path,             ///< none was found from where the arm stands
   declined,            ///< the robot itself said no
 };
-inline constexpr std::array kRefusals{
-    Refusal::no_ik,   Refusal::outside_limits, Refusal::goal_in_collision, Refusal::start_in_collision,
-    Refusal::no_path, Refusal::declined};
-
-/// As in the enumeration.
-[[nodiscard]] constexpr std::string_view to_string(Refusal refusal) {
-  switch (refusal) {
-    case Refusal::no_ik: return "no_ik";
-    case Refusal::outside_limits: return "outside_limits";
-    case Refusal::goal_in_collision: return "goal_in_collision";
-    case Refusal::start_in_collision: return "start_in_collision";
-    case Refusal::no_path: return "no_path";
-    default: return "declined";
-  }
-}
+inline constexpr auto kRefusalNames = make_names<Refusal>({{Refusal::no_ik, "no_ik"},
+                                                           {Refusal::outside_limits, "outside_limits"},
+                                                           {Refusal::goal_in_collision, "goal_in_collision"},
+                                                           {Refusal::start_in_collision, "start_in_collision"},
+                                                           {Refusal::no_path, "no_path"},
+                                                           {Refusal::declined, "declined"}});
+/// For people, behind a number of poses.
+inline constexpr auto kRefusalTexts = make_names<Refusal>({{Refusal::no_ik, "out of reach"},
+                                                           {Refusal::outside_limits, "beyond a joint's limits"},
+                                                           {Refusal::goal_in_collision, "in collision there"},
+                                                           {Refusal::start_in_collision, "in collision at the start"},
+                                                           {Refusal::no_path, "without a path"},
+                                                           {Refusal::declined, "declined by the robot"}});
+[[nodiscard]] constexpr std::string_view to_string(Refusal refusal) { return kRefusalNames.of(refusal); }
 
 /// Per reason.
 class RefusalCounts {
@@ -55,7 +56,7 @@ class RefusalCounts {
   [[nodiscard]] std::size_t total() const { return std::accumulate(counts_.begin(), counts_.end(), std::size_t{0}); }
 
  private:
-  std::array<std::size_t, kRefusals.size()> counts_{};
+  std::array<std::size_t, kRefusalNames.values.size()> counts_{};
 };
 
 /// Returns "2 out of reach, 1 without a path", in the order of the enumeration; empty where nothing was refused.

@@ -21,8 +21,8 @@ std::string extension_of(const fs::path& path) {
   return extension;
 }
 
-bool y_is_up(const fs::path& path, UpAxis up) {
-  if (up != UpAxis::as_usual) return up == UpAxis::y;
+bool y_is_up(const fs::path& path, std::optional<UpAxis> up) {
+  if (up) return *up == UpAxis::y;
   const std::string extension = extension_of(path);
   return extension == ".glb" || extension == ".gltf";
 }

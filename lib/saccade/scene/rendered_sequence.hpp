@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/scene/ray_scene.hpp"
 #include "saccade/scene/scene.hpp"
 #include "saccade/scene/simulated_camera.hpp"
@@ -25,6 +26,8 @@ namespace saccade {
 using LightImage = Image<std::array<float, 3>>;
 
 enum class Vignetting : std::uint8_t { off, on, corrected };
+inline constexpr auto kVignettingNames =
+    make_names<Vignetting>({{Vignetting::on, "on"}, {Vignetting::off, "off"}, {Vignetting::corrected, "corrected"}});
 
 struct ColorCameraConfig {
   /// on: light falls off with the fourth power of the cosine of the angle from the axis, to 0.45 in the corners of an

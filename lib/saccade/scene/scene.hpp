@@ -10,6 +10,7 @@
 #include <variant>
 #include <vector>
 
+#include "saccade/core/names.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/core/region.hpp"
 #include "saccade/core/result.hpp"
@@ -88,6 +89,10 @@ struct Texture {
   double size_m{0.03};     ///< edge of a square, width of a stripe (along z), size of a speckle
   double darkening{0.55};  ///< brightness of the darker parts, relative to the colour
 };
+inline constexpr auto kTextureNames = make_names<Texture::Kind>({{Texture::Kind::plain, "plain"},
+                                                                 {Texture::Kind::checker, "checker"},
+                                                                 {Texture::Kind::stripes, "stripes"},
+                                                                 {Texture::Kind::speckle, "speckle"}});
 
 /// Something painted on the faces of a body that look along one axis of its frame; it has no thickness. Later ones
 /// cover earlier ones. Seen from outside, the faces ±x and ±y have z upwards and ±z has y upwards (−z: −y).

@@ -84,10 +84,8 @@ const std::vector<std::pair<std::string, ShapeReader>>& shape_readers() {
 }
 
 Shape read_shape(YamlMap& object, const fs::path& folder) {
-  std::string known;
   std::optional<Shape> shape;
   for (const auto& [kind, read] : shape_readers()) {
-    known += (known.empty() ? "" : ", ") + kind;
     const YAML::Node node = object.find(kind);
     if (!node.IsDefined()) continue;
     if (shape) yaml_problem(node, "an object has one shape; this is its second");
@@ -95,7 +93,10 @@ Shape read_shape(YamlMap& object, const fs::path& folder) {
     shape = read(map, folder);
     map.finish();
   }
-  if (!shape) yaml_problem(object.node(), "an object needs a shape: " + known);
+  if (!shape) {
+    yaml_problem(object.node(),
+                 "an object needs a shape: " + joined(shape_readers(), ", ", [](auto& kind) { return kind.first; }));
+  }
   return *std::move(shape);
 }
 
@@ -110,17 +111,12 @@ Rgb8 read_rgb(const YAML::Node& node) {
 }
 
 Texture read_texture(const YAML::Node& node) {
-  constexpr std::array<std::pair<std::string_view, Texture::Kind>, 4> kKinds{{{"plain", Texture::Kind::plain},
-                                                                              {"checker", Texture::Kind::checker},
-                                                                              {"stripes", Texture::Kind::stripes},
-                                                                              {"speckle", Texture::Kind::speckle}}};
   YamlMap map{node, "a texture"};
   Texture texture;
   const YAML::Node kind = map.need("kind");
-  const std::string name = yaml_text(kind);
-  const auto found = std::find_if(kKinds.begin(), kKinds.end(), [&](const auto& entry) { return entry.first == name; });
-  if (found == kKinds.end()) yaml_problem(kind, "textures are plain, checker, stripes and speckle");
-  texture.kind = found->second;
+  const auto found = kTextureNames.find(yaml_text(kind));
+  if (!found) yaml_problem(kind, "a texture is " + kTextureNames.listed());
+  texture.kind = *found;
   texture.size_m = map.number("size", texture.size_m);
   texture.darkening = map.number("darkening", texture.darkening);
   map.finish();

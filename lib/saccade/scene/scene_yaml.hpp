@@ -4,10 +4,12 @@
 // table. The format: docs/scenes.md.
 
 #include <filesystem>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
 
+#include "saccade/core/names.hpp"
 #include "saccade/scene/scene.hpp"
 
 namespace saccade {
@@ -28,15 +30,12 @@ struct BuiltinScene {
 /// A built-in scene by its name, "clutter:SEED" (random_clutter), or a file. not_found with the known names.
 [[nodiscard]] Result<Scene> find_scene(const std::string& name_or_path);
 
-enum class UpAxis : std::uint8_t {
-  as_usual,  ///< y for glTF (.glb, .gltf), whose specification says so; z for all others
-  y,
-  z,
-};
+enum class UpAxis : std::uint8_t { y, z };
+inline constexpr auto kUpAxisNames = make_names<UpAxis>({{UpAxis::y, "y"}, {UpAxis::z, "z"}});
 
 struct MeshSceneConfig {
-  double scale{1.0};  ///< metres per unit of the file
-  UpAxis up{UpAxis::as_usual};
+  double scale{1.0};           ///< metres per unit of the file
+  std::optional<UpAxis> up{};  ///< default: y for glTF (.glb, .gltf), whose specification says so; z for all others
 
   [[nodiscard]] Status validate() const;
 };

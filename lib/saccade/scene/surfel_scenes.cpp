@@ -14,9 +14,7 @@ SurfelScene taken_with(SurfelScene made, std::string_view sensor, Vignetting vig
 }
 
 Error unknown(std::string_view what, std::string_view name, std::span<const std::string_view> known) {
-  std::string message{"no such " + std::string{what} + "; there are "};
-  for (const std::string_view one : known) message += (one == known.front() ? "" : ", ") + std::string{one};
-  return {Errc::not_found, message, std::string{name}};
+  return {Errc::not_found, "no such " + std::string{what} + "; there are " + joined(known), std::string{name}};
 }
 
 /// f·b = 580 px · 75 mm in steps of an eighth of a pixel.

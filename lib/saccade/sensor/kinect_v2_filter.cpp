@@ -56,17 +56,6 @@ struct VeilTest {
 
 }  // namespace
 
-std::string_view to_string(DepthFilterMethod method) {
-  return method == DepthFilterMethod::surface ? "surface" : "thesis";
-}
-
-Result<DepthFilterMethod> depth_filter_method(std::string_view name) {
-  for (const DepthFilterMethod method : {DepthFilterMethod::surface, DepthFilterMethod::thesis}) {
-    if (to_string(method) == name) return method;
-  }
-  return Error{Errc::invalid_argument, "there is no method \"" + std::string{name} + "\"; known: surface, thesis", {}};
-}
-
 Status DepthFilterConfig::validate() const {
   if (!(baseline_m >= 0.0 && baseline_m <= kMaxBaseline_m)) {
     return Error{Errc::invalid_argument, "the emitter's distance from the camera must be within 0 and 1 m", {}};

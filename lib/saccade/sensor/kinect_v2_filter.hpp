@@ -5,11 +5,11 @@
 
 #include <cstddef>
 #include <cstdint>
-#include <string_view>
 #include <vector>
 
 #include "saccade/core/angle.hpp"
 #include "saccade/core/executor.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/image.hpp"
 #include "saccade/sensor/pinhole_camera.hpp"
@@ -21,15 +21,15 @@ enum class ShadowVerdict : std::uint8_t;
 /// Where the infrared emitter is, seen along the camera's view: left is towards u = 0. The thesis' equations have it on
 /// the left; drivers that mirror the image need the right.
 enum class EmitterSide { left, right };
+inline constexpr auto kEmitterSideNames =
+    make_names<EmitterSide>({{EmitterSide::left, "left"}, {EmitterSide::right, "right"}});
 
 enum class DepthFilterMethod : std::uint8_t {
   thesis,   ///< removes all that may be wrong: Algorithm 5 and eq. 3.19
   surface,  ///< keeps of that what lies on a surface.  docs/depth-filter.md
 };
-
-[[nodiscard]] std::string_view to_string(DepthFilterMethod method);
-/// invalid_argument, with the known names, for any other.
-[[nodiscard]] Result<DepthFilterMethod> depth_filter_method(std::string_view name);
+inline constexpr auto kDepthFilterMethodNames =
+    make_names<DepthFilterMethod>({{DepthFilterMethod::surface, "surface"}, {DepthFilterMethod::thesis, "thesis"}});
 
 struct DepthFilterConfig {
   DepthFilterMethod method{DepthFilterMethod::surface};

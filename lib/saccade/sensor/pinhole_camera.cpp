@@ -48,11 +48,10 @@ const std::vector<CameraPreset>& camera_presets() {
 }
 
 Result<PinholeCamera> camera_preset(std::string_view name) {
-  std::string known;
   for (const CameraPreset& preset : camera_presets()) {
     if (preset.name == name) return preset.camera;
-    known += (known.empty() ? "" : ", ") + std::string{preset.name};
   }
+  const std::string known = joined(camera_presets(), ", ", &CameraPreset::name);
   return Error{Errc::not_found, "no camera preset '" + std::string{name} + "'; known: " + known, {}};
 }
 

@@ -5,6 +5,7 @@
 #include <optional>
 #include <string>
 
+#include "saccade/core/names.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/sensor/camera.hpp"
 #include "saccade/tracking/icp.hpp"
@@ -17,6 +18,9 @@ enum class TrackingMode {
   hint,    ///< ICP started at the given pose (HINT_TYPE_HINT)
   forced,  ///< the given pose is taken as it is (HINT_TYPE_FORCED)
 };
+inline constexpr auto kTrackingModeNames = make_names<TrackingMode>(
+    {{TrackingMode::icp, "icp"}, {TrackingMode::hint, "hint"}, {TrackingMode::forced, "forced"}});
+[[nodiscard]] constexpr std::string_view to_string(TrackingMode mode) { return kTrackingModeNames.of(mode); }
 
 struct ReconstructionConfig {
   TsdfConfig map;

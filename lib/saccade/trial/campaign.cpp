@@ -123,7 +123,7 @@ Status insert_views(const SqliteFile& file, const std::vector<ViewRecord>& views
     statement.bind(flag(view.looks_at_object));
     statement.bind(view.path_m);
     statement.bind(view.motion_s);
-    for (const PhaseName& phase : kPhases) statement.bind(view.times.ms(phase.phase));
+    for (const Phase phase : kPhaseNames.values) statement.bind(view.times.ms(phase));
     bind(statement, view.measures);
     SACCADE_CHECK(statement.run());
   }
@@ -150,7 +150,7 @@ Result<std::vector<ViewRecord>> views_of(const SqliteFile& file, std::int64_t ru
     view.looks_at_object = row.integer() != 0;
     view.path_m = row.real();
     view.motion_s = row.real();
-    for (const PhaseName& phase : kPhases) view.times.add(phase.phase, row.real());
+    for (const Phase phase : kPhaseNames.values) view.times.add(phase, row.real());
     view.measures = measures_of(row);
     views.push_back(std::move(view));
   }
@@ -166,7 +166,10 @@ Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
   entry.key.noise = row.text();
   entry.key.seed = static_cast<std::uint64_t>(row.integer());
   entry.key.settings = row.text();
-  SACCADE_TRY(entry.run.stopped_because, stop_reason(row.text()));
+  const std::string reason = row.text();
+  const auto stopped_because = kStopReasonNames.find(reason);
+  if (!stopped_because) return Error{Errc::corrupt_data, "there is no reason to stop called \"" + reason + "\"", ""};
+  entry.run.stopped_because = *stopped_because;
   entry.seconds = row.real();
   entry.program_version = row.text();
   entry.finished_at = row.text();

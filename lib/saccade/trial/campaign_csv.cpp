@@ -32,7 +32,7 @@ void add_view(CsvTable& table, const ViewRecord& view) {
   table.add(std::uint64_t{view.evaluated}).add(std::uint64_t{view.refused.total()});
   table.add(std::uint64_t{view.frames}).add(std::uint64_t{view.reveals_object.value_or(false) ? 1U : 0U});
   table.add(std::uint64_t{view.looks_at_object.value_or(false) ? 1U : 0U}).add(view.path_m).add(view.motion_s);
-  for (const PhaseName& phase : kPhases) table.add(view.times.ms(phase.phase));
+  for (const Phase phase : kPhaseNames.values) table.add(view.times.ms(phase));
   add_map(table, view.measures);
 }
 
@@ -59,7 +59,7 @@ CsvTable views_csv(std::span<const CampaignEntry> runs) {
   columns.emplace_back("number");
   columns.insert(columns.end(), kViewColumns.begin(), kViewColumns.end());
   std::vector<std::string> phases;
-  for (const PhaseName& phase : kPhases) phases.push_back(std::string{phase.key} + "_ms");
+  for (const Phase phase : kPhaseNames.values) phases.push_back(std::string{to_string(phase)} + "_ms");
   columns.insert(columns.end(), phases.begin(), phases.end());
   columns.insert(columns.end(), kMapColumns.begin(), kMapColumns.end());
   CsvTable table{columns};
@@ -67,7 +67,7 @@ CsvTable views_csv(std::span<const CampaignEntry> runs) {
     add_key(table, entry.key);
     table.add(std::uint64_t{0});
     // What a scan does not have.
-    for (std::size_t i = 0; i < kViewColumns.size() + kPhases.size(); ++i) table.add(std::nullopt);
+    for (std::size_t i = 0; i < kViewColumns.size() + kPhaseNames.values.size(); ++i) table.add(std::nullopt);
     add_map(table, entry.run.scan.measures);
     table.end_row();
     for (std::size_t i = 0; i < entry.run.views.size(); ++i) {

@@ -102,13 +102,13 @@ std::vector<RunFigure> make_figures() {
   add_sum("candidates", "candidate views", "", 1.0, 0, [](const ViewRecord& view) { return view.candidates; });
   add_sum("evaluated", "candidates evaluated", "", 1.0, 0, [](const ViewRecord& view) { return view.evaluated; });
   add_sum("refused", "candidates refused", "", 1.0, 0, [](const ViewRecord& view) { return view.refused.total(); });
-  for (const Refusal refusal : kRefusals) {
+  for (const Refusal refusal : kRefusalNames.values) {
     add_sum("refused_" + std::string{to_string(refusal)}, "refused, " + spaced(to_string(refusal)), "", 1.0, 0,
             [refusal](const ViewRecord& view) { return view.refused.of(refusal); });
   }
-  for (const PhaseName& phase : kPhases) {
-    add_sum(std::string{phase.key} + "_ms", "time, " + spaced(phase.key), "s", kSeconds, 2,
-            [of = phase.phase](const ViewRecord& view) { return view.times.ms(of); });
+  for (const Phase phase : kPhaseNames.values) {
+    add_sum(std::string{to_string(phase)} + "_ms", "time, " + spaced(to_string(phase)), "s", kSeconds, 2,
+            [phase](const ViewRecord& view) { return view.times.ms(phase); });
   }
   figures.push_back({"seconds", "time, whole run with measuring", "s", 1.0, 1,
                      [](const Run& run, std::size_t) -> Value { return run.seconds; }});

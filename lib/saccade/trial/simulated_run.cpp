@@ -39,16 +39,6 @@ void measure_flights(RunRecord& run, const std::vector<Pose>& scan) {
 
 }  // namespace
 
-std::string_view to_string(DepthSensor sensor) { return sensor == DepthSensor::kinect_v1 ? "kinect-v1" : "kinect-v2"; }
-
-Result<DepthSensor> depth_sensor(std::string_view name) {
-  for (const DepthSensor sensor : {DepthSensor::kinect_v1, DepthSensor::kinect_v2}) {
-    if (to_string(sensor) == name) return sensor;
-  }
-  return Error{Errc::invalid_argument, "there is no sensor \"" + std::string{name} + "\"; known: kinect-v1, kinect-v2",
-               ""};
-}
-
 Status SimulatedRunConfig::validate() const {
   SACCADE_CHECK(camera.validate());
   SACCADE_CHECK(sphere.validate());

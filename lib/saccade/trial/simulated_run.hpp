@@ -5,6 +5,7 @@
 #include <memory>
 
 #include "saccade/arm/arm_robot.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/explore/explorer.hpp"
 #include "saccade/explore/planners.hpp"
 #include "saccade/scene/simulated_camera.hpp"
@@ -18,9 +19,9 @@ enum class DepthSensor : std::uint8_t {
   kinect_v1,  ///< kinect_v1_noise
   kinect_v2,  ///< TimeOfFlightConfig, and its frames through a DepthFilter
 };
-[[nodiscard]] std::string_view to_string(DepthSensor sensor);
-/// invalid_argument, with the known names, for any other.
-[[nodiscard]] Result<DepthSensor> depth_sensor(std::string_view name);
+inline constexpr auto kDepthSensorNames =
+    make_names<DepthSensor>({{DepthSensor::kinect_v1, "kinect-v1"}, {DepthSensor::kinect_v2, "kinect-v2"}});
+[[nodiscard]] constexpr std::string_view to_string(DepthSensor sensor) { return kDepthSensorNames.of(sensor); }
 
 struct SimulatedRunConfig {
   double voxel_size_m{0.0058};

@@ -10,6 +10,7 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
+#include "saccade/core/names.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/core/progress.hpp"
 #include "saccade/core/region.hpp"
@@ -23,12 +24,16 @@ enum class GainCount : std::uint8_t {
   rays,             ///< rays that end in an unknown voxel of the region: the thesis' knowledge map
   distinct_voxels,  ///< the unknown voxels in which they end, each once
 };
+inline constexpr auto kGainCountNames =
+    make_names<GainCount>({{GainCount::rays, "rays"}, {GainCount::distinct_voxels, "voxels"}});
 
 /// What unknown voxels outside the region do to a ray.
 enum class UnknownOutside : std::uint8_t {
   blocks,       ///< they stop it, as in the thesis
   transparent,  ///< it goes on: an upper bound of what the view may show
 };
+inline constexpr auto kUnknownOutsideNames =
+    make_names<UnknownOutside>({{UnknownOutside::blocks, "blocks"}, {UnknownOutside::transparent, "transparent"}});
 
 /// Work that need not be done. None of these changes a gain; each can be switched off to check that.
 struct GainSavings {

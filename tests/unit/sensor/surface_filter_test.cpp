@@ -205,9 +205,6 @@ TEST(SurfaceFilter, RefusesWhatMakesNoSense) {
   EXPECT_FALSE((DepthFilterConfig{.baseline_uncertainty = 1.1}.validate().ok()));
   EXPECT_FALSE((DepthFilterConfig{.tolerance_m = std::nan("")}.validate().ok()));
   EXPECT_FALSE((DepthFilterConfig{.tolerance_per_m = -1.0}.validate().ok()));
-  EXPECT_EQ(depth_filter_method("thesis").value(), DepthFilterMethod::thesis);
-  EXPECT_EQ(depth_filter_method("surface").value(), DepthFilterMethod::surface);
-  EXPECT_FALSE(depth_filter_method("both"));
 }
 
 }  // namespace

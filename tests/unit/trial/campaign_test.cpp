@@ -27,11 +27,11 @@ CampaignKey key_of(std::uint64_t seed, const std::string& strategy = "sphere") {
   return {"jug", "00ff00ff00ff00ff", strategy, "kinect-v1", seed, R"({"max_views":3,"voxel_size_m":0.01})"};
 }
 
-const std::array<double, kPhases.size()> kTimes_ms{0.5, 0.1, 3.0, 4.0, 1.25, 20.25, 2.0, 0.0, 7.0};
+const std::array<double, kPhaseNames.values.size()> kTimes_ms{0.5, 0.1, 3.0, 4.0, 1.25, 20.25, 2.0, 0.0, 7.0};
 
-PhaseTimes times_of(const std::array<double, kPhases.size()>& ms) {
+PhaseTimes times_of(const std::array<double, kPhaseNames.values.size()>& ms) {
   PhaseTimes times;
-  for (std::size_t i = 0; i < ms.size(); ++i) times.add(kPhases[i].phase, ms[i]);
+  for (std::size_t i = 0; i < ms.size(); ++i) times.add(kPhaseNames.values[i], ms[i]);
   return times;
 }
 

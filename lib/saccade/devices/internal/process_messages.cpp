@@ -60,18 +60,13 @@ Result<std::optional<Pose>> optional_pose(const nlohmann::json& answer) {
   return std::optional<Pose>{*pose};
 }
 
-/// The position in `names` of the text under a key.
-template <std::size_t N>
-Result<std::size_t> expect_one_of(const nlohmann::json& answer, const char* key,
-                                  const std::array<std::string_view, N>& names) {
-  std::string known;
+/// Returns the value whose name is under a key.
+template <class T, std::size_t N>
+Result<T> expect_one_of(const nlohmann::json& answer, const char* key, const Names<T, N>& names) {
   const auto value = answer.find(key);
   const auto* text = value == answer.end() ? nullptr : value->get_ptr<const std::string*>();
-  for (std::size_t i = 0; i < N; ++i) {
-    if (text != nullptr && *text == names[i]) return i;
-    known.append(i == 0 ? "\"" : " or \"").append(names[i]).append("\"");
-  }
-  return bad(std::string{key} + " must be " + known);
+  const auto found = text == nullptr ? std::nullopt : names.find(*text);
+  return found ? Result<T>{*found} : bad(std::string{key} + " must be \"" + joined(names.words, "\" or \"") + "\"");
 }
 
 Result<PinholeCamera> hello_camera(const nlohmann::json& answer, std::string_view line) {
@@ -110,10 +105,8 @@ Result<ExternalCameraFormat> parse_camera_hello(std::string_view line) {
   SACCADE_CHECK(expect_protocol(answer));
   ExternalCameraFormat format;
   SACCADE_TRY(format.camera, hello_camera(answer, line));
-  SACCADE_TRY(const std::size_t depth, expect_one_of<2>(answer, "depth", {"float32_m", "uint16_mm"}));
-  SACCADE_TRY(const std::size_t color, expect_one_of<2>(answer, "color", {"none", "rgb8"}));
-  format.depth = depth == 0 ? ExternalDepth::float32_m : ExternalDepth::uint16_mm;
-  format.color = color == 0 ? ExternalColor::none : ExternalColor::rgb8;
+  SACCADE_TRY(format.depth, expect_one_of(answer, "depth", kExternalDepthNames));
+  SACCADE_TRY(format.color, expect_one_of(answer, "color", kExternalColorNames));
   if (format.frame_bytes() > kMaxFrameBytes) {
     return bad("a frame of " + std::to_string(format.frame_bytes()) + " bytes is more than the " +
                std::to_string(kMaxFrameBytes) + " read here");

@@ -107,12 +107,12 @@ class PcdHeaderParser {
     SACCADE_CHECK(columns());
     SACCADE_CHECK(size());
     const std::string_view kind = words.size() == 2 ? words[1] : std::string_view{};
-    if (kind != "ascii" && kind != "binary" && kind != "binary_compressed") {
+    const auto format = kPcdFormatNames.find(kind);
+    if (!format) {
       return Error{Errc::unsupported, "unknown kind of data " + in_quotes(kind),
                    "line " + std::to_string(lines_.line())};
     }
-    header_.file.format =
-        kind == "ascii" ? PcdFormat::ascii : (kind == "binary" ? PcdFormat::binary : PcdFormat::binary_compressed);
+    header_.file.format = *format;
     header_.body_offset = lines_.offset();
     header_.body_line = lines_.line() + 1;
     return std::move(header_);
@@ -254,12 +254,11 @@ std::string header_text(const PcdFile& file, PcdFormat format) {
     viewpoint.push_back(' ');
     append_text(reinterpret_cast<const std::byte*>(&value), ColumnType::f64, viewpoint);
   }
-  constexpr std::array<std::string_view, 3> kFormats{"ascii", "binary", "binary_compressed"};
   std::string text{"# .PCD v0.7 - Point Cloud Data file format\nVERSION 0.7\n"};
   text.append(fields).append("\n").append(sizes).append("\n").append(types).append("\n").append(counts).append("\n");
   text.append("WIDTH ").append(std::to_string(file.width)).append("\nHEIGHT ").append(std::to_string(file.height));
   text.append("\n").append(viewpoint).append("\nPOINTS ").append(std::to_string(file.table.rows));
-  text.append("\nDATA ").append(kFormats[static_cast<std::size_t>(format)]).append("\n");
+  text.append("\nDATA ").append(kPcdFormatNames.of(format)).append("\n");
   return text;
 }
 

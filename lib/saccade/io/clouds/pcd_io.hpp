@@ -13,6 +13,8 @@
 namespace saccade {
 
 enum class PcdFormat { ascii, binary, binary_compressed };
+inline constexpr auto kPcdFormatNames = make_names<PcdFormat>(
+    {{PcdFormat::ascii, "ascii"}, {PcdFormat::binary, "binary"}, {PcdFormat::binary_compressed, "binary_compressed"}});
 
 struct PcdFile {
   ColumnTable table;  ///< fields in order, padding ("_") included; rows = width · height

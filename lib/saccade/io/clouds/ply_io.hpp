@@ -33,6 +33,10 @@ struct PlyElement {
 };
 
 enum class PlyFormat { ascii, binary_little_endian, binary_big_endian };
+inline constexpr auto kPlyFormatNames =
+    make_names<PlyFormat>({{PlyFormat::ascii, "ascii"},
+                           {PlyFormat::binary_little_endian, "binary_little_endian"},
+                           {PlyFormat::binary_big_endian, "binary_big_endian"}});
 
 struct PlyFile {
   std::vector<std::string> comments;

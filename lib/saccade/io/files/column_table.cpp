@@ -45,11 +45,6 @@ std::size_t bytes_of(ColumnType type) {
   return with_type(type, [](auto zero) { return sizeof(zero); });
 }
 
-std::string_view to_string(ColumnType type) {
-  constexpr std::array<std::string_view, 10> kNames{"i8", "u8", "i16", "u16", "i32", "u32", "i64", "u64", "f32", "f64"};
-  return kNames[static_cast<std::size_t>(type)];
-}
-
 double Column::value(std::size_t row, std::size_t k) const {
   return with_type(type, [&](auto number) {
     const std::size_t offset = (row * count + k) * sizeof(number);

@@ -16,9 +16,19 @@
 namespace saccade {
 
 enum class ColumnType : std::uint8_t { i8, u8, i16, u16, i32, u32, i64, u64, f32, f64 };
+inline constexpr auto kColumnTypeNames = make_names<ColumnType>({{ColumnType::i8, "i8"},
+                                                                 {ColumnType::u8, "u8"},
+                                                                 {ColumnType::i16, "i16"},
+                                                                 {ColumnType::u16, "u16"},
+                                                                 {ColumnType::i32, "i32"},
+                                                                 {ColumnType::u32, "u32"},
+                                                                 {ColumnType::i64, "i64"},
+                                                                 {ColumnType::u64, "u64"},
+                                                                 {ColumnType::f32, "f32"},
+                                                                 {ColumnType::f64, "f64"}});
+[[nodiscard]] constexpr std::string_view to_string(ColumnType type) { return kColumnTypeNames.of(type); }
 
 [[nodiscard]] std::size_t bytes_of(ColumnType type);
-[[nodiscard]] std::string_view to_string(ColumnType type);
 
 /// ColumnType of a C++ type.
 template <class T>

@@ -78,9 +78,8 @@ double YamlMap::number(const std::string& key, double fallback) {
 void YamlMap::finish() const {
   for (const auto& entry : node_) {
     if (asked_.contains(entry.first.Scalar())) continue;
-    std::string known;
-    for (const std::string& key : asked_) known += (known.empty() ? "" : ", ") + key;
-    yaml_problem(entry.first, "unknown key " + entry.first.Scalar() + " in " + what_ + "; known here: " + known);
+    yaml_problem(entry.first,
+                 "unknown key " + entry.first.Scalar() + " in " + what_ + "; known here: " + joined(asked_));
   }
 }
 

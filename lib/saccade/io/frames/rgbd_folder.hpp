@@ -30,7 +30,12 @@ namespace saccade {
 /// camera-intrinsics.txt, intrinsics.K.txt, intrinsics.txt, camera.json, camera_primesense.json, intrinsic.json,
 /// camera_intrinsic.json in the folder or the one above it. Poses are camera-to-world, metres.
 enum class RgbdLayout { automatic, seven_scenes, tum, princeton, open3d };
-[[nodiscard]] std::string_view to_string(RgbdLayout layout);
+inline constexpr auto kRgbdLayoutNames = make_names<RgbdLayout>({{RgbdLayout::automatic, "automatic"},
+                                                                 {RgbdLayout::seven_scenes, "seven_scenes"},
+                                                                 {RgbdLayout::tum, "tum"},
+                                                                 {RgbdLayout::princeton, "princeton"},
+                                                                 {RgbdLayout::open3d, "open3d"}});
+[[nodiscard]] constexpr std::string_view to_string(RgbdLayout layout) { return kRgbdLayoutNames.of(layout); }
 
 struct RgbdFolderConfig {
   RgbdLayout layout{RgbdLayout::automatic};

@@ -11,6 +11,7 @@
 #include <string_view>
 #include <vector>
 
+#include "saccade/core/names.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/sensor/hand_trajectory.hpp"
@@ -57,6 +58,8 @@ enum class HandFormat {
   csv,       ///< time,x,y,z[,qx,qy,qz,qw], with a header that may reorder them or without; .csv
   tum,       ///< time tx ty tz qx qy qz qw; .tum and .txt
 };
+inline constexpr auto kHandFormatNames =
+    make_names<HandFormat>({{HandFormat::matrices, "matrices"}, {HandFormat::csv, "csv"}, {HandFormat::tum, "tum"}});
 
 /// Seconds between the matrices of HandFormat::matrices, which carry no time.
 constexpr double kHandMatrixInterval_s{0.01};

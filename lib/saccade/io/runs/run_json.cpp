@@ -97,7 +97,7 @@ Result<ViewRecord> read_view(const json& value) {
   view.path_m = value.value("path_m", 0.0);
   view.attention = read_attention(value);
   const json ms = value.value("ms", json::object());
-  for (const PhaseName& phase : kPhases) view.times.add(phase.phase, ms.value(std::string{phase.key}, 0.0));
+  for (const Phase phase : kPhaseNames.values) view.times.add(phase, ms.value(std::string{to_string(phase)}, 0.0));
   return view;
 }
 
@@ -120,7 +120,7 @@ Result<std::optional<Configuration>> configuration_from_json(const json& value) 
 
 json times_to_json(const PhaseTimes& times) {
   json ms = json::object();
-  for (const PhaseName& phase : kPhases) ms[std::string{phase.key}] = times.ms(phase.phase);
+  for (const Phase phase : kPhaseNames.values) ms[std::string{to_string(phase)}] = times.ms(phase);
   return ms;
 }
 
@@ -209,7 +209,7 @@ json phases_to_json(const std::vector<ViewRecord>& views) {
     times.add(view.times);
     robot_s += view.motion_s;
   }
-  for (const PhaseName& phase : kPhases) phases[std::string{phase.key}] = 1e-3 * times.ms(phase.phase);
+  for (const Phase phase : kPhaseNames.values) phases[std::string{to_string(phase)}] = 1e-3 * times.ms(phase);
   phases["robot"] = robot_s;
   return phases;
 }

@@ -49,9 +49,7 @@ class KeyedValues {
   void finish() const {
     for (const auto& item : object_.items()) {
       if (asked_.contains(item.key())) continue;
-      std::string known;
-      for (const std::string& key : asked_) known += (known.empty() ? "" : ", ") + key;
-      problem("unknown key " + in_quotes(item.key()) + "; " + what_ + " may have " + known);
+      problem("unknown key " + in_quotes(item.key()) + "; " + what_ + " may have " + joined(asked_));
     }
   }
 

@@ -113,7 +113,7 @@ TEST(RunJson, PhasesAreSummedInSeconds) {
   const Json phases = phases_to_json({some_view(), some_view()});
   EXPECT_DOUBLE_EQ(phases.at("evaluation").get<double>(), 0.0405);
   EXPECT_DOUBLE_EQ(phases.at("robot").get<double>(), 4.5);
-  EXPECT_EQ(phases.size(), kPhases.size() + 1);
+  EXPECT_EQ(phases.size(), kPhaseNames.values.size() + 1);
 }
 
 TEST(ViewChoiceFile, ComesBackAndDamageIsNamed) {

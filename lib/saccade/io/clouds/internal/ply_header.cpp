@@ -1,51 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/clouds/internal/ply_header.hpp"
 
-#include <array>
-#include <optional>
-#include <utility>
-
 #include "saccade/io/files/text_scan.hpp"
 
 namespace saccade {
 namespace {
 
-constexpr std::array<std::pair<std::string_view, ColumnType>, 16> kTypeNames{{{"char", ColumnType::i8},
-                                                                              {"uchar", ColumnType::u8},
-                                                                              {"short", ColumnType::i16},
-                                                                              {"ushort", ColumnType::u16},
-                                                                              {"int", ColumnType::i32},
-                                                                              {"uint", ColumnType::u32},
-                                                                              {"float", ColumnType::f32},
-                                                                              {"double", ColumnType::f64},
-                                                                              {"int8", ColumnType::i8},
-                                                                              {"uint8", ColumnType::u8},
-                                                                              {"int16", ColumnType::i16},
-                                                                              {"uint16", ColumnType::u16},
-                                                                              {"int32", ColumnType::i32},
-                                                                              {"uint32", ColumnType::u32},
-                                                                              {"float32", ColumnType::f32},
-                                                                              {"float64", ColumnType::f64}}};
-
-constexpr std::array<std::pair<std::string_view, PlyFormat>, 3> kFormatNames{
-    {{"ascii", PlyFormat::ascii},
-     {"binary_little_endian", PlyFormat::binary_little_endian},
-     {"binary_big_endian", PlyFormat::binary_big_endian}}};
-
-template <class Pairs>
-auto find_name(const Pairs& pairs, std::string_view name) -> std::optional<decltype(pairs[0].second)> {
-  for (const auto& [known, value] : pairs) {
-    if (known == name) return value;
-  }
-  return std::nullopt;
-}
-
-std::string_view type_name(ColumnType type) {
-  for (const auto& [name, known] : kTypeNames) {
-    if (known == type) return name;
-  }
-  return {};
-}
+/// PLY has no integers of 64 bits. Each type has two names; the first is written.
+constexpr auto kTypeNames = make_some_names<ColumnType>({{ColumnType::i8, "char"},
+                                                         {ColumnType::u8, "uchar"},
+                                                         {ColumnType::i16, "short"},
+                                                         {ColumnType::u16, "ushort"},
+                                                         {ColumnType::i32, "int"},
+                                                         {ColumnType::u32, "uint"},
+                                                         {ColumnType::f32, "float"},
+                                                         {ColumnType::f64, "double"},
+                                                         {ColumnType::i8, "int8"},
+                                                         {ColumnType::u8, "uint8"},
+                                                         {ColumnType::i16, "int16"},
+                                                         {ColumnType::u16, "uint16"},
+                                                         {ColumnType::i32, "int32"},
+                                                         {ColumnType::u32, "uint32"},
+                                                         {ColumnType::f32, "float32"},
+                                                         {ColumnType::f64, "float64"}});
 
 /// The words of one header line.
 std::vector<std::string_view> words_of(std::string_view line) {
@@ -99,7 +76,7 @@ class PlyHeaderParser {
   }
 
   [[nodiscard]] Status format(const std::vector<std::string_view>& words) {
-    const auto known = find_name(kFormatNames, words[1]);
+    const auto known = kPlyFormatNames.find(words[1]);
     if (!known || words[2] != "1.0") {
       return Error{Errc::unsupported, "unknown format " + in_quotes(words[1]) + " " + in_quotes(words[2]),
                    "line " + std::to_string(lines_.line())};
@@ -120,7 +97,7 @@ class PlyHeaderParser {
   }
 
   [[nodiscard]] Status scalar(const std::vector<std::string_view>& words) {
-    const auto type = find_name(kTypeNames, words[1]);
+    const auto type = kTypeNames.find(words[1]);
     if (!type) return fail("unknown type " + in_quotes(words[1]));
     if (header_.file.elements.empty()) return fail("a property before any element");
     PlyElement& element = header_.file.elements.back();
@@ -130,8 +107,8 @@ class PlyHeaderParser {
   }
 
   [[nodiscard]] Status list(const std::vector<std::string_view>& words) {
-    const auto count_type = find_name(kTypeNames, words[2]);
-    const auto type = find_name(kTypeNames, words[3]);
+    const auto count_type = kTypeNames.find(words[2]);
+    const auto type = kTypeNames.find(words[3]);
     if (!count_type || !type) return fail("unknown type " + in_quotes(count_type ? words[3] : words[2]));
     if (*count_type == ColumnType::f32 || *count_type == ColumnType::f64) return fail("a list with a fractional count");
     if (header_.file.elements.empty()) return fail("a property before any element");
@@ -160,18 +137,18 @@ std::vector<int> property_order(const PlyElement& element) {
 
 std::string ply_header_text(const PlyFile& file, PlyFormat format) {
   std::string text{"ply\nformat "};
-  text.append(kFormatNames[static_cast<std::size_t>(format)].first).append(" 1.0\n");
+  text.append(kPlyFormatNames.of(format)).append(" 1.0\n");
   for (const std::string& comment : file.comments) text += "comment " + comment + "\n";
   for (const PlyElement& element : file.elements) {
     text += "element " + element.name + " " + std::to_string(element.table.rows) + "\n";
     for (const int index : property_order(element)) {
       if (index >= 0) {
         const Column& column = element.table.columns[static_cast<std::size_t>(index)];
-        text.append("property ").append(type_name(column.type)).append(" ").append(column.name).append("\n");
+        text.append("property ").append(kTypeNames.of(column.type)).append(" ").append(column.name).append("\n");
       } else {
         const PlyList& list = element.lists[static_cast<std::size_t>(-1 - index)];
-        text.append("property list ").append(type_name(list.count_type)).append(" ");
-        text.append(type_name(list.values.type)).append(" ").append(list.name).append("\n");
+        text.append("property list ").append(kTypeNames.of(list.count_type)).append(" ");
+        text.append(kTypeNames.of(list.values.type)).append(" ").append(list.name).append("\n");
       }
     }
   }

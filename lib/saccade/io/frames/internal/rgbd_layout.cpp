@@ -213,17 +213,6 @@ Result<RgbdListing> list_layout(const fs::path& folder, RgbdLayout layout, doubl
 
 }  // namespace
 
-std::string_view to_string(RgbdLayout layout) {
-  switch (layout) {
-    case RgbdLayout::automatic: return "automatic";
-    case RgbdLayout::seven_scenes: return "seven_scenes";
-    case RgbdLayout::tum: return "tum";
-    case RgbdLayout::princeton: return "princeton";
-    case RgbdLayout::open3d: return "open3d";
-  }
-  return "unknown";
-}
-
 Result<RgbdListing> list_rgbd_folder(const fs::path& folder, const RgbdFolderConfig& config) {
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return Error{Errc::not_found, "no such folder", folder.string()};

@@ -1,0 +1,51 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/core/names.hpp"
+
+#include <gtest/gtest.h>
+
+#include "saccade/core/phase_times.hpp"
+#include "saccade/core/result.hpp"
+
+namespace saccade {
+namespace {
+
+enum class Side { left, right, middle };
+
+constexpr auto kSideNames =
+    make_names<Side>({{Side::left, "left"}, {Side::right, "right"}, {Side::middle, "middle"}, {Side::left, "l"}});
+static_assert(kSideNames.of(Side::left) == "left");
+static_assert(kSideNames.find("middle") == Side::middle);
+
+TEST(Names, GoToAWordAndBack) {
+  for (const Side side : {Side::left, Side::right, Side::middle}) {
+    EXPECT_EQ(kSideNames.find(kSideNames.of(side)), side);
+  }
+  EXPECT_EQ(kSideNames.find("l"), Side::left);
+  EXPECT_EQ(kSideNames.of(Side::left), "left");
+}
+
+TEST(Names, DoNotKnowEveryWord) {
+  for (const std::string_view word : {"", "Left", "left ", "lef", "unknown"}) EXPECT_FALSE(kSideNames.find(word));
+  EXPECT_EQ(kSideNames.of(static_cast<Side>(7)), "unknown");
+}
+
+TEST(Names, AreListed) {
+  EXPECT_EQ(kSideNames.listed(), "left, right, middle or l");
+  EXPECT_EQ((make_names<Side>({{Side::left, "left"}, {Side::right, "right"}}).listed()), "left or right");
+  EXPECT_EQ((make_names<Side>({{Side::left, "left"}}).listed()), "left");
+  EXPECT_EQ(listed({}), "");
+}
+
+TEST(Names, AreJoined) {
+  EXPECT_EQ(joined(kSideNames.words, "|"), "left|right|middle|l");
+  EXPECT_EQ(joined(std::array{1, 2, 3}, "; ", [](int i) { return std::to_string(i); }), "1; 2; 3");
+  EXPECT_EQ(joined(std::vector<std::string>{}), "");
+}
+
+TEST(Names, OfErrorsAndPhasesGoBothWays) {
+  for (const Errc code : kErrcNames.values) EXPECT_EQ(kErrcNames.find(to_string(code)), code);
+  for (const Phase phase : kPhaseNames.values) EXPECT_EQ(kPhaseNames.find(to_string(phase)), phase);
+}
+
+}  // namespace
+}  // namespace saccade
