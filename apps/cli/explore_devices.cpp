@@ -17,8 +17,8 @@ Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const E
     return std::unique_ptr<Robot>{std::move(robot)};
   }
   if (arm) {
-    SACCADE_TRY(SimulatedRobot robot, simulated_arm(*arm, subject.scene, options.run, options.arm));
-    return std::unique_ptr<Robot>{std::make_unique<SimulatedRobot>(std::move(robot))};
+    SACCADE_TRY(PlannedArm robot, simulated_arm(*arm, subject.scene, options.run, options.arm));
+    return std::unique_ptr<Robot>{std::make_unique<PlannedArm>(std::move(robot))};
   }
   if (!subject.rays) return std::unique_ptr<Robot>{std::make_unique<FreeRobot>()};
   SACCADE_TRY(FreeRobot robot, flying_camera(*subject.rays));
@@ -71,7 +71,7 @@ Status ExploreDevices::change_scene(const RayScene& scene, const SimulatedRunCon
 }
 
 Status ExploreDevices::place_arm(const Configuration& q) {
-  auto* arm = dynamic_cast<ArmRobot*>(&camera_.robot());
+  auto* arm = dynamic_cast<PlannedArm*>(&camera_.robot());
   if (arm == nullptr) return Error{Errc::invalid_argument, "there is no arm to be placed", "explore"};
   return arm->place(q);
 }

@@ -35,9 +35,7 @@ class ExploreDevices {
   [[nodiscard]] const PinholeCamera& intrinsics() const { return camera_.intrinsics(); }
   [[nodiscard]] Robot& robot() { return camera_.robot(); }
   /// The simulated arm; nullptr: something else carries the camera.
-  [[nodiscard]] const SimulatedRobot* simulated_arm() const {
-    return dynamic_cast<const SimulatedRobot*>(&camera_.robot());
-  }
+  [[nodiscard]] const PlannedArm* simulated_arm() const { return dynamic_cast<const PlannedArm*>(&camera_.robot()); }
   /// What a simulated camera sees from now on; the fixtures that an arm keeps clear of stay. Errors: those of
   /// simulated_camera.
   [[nodiscard]] Status change_scene(const RayScene& scene, const SimulatedRunConfig& config);

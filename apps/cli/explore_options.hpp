@@ -20,7 +20,7 @@ struct ExploreOptions : RunOptions {
   std::string robot;  ///< a built-in arm, a URDF, or free; empty: an arm, or free with a camera of one's own
   std::vector<std::string> fixtures;  ///< as they were given
   std::vector<std::string> free;      ///< boxes, too
-  ArmRobotConfig arm;
+  PlannedArmConfig arm;
   std::string robot_command;   ///< a program that moves a robot; empty: robot
   std::string camera_command;  ///< a program that has a camera; empty: a simulated one
   double process_timeout_s{60.0};

@@ -13,7 +13,7 @@ namespace {
 constexpr double kContactStep_s{0.03};
 
 /// Counts instants and contacts of motions in a scene.
-Status count_contacts_of(const SimulatedRobot& arm, std::size_t first, std::size_t last, const RayScene& scene,
+Status count_contacts_of(const PlannedArm& arm, std::size_t first, std::size_t last, const RayScene& scene,
                          const Executor& executor, UpdateFigures& figures) {
   SACCADE_TRY(const Solids solids, Solids::build(scene, [](const SceneObject&) { return true; }));
   const std::span<const Trajectory> motions = std::span{arm.motions()}.subspan(first, last - first);
@@ -139,7 +139,7 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
   SACCADE_CHECK(scan_before(options, subject, map, explorer, figures));
   figures.stand_by = devices.robot().configuration();
   figures.before = map.snapshot();
-  const SimulatedRobot* arm = devices.simulated_arm();
+  const PlannedArm* arm = devices.simulated_arm();
   const std::size_t scanned = arm != nullptr ? arm->motions().size() : 0;
 
   // The user's task: the scene changes, and the map does not know.

@@ -52,14 +52,14 @@ std::vector<Pose> views_at(const Corner& corner) {
 
 Result<std::vector<Pose>> scan_motion(const Scene& scene, const ArmModel& arm, double pace) {
   SACCADE_EXPECTS(pace > 0.0);
-  ArmRobotConfig config;
+  PlannedArmConfig config;
   config.obstacles.unknown_is_obstacle = false;
   Scene seen = scene;
   seen.scan = views_at(kCorners.front());
   // Whoever teaches the arm its way sees the objects, which no map knows yet.
   for (SceneObject& object : seen.objects) object.fixture = true;
   const SimulatedRunConfig run;
-  SACCADE_TRY(SimulatedRobot robot, simulated_arm(arm, seen, run, config));
+  SACCADE_TRY(PlannedArm robot, simulated_arm(arm, seen, run, config));
 
   std::vector<Pose> poses{robot.T_world_camera()};
   const double between_s = pace / kFrameRate_hz;  // in the time of the planned motions, which are the fastest

@@ -15,7 +15,7 @@ constexpr double kFrameRate_hz{30.0};
 /// T_world_camera frame by frame while the arm goes from the table's left end up over its middle and down before it,
 /// always looking at its middle. It stops at the corners of its way.
 /// @param pace share of the speed that the arm could drive with; positive
-/// @return errors of SimulatedRobot::create; not_found where the arm has no way from one corner to the next.
+/// @return errors of PlannedArm::create; not_found where the arm has no way from one corner to the next.
 [[nodiscard]] Result<std::vector<Pose>> scan_motion(const Scene& scene, const ArmModel& arm, double pace);
 
 }  // namespace saccade::thesis

@@ -267,7 +267,7 @@ TEST(Defaults, OfObstaclesAreDocumented) {
   expect_documented("ArmCollisionConfig::max_excess_m", {arm.max_excess_m});
   expect_documented("ArmCollisionConfig::max_step_m", {arm.max_step_m});
   expect_documented("SweptCells::kMargin_m", {SweptCells::kMargin_m});
-  expect_documented("SimulatedRobot::kSample_s", {SimulatedRobot::kSample_s});
+  expect_documented("SimulatedJoints::kSample_s", {SimulatedJoints::kSample_s});
 }
 
 TEST(Defaults, OfMotionPlanningAreDocumented) {

@@ -17,12 +17,12 @@ Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRun
     SACCADE_TRY(FreeRobot robot, flying_camera(scene));
     return std::unique_ptr<Robot>{std::make_unique<FreeRobot>(std::move(robot))};
   }
-  ArmRobotConfig robot_config = config.arm_robot;
+  PlannedArmConfig robot_config = config.arm_robot;
   robot_config.planner.seed = config.seed;
   // A search that ran out of time would depend on the machine and on what else runs there.
   robot_config.planner.budget_s = std::numeric_limits<double>::infinity();
-  SACCADE_TRY(SimulatedRobot robot, simulated_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
-  return std::unique_ptr<Robot>{std::make_unique<SimulatedRobot>(std::move(robot))};
+  SACCADE_TRY(PlannedArm robot, simulated_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
+  return std::unique_ptr<Robot>{std::make_unique<PlannedArm>(std::move(robot))};
 }
 
 /// Fills in the straight ways of a camera that flies. It begins at the last pose of the scan, unless one was passed
@@ -118,8 +118,8 @@ Result<FreeRobot> flying_camera(const RayScene& scene) {
   }};
 }
 
-Result<SimulatedRobot> simulated_arm(const ArmModel& arm, const Scene& scene, const SimulatedRunConfig& config,
-                                     ArmRobotConfig robot) {
+Result<PlannedArm> simulated_arm(const ArmModel& arm, const Scene& scene, const SimulatedRunConfig& config,
+                                 PlannedArmConfig robot) {
   if (!scene.objects.empty()) {
     SACCADE_TRY(const std::vector<FixtureBox> fixtures, fixture_boxes(scene));
     for (const FixtureBox& fixture : fixtures) robot.obstacles.fixtures.push_back(fixture.box);
@@ -127,7 +127,7 @@ Result<SimulatedRobot> simulated_arm(const ArmModel& arm, const Scene& scene, co
   robot.first_poses = scene.scan;
   TsdfConfig map = config.map();
   map.workspace = scene.workspace;
-  return SimulatedRobot::create(arm, map, robot);
+  return PlannedArm::create(arm, map, robot);
 }
 
 Measures measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {

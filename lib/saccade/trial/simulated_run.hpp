@@ -4,7 +4,7 @@
 
 #include <memory>
 
-#include "saccade/arm/arm_robot.hpp"
+#include "saccade/arm/planned_arm.hpp"
 #include "saccade/core/names.hpp"
 #include "saccade/explore/explorer.hpp"
 #include "saccade/explore/planners.hpp"
@@ -42,7 +42,7 @@ struct SimulatedRunConfig {
   std::uint64_t seed{1};                  ///< of noise and chance
   std::shared_ptr<const ArmModel> arm{};  ///< carries the camera in run_simulated; null: it flies
   /// Of that arm; its planner takes `seed` for its own, and all the time that max_motions take.
-  ArmRobotConfig arm_robot{};
+  PlannedArmConfig arm_robot{};
 
   [[nodiscard]] Status validate() const;
   /// As it is for a strategy, planner.min_gain included.
@@ -71,9 +71,9 @@ constexpr double kCameraClearance_m{0.1};
 [[nodiscard]] Result<FreeRobot> flying_camera(const RayScene& scene);
 
 /// An arm in the scene, as it stands at the first view of the initial scan, if `robot` says nothing else. The scene's
-/// fixture_boxes are added to its fixtures. Errors: those of fixture_boxes and SimulatedRobot::create.
-[[nodiscard]] Result<SimulatedRobot> simulated_arm(const ArmModel& arm, const Scene& scene,
-                                                   const SimulatedRunConfig& config, ArmRobotConfig robot = {});
+/// fixture_boxes are added to its fixtures. Errors: those of fixture_boxes and PlannedArm::create.
+[[nodiscard]] Result<PlannedArm> simulated_arm(const ArmModel& arm, const Scene& scene,
+                                               const SimulatedRunConfig& config, PlannedArmConfig robot = {});
 
 /// Measures the map and its mesh. Cost: measure() + extract_mesh().
 [[nodiscard]] Measures measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor);

@@ -288,7 +288,7 @@ struct ArmUpdate {
 };
 
 /// The same with the Comau, which fuses on its way or not.
-ArmUpdate update_with_arm(FuseWhen when, const Executor& executor, SimulatedRobot& robot, const RayScene& rays) {
+ArmUpdate update_with_arm(FuseWhen when, const Executor& executor, PlannedArm& robot, const RayScene& rays) {
   SimulatedRunConfig config;
   config.voxel_size_m = kVoxelOfUpdate_m;
   config.camera = PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.5, 2.0};
@@ -330,8 +330,8 @@ TEST(EnvironmentUpdateWithArm, ReturnsToItsStandByAndSeesMoreWhenItLooksOnItsWay
   config.voxel_size_m = kVoxelOfUpdate_m;
   const ArmModel fast = find_robot("comau").value().arm;
   const ArmModel slow = slowed(fast, kSpeedWhileFusing);
-  SimulatedRobot stopping = simulated_arm(fast, rays.scene(), config).value();
-  SimulatedRobot looking = simulated_arm(slow, rays.scene(), config).value();
+  PlannedArm stopping = simulated_arm(fast, rays.scene(), config).value();
+  PlannedArm looking = simulated_arm(slow, rays.scene(), config).value();
   const Configuration start = *looking.configuration();
   const ArmUpdate at_views = update_with_arm(FuseWhen::viewpoints, executor, stopping, rays);
   const ArmUpdate on_way = update_with_arm(FuseWhen::motion, executor, looking, rays);

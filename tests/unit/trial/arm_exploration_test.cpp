@@ -39,9 +39,9 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
   map_config.workspace = rays.scene().workspace;
   TsdfMap map = TsdfMap::create(map_config).value();
   SimulatedCamera camera = simulated_camera(rays, config).value();
-  ArmRobotConfig arm;
+  PlannedArmConfig arm;
   arm.planner.seed = seed;
-  SimulatedRobot robot = simulated_arm(find_robot("comau").value().arm, rays.scene(), config, arm).value();
+  PlannedArm robot = simulated_arm(find_robot("comau").value().arm, rays.scene(), config, arm).value();
   const Executor executor = Executor::with_threads(threads);
   FunctionCamera sensor{config.camera,
                         [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); }};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/arm/arm_robot.hpp"
+#include "saccade/arm/planned_arm.hpp"
 
 #include <algorithm>
 
@@ -11,7 +11,7 @@ namespace saccade {
 namespace {
 
 /// The configuration that config asks for; touching is not looked at.
-Configuration choose_start(const ArmRobotConfig& config, const Reachability& reachability,
+Configuration choose_start(const PlannedArmConfig& config, const Reachability& reachability,
                            const ObstacleMap& fixtures) {
   if (config.start) return *config.start;
   const Configuration& middle = reachability.arm().middle();
@@ -37,13 +37,24 @@ Status check_configuration(const ArmModel& arm, const Configuration& q) {
 
 }  // namespace
 
-Status ArmRobotConfig::validate() const {
+Status PlannedArmConfig::validate() const {
   SACCADE_CHECK(collision.validate());
   SACCADE_CHECK(planner.validate());
   return obstacles.validate();
 }
 
-Result<ArmRobot::Parts> ArmRobot::make_parts(const ArmModel& arm, const TsdfConfig& map, const ArmRobotConfig& config) {
+Result<PlannedArm> PlannedArm::create(const ArmModel& arm, const TsdfConfig& map, PlannedArmConfig config,
+                                      std::shared_ptr<JointController> joints) {
+  if (joints && !config.start) {
+    SACCADE_TRY(config.start, joints->position());
+  }
+  SACCADE_TRY(Parts parts, make_parts(arm, map, config));
+  if (!joints) joints = std::make_shared<SimulatedJoints>(parts.start);
+  return PlannedArm{std::move(parts), std::move(joints)};
+}
+
+Result<PlannedArm::Parts> PlannedArm::make_parts(const ArmModel& arm, const TsdfConfig& map,
+                                                 const PlannedArmConfig& config) {
   SACCADE_CHECK(config.validate());
   SACCADE_TRY(const ArmCollision collision, ArmCollision::create(arm, config.collision));
   SACCADE_TRY(Reachability reachability, Reachability::create(collision, config.ik));
@@ -61,34 +72,25 @@ Result<ArmRobot::Parts> ArmRobot::make_parts(const ArmModel& arm, const TsdfConf
   return Parts{std::move(reachability), std::move(planner), std::move(fixtures), std::move(obstacles), start};
 }
 
-ArmRobot::ArmRobot(Parts parts)
+PlannedArm::PlannedArm(Parts parts, std::shared_ptr<JointController> joints)
     : reachability_{std::move(parts.reachability)},
       planner_{std::move(parts.planner)},
+      joints_{std::move(joints)},
       fixtures_{std::move(parts.fixtures)},
       obstacles_{std::move(parts.obstacles)},
       stand_by_{parts.start},
       q_{parts.start},
       way_{DrivenWay{}} {}
 
-Status ArmRobot::place(const Configuration& q) {
+Status PlannedArm::place(const Configuration& q) {
   SACCADE_CHECK(check_configuration(arm(), q));
-  stand(q);
-  return {};
-}
-
-void ArmRobot::arrive(const Motion& motion, const Configuration& q) {
-  way_->add(motion.trajectory);
-  q_ = q;
-  retreat_.reset();
-}
-
-void ArmRobot::stand(const Configuration& q) {
   way_->clear();
   q_ = q;
   retreat_.reset();
+  return {};
 }
 
-Status ArmRobot::follow(const TsdfSnapshot& map, const Executor& executor) {
+Status PlannedArm::follow(const TsdfSnapshot& map, const Executor& executor) {
   SACCADE_TRY([[maybe_unused]] const ObstacleUpdate update, obstacles_.update(map, executor));
   const ArmCollision& collision = reachability_.collision();
   retreat_.reset();
@@ -96,7 +98,7 @@ Status ArmRobot::follow(const TsdfSnapshot& map, const Executor& executor) {
   return {};
 }
 
-Result<std::vector<Box>> ArmRobot::swept_by(std::span<const Pose> T_world_camera) {
+Result<std::vector<Box>> PlannedArm::swept_by(std::span<const Pose> T_world_camera) {
   SweptCells cells{reachability_.collision(), obstacles_};
   Configuration at = q_;
   cells.add(at);
@@ -109,19 +111,19 @@ Result<std::vector<Box>> ArmRobot::swept_by(std::span<const Pose> T_world_camera
   return cells.boxes();
 }
 
-std::vector<std::optional<Refusal>> ArmRobot::test(std::span<const Pose> T_world_camera,
-                                                   const Executor& executor) const {
+std::vector<std::optional<Refusal>> PlannedArm::test(std::span<const Pose> T_world_camera,
+                                                     const Executor& executor) const {
   return reachability_.test(T_world_camera, q_, obstacles_, executor);
 }
 
-Result<PlannedMotion> ArmRobot::plan(std::span<const Pose> T_world_camera, Way way) {
+Result<PlannedMotion> PlannedArm::plan(std::span<const Pose> T_world_camera, Way way) {
   if (way == Way::straight) return plan_among(T_world_camera, way, q_, obstacles_);
   SACCADE_TRY(PlannedMotion planned, plan_among(T_world_camera, way, planned_from(), obstacles_));
   if (planned.motion) begin_with_retreat(*planned.motion);
   return planned;
 }
 
-Result<PlannedMotion> ArmRobot::plan_to_stand_by() {
+Result<PlannedMotion> PlannedArm::plan_to_stand_by() {
   SACCADE_TRY(PlanOutcome outcome, planner_.plan(planned_from(), std::span{&stand_by_, 1}, obstacles_));
   if (!outcome.plan) return PlannedMotion{std::nullopt, outcome.refusal, std::move(outcome.why)};
   Motion motion{0, camera_pose(arm(), stand_by_), std::move(outcome.plan->trajectory)};
@@ -129,7 +131,7 @@ Result<PlannedMotion> ArmRobot::plan_to_stand_by() {
   return PlannedMotion{std::move(motion), std::nullopt, ""};
 }
 
-void ArmRobot::begin_with_retreat(Motion& motion) const {
+void PlannedArm::begin_with_retreat(Motion& motion) const {
   if (!retreat_) return;
   std::vector<Trajectory::Piece> pieces = retreat_->pieces();
   const std::vector<Trajectory::Piece>& onwards = motion.trajectory.pieces();
@@ -138,8 +140,8 @@ void ArmRobot::begin_with_retreat(Motion& motion) const {
   motion.retreat_s = retreat_->duration_s();
 }
 
-Result<PlannedMotion> ArmRobot::plan_among(std::span<const Pose> T_world_camera, Way way, const Configuration& from,
-                                           const ObstacleMap& obstacles) const {
+Result<PlannedMotion> PlannedArm::plan_among(std::span<const Pose> T_world_camera, Way way, const Configuration& from,
+                                             const ObstacleMap& obstacles) const {
   SACCADE_EXPECTS(!T_world_camera.empty());
   std::vector<Configuration> goals;
   std::vector<std::size_t> pose_of;
@@ -159,29 +161,24 @@ Result<PlannedMotion> ArmRobot::plan_among(std::span<const Pose> T_world_camera,
   return PlannedMotion{Motion{pose, T_world_camera[pose], std::move(outcome.plan->trajectory)}, std::nullopt, ""};
 }
 
-Status ArmRobot::check_start(const Motion& motion) const {
+Status PlannedArm::check_start(const Motion& motion) const {
   constexpr double kSame{1e-6};
   if (!motion.trajectory.empty() && (motion.trajectory.at(0.0).q - q_).lpNorm<Eigen::Infinity>() <= kSame) return {};
   return Error{Errc::invalid_argument, "the motion does not begin where the arm stands", arm().name()};
 }
 
-Result<SimulatedRobot> SimulatedRobot::create(const ArmModel& arm, const TsdfConfig& map,
-                                              const ArmRobotConfig& config) {
-  SACCADE_TRY(Parts parts, make_parts(arm, map, config));
-  return SimulatedRobot{std::move(parts)};
-}
-
-Result<std::optional<Arrival>> SimulatedRobot::execute(const Motion& motion, const OnWay& on_way) {
+Result<std::optional<Arrival>> PlannedArm::execute(const Motion& motion, const OnWay& on_way) {
   SACCADE_CHECK(check_start(motion));
   JointObserver observer;
   if (on_way) {
     observer = [&](const JointSample& sample) {
-      pass(sample.q);
+      q_ = sample.q;
       on_way({sample.t_s, T_world_camera()});
     };
   }
-  SACCADE_TRY(const Configuration q, joints_.execute(motion.trajectory, observer));
-  arrive(motion, q);
+  SACCADE_TRY(q_, joints_->execute(motion.trajectory, observer));
+  way_->add(motion.trajectory);
+  retreat_.reset();
   motions_.push_back(motion.trajectory);
   return std::optional{Arrival{T_world_camera(), motion.trajectory.duration_s()}};
 }

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/arm/arm_robot.hpp"
+#include "saccade/arm/planned_arm.hpp"
 
 #include <gtest/gtest.h>
 
@@ -30,8 +30,8 @@ class SimulatedArm : public ::testing::Test {
     config.workspace = Box{{-1.2, -1.2, 0.0}, {1.2, 1.2, 1.6}};
     return config;
   }
-  static SimulatedRobot robot(const ArmRobotConfig& config = {}) {
-    return SimulatedRobot::create(arm(), map_config(), config).value();
+  static PlannedArm robot(const PlannedArmConfig& config = {}) {
+    return PlannedArm::create(arm(), map_config(), config).value();
   }
   /// Poses that the arm can take, apart from each other.
   static std::vector<Pose> poses(std::size_t count) {
@@ -47,34 +47,34 @@ class SimulatedArm : public ::testing::Test {
 
 TEST_F(SimulatedArm, StandsWhereItIsToldTo) {
   EXPECT_EQ(robot().configuration(), arm().middle());
-  ArmRobotConfig config;
+  PlannedArmConfig config;
   config.start = 0.1 * Configuration::Ones(6);
   EXPECT_EQ(robot(config).configuration(), config.start);
   config.start = 0.1 * Configuration::Ones(5);
-  EXPECT_EQ(SimulatedRobot::create(arm(), map_config(), config).error().code, Errc::invalid_argument);
+  EXPECT_EQ(PlannedArm::create(arm(), map_config(), config).error().code, Errc::invalid_argument);
   config.start = 100.0 * Configuration::Ones(6);
-  EXPECT_EQ(SimulatedRobot::create(arm(), map_config(), config).error().code, Errc::invalid_argument);
+  EXPECT_EQ(PlannedArm::create(arm(), map_config(), config).error().code, Errc::invalid_argument);
   config.start.reset();
   config.first_poses = poses(1);
-  const SimulatedRobot at_pose = robot(config);
+  const PlannedArm at_pose = robot(config);
   EXPECT_LT(test::miss(at_pose.T_world_camera(), config.first_poses[0]), 1e-6);
-  SimulatedRobot placed = robot();
+  PlannedArm placed = robot();
   EXPECT_TRUE(placed.place(0.2 * Configuration::Ones(6)).ok());
   EXPECT_EQ(placed.configuration(), Configuration{0.2 * Configuration::Ones(6)});
   EXPECT_FALSE(placed.place(0.2 * Configuration::Ones(7)).ok());
 }
 
 TEST_F(SimulatedArm, AStartThatTouchesAFixtureIsAnError) {
-  ArmRobotConfig config;
+  PlannedArmConfig config;
   const Eigen::Vector3d hand = camera_pose(arm(), arm().middle()).translation();
   config.obstacles.fixtures = {Box{hand - Eigen::Vector3d::Constant(0.1), hand + Eigen::Vector3d::Constant(0.1)}};
-  const auto made = SimulatedRobot::create(arm(), map_config(), config);
+  const auto made = PlannedArm::create(arm(), map_config(), config);
   ASSERT_FALSE(made);
   EXPECT_NE(made.error().message.find("touches an obstacle"), std::string::npos) << made.error().message;
 }
 
 TEST_F(SimulatedArm, WhatTheScanSweepsIsEnoughToGoThroughItAndNoMore) {
-  SimulatedRobot moving = robot();
+  PlannedArm moving = robot();
   TsdfMap map = TsdfMap::create(map_config()).value();
   const std::vector<Pose> scan = poses(4);
   // In a map that knows nothing, the arm cannot stir.
@@ -130,9 +130,9 @@ TEST_F(SimulatedArm, SweptCellsAreThoseThatTheArmTouches) {
 }
 
 TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
-  ArmRobotConfig config;
+  PlannedArmConfig config;
   config.obstacles.unknown_is_obstacle = false;
-  SimulatedRobot moving = robot(config);
+  PlannedArm moving = robot(config);
   const std::vector<Pose> goals = poses(3);
   const PlannedMotion planned = moving.plan(goals).value();
   ASSERT_TRUE(planned.motion);
@@ -147,7 +147,7 @@ TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
   EXPECT_LT(test::miss(samples.back().T_world_camera, (*arrival)->T_world_camera), 1e-9);
   for (std::size_t i = 1; i < samples.size(); ++i) EXPECT_LE(samples[i].t_s - samples[i - 1].t_s, 0.02 + 1e-12);
   // Of several, the one that is reached soonest.
-  SimulatedRobot again = robot(config);
+  PlannedArm again = robot(config);
   for (const Pose& goal : goals) {
     EXPECT_LE(planned.motion->trajectory.duration_s(),
               again.plan(std::span{&goal, 1})->motion->trajectory.duration_s() + 1e-9);
@@ -156,11 +156,43 @@ TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
   EXPECT_EQ(moving.execute(*planned.motion).error().code, Errc::invalid_argument);
 }
 
+/// Joints that stand short of where they were sent, or do not answer.
+class LazyJoints final : public JointController {
+ public:
+  [[nodiscard]] Result<Configuration> position() override { return q; }
+  [[nodiscard]] Result<Configuration> execute(const Trajectory& trajectory, const JointObserver& observer) override {
+    if (broken) return Error{Errc::unavailable, "the bus is silent", "joints"};
+    observer({0.0, q});
+    q = trajectory.at(0.5 * trajectory.duration_s()).q;
+    return q;
+  }
+  Configuration q{0.1 * Configuration::Ones(6)};
+  bool broken{false};
+};
+
+TEST_F(SimulatedArm, StandsWhereItsJointsSay) {
+  PlannedArmConfig config;
+  config.obstacles.unknown_is_obstacle = false;
+  const auto joints = std::make_shared<LazyJoints>();
+  PlannedArm moving = PlannedArm::create(arm(), map_config(), config, joints).value();
+  EXPECT_EQ(moving.configuration(), joints->q);
+  const PlannedMotion planned = moving.plan(poses(3)).value();
+  ASSERT_TRUE(planned.motion);
+  const auto arrival = moving.execute(*planned.motion, [](const CameraSample&) {});
+  ASSERT_TRUE(arrival && *arrival);
+  EXPECT_EQ(moving.configuration(), joints->q);
+  EXPECT_EQ((*arrival)->T_world_camera.matrix(), camera_pose(arm(), joints->q).matrix());
+  joints->broken = true;
+  const PlannedMotion next = moving.plan(poses(1)).value();
+  ASSERT_TRUE(next.motion);
+  EXPECT_EQ(moving.execute(*next.motion).error().message, "the bus is silent");
+}
+
 /// What was seen beside the hand of an arm that has come to the second of two poses: `ahead_m` on from where it came.
 class BackingOut : public SimulatedArm {
  protected:
-  SimulatedRobot at_second(double ahead_m, double radius_m) {
-    SimulatedRobot moving = robot();
+  PlannedArm at_second(double ahead_m, double radius_m) {
+    PlannedArm moving = robot();
     EXPECT_TRUE(map_.free(*map_config().workspace).ok());
     EXPECT_TRUE(moving.follow(map_.content(), Executor{}).ok());
     EXPECT_TRUE(*moving.move_to(poses(3)[0]));
@@ -181,7 +213,7 @@ class BackingOut : public SimulatedArm {
 };
 
 TEST_F(BackingOut, AnArmLeavesTheWayItCameAndGoesOn) {
-  SimulatedRobot moving = at_second(0.07, 0.02);
+  PlannedArm moving = at_second(0.07, 0.02);
   const ArmCollision& collision = moving.reachability().collision();
   const Configuration stood = *moving.configuration();
   EXPECT_EQ(moving.plan(third_, Way::straight)->refusal, Refusal::start_in_collision) << "no detour was wanted";
@@ -206,14 +238,14 @@ TEST_F(BackingOut, AnArmLeavesTheWayItCameAndGoesOn) {
 }
 
 TEST_F(BackingOut, NeverDeeper) {
-  SimulatedRobot moving = at_second(-0.05, 0.08);  // across the way back
+  PlannedArm moving = at_second(-0.05, 0.08);  // across the way back
   const PlannedMotion planned = moving.plan(third_).value();
   EXPECT_FALSE(planned.motion);
   EXPECT_EQ(planned.refusal, Refusal::start_in_collision);
 }
 
 TEST_F(BackingOut, AnArmThatWasPutThereKnowsNoWayBack) {
-  SimulatedRobot moving = at_second(0.07, 0.02);
+  PlannedArm moving = at_second(0.07, 0.02);
   ASSERT_TRUE(moving.place(*moving.configuration()).ok());
   ASSERT_TRUE(moving.follow(map_.content(), Executor{}).ok());
   EXPECT_EQ(moving.plan(third_)->refusal, Refusal::start_in_collision);
@@ -246,9 +278,9 @@ TEST_F(SimulatedArm, AWayBackBeginsWhereTheArmStands) {
 }
 
 TEST_F(SimulatedArm, RefusalsHaveReasons) {
-  ArmRobotConfig config;
+  PlannedArmConfig config;
   config.obstacles.unknown_is_obstacle = false;
-  SimulatedRobot moving = robot(config);
+  PlannedArm moving = robot(config);
   const Pose far{Eigen::Translation3d{9.0, 0.0, 0.0}};
   EXPECT_EQ(moving.plan(std::span{&far, 1})->refusal, Refusal::no_ik);
   EXPECT_EQ(moving.move_to(far).value(), std::nullopt);
