@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/explore/view_record.hpp"
+#include "saccade/explore/attempts.hpp"
 
 #include <algorithm>
 

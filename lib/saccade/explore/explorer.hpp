@@ -1,40 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Explorer: the closed loop of choosing a view, going there, looking and fusing. Thesis Algorithms 1 and 4. Stopping:
-// when a run is over besides when nothing is left to see.
+// Explorer: the closed loop of choosing a view, going there, looking and fusing. Thesis Algorithms 1 and 4.
 
 #include <functional>
-#include <optional>
 #include <span>
 #include <vector>
 
 #include "saccade/core/angle.hpp"
 #include "saccade/core/progress.hpp"
 #include "saccade/explore/recorder.hpp"
-#include "saccade/explore/run_record.hpp"
+#include "saccade/explore/stopping.hpp"
 #include "saccade/explore/view_planner.hpp"
 #include "saccade/robot/robot.hpp"
 #include "saccade/sensor/camera.hpp"
 
 namespace saccade {
-
-class Stopping {
- public:
-  virtual ~Stopping() = default;
-  /// @return why the run ends here; nullopt: it goes on. Asked before each view.
-  [[nodiscard]] virtual std::optional<StopReason> reached(const RunRecord& run) const = 0;
-};
-
-class StopRule final : public Stopping {
- public:
-  explicit StopRule(std::size_t max_views) : max_views_{max_views} {}
-  [[nodiscard]] std::optional<StopReason> reached(const RunRecord& run) const override {
-    return run.views.size() < max_views_ ? std::nullopt : std::optional{StopReason::views_used_up};
-  }
-
- private:
-  std::size_t max_views_;
-};
 
 struct ExplorerConfig {
   /// Views that gain at least this share of the best one's are as good as the best: among these the robot goes to the

@@ -10,8 +10,8 @@
 
 #include "saccade/attention/attention_source.hpp"
 #include "saccade/attention/region_of_interest.hpp"
+#include "saccade/explore/attempts.hpp"
 #include "saccade/explore/run_record.hpp"
-#include "saccade/explore/view_record.hpp"
 #include "saccade/robot/robot.hpp"
 
 namespace saccade {

@@ -1,0 +1,29 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Stopping: when a run is over besides when nothing is left to see; StopRule: after a number of views.
+
+#include <optional>
+
+#include "saccade/explore/run_record.hpp"
+
+namespace saccade {
+
+class Stopping {
+ public:
+  virtual ~Stopping() = default;
+  /// @return why the run ends here; nullopt: it goes on. Asked before each view.
+  [[nodiscard]] virtual std::optional<StopReason> reached(const RunRecord& run) const = 0;
+};
+
+class StopRule final : public Stopping {
+ public:
+  explicit StopRule(std::size_t max_views) : max_views_{max_views} {}
+  [[nodiscard]] std::optional<StopReason> reached(const RunRecord& run) const override {
+    return run.views.size() < max_views_ ? std::nullopt : std::optional{StopReason::views_used_up};
+  }
+
+ private:
+  std::size_t max_views_;
+};
+
+}  // namespace saccade
