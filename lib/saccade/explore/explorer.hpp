@@ -3,6 +3,7 @@
 // Explorer: the closed loop of choosing a view, going there, looking and fusing. Thesis Algorithms 1 and 4.
 
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 

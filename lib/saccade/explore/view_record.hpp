@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ViewRecord: what is kept of one view; Measures: what a map is worth; Attempts: where the camera went, or could not
-// go, for each region of a run.
+// ViewRecord: what is kept of one view; Measures: what a map is worth.
 
 #include <cmath>
 #include <cstddef>
@@ -9,7 +8,6 @@
 #include <limits>
 #include <memory>
 #include <optional>
-#include <span>
 #include <string>
 #include <vector>
 
