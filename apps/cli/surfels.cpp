@@ -160,7 +160,7 @@ json exposure_json(const SurfelsRun& run) {
 }
 
 json result_json(const SurfelsRun& run) {
-  const auto median = [](const std::vector<double>& ms) -> json { return {{"median", median(ms)}}; };
+  const auto median_json = [](const std::vector<double>& ms) -> json { return {{"median", median(ms)}}; };
   const std::filesystem::path average = run.options.average_out();
   const SurfelPlaces places = run.options.places_of_modes() ? SurfelPlaces::modes : SurfelPlaces::average;
   return {{"folder", run.options.frames.string()},
@@ -187,11 +187,11 @@ json result_json(const SurfelsRun& run) {
           {"places", kSurfelPlacesNames.of(places)},
           {"exposure", exposure_json(run)},
           {"ms_per_frame",
-           {{"associate", median(run.times.associate)},
-            {"exposure", median(run.times.exposure)},
-            {"guided_filter", median(run.times.guided_filter)},
-            {"integrate", median(run.times.integrate)},
-            {"total", median(run.times.total)}}},
+           {{"associate", median_json(run.times.associate)},
+            {"exposure", median_json(run.times.exposure)},
+            {"guided_filter", median_json(run.times.guided_filter)},
+            {"integrate", median_json(run.times.integrate)},
+            {"total", median_json(run.times.total)}}},
           {"peak_rss_bytes", peak_rss_bytes()}};
 }
 

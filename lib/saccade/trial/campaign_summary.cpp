@@ -23,12 +23,6 @@ Runs runs_of(std::span<const CampaignEntry> runs, const CampaignGroup& group) {
   return chosen;
 }
 
-double mean(const std::vector<double>& values) {
-  double sum = 0.0;
-  for (const double value : values) sum += value;
-  return sum / static_cast<double>(values.size());
-}
-
 /// The mean of what `figure` makes of each run, or of each scene; those without that figure are left out.
 template <class Figure>
 MeanEstimate mean_of(const Runs& runs, bool by_scene, const Figure& figure) {
