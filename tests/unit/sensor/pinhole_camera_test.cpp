@@ -6,30 +6,30 @@
 namespace saccade {
 namespace {
 
-constexpr PinholeCamera kCamera{640, 480, 525.0, 520.0, 310.0, 243.25, 0.5, 6.0};
+constexpr PinholeCamera kUnscaled{640, 480, 525.0, 520.0, 310.0, 243.25, 0.5, 6.0};
 
 TEST(PinholeCamera, ScaledKeepsFieldOfViewAndRange) {
-  for (const PinholeCamera& scaled : {kCamera.scaled_to(100, 90), kCamera.scaled_to_width(160)}) {
+  for (const PinholeCamera& scaled : {kUnscaled.scaled_to(100, 90), kUnscaled.scaled_to_width(160)}) {
     const auto corner = [](const PinholeCamera& camera) { return camera.ray(camera.width - 0.5, camera.height - 0.5); };
-    EXPECT_TRUE(scaled.ray(-0.5, -0.5).isApprox(kCamera.ray(-0.5, -0.5), 1e-12));
-    EXPECT_TRUE(corner(scaled).isApprox(corner(kCamera), 1e-12));
-    EXPECT_EQ(scaled.min_range_m, kCamera.min_range_m);
-    EXPECT_EQ(scaled.max_range_m, kCamera.max_range_m);
+    EXPECT_TRUE(scaled.ray(-0.5, -0.5).isApprox(kUnscaled.ray(-0.5, -0.5), 1e-12));
+    EXPECT_TRUE(corner(scaled).isApprox(corner(kUnscaled), 1e-12));
+    EXPECT_EQ(scaled.min_range_m, kUnscaled.min_range_m);
+    EXPECT_EQ(scaled.max_range_m, kUnscaled.max_range_m);
   }
 }
 
 TEST(PinholeCamera, ScaledToWidthRoundsTheHeight) {
-  const PinholeCamera scaled = kCamera.scaled_to_width(99);
+  const PinholeCamera scaled = kUnscaled.scaled_to_width(99);
   EXPECT_EQ(scaled.width, 99);
   EXPECT_EQ(scaled.height, 74);  // 74.25 rows rounded
   EXPECT_EQ(scaled.fx, 525.0 * (99.0 / 640.0));
   EXPECT_EQ(scaled.fy, 520.0 * (74.0 / 480.0));
-  EXPECT_EQ(kCamera.scaled_to_width(1).height, 1);
+  EXPECT_EQ(kUnscaled.scaled_to_width(1).height, 1);
 }
 
 TEST(PinholeCamera, WholeFactorsAreExact) {
   for (int factor = 1; factor <= 4; ++factor) {
-    const PinholeCamera large = kCamera.scaled_to_width(factor * kCamera.width);
+    const PinholeCamera large = kUnscaled.scaled_to_width(factor * kUnscaled.width);
     EXPECT_EQ(large, (PinholeCamera{factor * 640, factor * 480, factor * 525.0, factor * 520.0, factor * 310.5 - 0.5,
                                     factor * 243.75 - 0.5, 0.5, 6.0}));
   }
