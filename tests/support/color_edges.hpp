@@ -123,7 +123,7 @@ inline std::optional<Rises> steepest(const Image<float>& image, const ColorEdge&
 /// Maxima of the gradient of luminance (Sobel), across the edge, in row-major order.
 /// @param depth  of the same size; 0 or NaN: no return.
 [[nodiscard]] inline std::vector<ColorEdge> find_color_edges(const ColorImage& image, const DepthImage& depth,
-                                                             const ColorEdgesConfig& config) {
+                                                             const ColorEdgesConfig& config = {}) {
   SACCADE_EXPECTS(image.width() == depth.width() && image.height() == depth.height());
   SACCADE_EXPECTS(config.margin_px >= 1 && config.quantile >= 0.0 && config.quantile < 1.0);
   const Gradients gradients = sobel(luminance(image));

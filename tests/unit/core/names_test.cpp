@@ -31,8 +31,8 @@ TEST(Names, DoNotKnowEveryWord) {
 
 TEST(Names, AreListed) {
   EXPECT_EQ(kSideNames.listed(), "left, right, middle or l");
-  EXPECT_EQ((make_names<Side>({{Side::left, "left"}, {Side::right, "right"}}).listed()), "left or right");
-  EXPECT_EQ((make_names<Side>({{Side::left, "left"}}).listed()), "left");
+  EXPECT_EQ((make_some_names<Side>({{Side::left, "left"}, {Side::right, "right"}}).listed()), "left or right");
+  EXPECT_EQ((make_some_names<Side>({{Side::left, "left"}}).listed()), "left");
   EXPECT_EQ(listed({}), "");
 }
 
