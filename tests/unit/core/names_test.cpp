@@ -3,6 +3,10 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <string>
+#include <vector>
+
 #include "saccade/core/phase_times.hpp"
 #include "saccade/core/result.hpp"
 
@@ -15,6 +19,12 @@ constexpr auto kSideNames =
     make_names<Side>({{Side::left, "left"}, {Side::right, "right"}, {Side::middle, "middle"}, {Side::left, "l"}});
 static_assert(kSideNames.of(Side::left) == "left");
 static_assert(kSideNames.find("middle") == Side::middle);
+// What make_names finds enumerators without a word by.
+static_assert(is_enumerator<Side::left>() && is_enumerator<static_cast<Side>(2)>());
+static_assert(!is_enumerator<static_cast<Side>(3)>() && !is_enumerator<static_cast<Side>(-1)>());
+static_assert(has_every(kSideNames, std::make_index_sequence<5>{}));
+static_assert(!has_every(make_some_names<Side>({{Side::left, "left"}, {Side::middle, "middle"}}),
+                         std::make_index_sequence<3>{}));
 
 TEST(Names, GoToAWordAndBack) {
   for (const Side side : {Side::left, Side::right, Side::middle}) {
