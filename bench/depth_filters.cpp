@@ -249,8 +249,8 @@ void write_pictures(const std::filesystem::path& out, const std::string& name, c
     Case of = kCases[0];
     of.emitter_m = emitter_m;
     const FilteredDepth filtered = filter_of(of, method, true).filter(depth).value();
-    const std::string title = name + ", " + std::string{to_string(method)};
-    (void)write_png(out / (name + "-" + std::string{to_string(method)} + ".png"),
+    const std::string title = name + ", " + std::string{kDepthFilterMethodNames.of(method)};
+    (void)write_png(out / (name + "-" + std::string{kDepthFilterMethodNames.of(method)} + ".png"),
                     filter_picture(depth, filtered, title));
   }
 }
