@@ -182,7 +182,7 @@ TEST_F(SceneSequence, RefusesWhatItCannotDo) {
   expect_failure(run("a", {}, "atrium"), 3, "scene", {"atrium", "there are workshop-1"});
   expect_failure(run("a", {"--frames", "0"}), 2, "scene", {"--frames"});
   expect_failure(run("a", {"--camera", "lidar"}), 2, "scene", {"--camera", "xtion or kinect-v2"});
-  expect_failure(run("a", {"--vignetting", "maybe"}), 2, "scene", {"--vignetting", "on|off|corrected"});
+  expect_failure(run("a", {"--vignetting", "maybe"}), 2, "scene", {"--vignetting", "on, off or corrected"});
   expect_failure(run_program({"scene", "sequence", "desk", "--out", (folder_ / "a").string(), "--image-size", "8,8"}),
                  2, "scene", {"--image-size"});
   EXPECT_FALSE(fs::exists(folder_ / "a"));

@@ -272,14 +272,17 @@ TEST_F(Surfels, WhatIsReadIsNotReplaced) {
 
 TEST_F(Surfels, WhatIsWrongIsSaidBeforeTheWork) {
   expect_failure(run_program(surfels("cloud.txt")), 2, "surfels", {"--out", ".ply or .pcd"});
-  expect_failure(run_program(surfels("cloud.ply", {"--mode-filter", "some"})), 2, "surfels", {"on|off|both", "some"});
+  expect_failure(run_program(surfels("cloud.ply", {"--mode-filter", "some"})), 2, "surfels",
+                 {"on, off or both", "some"});
   for (const char* sigma : {"0", "inf"}) {
     expect_failure(run_program(surfels("cloud.ply", {"--image-sigma", sigma})), 2, "surfels",
                    {"--image-sigma", "positive, and finite"});
   }
   expect_failure(run_program(surfels("cloud.ply", {"--max-modes", "33"})), 2, "surfels", {"--max-modes", "1 to 32"});
-  expect_failure(run_program(surfels("cloud.ply", {"--choice", "best"})), 2, "surfels", {"densest|heaviest", "best"});
-  expect_failure(run_program(surfels("cloud.ply", {"--places", "here"})), 2, "surfels", {"--places", "average|modes"});
+  expect_failure(run_program(surfels("cloud.ply", {"--choice", "best"})), 2, "surfels",
+                 {"densest or heaviest", "best"});
+  expect_failure(run_program(surfels("cloud.ply", {"--places", "here"})), 2, "surfels",
+                 {"--places", "average or modes"});
   expect_failure(run_program(surfels("cloud.ply", {"--max-depth-change", "0"})), 2, "surfels", {"--max-depth-change"});
   expect_failure(run_program(surfels("cloud.ply", {"--min-confidence", "-1"})), 2, "surfels", {"--min-confidence"});
   expect_failure(run_program(surfels("nowhere/cloud.ply")), 3, "surfels", {"nowhere"});

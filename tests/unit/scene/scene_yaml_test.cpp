@@ -75,7 +75,8 @@ TEST(SceneYaml, SaysWhatIsWrongAndWhere) {
   expect_refused(kHead + "  - {name: ball, at: [0, 0], sphere: {radius: 0.1}}\n", "expected a list of 3 numbers");
   expect_refused(kHead + "  - {name: ball, at: [0, 0, .nan], sphere: {radius: 0.1}}\n", "expected a number");
   expect_refused(kHead + "  - {name: ball, name: ball}\n", "the key name is there twice");
-  expect_refused(kHead + "  - {name: a, at: [0, 0, 0], sphere: {radius: 1}, texture: {kind: wood}}\n", "textures are");
+  expect_refused(kHead + "  - {name: a, at: [0, 0, 0], sphere: {radius: 1}, texture: {kind: wood}}\n",
+                 "a texture is plain");
   expect_refused(kHead + "  - {name: a, at: [0, 0, 0], sphere: {radius: 1}, color: [1, 2, 300]}\n", "from 0 to 255");
   expect_refused("objects: [\n", "no YAML");
   expect_refused("", "a scene is a list of \"key: value\"");
