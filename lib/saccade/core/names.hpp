@@ -66,7 +66,7 @@ template <auto kValue>
 
 /// Tells whether the table has all of the first N + 1 values of an enum that have an enumerator.
 template <class T, std::size_t N, std::size_t... kIndex>
-[[nodiscard]] consteval bool has_every(const Names<T, N>& names, std::index_sequence<kIndex...> /*of the values*/) {
+[[nodiscard]] consteval bool has_every(const Names<T, N>& names, std::index_sequence<kIndex...> /*values*/) {
   return ((!is_enumerator<static_cast<T>(kIndex)>() ||
            std::find(names.values.begin(), names.values.end(), static_cast<T>(kIndex)) != names.values.end()) &&
           ...);

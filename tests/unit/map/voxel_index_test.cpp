@@ -55,7 +55,7 @@ TEST(IndexBox, SetsOfIndices) {
   };
   int overlapping = 0;
   int contained = 0;
-  for (int i = 0; i < 500; ++i) {
+  for (int i = 0; i < 2000; ++i) {
     const IndexBox a = box();
     const IndexBox b = box();
     int both = 0;
