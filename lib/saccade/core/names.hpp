@@ -66,15 +66,15 @@ template <auto kValue>
 
 /// Tells whether the table has all of the first N + 1 values of an enum that have an enumerator.
 template <class T, std::size_t N, std::size_t... kIndex>
-[[nodiscard]] consteval bool has_every(const Names<T, N>& names, std::index_sequence<kIndex...> /*values*/) {
+[[nodiscard]] constexpr bool has_every(const Names<T, N>& names, std::index_sequence<kIndex...> /*values*/) {
   return ((!is_enumerator<static_cast<T>(kIndex)>() ||
            std::find(names.values.begin(), names.values.end(), static_cast<T>(kIndex)) != names.values.end()) &&
           ...);
 }
 
-/// Makes a table of words for some values. Does not compile where a word stands for two.
+/// Makes a table of words for some values. A constant of it does not compile where a word stands for two.
 template <class T, std::size_t N>
-[[nodiscard]] consteval Names<T, N> make_some_names(const std::pair<T, std::string_view> (&entries)[N]) {
+[[nodiscard]] constexpr Names<T, N> make_some_names(const std::pair<T, std::string_view> (&entries)[N]) {
   Names<T, N> names;
   for (std::size_t i = 0; i < N; ++i) {
     for (std::size_t k = 0; k < i; ++k) {
@@ -86,10 +86,10 @@ template <class T, std::size_t N>
   return names;
 }
 
-/// Makes a table: `inline constexpr auto kSideNames = make_names<Side>({{Side::left, "left"}, …});`. Does not compile
-/// where an enumerator has no word; those of an enum count up from 0.
+/// Makes a table: `inline constexpr auto kSideNames = make_names<Side>({{Side::left, "left"}, …});`. A constant of it
+/// does not compile where an enumerator has no word; those of an enum count up from 0.
 template <class T, std::size_t N>
-[[nodiscard]] consteval Names<T, N> make_names(const std::pair<T, std::string_view> (&entries)[N]) {
+[[nodiscard]] constexpr Names<T, N> make_names(const std::pair<T, std::string_view> (&entries)[N]) {
   const Names<T, N> names = make_some_names<T>(entries);
   if constexpr (std::is_enum_v<T>) {
     if (!has_every(names, std::make_index_sequence<N + 1>{})) throw "an enumerator has no word";
