@@ -58,7 +58,7 @@ void repair_bricks(Bytes& bytes) {
     const std::size_t size = kind == 2 ? kFreeBytes : kind == 3 ? kDenseBytes + (colored ? kColorBytes : 0) : 0;
     if (at + kBrickHeaderBytes + size > bytes.size()) return;
     const std::span all{bytes};
-    const std::uint32_t crc = crc32(all.subspan(at, 4), all.subspan(at + kBrickHeaderBytes, size));
+    const std::uint32_t crc = saccade::crc32(all.subspan(at, 4), all.subspan(at + kBrickHeaderBytes, size));
     std::memcpy(&bytes[at + 4], &crc, sizeof crc);
     at += kBrickHeaderBytes + size;
   }
