@@ -108,6 +108,11 @@ TEST(ShowCommand, RefusesWhatItCannotShow) {
   expect_failure(show(folder.write("broken.ply", "words")), 3, "show", {"broken.ply"});
   expect_failure(show(folder.write("broken.stl", "words")), 3, "show", {"broken.stl"});
   expect_failure(show(folder.write("run/run.json", "{").parent_path()), 3, "show", {"run.json"});
+  const auto result = [&](const std::string& text) { return folder.write("run/run.json", text).parent_path(); };
+  expect_failure(show(result(R"({"command": "explore", "result": {"initial": {"views": 1}}})")), 3, "show",
+                 {"damaged", "unknown_left", "run"});
+  expect_failure(show(result(R"({"command": "explore", "result": {"views": [{"region": 0, "T_world_camera": 1}]}})")),
+                 3, "show", {"a pose must be", "view 1"});
   const fs::path cloud = folder.write("cloud.xyz", "0 0 0\n1 0 0\n");
   expect_failure(show(cloud, {"--port", "70000"}), 2, "show", {"--port"});
   expect_failure(run_program(short_run(folder / "out") + Arguments{"--port", "1234"}), 2, "explore",

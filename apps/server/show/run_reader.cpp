@@ -3,6 +3,7 @@
 
 #include "saccade/arm/urdf.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
@@ -91,7 +92,7 @@ Result<SceneDocument> RunReader::read(bool live) {
     }
     return document;
   } catch (const json::exception& e) {
-    return Error{Errc::corrupt_data, std::string{"the run's figures are not what they should be: "} + e.what(),
+    return Error{Errc::corrupt_data, "the run's figures are not what they should be: " + message_of(e),
                  folder_.string()};
   }
 }
@@ -124,7 +125,7 @@ Status RunReader::read_steps(const json& result) {
   const std::size_t count = views.is_array() ? views.size() : 0;
   if (has_scan && steps_.empty()) {
     ReadStep scan;
-    SACCADE_TRY(const ScanRecord record, scan_from_json(result["initial"]));
+    SACCADE_TRY(const ScanRecord record, in_file(scan_from_json(result["initial"]), folder_));
     scan.step = {"Scan", std::nullopt, fov_in(result), facts_of_scan(record), pictures_of_view(folder_, 0)};
     SACCADE_CHECK(add_map(0, scan));
     steps_.push_back(std::move(scan));
@@ -142,7 +143,7 @@ Status RunReader::read_steps(const json& result) {
 
 Status RunReader::read_step(const json& result, const json& view, std::size_t number) {
   ReadStep read;
-  SACCADE_TRY(const ViewRecord record, view_from_json(view));
+  SACCADE_TRY(const ViewRecord record, in_file(view_from_json(view), folder_ / ("view " + std::to_string(number))));
   read.step = {"View " + std::to_string(number), record.T_world_camera, fov_in(result), facts_of_view(record),
                pictures_of_view(folder_, number)};
   SACCADE_CHECK(add_choice(result, number, read));

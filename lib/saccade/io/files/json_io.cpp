@@ -7,28 +7,25 @@
 
 namespace saccade {
 
+std::string message_of(const nlohmann::json::exception& exception) {
+  std::string what{exception.what()};  // "[json.exception.parse_error.101] parse error at …"
+  if (const std::size_t tag = what.find("] "); tag != std::string::npos) what.erase(0, tag + 2);
+  return what;
+}
+
 Result<nlohmann::json> parse_json(std::string_view text) {
   try {
     return nlohmann::json::parse(text);
   } catch (const nlohmann::json::exception& e) {
     const auto* parse_error = dynamic_cast<const nlohmann::json::parse_error*>(&e);
-    std::string what{e.what()};
-    // The library's messages start with a tag "[json.exception.parse_error.101] ", which says nothing to a reader.
-    if (const std::size_t tag = what.find("] "); tag != std::string::npos) what.erase(0, tag + 2);
-    return Error{Errc::corrupt_data, "not valid JSON: " + what,
+    return Error{Errc::corrupt_data, "not valid JSON: " + message_of(e),
                  parse_error != nullptr ? "byte " + std::to_string(parse_error->byte) : std::string{}};
   }
 }
 
 Result<nlohmann::json> read_json(const std::filesystem::path& path) {
   SACCADE_TRY(const std::string text, read_text_file(path));
-  auto value = parse_json(text);
-  if (!value) {
-    Error error = value.error();
-    error.context = path.string() + ", " + error.context;
-    return error;
-  }
-  return value;
+  return in_file(parse_json(text), path);
 }
 
 Status write_json(const std::filesystem::path& path, const nlohmann::json& value) {

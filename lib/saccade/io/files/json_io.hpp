@@ -11,6 +11,9 @@
 
 namespace saccade {
 
+/// Returns the message of an exception without the tag that it begins with, which says nothing to a reader.
+[[nodiscard]] std::string message_of(const nlohmann::json::exception& exception);
+
 /// corrupt_data with the byte offset.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& path);

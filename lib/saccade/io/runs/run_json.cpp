@@ -114,7 +114,7 @@ Result<std::optional<Configuration>> configuration_from_json(const json& value) 
     if (values.size() > static_cast<std::size_t>(kMaxJoints)) return damaged("too many joints");
     return std::optional<Configuration>{Eigen::Map<const Eigen::VectorXd>{values.data(), std::ssize(values)}};
   } catch (const json::exception& e) {
-    return damaged(e.what());
+    return damaged(message_of(e));
   }
 }
 
@@ -152,7 +152,7 @@ Result<ViewRecord> view_from_json(const json& value) {
   try {
     return read_view(value);
   } catch (const json::exception& e) {
-    return damaged(e.what());
+    return damaged(message_of(e));
   }
 }
 
@@ -187,7 +187,7 @@ Result<ScanRecord> scan_from_json(const json& value) {
     SACCADE_TRY(scan.refused, refusals_from_json(value.value("refused", json::object())));
     return scan;
   } catch (const json::exception& e) {
-    return damaged(e.what());
+    return damaged(message_of(e));
   }
 }
 

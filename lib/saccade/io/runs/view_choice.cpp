@@ -131,7 +131,7 @@ Result<ViewRecord> read_view_choice(const std::filesystem::path& folder, std::si
     if (!record) return Error{Errc::corrupt_data, record.error().message, path.string()};
     return record;
   } catch (const json::exception& e) {
-    return Error{Errc::corrupt_data, e.what(), path.string()};
+    return Error{Errc::corrupt_data, message_of(e), path.string()};
   }
 }
 
