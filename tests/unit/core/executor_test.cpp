@@ -68,7 +68,7 @@ int run_again(const Prepare& prepare) {
   if (child == 0) {
     prepare();
     ::setenv(kRunsAgain, "1", 1);
-    ::unsetenv("GTEST_TOTAL_SHARDS");  // of two shards, one would run nothing and pass
+    ::unsetenv("GTEST_TOTAL_SHARDS");  // a shard without this test would pass
     ::unsetenv("GTEST_SHARD_INDEX");
     ::execl("/proc/self/exe", "unit_core", filter.c_str(), nullptr);
     ::_exit(127);
