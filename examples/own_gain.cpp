@@ -11,7 +11,7 @@ class RaysPerMetre final : public Gain {
  public:
   RaysPerMetre(const GainConfig& rays, Eigen::Vector3d home) : rays_{rays}, home_{std::move(home)} {}
 
-  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> poses) override {
     SACCADE_TRY(std::vector<double> gains, rays_.evaluate(context, region, poses));
     for (std::size_t i = 0; i < poses.size(); ++i) gains[i] /= 0.1 + (poses[i].translation() - home_).norm();

@@ -13,7 +13,7 @@ class LevelGain final : public Gain {
  public:
   explicit LevelGain(const GainConfig& rays) : rays_{rays} {}
 
-  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> poses) override {
     SACCADE_TRY(std::vector<double> gains, rays_.evaluate(context, region, poses));
     for (std::size_t i = 0; i < poses.size(); ++i) gains[i] *= poses[i].linear()(2, 2) < -0.7 ? 0.5 : 1.0;

@@ -169,6 +169,7 @@ Status write_report(const RunFolder& out, const RunRecord& run, const Measures& 
                   {"camera", camera_text(result.at("camera"))},
                   {"back end", document.at("backend").get<std::string>()}};
   report.min_gain = options.run.planner.min_gain;
+  report.gain_unit = options.run.strategy.gain_unit;
   report.stop_reason = to_string(run.stopped_because);
   report.initial.measures = run.scan.measures;
   if (const std::string refused = in_words(run.scan.refused); !refused.empty()) {

@@ -111,7 +111,8 @@ TEST(ExploreCommand, GoesFromViewToView) {
 TEST(ExploreCommand, EveryStrategyTakesAView) {
   if (kSanitized) GTEST_SKIP() << "every strategy has its own tests";
   const TempFolder folder;
-  for (const std::string strategy : {"attention", "standard", "sphere", "random", "random-contours", "oracle"}) {
+  for (const std::string strategy :
+       {"attention", "surface", "standard", "sphere", "random", "random-contours", "oracle"}) {
     const Outcome outcome =
         run_program(explore(folder / strategy, {"--strategy", strategy, "--max-views", "1", "--no-pictures",
                                                 "--min-gain", "5", "--json", "-"}));
@@ -123,7 +124,7 @@ TEST(ExploreCommand, EveryStrategyTakesAView) {
     EXPECT_GT(result.at("views")[0].at("evaluated").get<std::size_t>(), 0U);
   }
   expect_failure(run_program(explore(folder / "x", {"--strategy", "saliency"})), 2, "explore",
-                 {"--strategy", "attention, standard"});
+                 {"--strategy", "attention, surface, standard"});
   expect_failure(run_program(explore(folder / "x", {"--strategy", "oracle", "--camera-command", "true"})), 2, "explore",
                  {"--strategy", "true scene"});
 }

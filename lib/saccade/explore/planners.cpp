@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "saccade/views/surface_gain.hpp"
+
 namespace saccade {
 namespace {
 
@@ -71,6 +73,14 @@ NamedPlanner attention_planner() {
 Planners builtin_planners() {
   Planners planners;
   planners.add(attention_planner());
+  planners.add({"surface", "views of contours by the surface that they are expected to show, in cm²", 2.0, false, false,
+                [](const PlannerSetup& setup) {
+                  return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup),
+                                      std::make_shared<SurfaceGain>(SurfaceGainConfig{.sensor = setup.gain.sensor,
+                                                                                      .tilt_rad = setup.gain.tilt_rad}),
+                                      with_tries(setup, kContourTries)};
+                },
+                "cm²"});
   planners.add({"standard", "of all contours, the view of most unknown space", 200.0, false, false,
                 [](const PlannerSetup& setup) {
                   return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup), rays(setup),

@@ -37,6 +37,7 @@ struct NamedPlanner {
   bool looks_at_regions{false};  ///< takes regions in turn; else it looks wherever in the workspace
   bool needs_truth{false};
   std::function<PlannerParts(const PlannerSetup& setup)> make;
+  std::string gain_unit{"rays"};
 };
 
 /// The planners of a program, in their order.

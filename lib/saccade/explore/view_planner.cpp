@@ -52,7 +52,7 @@ Result<Ranking> ViewPlanner::rank(const PlanningScene& scene) {
       }));
       refused = scene.remove_unreachable(found.T_world_camera);
       SACCADE_TRY(ranked, context.measure(Phase::gain, [&] {  // 10, 11
-        return parts_.gain->best(context, region.bounds, found.T_world_camera, parts_.config.tries);
+        return parts_.gain->best(context, region, found.T_world_camera, parts_.config.tries);
       }));
     }
     ranking.add(region, found, refused, std::move(ranked), scene);  // 12–16

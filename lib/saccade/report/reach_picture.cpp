@@ -9,6 +9,7 @@
 #include <span>
 
 #include "saccade/core/angle.hpp"
+#include "saccade/core/convex_hull.hpp"
 #include "saccade/report/internal/blend.hpp"
 #include "saccade/report/internal/font.hpp"
 #include "saccade/report/internal/plane_drawing.hpp"

@@ -17,7 +17,8 @@ std::vector<Pose> poses_of(std::span<const RankedView> views) {
 }
 
 /// Fills in the gains of the first views.
-Status tell_gains(Gain& gain, const PlanningContext& context, const Region& region, std::span<RankedView> views) {
+Status tell_gains(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
+                  std::span<RankedView> views) {
   const std::vector<Pose> poses = poses_of(views);
   SACCADE_TRY(const std::vector<double> gains, gain.evaluate(context, region, poses));
   if (gains.size() != poses.size()) {
@@ -34,7 +35,7 @@ void order_by_gain(std::span<RankedView> views) {
                    [](const RankedView& a, const RankedView& b) { return a.gain > b.gain; });
 }
 
-Result<RankedViews> Gain::best(const PlanningContext& context, const Region& region,
+Result<RankedViews> Gain::best(const PlanningContext& context, const RegionOfInterest& region,
                                std::span<const Pose> T_world_camera, std::size_t /*count*/) {
   RankedViews ranked;
   for (const Pose& pose : T_world_camera) ranked.views.push_back({pose});
@@ -44,13 +45,14 @@ Result<RankedViews> Gain::best(const PlanningContext& context, const Region& reg
   return ranked;
 }
 
-Result<std::vector<double>> RayGain::evaluate(const PlanningContext& context, const Region& region,
+Result<std::vector<double>> RayGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                               std::span<const Pose> T_world_camera) {
-  SACCADE_TRY(const GainResult result, evaluate_views(context.map, region, T_world_camera, config_, context.executor));
+  SACCADE_TRY(const GainResult result,
+              evaluate_views(context.map, region.bounds, T_world_camera, config_, context.executor));
   return std::vector<double>(result.gains.begin(), result.gains.end());
 }
 
-Result<RankedViews> RayGain::best(const PlanningContext& context, const Region& region,
+Result<RankedViews> RayGain::best(const PlanningContext& context, const RegionOfInterest& region,
                                   std::span<const Pose> T_world_camera, std::size_t count) {
   if (count >= T_world_camera.size()) return Gain::best(context, region, T_world_camera, count);
   RankedViews ranked;
@@ -65,7 +67,7 @@ Result<RankedViews> RayGain::best(const PlanningContext& context, const Region& 
   ranked.evaluated = T_world_camera.size();
   if (!ranked.views.empty()) SACCADE_CHECK(tell_gains(*this, context, region, ranked.views));
   if (others.empty()) return ranked;
-  SACCADE_TRY(const BestViews best, best_views(context.map, region, others, count, config_, context.executor));
+  SACCADE_TRY(const BestViews best, best_views(context.map, region.bounds, others, count, config_, context.executor));
   ranked.complete = best.views.size() == others.size();
   std::vector<RankedView> views;
   for (const OrderedView& view : best.views) views.push_back({view.T_world_camera, static_cast<double>(view.gain)});
@@ -74,12 +76,12 @@ Result<RankedViews> RayGain::best(const PlanningContext& context, const Region& 
   return ranked;
 }
 
-Result<std::vector<double>> RandomOrder::evaluate(const PlanningContext& context, const Region& region,
+Result<std::vector<double>> RandomOrder::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                   std::span<const Pose> T_world_camera) {
   return told_->evaluate(context, region, T_world_camera);
 }
 
-Result<RankedViews> RandomOrder::best(const PlanningContext& context, const Region& region,
+Result<RankedViews> RandomOrder::best(const PlanningContext& context, const RegionOfInterest& region,
                                       std::span<const Pose> T_world_camera, std::size_t count) {
   constexpr std::uint64_t kViewStride{1'000'003};
   RankedViews ranked;

@@ -9,7 +9,7 @@
 #include <vector>
 
 #include "saccade/attention/attention_source.hpp"
-#include "saccade/core/region.hpp"
+#include "saccade/attention/region_of_interest.hpp"
 #include "saccade/views/view_gain.hpp"
 
 namespace saccade {
@@ -34,11 +34,12 @@ class Gain {
   virtual ~Gain() = default;
   /// Expected gain of each pose in a region, in a unit of its own; larger is better.
   /// @return one value per pose, none of them NaN.
-  [[nodiscard]] virtual Result<std::vector<double>> evaluate(const PlanningContext& context, const Region& region,
+  [[nodiscard]] virtual Result<std::vector<double>> evaluate(const PlanningContext& context,
+                                                             const RegionOfInterest& region,
                                                              std::span<const Pose> T_world_camera) = 0;
   /// The best poses that were not attempted, `count` of them or more. As it is here: all poses by decreasing gain, ties
   /// in their order. size_mismatch when evaluate() returns another number of values than it got poses.
-  [[nodiscard]] virtual Result<RankedViews> best(const PlanningContext& context, const Region& region,
+  [[nodiscard]] virtual Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                                  std::span<const Pose> T_world_camera, std::size_t count);
 };
 
@@ -49,11 +50,11 @@ void order_by_gain(std::span<RankedView> views);
 class RayGain final : public Gain {
  public:
   explicit RayGain(const GainConfig& config) : config_{config} {}
-  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;
   /// The best `count` that were not attempted, found by bounds first (docs/decisions/0010-footprints.md), and those
   /// that were attempted.
-  [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 
  private:
@@ -70,9 +71,9 @@ class RandomOrder final : public Gain {
  public:
   /// @param told  tells the gains of the views that come next
   RandomOrder(std::shared_ptr<Gain> told, RandomOrderConfig config) : told_{std::move(told)}, config_{config} {}
-  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;
-  [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 
  private:

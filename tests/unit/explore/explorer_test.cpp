@@ -341,8 +341,8 @@ TEST_F(Explore, PosesOutOfReachArePassedOver) {
 /// Returns one gain, whatever it is asked.
 class ShortGain final : public Gain {
  public:
-  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& /*context*/, const Region& /*region*/,
-                                                     std::span<const Pose> /*T_world_camera*/) override {
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext&, const RegionOfInterest&,
+                                                     std::span<const Pose>) override {
     return std::vector<double>{1.0};
   }
 };

@@ -118,15 +118,5 @@ TEST(PlaneDrawing, StrokesHaveTheirWidthAndGaps) {
   EXPECT_NEAR(static_cast<double>(count(dashed, kInk)), 150.0, 30.0);
 }
 
-TEST(PlaneDrawing, HullsAreTheOutermostPoints) {
-  const std::vector<Vector2d> hull =
-      convex_hull({{0.0, 0.0}, {1.0, 0.0}, {0.5, 0.5}, {1.0, 1.0}, {0.0, 1.0}, {0.5, 0.0}, {1.0, 1.0}});
-  ASSERT_EQ(hull.size(), 4U);
-  EXPECT_EQ(hull[0], Vector2d(0.0, 0.0));
-  EXPECT_EQ(hull[1], Vector2d(1.0, 0.0));
-  EXPECT_EQ(hull[2], Vector2d(1.0, 1.0));
-  EXPECT_LT(convex_hull({{0.0, 0.0}, {1.0, 1.0}, {2.0, 2.0}}).size(), 3U);
-}
-
 }  // namespace
 }  // namespace saccade

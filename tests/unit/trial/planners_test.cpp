@@ -12,8 +12,8 @@ namespace {
 TEST(Planners, AreKnownByTheirNamesAndReplacedByOnesOwn) {
   Planners planners = trial_planners();
   for (const NamedPlanner& planner : planners.all()) EXPECT_EQ(planners.find(planner.name)->name, planner.name);
-  EXPECT_EQ(planners.names(), "attention, standard, sphere, random, random-contours, oracle");
-  EXPECT_NE(planners.find("saliency").error().message.find("attention, standard, sphere"), std::string::npos);
+  EXPECT_EQ(planners.names(), "attention, surface, standard, sphere, random, random-contours, oracle");
+  EXPECT_NE(planners.find("saliency").error().message.find("attention, surface, standard"), std::string::npos);
   NamedPlanner own = attention_planner();
   own.name = "mine";
   own.min_gain = 7.0;
@@ -22,7 +22,7 @@ TEST(Planners, AreKnownByTheirNamesAndReplacedByOnesOwn) {
   own.min_gain = 8.0;
   planners.add(own);
   EXPECT_EQ(planners.find("mine")->min_gain, 8.0);
-  EXPECT_EQ(planners.all().size(), 7U);
+  EXPECT_EQ(planners.all().size(), 8U);
 }
 
 TEST(FlyingCamera, KeepsClearOfFixtures) {

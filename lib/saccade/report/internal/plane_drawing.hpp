@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Smooth lines and convex polygons in the plane of an image, and the convex hull of points.
+// Smooth lines and convex polygons in the plane of an image.
 
 #include <Eigen/Core>
 #include <span>
@@ -24,8 +24,5 @@ void draw_stroke(ColorImage& image, const Eigen::Vector2d& a, const Eigen::Vecto
 void draw_outline(ColorImage& image, std::span<const Eigen::Vector2d> corners, const StrokeStyle& style);
 /// A convex polygon, whichever way around.
 void fill_convex(ColorImage& image, std::span<const Eigen::Vector2d> corners, const Rgb8& color, double opacity = 1.0);
-
-/// The corners of the convex hull, counter-clockwise with y up; fewer than three where the points lie on a line.
-[[nodiscard]] std::vector<Eigen::Vector2d> convex_hull(std::vector<Eigen::Vector2d> points);
 
 }  // namespace saccade

@@ -65,7 +65,7 @@ std::size_t in_picture(const std::vector<Vector3d>& visible, const Pose& T_world
 OracleGain::OracleGain(Truth truth, const PinholeCamera& camera, double tilt_rad)
     : truth_{std::move(truth)}, camera_{widened_vertically(camera, tilt_rad)} {}
 
-Result<std::vector<double>> OracleGain::evaluate(const PlanningContext& context, const Region& /*region*/,
+Result<std::vector<double>> OracleGain::evaluate(const PlanningContext& context, const RegionOfInterest& /*region*/,
                                                  std::span<const Pose> T_world_camera) {
   const std::vector<Missing> missing = missing_of(truth_, context.map, context.executor);
   // Rolls of one view direction follow each other and share a centre.
@@ -87,7 +87,7 @@ Result<std::vector<double>> OracleGain::evaluate(const PlanningContext& context,
   return gains;
 }
 
-Result<RankedViews> OracleGain::best(const PlanningContext& context, const Region& region,
+Result<RankedViews> OracleGain::best(const PlanningContext& context, const RegionOfInterest& region,
                                      std::span<const Pose> T_world_camera, std::size_t count) {
   SACCADE_TRY(RankedViews ranked, Gain::best(context, region, T_world_camera, count));
   std::erase_if(ranked.views, [](const RankedView& view) { return !(view.gain > 0.0); });
@@ -102,7 +102,7 @@ NamedPlanner oracle_planner() {
                         std::make_shared<ContourViews>(setup.contour_views, setup.contours),
                         std::make_shared<OracleGain>(*setup.truth, setup.camera, setup.gain.tilt_rad), setup.planner};
   };
-  return {"oracle", "what one would choose who knew the scene", 200.0, false, true, make};
+  return {"oracle", "what one would choose who knew the scene", 200.0, false, true, make, "points"};
 }
 
 }  // namespace saccade

@@ -14,10 +14,10 @@ class OracleGain final : public Gain {
  public:
   /// @param camera  that looks; @param tilt_rad  by how much it is tilted up and down at a view.
   OracleGain(Truth truth, const PinholeCamera& camera, double tilt_rad);
-  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;
   /// All views that show something, by decreasing number of points. Points are no rays: no threshold applies.
-  [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const Region& region,
+  [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 
  private:

@@ -1,0 +1,216 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/views/expected_surface.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <optional>
+#include <span>
+
+#include "saccade/views/internal/completed_objects.hpp"
+#include "saccade/views/internal/find_supports.hpp"
+#include "saccade/views/internal/state_volume.hpp"
+
+namespace saccade {
+namespace {
+
+constexpr float kLeastCosine{0.17364818F};  // the cosine of 80°
+
+/// The area of a voxel's exposed faces across its normal, which points towards where they are exposed.
+struct Exposed {
+  std::uint32_t voxel{0};
+  Eigen::Vector3f normal;
+  float area_vox{0.0F};  ///< faces
+};
+
+/// What is exposed of an unknown voxel where is_free(neighbour's index) holds; `strides` as of a volume.
+template <class IsFree>
+std::optional<Exposed> exposed_at(const StateVolume& volume, std::size_t voxel, const IsFree& is_free) {
+  const std::ptrdiff_t row = volume.row();
+  const std::ptrdiff_t layer = volume.layer();
+  const auto at = [&](std::ptrdiff_t offset) {
+    return is_free(static_cast<std::size_t>(static_cast<std::ptrdiff_t>(voxel) + offset));
+  };
+  const std::array<std::ptrdiff_t, 3> stride{1, row, layer};
+  Eigen::Vector3f faces{Eigen::Vector3f::Zero()};
+  Eigen::Vector3f count{Eigen::Vector3f::Zero()};
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const auto i = static_cast<Eigen::Index>(axis);
+    const bool above = at(stride[axis]);
+    const bool below = at(-stride[axis]);
+    count[i] = static_cast<float>(above) + static_cast<float>(below);
+    faces[i] = static_cast<float>(above) - static_cast<float>(below);
+  }
+  if (count.sum() == 0.0F) return std::nullopt;
+  Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
+  for (int z = -1; z <= 1; ++z) {
+    for (int y = -1; y <= 1; ++y) {
+      for (int x = -1; x <= 1; ++x) {
+        if (at(z * layer + y * row + x))
+          normal += Eigen::Vector3f(static_cast<float>(x), static_cast<float>(y), static_cast<float>(z));
+      }
+    }
+  }
+  if (normal.squaredNorm() < 1e-6F) normal = faces;
+  if (normal.squaredNorm() < 1e-6F) return std::nullopt;  // a sheet between empty voxels faces nowhere
+  normal.normalize();
+  return Exposed{static_cast<std::uint32_t>(voxel), normal, std::max(faces.cwiseAbs().dot(normal.cwiseAbs()), 0.5F)};
+}
+
+/// Merges what lies in one block of `block` voxels an edge and faces the same octant.
+std::vector<ExpectedPoint> merged(const StateVolume& volume, std::vector<Exposed> exposed, std::int32_t block) {
+  struct Keyed {
+    std::uint64_t key;
+    std::uint32_t index;
+  };
+  std::vector<Keyed> order(exposed.size());
+  const Index3 blocks = parents(volume.box()).size() * kBrickEdge;  // more than there are along each axis
+  for (std::size_t i = 0; i < exposed.size(); ++i) {
+    const Index3 at = volume.voxel(exposed[i].voxel) - volume.box().lo;
+    const auto& n = exposed[i].normal;
+    const unsigned octant = (n.x() < 0.0F ? 1U : 0U) | (n.y() < 0.0F ? 2U : 0U) | (n.z() < 0.0F ? 4U : 0U);
+    const auto part = [&](std::int32_t v) { return static_cast<std::uint64_t>(v / block); };
+    order[i] = {
+        ((part(at.z) * static_cast<std::uint64_t>(blocks.y) + part(at.y)) * static_cast<std::uint64_t>(blocks.x) +
+         part(at.x)) *
+                8 +
+            octant,
+        static_cast<std::uint32_t>(i)};
+  }
+  std::sort(order.begin(), order.end(),
+            [](const Keyed& a, const Keyed& b) { return a.key != b.key ? a.key < b.key : a.index < b.index; });
+  const auto voxel_m = static_cast<float>(volume.voxel_size_m());
+  const float face_cm2 = voxel_m * voxel_m * 1e4F;
+  std::vector<ExpectedPoint> points;
+  for (std::size_t first = 0, end = 0; first < order.size(); first = end) {
+    Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
+    Eigen::Vector3f mean{Eigen::Vector3f::Zero()};
+    float area{0.0F};
+    const auto center = [&](const Exposed& e) -> Eigen::Vector3f {
+      return voxel_center(volume.voxel(e.voxel), volume.voxel_size_m()).cast<float>();
+    };
+    for (end = first; end < order.size() && order[end].key == order[first].key; ++end) {
+      const Exposed& e = exposed[order[end].index];
+      normal += e.area_vox * e.normal;
+      mean += e.area_vox * center(e);
+      area += e.area_vox;
+    }
+    mean /= area;
+    std::uint32_t nearest = order[first].index;
+    for (std::size_t i = first; i < end; ++i) {
+      if ((center(exposed[order[i].index]) - mean).squaredNorm() < (center(exposed[nearest]) - mean).squaredNorm())
+        nearest = order[i].index;
+    }
+    ExpectedPoint& point = points.emplace_back();
+    point.voxel = exposed[nearest].voxel;
+    point.position_m = center(exposed[nearest]);
+    point.normal = normal.normalized();
+    point.area_cm2 = area * face_cm2;
+  }
+  return points;
+}
+
+/// Area of the occupied voxels' faces towards empty ones.
+double seen_area_cm2(const StateVolume& volume, std::span<const std::uint32_t> seen) {
+  const IndexBox inner = volume.box().grown(-1);
+  double area_vox{0.0};
+  for (const std::uint32_t i : seen) {
+    if (!inner.contains(volume.voxel(i))) continue;
+    const auto e = exposed_at(volume, i, [&](std::size_t other) { return volume[other] == VoxelState::empty; });
+    if (e) area_vox += static_cast<double>(e->area_vox);
+  }
+  return area_vox * volume.voxel_size_m() * volume.voxel_size_m() * 1e4;
+}
+
+/// The highest support below a voxel.
+std::int32_t support_below(const StateVolume& volume, const std::vector<Support>& supports, std::uint32_t voxel) {
+  const std::size_t column = voxel % static_cast<std::size_t>(volume.layer());
+  const std::int32_t z = volume.voxel(voxel).z;
+  std::int32_t best{-1};
+  for (std::size_t i = 0; i < supports.size(); ++i) {
+    if (supports[i].columns[column] == 0 || supports[i].top > z + 1) continue;
+    if (best < 0 || supports[i].top > supports[static_cast<std::size_t>(best)].top) best = static_cast<std::int32_t>(i);
+  }
+  return best;
+}
+
+}  // namespace
+
+Status ExpectedSurfaceConfig::validate() const {
+  const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "expected surface"}; };
+  const auto positive = [](double x) { return std::isfinite(x) && x > 0.0; };
+  if (!positive(min_support_m2)) return fail("the area of a support must be positive");
+  if (!positive(reach_m) || !positive(decay_m)) return fail("the reach around objects and its decay must be positive");
+  if (!(beside_share >= 0.0 && beside_share <= 1.0))
+    return fail("the share of unknown space that is surface lies within 0 and 1");
+  if (!positive(spacing_m)) return fail("the distance between points must be positive");
+  if (!(through_m >= 0.0 && std::isfinite(through_m)))
+    return fail("the unknown length of lines of sight must not be negative");
+  return {};
+}
+
+bool ExpectedSurface::is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
+  const Eigen::Vector3f towards = camera_m.cast<float>() - point.position_m;
+  if (point.normal.dot(towards) < kLeastCosine * towards.norm()) return false;
+  if (point.support >= 0 && camera_m.z() <= supports[static_cast<std::size_t>(point.support)].height_m) return false;
+  return volume->is_visible(point.voxel, camera_m, through_m);
+}
+
+Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,
+                                         const Executor& executor) {
+  SACCADE_CHECK(config.validate());
+  const double voxel_m = map.config.voxel_size_m;
+  const IndexBox box =
+      map.config.workspace ? voxels_with_center_in(*map.config.workspace, voxel_m) : map.grid.known_bounds();
+  SACCADE_TRY(StateVolume read, StateVolume::read(map, box, executor));
+  ExpectedSurface result;
+  result.through_m = config.through_m;
+  result.volume = std::make_shared<const StateVolume>(std::move(read));
+  const StateVolume& volume = *result.volume;
+  if (volume.size() == 0) return result;
+  result.supports = find_supports(volume, config.min_support_m2);
+  const CompletedObjects objects = complete_objects(volume, result.supports);
+  result.seen_cm2 = seen_area_cm2(volume, objects.seen);
+  if (objects.count == 0) return result;
+  const std::vector<float> near_m = distance_to_objects(volume, objects, config.reach_m, executor);
+
+  // Layers and rows at the border have no neighbours: what lies there is expected nowhere.
+  const Index3 size = box.size();
+  const auto depth = static_cast<std::size_t>(std::max(size.z - 2, 0));
+  std::vector<std::vector<Exposed>> completed(depth);
+  std::vector<std::vector<Exposed>> beside(depth);
+  executor.parallel_for(depth, 1, [&](std::size_t begin, std::size_t) {
+    const std::size_t z = begin + 1;
+    const auto is_inside = [&](std::size_t i) { return objects.is_inside[i] != 0 && volume[i] != VoxelState::empty; };
+    const auto is_outside = [&](std::size_t i) { return !is_inside(i); };
+    const auto is_empty = [&](std::size_t i) { return volume[i] == VoxelState::empty; };
+    for (std::int32_t y = 1; y + 1 < size.y; ++y) {
+      const std::size_t row = z * static_cast<std::size_t>(volume.layer()) +
+                              static_cast<std::size_t>(y) * static_cast<std::size_t>(volume.row());
+      for (std::size_t i = row + 1; i + 1 < row + static_cast<std::size_t>(size.x); ++i) {
+        if (volume[i] != VoxelState::unknown) continue;
+        if (is_inside(i)) {
+          if (const auto e = exposed_at(volume, i, is_outside)) completed[begin].push_back(*e);
+        } else if (const float d = near_m[half_resolution_index(volume, i)]; d <= static_cast<float>(config.reach_m)) {
+          auto e = exposed_at(volume, i, is_empty);
+          if (!e) continue;
+          e->area_vox *= static_cast<float>(config.beside_share) * std::exp(-d / static_cast<float>(config.decay_m));
+          beside[begin].push_back(*e);
+        }
+      }
+    }
+  });
+  const auto joined = [](std::vector<std::vector<Exposed>>& parts) {
+    std::vector<Exposed> all;
+    for (const std::vector<Exposed>& part : parts) all.insert(all.end(), part.begin(), part.end());
+    return all;
+  };
+  const std::int32_t block = std::max(1, static_cast<std::int32_t>(std::lround(config.spacing_m / voxel_m)));
+  result.points = merged(volume, joined(completed), block);
+  const std::vector<ExpectedPoint> others = merged(volume, joined(beside), block);
+  result.points.insert(result.points.end(), others.begin(), others.end());
+  for (ExpectedPoint& point : result.points) point.support = support_below(volume, result.supports, point.voxel);
+  return result;
+}
+
+}  // namespace saccade

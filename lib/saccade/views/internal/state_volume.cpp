@@ -1,0 +1,99 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/views/internal/state_volume.hpp"
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <utility>
+
+namespace saccade {
+namespace {
+
+/// Calls write(voxel, state) for the voxels of a brick that lie in the box and are not unknown.
+template <class Write>
+void for_known(const BrickRef& brick, const Index3& corner, const IndexBox& box, const Write& write) {
+  const Mask512 unknown = brick.unknown_mask();
+  const Mask512 occupied = brick.occupied_mask();
+  IndexBox::cube(corner, kBrickEdge).intersection(box).for_each([&](const Index3& voxel) {
+    const int child = child_index(voxel);
+    if (unknown.test(child)) return;
+    write(voxel, occupied.test(child) ? VoxelState::occupied : VoxelState::empty);
+  });
+}
+
+}  // namespace
+
+Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor) {
+  StateVolume volume;
+  volume.voxel_size_m_ = map.config.voxel_size_m;
+  if (box.empty()) return volume;
+  if (box.count() > kMostVoxels) {
+    return Error{Errc::invalid_argument, "the workspace holds too many voxels to look through; make it smaller",
+                 "expected surface"};
+  }
+  volume.box_ = box;
+  volume.row_ = box.size().x;
+  volume.layer_ = volume.row_ * box.size().y;
+  volume.states_.assign(static_cast<std::size_t>(volume.layer_) * static_cast<std::size_t>(box.size().z),
+                        VoxelState::unknown);
+  const SectorTable sectors{map.grid};
+  const IndexBox bricks = parents(box);
+  executor.parallel_for(static_cast<std::size_t>(bricks.size().z), 1, [&](std::size_t begin, std::size_t) {
+    bricks.layer(begin).for_each([&](const Index3& key) {
+      const Sector* sector = sectors.find(parent(key));
+      if (sector == nullptr) return;
+      const BrickRef& brick = sector->bricks[static_cast<std::size_t>(child_index(key))];
+      if (brick.is_unknown()) return;
+      const Index3 corner = key * kBrickEdge;
+      if (brick.kind() == BrickKind::constant_free) {
+        const IndexBox part = IndexBox::cube(corner, kBrickEdge).intersection(box);
+        for (std::int32_t z = part.lo.z; z < part.hi.z; ++z) {
+          for (std::int32_t y = part.lo.y; y < part.hi.y; ++y) {
+            std::fill_n(volume.states_.begin() + static_cast<std::ptrdiff_t>(volume.index({part.lo.x, y, z})),
+                        part.size().x, VoxelState::empty);
+          }
+        }
+        return;
+      }
+      for_known(brick, corner, box,
+                [&](const Index3& voxel, VoxelState state) { volume.states_[volume.index(voxel)] = state; });
+    });
+  });
+  return volume;
+}
+
+bool StateVolume::is_visible(std::size_t voxel, const Eigen::Vector3d& camera_m, double through_m) const {
+  const Index3 start = this->voxel(voxel);
+  const Eigen::Vector3d step_m = camera_m - voxel_center(start, voxel_size_m_);
+  const double length_m = step_m.norm();
+  const float through = length_m > 0.0 ? static_cast<float>(through_m / length_m) : 1.0F;
+  const std::array<std::int32_t, 3> at{start.x, start.y, start.z};
+  const std::array<std::int32_t, 3> lo{box_.lo.x, box_.lo.y, box_.lo.z};
+  const std::array<std::int32_t, 3> hi{box_.hi.x, box_.hi.y, box_.hi.z};
+  const std::array<std::ptrdiff_t, 3> stride{1, row_, layer_};
+  std::array<float, 3> next;  // share of the line at which the next plane across each axis is passed
+  std::array<float, 3> between;
+  std::array<std::ptrdiff_t, 3> move;
+  std::array<std::int32_t, 3> left;  // voxels to the border
+  for (std::size_t axis = 0; axis < 3; ++axis) {
+    const double step = step_m[static_cast<Eigen::Index>(axis)] / voxel_size_m_;
+    between[axis] = step == 0.0 ? std::numeric_limits<float>::infinity() : static_cast<float>(1.0 / std::abs(step));
+    next[axis] = 0.5F * between[axis];
+    move[axis] = step > 0.0 ? stride[axis] : -stride[axis];
+    left[axis] = step > 0.0 ? hi[axis] - 1 - at[axis] : at[axis] - lo[axis];
+  }
+  std::ptrdiff_t index = static_cast<std::ptrdiff_t>(voxel);
+  for (;;) {
+    const std::size_t axis =
+        next[0] <= next[1] ? (next[0] <= next[2] ? std::size_t{0} : 2) : (next[1] <= next[2] ? std::size_t{1} : 2);
+    const float t = next[axis];
+    if (t >= 1.0F || left[axis]-- == 0) return true;
+    next[axis] += between[axis];
+    index += move[axis];
+    const VoxelState state = states_[static_cast<std::size_t>(index)];
+    if (state != VoxelState::empty && (state == VoxelState::occupied || t > through)) return false;
+  }
+}
+
+}  // namespace saccade

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// SurfaceGain: a view is worth the surface that it is expected to show.
+
+#include "saccade/views/expected_surface.hpp"
+#include "saccade/views/gain.hpp"
+
+namespace saccade {
+
+struct SurfaceGainConfig {
+  PinholeCamera sensor{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 6.0};  ///< field of view and range
+  double tilt_rad{0.0};  ///< the real sensor is tilted by ± this angle: see widened_vertically
+  ExpectedSurfaceConfig surface{};
+
+  /// invalid_argument for a bad sensor or tilt; errors of the surface's configuration.
+  [[nodiscard]] Status validate() const;
+};
+
+/// Gains are in cm² of expected surface within the region that lies in the camera's field of view and range and that
+/// ExpectedSurface::is_visible from it.
+class SurfaceGain final : public Gain {
+ public:
+  /// Expects a valid configuration.
+  explicit SurfaceGain(SurfaceGainConfig config);
+  /// O(voxels of the workspace + camera centres · points · voxels between).
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
+                                                     std::span<const Pose> T_world_camera) override;
+
+ private:
+  SurfaceGainConfig config_;
+  PinholeCamera widened_;
+};
+
+}  // namespace saccade
