@@ -51,8 +51,8 @@ Status SurfaceGainConfig::validate() const {
   return surface.validate();
 }
 
-SurfaceGain::SurfaceGain(SurfaceGainConfig config)
-    : config_{std::move(config)}, widened_{widened_vertically(config_.sensor, config_.tilt_rad)} {
+SurfaceGain::SurfaceGain(const SurfaceGainConfig& config)
+    : config_{config}, widened_{widened_vertically(config_.sensor, config_.tilt_rad)} {
   SACCADE_EXPECTS(config_.validate().ok());
 }
 

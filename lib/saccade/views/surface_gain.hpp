@@ -21,7 +21,7 @@ struct SurfaceGainConfig {
 class SurfaceGain final : public Gain {
  public:
   /// Expects a valid configuration.
-  explicit SurfaceGain(SurfaceGainConfig config);
+  explicit SurfaceGain(const SurfaceGainConfig& config);
   /// O(voxels of the workspace + camera centres · points · voxels between).
   [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;

@@ -32,8 +32,8 @@ void fill_hull(std::span<const std::uint32_t> seen, std::int32_t width, std::spa
   std::vector<Eigen::Vector2d> points;
   for (const std::uint32_t column : seen) {
     columns[column] = 1;
-    points.emplace_back(static_cast<double>(column % static_cast<std::uint32_t>(width)),
-                        static_cast<double>(column / static_cast<std::uint32_t>(width)));
+    const std::uint32_t row = column / static_cast<std::uint32_t>(width);
+    points.emplace_back(static_cast<double>(column % static_cast<std::uint32_t>(width)), static_cast<double>(row));
   }
   const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(points));
   if (hull.size() < 3) return;
