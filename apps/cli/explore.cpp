@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade explore: a camera looks, fuses and decides where to look next, until a scene is known.
 #include <CLI/CLI.hpp>
+#include <cmath>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -97,8 +98,9 @@ std::string tilts_text(const std::vector<ViewRecord>& views, const ExplorerConfi
 void print_views(const std::vector<ViewRecord>& views) {
   for (std::size_t i = 0; i < views.size(); ++i) {
     const ViewRecord& view = views[i];
+    const double gain = view.gain_predicted;
     std::cout << "view " << std::setw(2) << i + 1 << "  gain " << std::setw(7)
-              << view_to_json(view, i).at("gain").dump();
+              << (std::isfinite(gain) ? fixed(gain, gain == std::floor(gain) ? 0 : 1) : "null");
     if (view.measures.coverage) std::cout << "  coverage " << 100.0 * *view.measures.coverage << " %";
     std::cout << "  unknown " << view.measures.unknown_left << '\n';
   }

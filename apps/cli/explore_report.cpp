@@ -122,6 +122,7 @@ Status draw_view(const RunFolder& out, const ViewScenes& scenes, const Executor&
   SACCADE_CHECK(draw_saliency(out, scenes, executor));
   CandidatesPictureConfig config;
   config.sensor = scenes.camera;
+  config.gain_unit = scenes.gain_unit;
   SACCADE_CHECK(write_png(out / picture_name(scenes.number, "choice"),
                           candidates_picture({scenes.before, scenes.view.choice->region, candidates,
                                               scenes.view.T_world_camera, scenes.T_world_earlier, scenes.robot},

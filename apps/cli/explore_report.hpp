@@ -23,6 +23,7 @@ struct ViewScenes {
   const Box& workspace;
   PinholeCamera camera;
   const RobotDrawing* robot{nullptr};  ///< drawn at the view; none: the camera flies
+  std::string gain_unit{"rays"};
 };
 
 /// Writes view-NN-choice.png, view-NN-seen.png and view-NN-map.png, and view-NN-saliency.png of a strategy that looks

@@ -215,10 +215,11 @@ Status ExploreRun::draw(const ViewRecord& view, std::span<const Frame> frames) c
   std::vector<Pose> earlier;
   for (const ViewRecord& taken : journal_.run.views) earlier.push_back(taken.T_world_camera);
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.q, view.path);
-  return draw_view(out_,
-                   {journal_.run.views.size() + 1, before_, map(), view, std::move(earlier), frames,
-                    subject_.scene.workspace, devices_.intrinsics(), robot ? &*robot : nullptr},
-                   executor_);
+  return draw_view(
+      out_,
+      {journal_.run.views.size() + 1, before_, map(), view, std::move(earlier), frames, subject_.scene.workspace,
+       devices_.intrinsics(), robot ? &*robot : nullptr, options_.run.strategy.gain_unit},
+      executor_);
 }
 
 }  // namespace saccade::cli

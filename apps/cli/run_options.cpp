@@ -22,7 +22,7 @@ std::vector<double> parse_distances(const std::string& text) {
 void add_run_options(CLI::App& command, RunOptions& options, const std::string& min_gain) {
   add_value(command, "--max-views", options.run.exploration.max_views, "N", "views at most, after the initial scan")
       ->check(CLI::Range(0, 1000));
-  add_value(command, "--min-gain", options.min_gain, "RAYS",
+  add_value(command, "--min-gain", options.min_gain, "GAIN",
             "gain below which a view is not worth going to (default: " + min_gain + ")");
   add_value(command, "--good-enough", options.run.exploration.good_enough, "SHARE",
             "share of the best view's gain at which another is as good, if the robot is there sooner");
@@ -56,8 +56,14 @@ void check_run_options(RunOptions& options) {
 }
 
 std::string min_gain_by_strategy() {
-  return fixed(attention_planner().min_gain, 0) + " for attention, " + fixed(NamedPlanner{}.min_gain, 0) +
-         " for the others";
+  const double usual = NamedPlanner{}.min_gain;
+  const Planners planners = builtin_planners();
+  std::string text;
+  for (const NamedPlanner& planner : planners.all()) {
+    if (planner.min_gain == usual) continue;
+    text += fixed(planner.min_gain, 0) + ' ' + planner.gain_unit + " for " + planner.name + ", ";
+  }
+  return text + fixed(usual, 0) + " for the others";
 }
 
 void choose_strategy(RunOptions& options, const NamedPlanner& strategy) {

@@ -27,7 +27,7 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
 /// After parsing: fills `run` but for its strategy, threshold and seed, and throws a usage error for what makes no
 /// sense.
 void check_run_options(RunOptions& options);
-/// "50 for attention, …"
+/// "50 rays for attention, …"
 [[nodiscard]] std::string min_gain_by_strategy();
 /// Sets the strategy of `run`, and the threshold that goes with it unless one was given.
 void choose_strategy(RunOptions& options, const NamedPlanner& strategy);

@@ -172,7 +172,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   const CompletedObjects objects = complete_objects(volume, result.supports);
   result.seen_cm2 = seen_area_cm2(volume, objects.seen);
   if (objects.count == 0) return result;
-  const std::vector<float> near_m = distance_to_objects(volume, objects, config.reach_m, executor);
+  const std::vector<float> near_m = distance_to_objects(volume, objects, config.reach_m);
 
   // Layers and rows at the border have no neighbours: what lies there is expected nowhere.
   const Index3 size = box.size();

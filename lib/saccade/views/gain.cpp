@@ -30,6 +30,15 @@ Status tell_gains(Gain& gain, const PlanningContext& context, const RegionOfInte
 
 }  // namespace
 
+std::vector<std::size_t> starts_of_centers(std::span<const Pose> T_world_camera) {
+  std::vector<std::size_t> starts;
+  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
+    if (i == 0 || T_world_camera[i].translation() != T_world_camera[i - 1].translation()) starts.push_back(i);
+  }
+  starts.push_back(T_world_camera.size());
+  return starts;
+}
+
 void order_by_gain(std::span<RankedView> views) {
   std::stable_sort(views.begin(), views.end(),
                    [](const RankedView& a, const RankedView& b) { return a.gain > b.gain; });

@@ -43,6 +43,10 @@ class Gain {
                                                  std::span<const Pose> T_world_camera, std::size_t count);
 };
 
+/// Returns where poses of another camera centre begin, and at last the number of poses: rolls of one direction follow
+/// each other and share a centre, from which the same can be seen.
+[[nodiscard]] std::vector<std::size_t> starts_of_centers(std::span<const Pose> T_world_camera);
+
 /// The largest gain first, ties in their order.
 void order_by_gain(std::span<RankedView> views);
 

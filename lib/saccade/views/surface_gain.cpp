@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <cmath>
+#include <string>
 
 namespace saccade {
 namespace {
@@ -58,16 +59,16 @@ SurfaceGain::SurfaceGain(const SurfaceGainConfig& config)
 
 Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                   std::span<const Pose> T_world_camera) {
+  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
+    if (T_world_camera[i].matrix().allFinite()) continue;
+    return Error{Errc::invalid_argument, "pose " + std::to_string(i) + " contains NaN or infinity", "surface gain"};
+  }
   SACCADE_TRY(const ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
   std::vector<const ExpectedPoint*> points;
   for (const ExpectedPoint& point : surface.points) {
     if (contains(region.bounds, point.position_m.cast<double>())) points.push_back(&point);
   }
-  std::vector<std::size_t> starts;  // rolls of one direction follow each other and share a centre
-  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
-    if (i == 0 || T_world_camera[i].translation() != T_world_camera[i - 1].translation()) starts.push_back(i);
-  }
-  starts.push_back(T_world_camera.size());
+  const std::vector<std::size_t> starts = starts_of_centers(T_world_camera);
   std::vector<double> gains(T_world_camera.size());
   context.executor.parallel_for(starts.size() - 1, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {

@@ -22,6 +22,7 @@ class SurfaceGain final : public Gain {
  public:
   /// Expects a valid configuration.
   explicit SurfaceGain(const SurfaceGainConfig& config);
+  /// @return invalid_argument for a pose that is not finite, with its index; errors of expected_surface.
   /// O(voxels of the workspace + camera centres · points · voxels between).
   [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;

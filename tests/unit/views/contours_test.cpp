@@ -8,6 +8,9 @@
 #include <limits>
 #include <map>
 #include <numbers>
+#include <utility>
+
+#include "support/written_map.hpp"
 
 namespace saccade {
 namespace {
@@ -39,10 +42,7 @@ TsdfSnapshot map_with(const Voxels& voxels) {
           dense.w[static_cast<std::size_t>(child_index(voxel))] = content.w;
           dense.update_masks();
         }
-        ref.canonicalize(map.config.free_weight);
-        Sector& sector = map.grid.writable(parent(brick));
-        sector.bricks[static_cast<std::size_t>(child_index(brick))] = ref;
-        sector.update_summary(child_index(brick), map.config.free_weight);
+        test::set_brick(map, brick, std::move(ref));
       }
     }
   }

@@ -4,9 +4,13 @@
 
 #include <gtest/gtest.h>
 
+#include <array>
+#include <cmath>
 #include <functional>
+#include <utility>
 
 #include "saccade/views/surface_gain.hpp"
+#include "support/written_map.hpp"
 
 namespace saccade {
 namespace {
@@ -31,10 +35,7 @@ TsdfSnapshot map_of(const StateAt& state_at) {
       dense.v[i] = state == VoxelState::occupied ? -1000 : state == VoxelState::empty ? kTsdfOne : 0;
     });
     dense.update_masks();
-    ref.canonicalize(map.config.free_weight);
-    Sector& sector = map.grid.writable(parent(brick));
-    sector.bricks[static_cast<std::size_t>(child_index(brick))] = ref;
-    sector.update_summary(child_index(brick), map.config.free_weight);
+    test::set_brick(map, brick, std::move(ref));
   });
   return map;
 }
@@ -132,6 +133,17 @@ TEST(SurfaceGain, IsTheAreaThatIsExpectedInThePicture) {
   EXPECT_LT(gain_from(map, {0.6, 0.0, 0.1}), 10.0);
   const double two_sides = gain_from(map, {-0.45, 0.45, 0.1});
   EXPECT_NEAR(two_sides, 180.0, 50.0);
+}
+
+TEST(SurfaceGain, PosesThatAreNoneAreRefused) {
+  SurfaceGain gain{{}};
+  const Executor executor;
+  const TsdfSnapshot map = map_of(half_a_box);
+  std::array<Pose, 2> poses{Pose::Identity(), Pose::Identity()};
+  poses[1].translation().x() = std::nan("");
+  const auto refused = gain.evaluate({map, executor}, {}, poses);
+  ASSERT_FALSE(refused);
+  EXPECT_NE(refused.error().to_string().find("pose 1"), std::string::npos);
 }
 
 TEST(SurfaceGain, NothingIsSeenThroughATable) {

@@ -68,12 +68,7 @@ OracleGain::OracleGain(Truth truth, const PinholeCamera& camera, double tilt_rad
 Result<std::vector<double>> OracleGain::evaluate(const PlanningContext& context, const RegionOfInterest& /*region*/,
                                                  std::span<const Pose> T_world_camera) {
   const std::vector<Missing> missing = missing_of(truth_, context.map, context.executor);
-  // Rolls of one view direction follow each other and share a centre.
-  std::vector<std::size_t> starts;
-  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
-    if (i == 0 || T_world_camera[i].translation() != T_world_camera[i - 1].translation()) starts.push_back(i);
-  }
-  starts.push_back(T_world_camera.size());
+  const std::vector<std::size_t> starts = starts_of_centers(T_world_camera);
   std::vector<double> gains(T_world_camera.size());
   context.executor.parallel_for(starts.size() - 1, 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {

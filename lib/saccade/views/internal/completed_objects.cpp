@@ -96,7 +96,6 @@ CompletedObjects complete_objects(const StateVolume& volume, std::span<const Sup
   result.count = parts.starts.size() - 1;
   result.is_inside.assign(volume.size(), 0);
   const auto layer = static_cast<std::size_t>(volume.layer());
-  std::vector<std::uint8_t> footprint(layer);
   for (std::size_t part = 0; part < result.count; ++part) {
     const std::span<const std::uint32_t> voxels =
         std::span{parts.voxels}.subspan(parts.starts[part], parts.starts[part + 1] - parts.starts[part]);
@@ -110,13 +109,11 @@ CompletedObjects complete_objects(const StateVolume& volume, std::span<const Sup
     }
     std::sort(columns.begin(), columns.end());
     columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
-    std::fill(footprint.begin(), footprint.end(), std::uint8_t{0});
-    fill_hull(columns, static_cast<std::int32_t>(volume.row()), footprint);
+    const std::vector<std::uint32_t> footprint = hull_columns(columns, static_cast<std::int32_t>(volume.row()));
     const std::int32_t low_z = volume.box().lo.z;
     const std::int32_t base = base_of(supports, columns, low_z + static_cast<std::int32_t>(lowest));
     for (std::size_t z = static_cast<std::size_t>(std::max(base - low_z, 0)); z <= highest; ++z) {
-      std::uint8_t* inside = &result.is_inside[z * layer];
-      for (std::size_t column = 0; column < layer; ++column) inside[column] |= footprint[column];
+      for (const std::uint32_t column : footprint) result.is_inside[z * layer + column] = 1;
     }
   }
   result.seen = parts.voxels;
@@ -124,8 +121,7 @@ CompletedObjects complete_objects(const StateVolume& volume, std::span<const Sup
   return result;
 }
 
-std::vector<float> distance_to_objects(const StateVolume& volume, const CompletedObjects& objects, double reach_m,
-                                       const Executor& /*executor*/) {
+std::vector<float> distance_to_objects(const StateVolume& volume, const CompletedObjects& objects, double reach_m) {
   const Index3 full = volume.box().size();
   const Index3 size{(full.x + 1) / 2, (full.y + 1) / 2, (full.z + 1) / 2};
   constexpr float kFar{std::numeric_limits<float>::infinity()};

@@ -24,7 +24,7 @@ struct CompletedObjects {
 /// Distance to the nearest seen voxel of an object, to within a few per cent, for cells of 2³ voxels; infinity beyond
 /// `reach_m`.
 [[nodiscard]] std::vector<float> distance_to_objects(const StateVolume& volume, const CompletedObjects& objects,
-                                                     double reach_m, const Executor& executor);
+                                                     double reach_m);
 /// The cell that a voxel lies in.
 [[nodiscard]] inline std::size_t half_resolution_index(const StateVolume& volume, std::size_t voxel) {
   const Index3 at = volume.voxel(voxel) - volume.box().lo;

@@ -2,7 +2,6 @@
 #include "saccade/views/internal/find_supports.hpp"
 
 #include <algorithm>
-#include <array>
 #include <cmath>
 
 #include "saccade/core/convex_hull.hpp"
@@ -28,15 +27,16 @@ std::vector<std::vector<std::uint32_t>> tops_of(const StateVolume& volume) {
 
 }  // namespace
 
-void fill_hull(std::span<const std::uint32_t> seen, std::int32_t width, std::span<std::uint8_t> columns) {
+std::vector<std::uint32_t> hull_columns(std::span<const std::uint32_t> seen, std::int32_t width) {
+  const auto columns_per_row = static_cast<std::uint32_t>(width);
   std::vector<Eigen::Vector2d> points;
   for (const std::uint32_t column : seen) {
-    columns[column] = 1;
-    const std::uint32_t row = column / static_cast<std::uint32_t>(width);
-    points.emplace_back(static_cast<double>(column % static_cast<std::uint32_t>(width)), static_cast<double>(row));
+    const std::uint32_t row = column / columns_per_row;
+    points.emplace_back(static_cast<double>(column % columns_per_row), static_cast<double>(row));
   }
   const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(points));
-  if (hull.size() < 3) return;
+  if (hull.size() < 3) return {seen.begin(), seen.end()};
+  std::vector<std::uint32_t> columns;
   const auto [low, high] =
       std::minmax_element(hull.begin(), hull.end(), [](const auto& a, const auto& b) { return a.y() < b.y(); });
   for (double y = low->y(); y <= high->y(); y += 1.0) {
@@ -46,19 +46,18 @@ void fill_hull(std::span<const std::uint32_t> seen, std::int32_t width, std::spa
       const Eigen::Vector2d& a = hull[i];
       const Eigen::Vector2d& b = hull[(i + 1) % hull.size()];
       if (std::min(a.y(), b.y()) > y || std::max(a.y(), b.y()) < y) continue;
-      for (const double share :
-           a.y() == b.y() ? std::array{0.0, 1.0} : std::array{(y - a.y()) / (b.y() - a.y()), -1.0}) {
-        if (share < 0.0) continue;
-        const double x = a.x() + share * (b.x() - a.x());
-        begin = std::min(begin, x);
-        end = std::max(end, x);
-      }
+      const bool level = a.y() == b.y();  // then b is a corner of the next edge, too
+      const double x = level ? a.x() : a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
+      begin = std::min(begin, x);
+      end = std::max(end, x);
     }
     constexpr double kSlack{1e-9};  // corners lie in their own row
-    const auto row = static_cast<std::size_t>(y) * static_cast<std::size_t>(width);
-    for (double x = std::ceil(begin - kSlack); x <= end + kSlack; x += 1.0)
-      columns[row + static_cast<std::size_t>(x)] = 1;
+    const auto first = static_cast<std::uint32_t>(y) * columns_per_row;
+    for (double x = std::ceil(begin - kSlack); x <= end + kSlack; x += 1.0) {
+      columns.push_back(first + static_cast<std::uint32_t>(x));
+    }
   }
+  return columns;
 }
 
 std::vector<Support> find_supports(const StateVolume& volume, double min_area_m2) {
@@ -96,7 +95,9 @@ std::vector<Support> find_supports(const StateVolume& volume, double min_area_m2
     support.height_m = (volume.box().lo.z + z + 1.0) * voxel_m;
     support.area_m2 = static_cast<double>(seen.size()) * voxel_m * voxel_m;
     support.columns.assign(static_cast<std::size_t>(volume.layer()), 0);
-    fill_hull(seen, static_cast<std::int32_t>(volume.row()), support.columns);
+    for (const std::uint32_t column : hull_columns(seen, static_cast<std::int32_t>(volume.row()))) {
+      support.columns[column] = 1;
+    }
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// find_supports: level surfaces of a map; fill_hull: the columns within the convex hull of some.
+// find_supports: level surfaces of a map; hull_columns: the columns within the convex hull of some.
 
 #include <span>
 
@@ -13,8 +13,8 @@ namespace saccade {
 /// as one surface.
 [[nodiscard]] std::vector<Support> find_supports(const StateVolume& volume, double min_area_m2);
 
-/// Sets the columns (indices into a grid of `width` columns a row, x fastest) within the convex hull of `seen` to 1.
-/// Expects columns of the grid.
-void fill_hull(std::span<const std::uint32_t> seen, std::int32_t width, std::span<std::uint8_t> columns);
+/// Returns the columns within the convex hull of `seen`, which are distinct columns of a grid of `width` columns a row,
+/// x fastest. O(columns of the hull).
+[[nodiscard]] std::vector<std::uint32_t> hull_columns(std::span<const std::uint32_t> seen, std::int32_t width);
 
 }  // namespace saccade
