@@ -4,10 +4,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <array>
 #include <cmath>
 #include <functional>
 #include <utility>
+#include <vector>
 
 #include "saccade/views/surface_gain.hpp"
 #include "support/written_map.hpp"
@@ -133,6 +135,24 @@ TEST(SurfaceGain, IsTheAreaThatIsExpectedInThePicture) {
   EXPECT_LT(gain_from(map, {0.6, 0.0, 0.1}), 10.0);
   const double two_sides = gain_from(map, {-0.45, 0.45, 0.1});
   EXPECT_NEAR(two_sides, 180.0, 50.0);
+}
+
+TEST(SurfaceGain, TheThreadCountChangesNoBit) {
+  const TsdfSnapshot map = map_of(half_a_box);
+  RegionOfInterest all;
+  all.bounds = *map.config.workspace;
+  std::vector<Pose> poses;
+  for (int i = 0; i < 60; ++i)
+    poses.push_back(look_at({0.6 * std::cos(i), 0.6 * std::sin(i), 0.01 * i}, {0.0, 0.0, 0.05}));
+  std::vector<std::vector<double>> gains;
+  for (const std::size_t threads : {1U, 2U, 5U}) {
+    SurfaceGain gain{{}};
+    const Executor executor = Executor::with_threads(threads);
+    gains.push_back(gain.evaluate({map, executor}, all, poses).value());
+  }
+  EXPECT_GT(*std::max_element(gains[0].begin(), gains[0].end()), 50.0);
+  EXPECT_EQ(gains[1], gains[0]);
+  EXPECT_EQ(gains[2], gains[0]);
 }
 
 TEST(SurfaceGain, PosesThatAreNoneAreRefused) {
