@@ -45,6 +45,8 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
                 {"oscillation_frames", config.exploration.oscillation_frames},
                 {"robot", config.arm ? config.arm->name() : "free"}};
   if (map.clearing_percent != 100) settings["clearing_percent"] = map.clearing_percent;
+  if (config.as_printed) settings["as_printed"] = true;
+  if (config.strategy.name == surface_planner().name) settings["least_share"] = config.least_share;
   if (config.strategy.name == attention_planner().name) settings["rival_share"] = config.planner.rival_share;
   if (config.arm) {
     settings["robot_hash"] = arm_hash;

@@ -101,6 +101,9 @@ void print_views(const std::vector<ViewRecord>& views) {
     const double gain = view.gain_predicted;
     std::cout << "view " << std::setw(2) << i + 1 << "  gain " << std::setw(7)
               << (std::isfinite(gain) ? fixed(gain, gain == std::floor(gain) ? 0 : 1) : "null");
+    if (std::isfinite(view.gain_observed)) {
+      std::cout << "  kept " << std::setw(3) << fixed(100.0 * view.gain_observed / gain, 0) << " %";
+    }
     if (view.measures.coverage) std::cout << "  coverage " << 100.0 * *view.measures.coverage << " %";
     std::cout << "  unknown " << view.measures.unknown_left << '\n';
   }

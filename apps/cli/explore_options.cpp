@@ -90,6 +90,7 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   }
   check_saliency_options(options.saliency, false);
   options.run.attention.saliency = options.saliency.heuristic;
+  options.run.weigh_by_saliency = options.saliency.given && options.saliency.names != "none";
   options.run.seed = global.seed;
   if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";
   check_arm_options(options, global);

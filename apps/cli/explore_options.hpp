@@ -28,7 +28,7 @@ struct ExploreOptions : RunOptions {
   bool resume{false};
   bool write_pictures{true};
   bool force{false};
-  std::string strategy{"attention"};  ///< as it was given
+  std::string strategy{"surface"};  ///< as it was given
   SaliencyOptions saliency;
 
   bool show{false};

@@ -48,6 +48,9 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"min_gain", run.planner.min_gain},
                 {"good_enough", run.exploration.good_enough}};
   if (run.clearing_percent != 100) settings["clearing_percent"] = run.clearing_percent;
+  if (run.as_printed) settings["as_printed"] = true;
+  if (run.strategy.name == surface_planner().name) settings["least_share"] = run.least_share;
+  if (run.weigh_by_saliency) settings["saliency"] = saliency_text(options.saliency);
   if (run.strategy.name == attention_planner().name) {
     settings["saliency"] = saliency_text(options.saliency);
     settings["rival_share"] = run.planner.rival_share;

@@ -29,6 +29,12 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
   add_value(command, "--rivals", options.run.planner.rival_share, "SHARE",
             "attention: the view of most gain is looked for among segments at least so salient, as a share of the most "
             "salient; 1: of the most salient alone, as in the thesis");
+  add_value(command, "--least-share", options.run.least_share, "SHARE",
+            "surface: a view that promises less than this share of the surface seen so far is not worth going to");
+  command.add_flag(
+      "--as-printed", options.run.as_printed,
+      "attention, standard, sphere: as in the thesis; of segments the most salient alone, and every promise "
+      "is believed, whatever earlier views have shown");
   add_value(command, "--gain-width", options.run.gain_width_px, "PIXELS",
             "pixels across of the virtual sensor that views are chosen with")
       ->check(CLI::Range(1, 100000));
@@ -52,6 +58,9 @@ void check_run_options(RunOptions& options) {
   options.run.contour_views.distances_m = options.run.sphere.radii_m;
   options.run.camera = options.camera.camera(options.run.camera);
   require_ok(options.run.planner.validate(), "--rivals");
+  if (!(options.run.least_share >= 0.0 && options.run.least_share <= 1.0)) {
+    usage_error("--least-share", "is a share: within 0 and 1");
+  }
   require_ok(options.run.validate(), "the exploration");
 }
 

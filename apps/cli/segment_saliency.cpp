@@ -17,8 +17,9 @@ struct NamedHeuristic {
   SaliencyHeuristic (*make)(const SaliencyOptions&);
 };
 
-constexpr std::array<NamedHeuristic, 7> kHeuristics{
-    {{"objectness", [](const SaliencyOptions&) { return objectness(); }},
+constexpr std::array<NamedHeuristic, 8> kHeuristics{
+    {{"none", [](const SaliencyOptions&) { return equally_salient(); }},
+     {"objectness", [](const SaliencyOptions&) { return objectness(); }},
      {"roundness", [](const SaliencyOptions&) { return roundness_alone(); }},
      {"isolation", [](const SaliencyOptions&) { return isolation_alone(); }},
      {"rough-first", [](const SaliencyOptions&) { return rough_first(); }},
@@ -65,7 +66,8 @@ bool has_part(const std::vector<BlendPart>& parts, const char* name) {
 
 void add_saliency_options(CLI::App& command, SaliencyOptions& options) {
   add_value(command, "--saliency", options.names, "NAME[=WEIGHT],...",
-            "what draws attention: " + known_names() + "; several with weights are blended, as size=2,height=1");
+            "what draws attention: " + known_names() + "; several with weights are blended, as size=2,height=1")
+      ->each([&options](const std::string&) { options.given = true; });
   add_value(command, "--size", options.size.size_m, "METRES",
             "saliency size: longest size of what is looked for, metres");
   add_point(command, "--up", options.up,

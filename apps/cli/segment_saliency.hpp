@@ -15,6 +15,7 @@ namespace saccade::cli {
 
 struct SaliencyOptions {
   std::string names{"objectness"};  ///< "name" or "name=weight,name=weight…"
+  bool given{false};                ///< `names` was
   SizePriorConfig size;
   HeightConfig height;
   std::optional<Eigen::Vector3d> up;  ///< default: +z; −y for the cloud of a single camera

@@ -92,6 +92,7 @@ Facts facts_of_scan(const ScanRecord& scan) {
 Facts facts_of_view(const ViewRecord& view) {
   Facts facts;
   if (std::isfinite(view.gain_predicted)) facts.emplace_back("gain", gain_words(view.gain_predicted));
+  if (std::isfinite(view.gain_observed)) facts.emplace_back("of it observed", gain_words(view.gain_observed));
   facts.emplace_back("candidates", grouped(view.candidates));
   facts.emplace_back("evaluated", grouped(view.evaluated));
   add_refused(facts, "refused", view.refused);

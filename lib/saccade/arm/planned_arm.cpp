@@ -3,12 +3,20 @@
 
 #include <algorithm>
 
+#include "saccade/arm/arm_silhouette.hpp"
 #include "saccade/arm/internal/driven_way.hpp"
 #include "saccade/arm/internal/swept_cells.hpp"
 #include "saccade/arm/motion_planner.hpp"
 
 namespace saccade {
 namespace {
+
+/// Expects one configuration at least.
+const Configuration& nearest(const ArmModel& arm, const Configuration& from, const std::vector<Configuration>& to) {
+  return *std::min_element(to.begin(), to.end(), [&](const Configuration& a, const Configuration& b) {
+    return rest_to_rest_s(arm, from, a) < rest_to_rest_s(arm, from, b);
+  });
+}
 
 /// The configuration that config asks for; touching is not looked at.
 Configuration choose_start(const PlannedArmConfig& config, const Reachability& reachability,
@@ -17,10 +25,7 @@ Configuration choose_start(const PlannedArmConfig& config, const Reachability& r
   const Configuration& middle = reachability.arm().middle();
   for (const Pose& pose : config.first_poses) {
     const std::vector<Configuration> free = reachability.goals(pose, middle, fixtures).free;
-    if (free.empty()) continue;
-    return *std::min_element(free.begin(), free.end(), [&](const Configuration& a, const Configuration& b) {
-      return rest_to_rest_s(reachability.arm(), middle, a) < rest_to_rest_s(reachability.arm(), middle, b);
-    });
+    if (!free.empty()) return nearest(reachability.arm(), middle, free);
   }
   return middle;
 }
@@ -114,6 +119,17 @@ Result<std::vector<Box>> PlannedArm::swept_by(std::span<const Pose> T_world_came
 std::vector<std::optional<Refusal>> PlannedArm::test(std::span<const Pose> T_world_camera,
                                                      const Executor& executor) const {
   return reachability_.test(T_world_camera, q_, obstacles_, executor);
+}
+
+Result<OwnBody> PlannedArm::own_body(const PinholeCamera& sensor) const {
+  SACCADE_TRY(ArmSilhouette silhouette, ArmSilhouette::create(arm(), sensor));
+  return OwnBody{[this, silhouette = std::move(silhouette)](const Pose& T_world_camera) -> std::optional<DepthImage> {
+    const std::vector<Configuration> free = reachability_.goals(T_world_camera, q_, obstacles_).free;
+    if (free.empty()) return std::nullopt;
+    const Configuration& q = nearest(arm(), q_, free);
+    if (!silhouette.in_picture(q)) return std::nullopt;
+    return silhouette.depth(q);
+  }};
 }
 
 Result<PlannedMotion> PlannedArm::plan(std::span<const Pose> T_world_camera, Way way) {

@@ -47,6 +47,8 @@ class PlannedArm final : public Robot {
   [[nodiscard]] Result<std::vector<Box>> swept_by(std::span<const Pose> T_world_camera) override;
   [[nodiscard]] std::vector<std::optional<Refusal>> test(std::span<const Pose> T_world_camera,
                                                          const Executor& executor) const override;
+  /// As the arm stands in the nearest configuration that is free. Errors: those of ArmSilhouette::create.
+  [[nodiscard]] Result<OwnBody> own_body(const PinholeCamera& sensor) const override;
   /// To whichever configuration of whichever pose is the nearest: MotionPlanner.
   [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) override;
 

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <optional>
 #include <span>
 #include <vector>
 
@@ -13,8 +14,15 @@
 #include "saccade/core/phase_times.hpp"
 #include "saccade/core/pose.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "saccade/sensor/camera.hpp"
 
 namespace saccade {
+
+/// A view that was taken, and the share of its promise that it kept.
+struct CheckedView {
+  Pose T_world_camera{Pose::Identity()};
+  double kept{1.0};  ///< in [0, 1]
+};
 
 struct PlanningContext {
   const TsdfSnapshot& map;
@@ -24,6 +32,11 @@ struct PlanningContext {
   std::size_t views_taken{0};  ///< views of that region so far
   /// Whether the camera went to the pose, or tried to, for this region. Empty: to none.
   std::function<bool(const Pose& T_world_camera)> attempted{};
+  std::span<const CheckedView> checked{};  ///< views of the run that promised something, whatever their region
+  /// What a look takes in, its tilts included; nullopt: not known, so that promises cannot be told.
+  std::optional<PinholeCamera> sensor{};
+  /// The robot's own body in the picture of a sensor. Empty: there is none, or it is not known.
+  std::function<Result<OwnBody>(const PinholeCamera& sensor)> own_body{};
 
   [[nodiscard]] bool was_attempted(const Pose& T_world_camera) const { return attempted && attempted(T_world_camera); }
 

@@ -37,6 +37,8 @@ struct RegionOfInterest {
   /// The segmented surface that the region is part of, and its segment there; nullptr: of no segment.
   std::shared_ptr<const SalientSurface> surface{};
   std::uint32_t segment{0};
+  /// In place of a segment: the whole surface, each segment by its saliency.
+  static constexpr std::uint32_t kAllSegments{~0U};
 };
 
 /// A sphere around each action, in their order. Thesis §2.2.2: radius 0.2 m.

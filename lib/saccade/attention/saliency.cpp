@@ -123,6 +123,12 @@ SaliencyHeuristic isolation_alone() {
   };
 }
 
+SaliencyHeuristic equally_salient() {
+  return [](const MeasuredSegments& segments) {
+    return std::vector<Saliency>(segments.measures.size(), {1.0, "as salient as any"});
+  };
+}
+
 SaliencyHeuristic rough_first() {
   return [](const MeasuredSegments& segments) {
     double most_m{0.0};

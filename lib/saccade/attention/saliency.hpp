@@ -38,6 +38,8 @@ using SaliencyHeuristic = std::function<std::vector<Saliency>(const MeasuredSegm
 [[nodiscard]] SaliencyHeuristic roundness_alone();
 /// F(S) alone. Thesis eq. 3.11, Fig. 3.8 (3).
 [[nodiscard]] SaliencyHeuristic isolation_alone();
+/// 1 for every segment.
+[[nodiscard]] SaliencyHeuristic equally_salient();
 /// The opposite of eq. 3.12, for a rough exploration of the whole (thesis §3.3): one minus it, times the longest size
 /// of the segment as a share of the longest of all, since a small scrap promises no new space.
 [[nodiscard]] SaliencyHeuristic rough_first();

@@ -79,6 +79,13 @@ Result<std::shared_ptr<const SalientSurface>> SalientObjects::look(const Plannin
       SalientSurface{std::move(points), std::move(measures), std::move(saliency), std::move(order), scraps});
 }
 
+Result<std::vector<RegionOfInterest>> SalientWorkspace::regions(const PlanningContext& context) {
+  SACCADE_TRY(std::vector<RegionOfInterest> regions, workspace_.regions(context));
+  SACCADE_TRY(regions.front().surface, objects_.look(context));
+  regions.front().segment = RegionOfInterest::kAllSegments;
+  return regions;
+}
+
 Result<std::vector<RegionOfInterest>> SalientObjects::regions(const PlanningContext& context) {
   SACCADE_TRY(const std::shared_ptr<const SalientSurface> surface, look(context));
   std::vector<RegionOfInterest> regions;

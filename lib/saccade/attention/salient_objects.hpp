@@ -57,4 +57,17 @@ class SalientObjects final : public AttentionSource {
   std::optional<LiveSegments> segments_;  ///< within config_.segments.within
 };
 
+/// The map's workspace as one region, with the saliency of all segments in it.
+class SalientWorkspace final : public AttentionSource {
+ public:
+  /// Expects a valid configuration.
+  explicit SalientWorkspace(SalientObjectsConfig config = {}) : objects_{std::move(config)} {}
+  /// Errors of WholeWorkspace and SalientObjects.
+  [[nodiscard]] Result<std::vector<RegionOfInterest>> regions(const PlanningContext& context) override;
+
+ private:
+  SalientObjects objects_;
+  WholeWorkspace workspace_;
+};
+
 }  // namespace saccade

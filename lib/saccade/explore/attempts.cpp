@@ -2,6 +2,7 @@
 #include "saccade/explore/attempts.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 namespace saccade {
 namespace {
@@ -19,6 +20,9 @@ Attempts::Attempts(std::span<const ViewRecord> views) {
 
 void Attempts::add_view(const ViewRecord& view) {
   attempts_.push_back({view.region, view.T_world_camera, Attempt::Outcome::taken});
+  if (view.gain_predicted > 0.0 && std::isfinite(view.gain_observed)) {
+    checked_.push_back({view.T_world_camera, view.gain_observed / view.gain_predicted});
+  }
   refusals_.clear();
 }
 

@@ -5,6 +5,7 @@
 #include <span>
 #include <vector>
 
+#include "saccade/attention/attention_source.hpp"
 #include "saccade/explore/view_record.hpp"
 
 namespace saccade {
@@ -29,6 +30,8 @@ class Attempts {
   [[nodiscard]] bool was_refused(std::size_t region, const Pose& T_world_camera) const;
   /// Views taken of the region.
   [[nodiscard]] std::size_t views_of(std::size_t region) const;
+  /// Views that promised something that could be checked, in their order.
+  [[nodiscard]] std::span<const CheckedView> checked() const { return checked_; }
   /// Refusals for the region since the last view.
   [[nodiscard]] RefusalCounts refusals_of(std::size_t region) const;
 
@@ -39,6 +42,7 @@ class Attempts {
     enum class Outcome : std::uint8_t { taken, refused, skipped } outcome;
   };
   std::vector<Attempt> attempts_;
+  std::vector<CheckedView> checked_;
   std::vector<std::pair<std::size_t, RefusalCounts>> refusals_;  ///< by region, since the last view
 };
 

@@ -59,6 +59,7 @@ Result<RunRecord> Explorer::explore(ViewPlanner& planner, RunRecord run) {
     if (outcome == Outcome::nowhere_to_go) reason = reason_without_views(run);
     if (reason) break;
     SACCADE_CHECK(look(view));  // 13
+    check_promise(view);
     if (parts_.recorder != nullptr) SACCADE_CHECK(parts_.recorder->viewed(view, parts_.map.content(), frames_));
     attempts_.add_view(view);
     run.views.push_back(std::move(view));
@@ -98,7 +99,8 @@ Result<StandByResult> Explorer::return_to_stand_by() {
 }
 
 PlanningScene Explorer::scene(PhaseTimes& times) const {
-  return {parts_.map.content(), parts_.executor, &times, &parts_.robot, &attempts_, region_};
+  const PinholeCamera sensor = widened_vertically(parts_.camera.intrinsics(), config_.oscillation_rad);
+  return {parts_.map.content(), parts_.executor, &times, &parts_.robot, &attempts_, region_, sensor};
 }
 
 std::optional<StopReason> Explorer::stopped(const RunRecord& run) const {
@@ -140,6 +142,7 @@ Result<Explorer::Outcome> Explorer::go_to_best(Ranking& ranking, ViewRecord& vie
     const Approval approval = parts_.approve ? parts_.approve(chosen) : Approval::go;
     if (approval == Approval::stop) return Outcome::cancelled;
     if (approval == Approval::go) {
+      promise_ = ranking.promise(chosen.T_world_camera);
       SACCADE_TRY(const std::optional<Arrival> arrival, move(*planned.motion, view));  // 12
       if (arrival) {
         view.region = ranking.region();

@@ -92,6 +92,8 @@ class Explorer {
   [[nodiscard]] Result<Outcome> go_to_best(Ranking& ranking, ViewRecord& view);
   [[nodiscard]] Result<std::optional<Arrival>> move(const Motion& motion, ViewRecord& view);
   [[nodiscard]] Status look(ViewRecord& view);
+  /// Fills in gain_observed.
+  void check_promise(ViewRecord& view) const;
   [[nodiscard]] Result<Outcome> scan_from(const Pose& T_world_camera, ScanRecord& scan);
   [[nodiscard]] Status fuse(const Pose& T_world_camera, bool keep);
   [[nodiscard]] Result<double> farthest_tilt_rad(const Pose& T_world_view, double wanted_rad);
@@ -100,6 +102,7 @@ class Explorer {
   ExplorerConfig config_;
   Attempts attempts_;
   std::size_t region_{0};      ///< that is being explored; those before it are done
+  Promise promise_;            ///< of the view that is being taken
   std::vector<Frame> frames_;  ///< frames of the view that is being taken
 };
 

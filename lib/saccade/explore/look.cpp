@@ -89,6 +89,11 @@ Status Explorer::look(ViewRecord& view) {
   });
 }
 
+void Explorer::check_promise(ViewRecord& view) const {
+  if (!(view.gain_predicted > 0.0 && promise_.worth() > 0.0)) return;
+  view.gain_observed = view.gain_predicted * promise_.kept(parts_.map.content().grid);
+}
+
 Result<ScanRecord> Explorer::scan(std::span<const Pose> T_world_camera) {
   SACCADE_CHECK(config_.validate());
   std::vector<Pose> way;

@@ -3,12 +3,11 @@
 
 #include <algorithm>
 
-#include "saccade/views/surface_gain.hpp"
-
 namespace saccade {
 namespace {
 
 constexpr std::size_t kContourTries{64};
+constexpr std::size_t kSurfaceTries{16};
 constexpr std::size_t kSpareViews{16};  // told ahead of those that were taken: the robot may not reach some
 constexpr std::size_t kAllViews{std::numeric_limits<std::size_t>::max()};
 
@@ -20,7 +19,9 @@ std::shared_ptr<ViewGenerator> contour_views_of(const PlannerSetup& setup) {
   return std::make_shared<ContourViews>(setup.contour_views, setup.contours);
 }
 
-std::shared_ptr<Gain> rays(const PlannerSetup& setup) { return std::make_shared<RayGain>(setup.gain); }
+std::shared_ptr<Gain> rays(const PlannerSetup& setup) {
+  return std::make_shared<RayGain>(setup.gain, setup.as_printed ? Trust::blind : Trust::credible);
+}
 
 std::shared_ptr<Gain> by_chance(const PlannerSetup& setup, bool anew) {
   return std::make_shared<RandomOrder>(rays(setup), RandomOrderConfig{setup.seed, anew});
@@ -61,10 +62,28 @@ Result<NamedPlanner> Planners::find(std::string_view name) const {
 
 std::string Planners::names() const { return joined(planners_, ", ", &NamedPlanner::name); }
 
+NamedPlanner surface_planner() {
+  const auto make = [](const PlannerSetup& setup) {
+    const SurfaceGainConfig gain{
+        .sensor = setup.gain.sensor, .tilt_rad = setup.gain.tilt_rad, .least_share = setup.least_share};
+    std::shared_ptr<AttentionSource> attention = std::make_shared<WholeWorkspace>();
+    if (setup.weigh_by_saliency) attention = std::make_shared<SalientWorkspace>(setup.attention);
+    return PlannerParts{std::move(attention), contour_views_of(setup), std::make_shared<SurfaceGain>(gain),
+                        with_tries(setup, kSurfaceTries)};
+  };
+  return {"surface", "views of contours by the surface that they are expected to show, in cm²", 2.0, false, false, make,
+          "cm²"};
+}
+
 NamedPlanner attention_planner() {
   const auto make = [](const PlannerSetup& setup) {
-    return PlannerParts{std::make_shared<SalientObjects>(setup.attention), contour_views_of(setup), rays(setup),
-                        setup.planner};
+    SalientObjectsConfig attention = setup.attention;
+    ViewPlannerConfig planner = setup.planner;
+    if (setup.as_printed) {
+      attention.scrap_length_m = 0.0;
+      planner.rival_share = 1.0;
+    }
+    return PlannerParts{std::make_shared<SalientObjects>(attention), contour_views_of(setup), rays(setup), planner};
   };
   return {"attention", "views of the contours of what looks like an object, the most salient first", 50.0, false, false,
           make};
@@ -72,15 +91,8 @@ NamedPlanner attention_planner() {
 
 Planners builtin_planners() {
   Planners planners;
+  planners.add(surface_planner());
   planners.add(attention_planner());
-  planners.add({"surface", "views of contours by the surface that they are expected to show, in cm²", 2.0, false, false,
-                [](const PlannerSetup& setup) {
-                  return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup),
-                                      std::make_shared<SurfaceGain>(SurfaceGainConfig{.sensor = setup.gain.sensor,
-                                                                                      .tilt_rad = setup.gain.tilt_rad}),
-                                      with_tries(setup, kContourTries)};
-                },
-                "cm²"});
   planners.add({"standard", "of all contours, the view of most unknown space", 200.0, false, false,
                 [](const PlannerSetup& setup) {
                   return PlannerParts{std::make_shared<WholeWorkspace>(), contour_views_of(setup), rays(setup),

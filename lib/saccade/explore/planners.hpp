@@ -9,6 +9,7 @@
 
 #include "saccade/attention/salient_objects.hpp"
 #include "saccade/explore/view_planner.hpp"
+#include "saccade/views/surface_gain.hpp"
 
 namespace saccade {
 
@@ -21,6 +22,12 @@ struct PlannerSetup {
   ContourConfig contours{};
   ContourViewConfig contour_views{};
   SalientObjectsConfig attention{};
+  /// The strategy `surface` weighs what it expects by the saliency of its segment; false: all surface counts alike.
+  bool weigh_by_saliency{false};
+  double least_share{SurfaceGainConfig{}.least_share};
+  /// Algorithm 4 to the letter: attention heeds the most salient segment alone, scraps are like any other, and gains of
+  /// rays are believed whatever earlier views have shown.
+  bool as_printed{false};
   ViewPlannerConfig planner{};    ///< min_gain and rival_share
   std::vector<Region> regions{};  ///< regions that are taken in turn
   std::size_t max_views{12};      ///< limit of the run
@@ -55,6 +62,8 @@ class Planners {
   std::vector<NamedPlanner> planners_;
 };
 
+/// The surface that is expected to be shown, in cm².
+[[nodiscard]] NamedPlanner surface_planner();
 /// The most salient object's contours. Thesis §3.1, Algorithm 4.
 [[nodiscard]] NamedPlanner attention_planner();
 /// The table of planners that need no ground truth.

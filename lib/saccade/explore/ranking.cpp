@@ -31,11 +31,12 @@ void Ranking::add(const RegionOfInterest& region, const ViewCandidates& found, c
   contours_ = found.contours;
   std::vector<RankedView> untried;
   std::copy_if(ranked.views.begin(), ranked.views.end(), std::back_inserter(untried), [&](const RankedView& view) {
-    return gains_enough(view, ranked.by_gain) && !context.was_attempted(view.T_world_camera);
+    return gains_enough(view, ranked.by_gain, ranked.least_gain) && !context.was_attempted(view.T_world_camera);
   });
   if (untried.empty()) {
     if (chosen_) return;
     ranked_.by_gain = ranked.by_gain;
+    ranked_.least_gain = ranked.least_gain;
     ranked_.views.insert(ranked_.views.end(), ranked.views.begin(), ranked.views.end());
     return;
   }
@@ -56,7 +57,8 @@ RegionResult Ranking::result_of(const PlanningScene& scene) const {
   const bool out_of_reach = ranked_.views.empty()
                                 ? refused_.total() > 0
                                 : std::any_of(ranked_.views.begin(), ranked_.views.end(), [&](const RankedView& view) {
-                                    return gains_enough(view, ranked_.by_gain) && scene.attempts != nullptr &&
+                                    return gains_enough(view, ranked_.by_gain, ranked_.least_gain) &&
+                                           scene.attempts != nullptr &&
                                            scene.attempts->was_refused(index_, view.T_world_camera);
                                   });
   result.status = out_of_reach ? RegionStatus::out_of_reach : RegionStatus::done;
@@ -91,6 +93,10 @@ void Ranking::drop(std::size_t view) { untried_.erase(untried_.begin() + static_
 
 std::size_t Ranking::candidates() const { return std::max(candidates_, in_all_); }
 
+Promise Ranking::promise(const Pose& T_world_camera) const {
+  return ranked_.promise ? ranked_.promise(T_world_camera) : Promise{};
+}
+
 std::shared_ptr<const ViewChoice> Ranking::choice() const {
   SACCADE_EXPECTS(chosen_.has_value());
   ViewChoice choice;
@@ -99,14 +105,14 @@ std::shared_ptr<const ViewChoice> Ranking::choice() const {
   choice.surface = chosen_->surface;
   choice.contours = contours_;
   if (choice.surface) {
-    choice.segment = chosen_->segment;
+    if (chosen_->segment != RegionOfInterest::kAllSegments) choice.segment = chosen_->segment;
     for (const Saliency& saliency : choice.surface->saliency) choice.saliency.push_back(saliency.value);
   }
   return std::make_shared<const ViewChoice>(std::move(choice));
 }
 
 std::optional<ViewAttention> Ranking::attention() const {
-  if (!chosen_ || !chosen_->surface) return std::nullopt;
+  if (!chosen_ || !chosen_->surface || chosen_->segment == RegionOfInterest::kAllSegments) return std::nullopt;
   const SalientSurface& surface = *chosen_->surface;
   const std::uint32_t segment = chosen_->segment;
   ViewAttention attention;

@@ -3,6 +3,7 @@
 // Ranking: views worth trying, the best first, and the regions that have none left; PlanningScene: what a view is
 // planned with: the map, the robot, and what was attempted.
 
+#include <algorithm>
 #include <memory>
 #include <optional>
 #include <span>
@@ -19,16 +20,22 @@ namespace saccade {
 struct PlanningScene {
   const TsdfSnapshot& map;
   const Executor& executor;
-  PhaseTimes* times{nullptr};         ///< nullptr: times are not taken
-  const Robot* robot{nullptr};        ///< nullptr: every pose may be taken
-  const Attempts* attempts{nullptr};  ///< nullptr: there were none
-  std::size_t first_region{0};        ///< regions of a lower index are done
+  PhaseTimes* times{nullptr};             ///< nullptr: times are not taken
+  const Robot* robot{nullptr};            ///< nullptr: every pose may be taken
+  const Attempts* attempts{nullptr};      ///< nullptr: there were none
+  std::size_t first_region{0};            ///< regions of a lower index are done
+  std::optional<PinholeCamera> sensor{};  ///< what a look takes in, its tilts included; nullopt: not known
 
   /// What attention, view generator and gain see of it.
   [[nodiscard]] PlanningContext context(std::size_t region = 0) const {
-    PlanningContext context{map, executor, times, region, attempts != nullptr ? attempts->views_of(region) : 0, {}};
+    PlanningContext context{map, executor, times, region, attempts != nullptr ? attempts->views_of(region) : 0};
+    context.sensor = sensor;
     if (attempts != nullptr) {
       context.attempted = [tried = attempts, region](const Pose& pose) { return tried->contains(region, pose); };
+      context.checked = attempts->checked();
+    }
+    if (robot != nullptr) {
+      context.own_body = [carrier = robot](const PinholeCamera& seen_by) { return carrier->own_body(seen_by); };
     }
     return context;
   }
@@ -77,14 +84,16 @@ class Ranking {
   [[nodiscard]] std::size_t evaluated() const { return evaluated_; }
   [[nodiscard]] const RefusalCounts& refused() const { return refused_; }
 
+  /// What a view of the chosen region is expected to make known; nothing where that cannot be told. Expects a view.
+  [[nodiscard]] Promise promise(const Pose& T_world_camera) const;
   /// What the views are chosen from, and the segment that drew the attention. Expects a view.
   [[nodiscard]] std::shared_ptr<const ViewChoice> choice() const;
   [[nodiscard]] std::optional<ViewAttention> attention() const;
 
  private:
   void begin(std::size_t index, const PlanningScene& scene);
-  [[nodiscard]] bool gains_enough(const RankedView& view, bool by_gain) const {
-    return !by_gain || view.gain >= min_gain_;
+  [[nodiscard]] bool gains_enough(const RankedView& view, bool by_gain, double least_gain) const {
+    return !by_gain || view.gain >= std::max(min_gain_, least_gain);
   }
   [[nodiscard]] RegionResult result_of(const PlanningScene& scene) const;
 

@@ -71,13 +71,15 @@ struct ViewRecord {
   Pose T_world_camera{Pose::Identity()};
   std::optional<Configuration> q{};                                 ///< how an arm stands at the view
   double gain_predicted{std::numeric_limits<double>::quiet_NaN()};  ///< NaN: not evaluated
-  Measures measures{};                                              ///< the map after the view
-  std::optional<bool> reveals_object{};                             ///< by what the view made known
-  std::optional<bool> looks_at_object{};                            ///< by its optical axis
-  std::size_t candidates{0};  ///< poses it was chosen from, those that the robot cannot take included
-  std::size_t evaluated{0};   ///< candidates whose gain was determined
-  RefusalCounts refused{};    ///< candidates that the robot cannot take, and those without a path
-  std::size_t frames{0};      ///< fused at the view
+  /// What of gain_predicted became known at the view and on the way there, in the same unit. NaN: it was not checked.
+  double gain_observed{std::numeric_limits<double>::quiet_NaN()};
+  Measures measures{};                    ///< the map after the view
+  std::optional<bool> reveals_object{};   ///< by what the view made known
+  std::optional<bool> looks_at_object{};  ///< by its optical axis
+  std::size_t candidates{0};              ///< poses it was chosen from, those that the robot cannot take included
+  std::size_t evaluated{0};               ///< candidates whose gain was determined
+  RefusalCounts refused{};                ///< candidates that the robot cannot take, and those without a path
+  std::size_t frames{0};                  ///< fused at the view
   std::size_t frames_on_way{0};
   Tilt tilt{};  ///< ±oscillation_rad, or as far towards either end as the robot could
   PhaseTimes times{};

@@ -12,6 +12,8 @@ std::vector<std::optional<Refusal>> Robot::test(std::span<const Pose> T_world_ca
   return std::vector<std::optional<Refusal>>(T_world_camera.size());
 }
 
+Result<OwnBody> Robot::own_body(const PinholeCamera& /*sensor*/) const { return OwnBody{}; }
+
 Result<PlannedMotion> Robot::plan_to_stand_by() {
   return PlannedMotion{std::nullopt, Refusal::declined, "the robot has no stand-by"};
 }

@@ -16,6 +16,7 @@
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/robot/refusal.hpp"
 #include "saccade/robot/trajectory.hpp"
+#include "saccade/sensor/camera.hpp"
 
 namespace saccade {
 
@@ -70,6 +71,11 @@ class Robot {
   /// For each pose why it cannot be taken, as far as that can be told without looking for a path; nullopt: it may be.
   [[nodiscard]] virtual std::vector<std::optional<Refusal>> test(std::span<const Pose> T_world_camera,
                                                                  const Executor& executor) const;
+
+  /// The robot's own body in the picture of a sensor that it holds, as it would stand at a pose; empty where it has
+  /// none, or does not know it. The robot outlives what is returned, which holds until it moves or follows a map. An
+  /// Error: the sensor would see nothing else.
+  [[nodiscard]] virtual Result<OwnBody> own_body(const PinholeCamera& sensor) const;
 
   /// A motion to one of the poses, which are equally good to the caller; nothing moves. Expects one pose at least. An
   /// Error means that the robot itself failed.

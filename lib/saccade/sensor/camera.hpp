@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Frame: what a depth camera delivers; CameraSource: where frames come from; Camera: takes frames where it is moved to.
+// Frame: what a depth camera delivers; CameraSource: where frames come from; Camera: takes frames where it is moved to;
+// OwnBody: what a robot would see of itself.
 
 #include <functional>
 #include <memory>
@@ -45,6 +46,10 @@ class Camera {
   /// @param T_world_camera where the robot says that the camera is; the frame may know better.
   [[nodiscard]] virtual Result<Frame> capture(const Pose& T_world_camera) = 0;
 };
+
+/// Returns the depth of a robot's own body along z, metres, as the camera that it holds sees it from a pose; 0: none
+/// there. nullopt: no body is in the picture.
+using OwnBody = std::function<std::optional<DepthImage>(const Pose& T_world_camera)>;
 
 /// Calls a function for each frame; without one it sees nothing: no pixel has a return.
 class FunctionCamera final : public Camera {

@@ -23,10 +23,10 @@ VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, strftime('%Y-%m-%dT%H:%M:%SZ', 'now'), ?, 
 ON CONFLICT DO NOTHING)sql"};
 
 constexpr const char* kInsertView{R"sql(
-INSERT INTO views (run, number, region, gain, T_world_camera, candidates, evaluated, refused, frames, points_at_object,
-  looks_at_object, path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms,
+INSERT INTO views (run, number, region, gain, gain_observed, T_world_camera, candidates, evaluated, refused, frames,
+  points_at_object, looks_at_object, path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms,
   planning_ms, motion_ms, fusion_ms, coverage, unknown_left, unknown_near_objects, accuracy_m, chamfer_m, f_score)
-VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?))sql"};
+VALUES (?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?, ?))sql"};
 
 constexpr const char* kSelectRuns{R"sql(
 SELECT id, scene, scene_hash, strategy, noise, seed, settings, stopped_because, seconds, program_version, finished_at,
@@ -35,8 +35,8 @@ SELECT id, scene, scene_hash, strategy, noise, seed, settings, stopped_because, 
 FROM runs )sql"};
 
 constexpr const char* kSelectViews{R"sql(
-SELECT region, gain, T_world_camera, candidates, evaluated, refused, frames, points_at_object, looks_at_object, path_m,
-  motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms, planning_ms, motion_ms,
+SELECT region, gain, gain_observed, T_world_camera, candidates, evaluated, refused, frames, points_at_object,
+  looks_at_object, path_m, motion_s, planner_map_ms, candidates_ms, segmentation_ms, saliency_ms, reachability_ms, evaluation_ms, planning_ms, motion_ms,
   fusion_ms, coverage, unknown_left, unknown_near_objects, accuracy_m, chamfer_m, f_score
 FROM views WHERE run = ? ORDER BY number)sql"};
 
@@ -97,11 +97,14 @@ Status check(const CampaignEntry& entry, const std::filesystem::path& path) {
   bool finite = is_finite(entry.run.scan.measures) && std::isfinite(entry.seconds);
   for (const ViewRecord& view : entry.run.views) {
     finite = finite && is_finite(view.measures) && !std::isinf(view.gain_predicted) &&
-             view.T_world_camera.matrix().allFinite() && std::isfinite(view.path_m) && std::isfinite(view.motion_s);
+             !std::isinf(view.gain_observed) && view.T_world_camera.matrix().allFinite() &&
+             std::isfinite(view.path_m) && std::isfinite(view.motion_s);
   }
   if (finite) return {};
   return Error{Errc::invalid_argument, "a measure of the run is not finite", path.string()};
 }
+
+std::optional<double> number_of(double gain) { return std::isnan(gain) ? std::nullopt : std::optional{gain}; }
 
 std::int64_t flag(const std::optional<bool>& value) { return value.value_or(false) ? 1 : 0; }
 
@@ -113,7 +116,8 @@ Status insert_views(const SqliteFile& file, const std::vector<ViewRecord>& views
     statement.bind(run);
     statement.bind(whole(i + 1));
     statement.bind(whole(view.region));
-    statement.bind(std::isnan(view.gain_predicted) ? std::nullopt : std::optional{view.gain_predicted});
+    statement.bind(number_of(view.gain_predicted));
+    statement.bind(number_of(view.gain_observed));
     statement.bind(pose_to_json(view.T_world_camera).dump());
     statement.bind(whole(view.candidates));
     statement.bind(whole(view.evaluated));
@@ -140,6 +144,7 @@ Result<std::vector<ViewRecord>> views_of(const SqliteFile& file, std::int64_t ru
     ViewRecord view;
     view.region = static_cast<std::size_t>(row.integer());
     view.gain_predicted = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
+    view.gain_observed = row.optional_real().value_or(std::numeric_limits<double>::quiet_NaN());
     SACCADE_TRY(const nlohmann::json pose, parse_json(row.text()));
     SACCADE_TRY(view.T_world_camera, pose_from_json(pose));
     view.candidates = static_cast<std::size_t>(row.integer());

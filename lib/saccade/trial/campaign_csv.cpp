@@ -11,9 +11,9 @@ constexpr std::array<std::string_view, 5> kKeyColumns{"scene", "scene_hash", "st
 constexpr std::array<std::string_view, 6> kMapColumns{"coverage",   "unknown_left", "unknown_near_objects",
                                                       "accuracy_m", "chamfer_m",    "f_score"};
 /// Of a view, between its number and its phases.
-constexpr std::array<std::string_view, 10> kViewColumns{"region",  "gain",    "candidates",       "evaluated",
-                                                        "refused", "frames",  "points_at_object", "looks_at_object",
-                                                        "path_m",  "motion_s"};
+constexpr std::array<std::string_view, 11> kViewColumns{
+    "region",          "gain",   "gain_observed", "candidates", "evaluated", "refused", "frames", "points_at_object",
+    "looks_at_object", "path_m", "motion_s"};
 
 void add_key(CsvTable& table, const CampaignKey& key) {
   table.add(key.scene).add(key.scene_hash).add(key.strategy).add(key.noise).add(key.seed);
@@ -27,7 +27,9 @@ void add_map(CsvTable& table, const Measures& measures) {
 
 void add_view(CsvTable& table, const ViewRecord& view) {
   table.add(std::uint64_t{view.region});
-  table.add(std::isnan(view.gain_predicted) ? std::nullopt : std::optional{view.gain_predicted});
+  for (const double gain : {view.gain_predicted, view.gain_observed}) {
+    table.add(std::isnan(gain) ? std::nullopt : std::optional{gain});
+  }
   table.add(std::uint64_t{view.candidates});
   table.add(std::uint64_t{view.evaluated}).add(std::uint64_t{view.refused.total()});
   table.add(std::uint64_t{view.frames}).add(std::uint64_t{view.reveals_object.value_or(false) ? 1U : 0U});

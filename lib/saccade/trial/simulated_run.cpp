@@ -91,6 +91,9 @@ ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& 
   setup.contours = config.contours;
   setup.contour_views = config.contour_views;
   setup.attention = config.attention;
+  setup.weigh_by_saliency = config.weigh_by_saliency;
+  setup.as_printed = config.as_printed;
+  setup.least_share = config.least_share;
   setup.planner = config.planner;
   setup.regions = {regions.begin(), regions.end()};
   setup.max_views = static_cast<std::size_t>(config.exploration.max_views);

@@ -30,12 +30,15 @@ struct SimulatedRunConfig {
   PinholeCamera camera{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 2.0};  ///< beyond 2 m depth is too coarse here
   bool noise{true};                                                      ///< of `sensor`; else depth is exact
   DepthSensor sensor{DepthSensor::kinect_v1};
-  NamedPlanner strategy{attention_planner()};
-  ViewPlannerConfig planner{.min_gain = attention_planner().min_gain};
+  NamedPlanner strategy{surface_planner()};
+  ViewPlannerConfig planner{.min_gain = surface_planner().min_gain};
   ViewSphereConfig sphere;  ///< candidates of planners that look at regions
   ContourConfig contours;   ///< what all others look at
   ContourViewConfig contour_views;
   SalientObjectsConfig attention;
+  bool weigh_by_saliency{false};                        ///< PlannerSetup
+  bool as_printed{false};                               ///< PlannerSetup
+  double least_share{SurfaceGainConfig{}.least_share};  ///< PlannerSetup
   int gain_width_px{
       160};  ///< width of the virtual sensor that views are chosen with; its field of view is the camera's
   ExplorerConfig exploration;

@@ -149,11 +149,14 @@ Status ExpectedSurfaceConfig::validate() const {
   return {};
 }
 
-bool ExpectedSurface::is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
+bool ExpectedSurface::faces(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
   const Eigen::Vector3f towards = camera_m.cast<float>() - point.position_m;
   if (point.normal.dot(towards) < kLeastCosine * towards.norm()) return false;
-  if (point.support >= 0 && camera_m.z() <= supports[static_cast<std::size_t>(point.support)].height_m) return false;
-  return volume->is_visible(point.voxel, camera_m, through_m);
+  return point.support < 0 || camera_m.z() > supports[static_cast<std::size_t>(point.support)].height_m;
+}
+
+bool ExpectedSurface::is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
+  return faces(point, camera_m) && volume->is_visible(point.voxel, camera_m, through_m);
 }
 
 Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,

@@ -49,6 +49,9 @@ struct ExpectedSurface {
   double through_m{0.0};                      ///< as configured
   std::shared_ptr<const StateVolume> volume;  ///< the states of voxels
 
+  /// Whether a point may be seen from a camera, as far as that can be told without a look between them: at most 80°
+  /// from its normal, and past no support.
+  [[nodiscard]] bool faces(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const;
   /// Whether a camera sees a point, however it is turned: at most 80° from its normal, past no support, and along a
   /// line of known empty space.
   [[nodiscard]] bool is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const;

@@ -2,12 +2,16 @@
 #include "saccade/views/gain.hpp"
 
 #include <algorithm>
+#include <numeric>
 
 #include "saccade/core/seeded_random.hpp"
 #include "saccade/views/internal/best_views.hpp"
+#include "saccade/views/internal/credible_rays.hpp"
 
 namespace saccade {
 namespace {
+
+constexpr std::size_t kMostLooks{128};  // views whose credit is looked into thoroughly
 
 std::vector<Pose> poses_of(std::span<const RankedView> views) {
   std::vector<Pose> poses;
@@ -28,6 +32,35 @@ Status tell_gains(Gain& gain, const PlanningContext& context, const RegionOfInte
   return {};
 }
 
+/// Infinite and negative gains are no promises.
+double discounted(double gain, double share) {
+  if (!(gain > 0.0)) return gain;
+  return share > 0.0 ? share * gain : 0.0;
+}
+
+/// Returns the poses of the most credible rays, `count` at most. O(poses · rays).
+std::vector<Pose> most_credible(std::vector<Pose> poses, const CredibleRays& rays, std::size_t count,
+                                const Executor& executor) {
+  if (poses.size() <= count) return poses;
+  std::vector<RankedView> views;
+  const std::vector<CredibleRays::Glance> glances = rays.glances(poses, executor);
+  for (std::size_t i = 0; i < poses.size(); ++i) views.push_back({poses[i], glances[i].credible});
+  order_by_gain(views);
+  views.resize(count);
+  return poses_of(views);
+}
+
+/// Returns all poses by decreasing gain.
+Result<RankedViews> by_evaluation(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
+                                  std::span<const Pose> T_world_camera) {
+  RankedViews ranked;
+  for (const Pose& pose : T_world_camera) ranked.views.push_back({pose});
+  SACCADE_CHECK(tell_gains(gain, context, region, ranked.views));
+  ranked.evaluated = ranked.views.size();
+  order_by_gain(ranked.views);
+  return ranked;
+}
+
 }  // namespace
 
 std::vector<std::size_t> starts_of_centers(std::span<const Pose> T_world_camera) {
@@ -46,11 +79,29 @@ void order_by_gain(std::span<RankedView> views) {
 
 Result<RankedViews> Gain::best(const PlanningContext& context, const RegionOfInterest& region,
                                std::span<const Pose> T_world_camera, std::size_t /*count*/) {
-  RankedViews ranked;
-  for (const Pose& pose : T_world_camera) ranked.views.push_back({pose});
-  SACCADE_CHECK(tell_gains(*this, context, region, ranked.views));
-  ranked.evaluated = ranked.views.size();
+  SACCADE_TRY(RankedViews ranked, by_evaluation(*this, context, region, T_world_camera));
+  if (!context.sensor) return ranked;
+  SACCADE_TRY(const CredibleRays rays,
+              CredibleRays::create(context, region, *context.sensor, UnknownOutside::blocks, Trust::credible));
+  const std::vector<Pose> poses = poses_of(ranked.views);
+  const std::vector<CredibleRays::Glance> glances = rays.glances(poses, context.executor);
+  std::vector<RankedView> glanced = ranked.views;
+  for (std::size_t i = 0; i < glanced.size(); ++i) glanced[i].gain = discounted(glanced[i].gain, glances[i].share);
+  // A thorough look at the views that seem best.
+  std::vector<std::size_t> order(glanced.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::stable_sort(order.begin(), order.end(),
+                   [&](std::size_t a, std::size_t b) { return glanced[a].gain > glanced[b].gain; });
+  order.resize(std::min(order.size(), kMostLooks));
+  std::vector<Pose> best;
+  for (const std::size_t i : order) best.push_back(poses[i]);
+  const std::vector<double> shares = rays.shares(best, context.executor);
+  for (std::size_t i = 0; i < order.size(); ++i) {
+    glanced[order[i]].gain = discounted(ranked.views[order[i]].gain, shares[i]);
+  }
+  ranked.views = std::move(glanced);
   order_by_gain(ranked.views);
+  ranked.promise = [rays](const Pose& pose) { return rays.from(pose).promise; };
   return ranked;
 }
 
@@ -61,9 +112,10 @@ Result<std::vector<double>> RayGain::evaluate(const PlanningContext& context, co
   return std::vector<double>(result.gains.begin(), result.gains.end());
 }
 
-Result<RankedViews> RayGain::best(const PlanningContext& context, const RegionOfInterest& region,
-                                  std::span<const Pose> T_world_camera, std::size_t count) {
-  if (count >= T_world_camera.size()) return Gain::best(context, region, T_world_camera, count);
+/// Returns the best `count` that were not attempted, and those that were.
+Result<RankedViews> RayGain::by_rays(const PlanningContext& context, const RegionOfInterest& region,
+                                     std::span<const Pose> T_world_camera, std::size_t count) {
+  if (count >= T_world_camera.size()) return by_evaluation(*this, context, region, T_world_camera);
   RankedViews ranked;
   std::vector<Pose> others;
   for (const Pose& pose : T_world_camera) {
@@ -82,6 +134,35 @@ Result<RankedViews> RayGain::best(const PlanningContext& context, const RegionOf
   for (const OrderedView& view : best.views) views.push_back({view.T_world_camera, static_cast<double>(view.gain)});
   ranked.views.insert(ranked.views.begin(), views.begin(), views.end());
   order_by_gain(ranked.views);
+  return ranked;
+}
+
+Result<RankedViews> RayGain::best(const PlanningContext& context, const RegionOfInterest& region,
+                                  std::span<const Pose> T_world_camera, std::size_t count) {
+  SACCADE_TRY(const CredibleRays rays,
+              CredibleRays::create(context, region, widened_vertically(config_.sensor, config_.tilt_rad),
+                                   config_.unknown_outside, trust_));
+  const auto promise = [rays](const Pose& pose) { return rays.from(pose).promise; };
+  if (trust_ == Trust::blind) {
+    SACCADE_TRY(RankedViews ranked, by_rays(context, region, T_world_camera, count));
+    ranked.promise = promise;
+    return ranked;
+  }
+  std::vector<Pose> attempted;
+  std::vector<Pose> others;
+  for (const Pose& pose : T_world_camera) (context.was_attempted(pose) ? attempted : others).push_back(pose);
+  std::vector<Pose> poses = most_credible(others, rays, std::min(count, kMostLooks), context.executor);
+  const bool complete = poses.size() == others.size();
+  poses.insert(poses.end(), attempted.begin(), attempted.end());
+  SACCADE_TRY(RankedViews ranked, by_evaluation(*this, context, region, poses));
+  const std::vector<double> shares = rays.shares(poses_of(ranked.views), context.executor);
+  for (std::size_t i = 0; i < shares.size(); ++i) {
+    ranked.views[i].gain = discounted(ranked.views[i].gain, shares[i]);
+  }
+  order_by_gain(ranked.views);
+  ranked.evaluated = T_world_camera.size();
+  ranked.complete = complete;
+  ranked.promise = promise;
   return ranked;
 }
 
@@ -107,6 +188,10 @@ Result<RankedViews> RandomOrder::best(const PlanningContext& context, const Regi
   }
   SACCADE_CHECK(tell_gains(*told_, context, region, std::span{ranked.views}.first(next)));
   ranked.evaluated = next;
+  if (!context.sensor) return ranked;
+  SACCADE_TRY(const CredibleRays rays,
+              CredibleRays::create(context, region, *context.sensor, UnknownOutside::blocks, Trust::blind));
+  ranked.promise = [rays](const Pose& pose) { return rays.from(pose).promise; };
   return ranked;
 }
 

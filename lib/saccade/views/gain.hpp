@@ -3,6 +3,7 @@
 // Gain: what views are worth; RayGain counts rays, RandomOrder goes by chance.
 
 #include <cstdint>
+#include <functional>
 #include <limits>
 #include <memory>
 #include <span>
@@ -10,6 +11,7 @@
 
 #include "saccade/attention/attention_source.hpp"
 #include "saccade/attention/region_of_interest.hpp"
+#include "saccade/views/promise.hpp"
 #include "saccade/views/view_gain.hpp"
 
 namespace saccade {
@@ -26,6 +28,9 @@ struct RankedViews {
   std::size_t evaluated{0};  ///< poses whose gain was determined, or bounded by less than the best
   bool complete{true};       ///< false: there are more once all of these were attempted
   bool by_gain{true};        ///< false: in another order, so that no threshold applies to gains
+  double least_gain{0.0};    ///< views that gain less are not worth going to, whatever the planner asks for
+  /// What a view is expected to make known; its worth is in proportion to the gain. Empty: that cannot be told.
+  std::function<Promise(const Pose& T_world_camera)> promise{};
 };
 
 /// One caller at a time. Gains depend on the context alone.
@@ -37,8 +42,9 @@ class Gain {
   [[nodiscard]] virtual Result<std::vector<double>> evaluate(const PlanningContext& context,
                                                              const RegionOfInterest& region,
                                                              std::span<const Pose> T_world_camera) = 0;
-  /// The best poses that were not attempted, `count` of them or more. As it is here: all poses by decreasing gain, ties
-  /// in their order. size_mismatch when evaluate() returns another number of values than it got poses.
+  /// The best poses that were not attempted, `count` of them or more. As it is here: those of evaluate() by decreasing
+  /// gain, ties in their order, once what CredibleRays does not believe was taken off, if the context knows the sensor.
+  /// size_mismatch when evaluate() returns another number of values than it got poses.
   [[nodiscard]] virtual Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                                  std::span<const Pose> T_world_camera, std::size_t count);
 };
@@ -50,19 +56,29 @@ class Gain {
 /// The largest gain first, ties in their order.
 void order_by_gain(std::span<RankedView> views);
 
+/// Whether promises are looked into before they are believed.
+enum class Trust : std::uint8_t {
+  credible,  ///< gains shrink by what earlier views failed to show, and by rays from which no return will come
+  blind,     ///< gains are what they are, as the thesis has it
+};
+
 /// Counts rays as evaluate_views does.
 class RayGain final : public Gain {
  public:
-  explicit RayGain(const GainConfig& config) : config_{config} {}
+  explicit RayGain(const GainConfig& config, Trust trust = Trust::credible) : config_{config}, trust_{trust} {}
   [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;
-  /// The best `count` that were not attempted, found by bounds first (docs/decisions/0010-footprints.md), and those
-  /// that were attempted.
+  /// The best that were not attempted, found by bounds first (docs/decisions/0010-footprints.md), and those that were
+  /// attempted. What CredibleRays does not believe is taken off, unless it is told to trust blindly.
   [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 
  private:
+  [[nodiscard]] Result<RankedViews> by_rays(const PlanningContext& context, const RegionOfInterest& region,
+                                            std::span<const Pose> T_world_camera, std::size_t count);
+
   GainConfig config_;
+  Trust trust_;
 };
 
 struct RandomOrderConfig {

@@ -10,14 +10,17 @@ namespace saccade {
 struct SurfaceGainConfig {
   PinholeCamera sensor{640, 480, 525.0, 525.0, 319.5, 239.5, 0.5, 6.0};  ///< field of view and range
   double tilt_rad{0.0};  ///< the real sensor is tilted by ± this angle: see widened_vertically
+  /// A view that is expected to show less than this share of the surface that was seen so far is not worth going to.
+  double least_share{0.005};
   ExpectedSurfaceConfig surface{};
 
-  /// invalid_argument for a bad sensor or tilt; errors of the surface's configuration.
+  /// invalid_argument for a bad sensor, tilt or share; errors of the surface's configuration.
   [[nodiscard]] Status validate() const;
 };
 
-/// Gains are in cm² of expected surface within the region that lies in the camera's field of view and range and that
-/// ExpectedSurface::is_visible from it.
+/// Gains are in cm² of expected surface within the region that lies in the camera's field of view and range, that
+/// ExpectedSurface::is_visible from it, and that the robot's own body does not hide. Surface that an earlier view
+/// promised and failed to show counts less from about there: by the share that the earlier view kept of its promise.
 class SurfaceGain final : public Gain {
  public:
   /// Expects a valid configuration.
@@ -26,6 +29,10 @@ class SurfaceGain final : public Gain {
   /// O(voxels of the workspace + camera centres · points · voxels between).
   [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;
+  /// The best, exactly: lines of sight are followed where the bound, the area in the field of view that faces the
+  /// camera, comes up to them. Those that were attempted are among them.
+  [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
+                                         std::span<const Pose> T_world_camera, std::size_t count) override;
 
  private:
   SurfaceGainConfig config_;

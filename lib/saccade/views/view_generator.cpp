@@ -47,10 +47,11 @@ Result<ViewCandidates> ContourViews::views(const PlanningContext& context, const
   follow(context, region.surface);
   ViewCandidates found{{}, set_->points.size() * views_.views_per_point(), set_};
   std::vector<ContourPoint> chosen;
-  if (region.surface) {
+  const bool of_segment = region.surface && region.segment != RegionOfInterest::kAllSegments;
+  if (of_segment) {
     for (const std::uint32_t point : of_segment_[region.segment]) chosen.push_back(set_->points[point]);
   }
-  SACCADE_TRY(found.T_world_camera, contour_views(region.surface ? chosen : set_->points, views_));
+  SACCADE_TRY(found.T_world_camera, contour_views(of_segment ? chosen : set_->points, views_));
   return found;
 }
 

@@ -81,6 +81,7 @@ Result<ViewRecord> read_view(const json& value) {
   SACCADE_TRY(view.T_world_camera, exact_pose(value.at("T_world_camera")));
   SACCADE_TRY(view.q, configuration_from_json(value.value("q", json(nullptr))));
   view.gain_predicted = optional_in<double>(value, "gain").value_or(std::nan(""));
+  view.gain_observed = optional_in<double>(value, "gain_observed").value_or(std::nan(""));
   view.measures.coverage = optional_in<double>(value, "coverage");
   view.measures.unknown_left = optional_in<std::size_t>(value, "unknown_left").value_or(0);
   view.measures.unknown_near_objects = optional_in<std::size_t>(value, "unknown_near_objects");
@@ -128,6 +129,7 @@ json view_to_json(const ViewRecord& view, std::size_t index) {
   return {{"index", index},
           {"region", view.region},
           {"gain", gain_to_json(view.gain_predicted)},
+          {"gain_observed", gain_to_json(view.gain_observed)},
           {"candidates", view.candidates},
           {"evaluated", view.evaluated},
           {"refused", refusals_to_json(view.refused)},

@@ -94,6 +94,9 @@ CREATE VIEW curves AS
   SELECT views.run, scene, strategy, noise, seed, settings, number, views.coverage, views.unknown_left,
          views.unknown_near_objects
   FROM views JOIN runs ON runs.id = views.run;
+)sql",
+    R"sql(
+ALTER TABLE views ADD COLUMN gain_observed REAL;
 )sql"};
 constexpr std::int64_t kNewestVersion{kVersions.size()};
 

@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/views/internal/credible_rays.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saccade/views/internal/find_supports.hpp"
+#include "saccade/views/internal/volume_walk.hpp"
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector3d;
+
+constexpr int kColumns{32};             // rays across the picture
+constexpr int kGlanceColumns{12};       // and for a quick look
+constexpr double kMinSupport_m2{0.08};  // as ExpectedSurfaceConfig has it
+constexpr double kSupportThickness_m{0.05};
+
+/// A ray from a camera to the end of its range.
+struct Ray {
+  Vector3d from_m;
+  Vector3d to_m;
+
+  [[nodiscard]] Vector3d at(double share) const { return from_m + share * (to_m - from_m); }
+  /// The share of the ray at which it passes a height, if it does.
+  [[nodiscard]] std::optional<double> passes(double height_m) const {
+    const double rise_m = to_m.z() - from_m.z();
+    if (rise_m == 0.0) return std::nullopt;
+    const double share = (height_m - from_m.z()) / rise_m;
+    return share >= 0.0 && share <= 1.0 ? std::optional{share} : std::nullopt;
+  }
+};
+
+}  // namespace
+
+struct CredibleRays::Scene {
+  StateVolume volume;
+  std::vector<Support> supports;
+  bool holds_surface{false};  ///< some voxel is occupied
+  Region region;
+  UnknownOutside outside;
+  PinholeCamera sensor;
+  Trust trust{Trust::credible};
+  OwnBody own_body;
+  Credit credit;
+
+  Scene(StateVolume states, const PlanningContext& context, const Region& bounds, const PinholeCamera& looks,
+        UnknownOutside unknown_outside)
+      : volume{std::move(states)},
+        supports{find_supports(volume, kMinSupport_m2)},
+        region{bounds},
+        outside{unknown_outside},
+        sensor{looks},
+        credit{context.checked, looks, volume, 1.5 * volume.voxel_size_m()} {
+    for (std::size_t i = 0; i < volume.size() && !holds_surface; ++i) {
+      holds_surface = volume[i] == VoxelState::occupied;
+    }
+  }
+
+  struct Met {
+    std::size_t voxel{0};
+    double share{0.0};  ///< of the ray
+    bool returns{false};
+  };
+
+  /// Where a place lies in the grid of a support's columns; nullopt: outside.
+  [[nodiscard]] std::optional<std::size_t> column_of(const Vector3d& p) const {
+    const auto x = static_cast<std::int32_t>(std::floor(p.x() / volume.voxel_size_m())) - volume.box().lo.x;
+    const auto y = static_cast<std::int32_t>(std::floor(p.y() / volume.voxel_size_m())) - volume.box().lo.y;
+    const Index3 size = volume.box().size();
+    if (x < 0 || y < 0 || x >= size.x || y >= size.y) return std::nullopt;
+    return static_cast<std::size_t>(y) * static_cast<std::size_t>(size.x) + static_cast<std::size_t>(x);
+  }
+  [[nodiscard]] bool is_over(const Support& support, const Vector3d& p) const {
+    const std::optional<std::size_t> column = column_of(p);
+    return column && support.columns[*column] != 0;
+  }
+
+  /// Whether the ray comes to what it meets through a support or from below one.
+  [[nodiscard]] bool is_hidden(const Ray& ray, double met) const {
+    return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
+      if (ray.from_m.z() >= support.height_m) return false;
+      const Vector3d p = ray.at(met);
+      if (p.z() > support.height_m) return is_over(support, ray.at(ray.passes(support.height_m).value_or(met)));
+      return p.z() > support.height_m - kSupportThickness_m && is_over(support, p);
+    });
+  }
+
+  /// Whether the ray comes to a support from above once it has met something.
+  [[nodiscard]] bool ends_on_support(const Ray& ray, double met) const {
+    return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
+      if (ray.from_m.z() <= support.height_m) return false;
+      const std::optional<double> passed = ray.passes(support.height_m);
+      return passed && *passed >= met && is_over(support, ray.at(*passed));
+    });
+  }
+
+  /// The unknown voxel that the ray promises; nullopt: none.
+  [[nodiscard]] std::optional<Met> promised(const Ray& ray) const {
+    const double nearest = sensor.min_range_m / sensor.max_range_m;
+    std::optional<Met> met;
+    walk_line(volume, ray.from_m, ray.to_m, [&](std::size_t voxel, double share) {
+      const VoxelState state = volume[voxel];
+      if (state == VoxelState::empty) return false;
+      if (state == VoxelState::occupied) {
+        if (met) met->returns = true;
+        return true;
+      }
+      if (met) return false;
+      const bool inside = contains(region, voxel_center(volume.voxel(voxel), volume.voxel_size_m()));
+      if (!inside) return outside == UnknownOutside::blocks;
+      if (share < nearest) return true;
+      met = Met{voxel, share};
+      return !holds_surface;  // then nothing tells where returns come from
+    });
+    if (met && !met->returns) met->returns = !holds_surface || ends_on_support(ray, met->share);
+    return met;
+  }
+
+  /// Calls believed(what the ray meets, how far that is believed, u, v) for the rays that promise something; returns
+  /// how many do.
+  template <class Believed>
+  std::size_t cast(const PinholeCamera& rays, const Pose& T_world_camera, const Believed& believed) const;
+
+  /// How far a promise is believed, in [0, 1].
+  [[nodiscard]] double worth(const Ray& ray, const Met& met) const {
+    if (trust == Trust::blind) return 1.0;
+    if (!met.returns || is_hidden(ray, met.share)) return 0.0;
+    return credit.is_full() ? 1.0 : credit.of(ray.at(met.share), credit.seen_from(met.voxel), ray.from_m);
+  }
+};
+
+Result<CredibleRays> CredibleRays::create(const PlanningContext& context, const RegionOfInterest& region,
+                                          const PinholeCamera& sensor, UnknownOutside outside, Trust trust) {
+  const TsdfConfig& config = context.map.config;
+  const IndexBox box = config.workspace ? voxels_with_center_in(*config.workspace, config.voxel_size_m)
+                                        : context.map.grid.known_bounds();
+  SACCADE_TRY(StateVolume volume, StateVolume::read(context.map, box, context.executor));
+  const PinholeCamera coarse = sensor.scaled_to_width(std::min(kColumns, sensor.width));
+  auto scene = std::make_shared<Scene>(std::move(volume), context, region.bounds, coarse, outside);
+  scene->trust = trust;
+  if (context.own_body && trust == Trust::credible) {
+    SACCADE_TRY(scene->own_body, context.own_body(coarse));
+  }
+  return CredibleRays{std::move(scene)};
+}
+
+template <class Believed>
+std::size_t CredibleRays::Scene::cast(const PinholeCamera& rays, const Pose& T_world_camera,
+                                      const Believed& believed) const {
+  std::size_t promising{0};
+  for (int v = 0; v < rays.height; ++v) {
+    for (int u = 0; u < rays.width; ++u) {
+      const Vector3d end{(u - rays.cx) / rays.fx, (v - rays.cy) / rays.fy, 1.0};
+      const Ray ray{T_world_camera.translation(), T_world_camera * (rays.max_range_m * end)};
+      const std::optional<Met> met = promised(ray);
+      if (!met) continue;
+      ++promising;
+      believed(*met, worth(ray, *met), u, v);
+    }
+  }
+  return promising;
+}
+
+CredibleRays::Look CredibleRays::from(const Pose& T_world_camera) const {
+  const PinholeCamera& sensor = scene_->sensor;
+  std::optional<DepthImage> body;
+  if (scene_->own_body) body = scene_->own_body(T_world_camera);
+  Look look;
+  const auto believed = [&](const Scene::Met& met, double worth, int u, int v) {
+    const double body_m = body ? static_cast<double>((*body)(u, v)) : 0.0;
+    if (!(worth > 0.0) || (body_m > 0.0 && body_m < met.share * sensor.max_range_m)) return;
+    look.promise.voxels.push_back({scene_->volume.voxel(met.voxel), worth});
+  };
+  const std::size_t promising = scene_->cast(sensor, T_world_camera, believed);
+  if (promising > 0) look.share = look.promise.worth() / static_cast<double>(promising);
+  return look;
+}
+
+std::vector<CredibleRays::Glance> CredibleRays::glances(std::span<const Pose> T_world_camera,
+                                                        const Executor& executor) const {
+  const PinholeCamera coarse = scene_->sensor.scaled_to_width(std::min(kGlanceColumns, scene_->sensor.width));
+  const double rays = static_cast<double>(coarse.width) * static_cast<double>(coarse.height);
+  std::vector<Glance> glances(T_world_camera.size());
+  executor.parallel_for(glances.size(), 16, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      double sum{0.0};
+      const auto believed = [&](const Scene::Met&, double worth, int, int) { sum += worth; };
+      const std::size_t promising = scene_->cast(coarse, T_world_camera[i], believed);
+      glances[i] = {sum / rays, promising > 0 ? sum / static_cast<double>(promising) : 1.0};
+    }
+  });
+  return glances;
+}
+
+std::vector<double> CredibleRays::shares(std::span<const Pose> T_world_camera, const Executor& executor) const {
+  std::vector<double> shares(T_world_camera.size());
+  executor.parallel_for(shares.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) shares[i] = from(T_world_camera[i]).share;
+  });
+  return shares;
+}
+
+}  // namespace saccade

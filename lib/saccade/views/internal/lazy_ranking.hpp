@@ -1,0 +1,44 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// firm_best: the best of many, exactly, without looking into all of them.
+
+#include <algorithm>
+#include <cstddef>
+#include <limits>
+#include <vector>
+
+namespace saccade {
+
+/// Replaces bounds by values until it is certain which are the best `count`, and returns how many were looked into:
+/// they come first then, those before the first that another might beat in `firm`.
+struct FirmBest {
+  std::size_t looked{0};
+  std::size_t firm{0};
+};
+
+/// @param items  by decreasing bound; afterwards those that were looked into come first, by decreasing value
+/// @param beyond bounds what is not among the items; −∞: nothing is missing
+/// @param value_of(item) its bound, or its value once look(span of items) was called for it, which lowers it or not
+/// The items are looked into in batches of 16, whatever the threads, so that they never change the result.
+template <class Item, class ValueOf, class Look>
+FirmBest firm_best(std::vector<Item>& items, double beyond, std::size_t count, const ValueOf& value_of,
+                   const Look& look) {
+  constexpr std::size_t kBatch{16};
+  FirmBest best;
+  const auto by_value = [&](const Item& a, const Item& b) { return value_of(a) > value_of(b); };
+  while (best.looked < items.size() && best.firm < count) {
+    const std::size_t end = std::min(best.looked + kBatch, items.size());
+    look(best.looked, end);
+    best.looked = end;
+    const auto looked_end = items.begin() + static_cast<std::ptrdiff_t>(best.looked);
+    std::stable_sort(items.begin(), looked_end, by_value);
+    const double to_come = std::max(
+        beyond, best.looked < items.size() ? value_of(items[best.looked]) : -std::numeric_limits<double>::infinity());
+    best.firm = static_cast<std::size_t>(
+        std::find_if(items.begin(), looked_end, [&](const Item& item) { return !(value_of(item) >= to_come); }) -
+        items.begin());
+  }
+  return best;
+}
+
+}  // namespace saccade

@@ -1,0 +1,132 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/views/internal/surface_prospect.hpp"
+
+#include <algorithm>
+#include <cmath>
+
+#include "saccade/attention/salient_objects.hpp"
+#include "saccade/views/internal/state_volume.hpp"
+
+namespace saccade {
+namespace {
+
+/// Returns the saliency of the segment nearest to each place, as a share of the largest; 0: no segment is near.
+std::vector<double> saliency_near(std::span<const Eigen::Vector3d> places_m, const SalientSurface& surface,
+                                  const Executor& executor) {
+  double most{0.0};
+  for (const Saliency& saliency : surface.saliency) most = std::max(most, saliency.value);
+  std::vector<double> weights;
+  for (const std::uint32_t segment : nearest_segments(surface.points, places_m, executor)) {
+    const bool counts = segment < surface.saliency.size() && most > 0.0;
+    weights.push_back(counts ? surface.saliency[segment].value / most : 0.0);
+  }
+  return weights;
+}
+
+}  // namespace
+
+Result<SurfaceProspect> SurfaceProspect::create(const PlanningContext& context, const RegionOfInterest& region,
+                                                ExpectedSurface surface, const PinholeCamera& sensor) {
+  SurfaceProspect prospect{std::move(surface), sensor};
+  const std::vector<ExpectedPoint>& points = prospect.surface_.points;
+  for (std::size_t i = 0; i < points.size(); ++i) {
+    if (contains(region.bounds, points[i].position_m.cast<double>())) prospect.points_.push_back(i);
+  }
+  if (region.surface && region.segment == RegionOfInterest::kAllSegments) {
+    std::vector<Eigen::Vector3d> places_m;
+    for (const std::size_t j : prospect.points_) places_m.push_back(points[j].position_m.cast<double>());
+    prospect.weights_ = saliency_near(places_m, *region.surface, context.executor);
+  }
+  auto credit =
+      std::make_shared<const Credit>(context.checked, sensor, *prospect.surface_.volume, prospect.surface_.through_m);
+  if (!credit->is_full()) {
+    prospect.in_sight_.resize(prospect.points_.size());
+    context.executor.parallel_for(prospect.points_.size(), 64, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = begin; i < end; ++i) {
+        prospect.in_sight_[i] = credit->seen_from(points[prospect.points_[i]].voxel);
+      }
+    });
+  }
+  prospect.credit_ = std::move(credit);
+  if (context.own_body) {
+    constexpr int kColumns{64};
+    SACCADE_TRY(prospect.own_body_, context.own_body(sensor.scaled_to_width(std::min(kColumns, sensor.width))));
+  }
+  return prospect;
+}
+
+std::vector<SurfaceProspect::Sight> SurfaceProspect::facing(const Eigen::Vector3d& camera_m) const {
+  std::vector<Sight> sights;
+  const Eigen::Vector3f center = camera_m.cast<float>();
+  const auto reach_m = 2.0F * static_cast<float>(sensor_.max_range_m);  // no field of view is so wide
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const ExpectedPoint& point = surface_.points[points_[i]];
+    if ((point.position_m - center).squaredNorm() > reach_m * reach_m) continue;
+    if (surface_.faces(point, camera_m)) sights.push_back({&point, weighed_cm2(i)});
+  }
+  return sights;
+}
+
+std::vector<SurfaceProspect::Sight> SurfaceProspect::visible(const Eigen::Vector3d& camera_m) const {
+  std::vector<Sight> sights;
+  const Eigen::Vector3f center = camera_m.cast<float>();
+  const auto reach_m = 2.0F * static_cast<float>(sensor_.max_range_m);
+  for (std::size_t i = 0; i < points_.size(); ++i) {
+    const ExpectedPoint& point = surface_.points[points_[i]];
+    if ((point.position_m - center).squaredNorm() > reach_m * reach_m) continue;
+    if (!surface_.is_visible(point, camera_m)) continue;
+    const double credit =
+        in_sight_.empty() ? 1.0 : credit_->of(point.position_m.cast<double>(), in_sight_[i], camera_m);
+    sights.push_back({&point, credit * weighed_cm2(i)});
+  }
+  return sights;
+}
+
+template <class Visit>
+void SurfaceProspect::for_each_in_picture(std::span<const Sight> sights, const Pose& T_world_camera,
+                                          const Visit& visit) const {
+  const Eigen::Isometry3f T_camera_world = T_world_camera.inverse(Eigen::Isometry).cast<float>();
+  const auto fx = static_cast<float>(sensor_.fx);
+  const auto fy = static_cast<float>(sensor_.fy);
+  const auto left = static_cast<float>(-0.5 - sensor_.cx);
+  const auto right = static_cast<float>(sensor_.width - 0.5 - sensor_.cx);
+  const auto top = static_cast<float>(-0.5 - sensor_.cy);
+  const auto bottom = static_cast<float>(sensor_.height - 0.5 - sensor_.cy);
+  for (const Sight& sight : sights) {
+    const Eigen::Vector3f p = T_camera_world * sight.point->position_m;
+    if (p.z() < static_cast<float>(sensor_.min_range_m) || p.z() > static_cast<float>(sensor_.max_range_m)) continue;
+    const float u = fx * p.x();
+    const float v = fy * p.y();
+    if (u < left * p.z() || u >= right * p.z() || v < top * p.z() || v >= bottom * p.z()) continue;
+    visit(sight, p);
+  }
+}
+
+double SurfaceProspect::area_in_picture(std::span<const Sight> sights, const Pose& T_world_camera) const {
+  double area_cm2{0.0};
+  for_each_in_picture(sights, T_world_camera,
+                      [&](const Sight& sight, const Eigen::Vector3f&) { area_cm2 += sight.area_cm2; });
+  return area_cm2;
+}
+
+Promise SurfaceProspect::promise(const Pose& T_world_camera) const {
+  std::optional<DepthImage> body;
+  if (own_body_) body = own_body_(T_world_camera);
+  const auto is_behind_body = [&](const Eigen::Vector3f& p) {
+    if (!body) return false;
+    const Eigen::Vector2d pixel = sensor_.project(p.cast<double>());
+    const double scale = static_cast<double>(body->width()) / static_cast<double>(sensor_.width);
+    const int u = std::clamp(static_cast<int>((pixel.x() + 0.5) * scale), 0, body->width() - 1);
+    const int v = std::clamp(static_cast<int>((pixel.y() + 0.5) * scale), 0, body->height() - 1);
+    return (*body)(u, v) > 0.0F && (*body)(u, v) < p.z();
+  };
+  Promise promise;
+  for_each_in_picture(visible(T_world_camera.translation()), T_world_camera,
+                      [&](const Sight& sight, const Eigen::Vector3f& p) {
+                        if (is_behind_body(p)) return;
+                        promise.voxels.push_back({surface_.volume->voxel(sight.point->voxel), sight.area_cm2});
+                      });
+  return promise;
+}
+
+}  // namespace saccade

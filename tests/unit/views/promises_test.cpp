@@ -1,0 +1,164 @@
+// SPDX-License-Identifier: Apache-2.0
+// Which promises of views are believed: not those of a table's underside, of space without a surface behind it, behind
+// the robot's own body, or of what an earlier view of the same place failed to show.
+#include "saccade/views/promise.hpp"
+
+#include <gtest/gtest.h>
+
+#include <algorithm>
+#include <array>
+#include <numbers>
+#include <vector>
+
+#include "saccade/views/surface_gain.hpp"
+#include "support/half_seen_box.hpp"
+
+namespace saccade {
+namespace {
+
+using Eigen::Vector3d;
+
+const PinholeCamera kSensor{160, 120, 131.25, 131.25, 79.5, 59.5, 0.1, 2.0};
+
+/// The best views of a map among some, by either gain.
+struct Choice {
+  TsdfSnapshot map;
+  Executor executor{};
+  std::vector<CheckedView> checked{};
+  std::function<Result<OwnBody>(const PinholeCamera&)> own_body{};
+
+  [[nodiscard]] PlanningContext context() const {
+    PlanningContext context{map, executor};
+    context.sensor = kSensor;
+    context.checked = checked;
+    context.own_body = own_body;
+    return context;
+  }
+  [[nodiscard]] RegionOfInterest region() const {
+    RegionOfInterest all;
+    all.bounds = *map.config.workspace;
+    return all;
+  }
+  [[nodiscard]] RankedViews best(Gain&& gain, std::span<const Pose> poses) const {
+    return gain.best(context(), region(), poses, 16).value();
+  }
+  [[nodiscard]] double rays_from(const Vector3d& camera_m, Trust trust = Trust::credible,
+                                 const Vector3d& target_m = {0.0, 0.0, 0.05}) const {
+    const Pose pose = look_at(camera_m, target_m);
+    return best(RayGain{{.sensor = kSensor}, trust}, std::span{&pose, 1}).views.front().gain;
+  }
+  [[nodiscard]] double surface_from(const Vector3d& camera_m) const {
+    const Pose pose = look_at(camera_m, {0.0, 0.0, 0.05});
+    return best(SurfaceGain{{.sensor = kSensor}}, std::span{&pose, 1}).views.front().gain;
+  }
+};
+
+std::vector<Pose> poses_around() {
+  std::vector<Pose> poses;
+  for (int i = 0; i < 150; ++i) {
+    const double turn = 0.37 * i;
+    const Vector3d camera_m{0.6 * std::cos(turn), 0.6 * std::sin(turn), -0.1 + 0.005 * i};
+    for (int roll = 0; roll < 2; ++roll) {
+      poses.push_back(look_at(camera_m, {0.0, 0.0, 0.05}, Vector3d::UnitZ(), roll * std::numbers::pi / 2.0));
+    }
+  }
+  return poses;
+}
+
+TEST(Promises, AreKeptByVoxelsThatAreKnown) {
+  const TsdfSnapshot map = test::half_seen_box();
+  Promise promise;
+  promise.voxels.push_back({Index3{0, 0, 5}, 3.0});   // unknown
+  promise.voxels.push_back({Index3{20, 0, 5}, 1.0});  // empty
+  EXPECT_DOUBLE_EQ(promise.worth(), 4.0);
+  EXPECT_DOUBLE_EQ(promise.kept(map.grid), 0.25);
+}
+
+TEST(Promises, OfATablesUndersideAreNotBelieved) {
+  const Choice choice{test::half_seen_box()};
+  EXPECT_GT(choice.rays_from({0.1, 0.0, -0.6}, Trust::blind), 1000.0) << "the table's inside is unknown";
+  EXPECT_EQ(choice.rays_from({0.1, 0.0, -0.6}), 0.0);
+  EXPECT_GT(choice.rays_from({-0.6, 0.0, 0.3}), 100.0) << "the side of the box that was not seen";
+}
+
+TEST(Promises, OfSpaceWithoutASurfaceBehindItAreNotBelieved) {
+  const auto with_corner = [](bool wall) {
+    return Choice{test::written_map([=](const Vector3d& p) {
+      if (wall && p.y() > 0.28) return VoxelState::occupied;
+      return p.y() > 0.15 && p.z() > 0.15 ? VoxelState::unknown : test::half_seen_box_at(p);
+    })};
+  };
+  const Vector3d camera_m{0.0, -0.6, 0.3};
+  const Vector3d corner_m{0.0, 0.3, 0.3};
+  EXPECT_GT(with_corner(false).rays_from(camera_m, Trust::blind, corner_m), 1000.0);
+  EXPECT_LT(with_corner(false).rays_from(camera_m, Trust::credible, corner_m), 300.0) << "rays that rise go on for ever";
+  EXPECT_GT(with_corner(true).rays_from(camera_m, Trust::credible, corner_m), 1000.0);
+}
+
+TEST(Promises, BehindTheRobotsOwnBodyAreNotBelieved) {
+  Choice choice{test::half_seen_box()};
+  const double rays = choice.rays_from({-0.6, 0.0, 0.3});
+  const double area_cm2 = choice.surface_from({-0.6, 0.0, 0.3});
+  const auto body_at = [](float depth_m) {
+    return [depth_m](const PinholeCamera& sensor) -> Result<OwnBody> {
+      DepthImage depth{sensor.width, sensor.height};
+      std::fill(depth.data(), depth.data() + static_cast<std::ptrdiff_t>(sensor.width) * sensor.height, depth_m);
+      return OwnBody{[depth](const Pose&) { return std::optional{depth}; }};
+    };
+  };
+  choice.own_body = body_at(0.2F);
+  EXPECT_EQ(choice.rays_from({-0.6, 0.0, 0.3}), 0.0);
+  EXPECT_EQ(choice.surface_from({-0.6, 0.0, 0.3}), 0.0);
+  choice.own_body = body_at(1.5F);
+  EXPECT_EQ(choice.rays_from({-0.6, 0.0, 0.3}), rays) << "the body is behind the box";
+  EXPECT_EQ(choice.surface_from({-0.6, 0.0, 0.3}), area_cm2);
+}
+
+TEST(Promises, ThatWereBrokenLoseCreditFromThereAlone) {
+  Choice choice{test::half_seen_box()};
+  const Vector3d failed_m{-0.6, 0.0, 0.2};
+  const Vector3d beside_m{-0.58, 0.1, 0.22};
+  const Vector3d aside_m{0.0, 0.6, 0.2};
+  const double rays = choice.rays_from(beside_m);
+  const double area_cm2 = choice.surface_from(beside_m);
+  const double aside_cm2 = choice.surface_from(aside_m);
+  choice.checked = {{look_at(failed_m, {0.0, 0.0, 0.05}), 0.1}};
+  EXPECT_LT(choice.rays_from(beside_m), 0.3 * rays);
+  EXPECT_LT(choice.surface_from(beside_m), 0.3 * area_cm2);
+  EXPECT_NEAR(choice.surface_from(aside_m), aside_cm2, 1e-9);
+  choice.checked = {{look_at(failed_m, {0.0, 0.0, 0.05}), 0.95}};
+  EXPECT_EQ(choice.surface_from(beside_m), area_cm2) << "it was kept";
+}
+
+TEST(Promises, AddUpToTheGain) {
+  const Choice choice{test::half_seen_box()};
+  const std::vector<Pose> poses = poses_around();
+  const RankedViews ranked = choice.best(SurfaceGain{{.sensor = kSensor}}, poses);
+  ASSERT_FALSE(ranked.views.empty());
+  for (const RankedView& view : ranked.views) {
+    EXPECT_NEAR(ranked.promise(view.T_world_camera).worth(), view.gain, 1e-9 + 1e-6 * view.gain);
+  }
+  EXPECT_NEAR(ranked.least_gain, 0.005 * 200.0, 0.3);
+}
+
+/// Lines of sight of every pose are the slow reference of those of the best alone.
+TEST(SurfaceGain, TheBestByBoundsAreTheBestOfAll) {
+  Choice choice{test::half_seen_box()};
+  const std::vector<Pose> poses = poses_around();
+  choice.checked = {{look_at({-0.6, 0.0, 0.2}, {0.0, 0.0, 0.05}), 0.3}};
+  SurfaceGain gain{{.sensor = kSensor}};
+  std::vector<double> all = gain.evaluate(choice.context(), choice.region(), poses).value();
+  std::sort(all.begin(), all.end(), std::greater<>{});
+  ASSERT_GT(all[0], 50.0);
+  for (const std::size_t threads : {1U, 3U}) {
+    choice.executor = Executor::with_threads(threads);
+    const RankedViews ranked = gain.best(choice.context(), choice.region(), poses, 8).value();
+    ASSERT_GE(ranked.views.size(), 8U);
+    EXPECT_LT(ranked.views.size(), poses.size()) << "bounds spare most of the poses";
+    EXPECT_FALSE(ranked.complete);
+    for (std::size_t i = 0; i < ranked.views.size(); ++i) EXPECT_NEAR(ranked.views[i].gain, all[i], 1e-9);
+  }
+}
+
+}  // namespace
+}  // namespace saccade
