@@ -122,16 +122,23 @@ double seen_area_cm2(const StateVolume& volume, std::span<const std::uint32_t> s
   return area_vox * volume.voxel_size_m() * volume.voxel_size_m() * 1e4;
 }
 
-/// The highest support below a voxel.
-std::int32_t support_below(const StateVolume& volume, const std::vector<Support>& supports, std::uint32_t voxel) {
-  const std::size_t column = voxel % static_cast<std::size_t>(volume.layer());
-  const std::int32_t z = volume.voxel(voxel).z;
-  std::int32_t best{-1};
-  for (std::size_t i = 0; i < supports.size(); ++i) {
-    if (supports[i].columns[column] == 0 || supports[i].top > z + 1) continue;
-    if (best < 0 || supports[i].top > supports[static_cast<std::size_t>(best)].top) best = static_cast<std::int32_t>(i);
+/// Tells each point the highest support below it.
+void find_supports_below(const StateVolume& volume, const std::vector<Support>& supports,
+                         std::vector<ExpectedPoint>& points) {
+  std::vector<std::vector<std::int32_t>> tops;
+  for (const Support& support : supports) tops.push_back(top_layers(volume, support));
+  const auto layer = static_cast<std::size_t>(volume.layer());
+  for (ExpectedPoint& point : points) {
+    const std::size_t column = point.voxel % layer;
+    const auto z = static_cast<std::int32_t>(point.voxel / layer);
+    std::int32_t highest = kNoLayer;
+    for (std::size_t i = 0; i < supports.size(); ++i) {
+      const std::int32_t top = tops[i][column];
+      if (top == kNoLayer || top > z + 1 || top <= highest) continue;
+      highest = top;
+      point.support = static_cast<std::int32_t>(i);
+    }
   }
-  return best;
 }
 
 }  // namespace
@@ -152,7 +159,8 @@ Status ExpectedSurfaceConfig::validate() const {
 bool ExpectedSurface::is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
   const Eigen::Vector3f towards = camera_m.cast<float>() - point.position_m;
   if (point.normal.dot(towards) < kLeastCosine * towards.norm()) return false;
-  if (point.support >= 0 && camera_m.z() <= supports[static_cast<std::size_t>(point.support)].height_m) return false;
+  const Support* below = point.support < 0 ? nullptr : &supports[static_cast<std::size_t>(point.support)];
+  if (below != nullptr && camera_m.z() <= below->height_at(camera_m.head<2>())) return false;
   return volume->is_visible(point.voxel, camera_m, through_m);
 }
 
@@ -168,7 +176,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   result.volume = std::make_shared<const StateVolume>(std::move(read));
   const StateVolume& volume = *result.volume;
   if (volume.size() == 0) return result;
-  result.supports = find_supports(volume, config.min_support_m2);
+  result.supports = find_supports(map, volume, config.min_support_m2, executor);
   const CompletedObjects objects = complete_objects(volume, result.supports);
   result.seen_cm2 = seen_area_cm2(volume, objects.seen);
   if (objects.count == 0) return result;
@@ -182,7 +190,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   executor.parallel_for(depth, 1, [&](std::size_t begin, std::size_t) {
     const std::size_t z = begin + 1;
     const auto is_inside = [&](std::size_t i) { return objects.is_inside[i] != 0 && volume[i] != VoxelState::empty; };
-    const auto is_outside = [&](std::size_t i) { return !is_inside(i); };
+    const auto is_outside = [&](std::size_t i) { return !is_inside(i) && volume[i] != VoxelState::occupied; };
     const auto is_empty = [&](std::size_t i) { return volume[i] == VoxelState::empty; };
     for (std::int32_t y = 1; y + 1 < size.y; ++y) {
       const std::size_t row = z * static_cast<std::size_t>(volume.layer()) +
@@ -190,6 +198,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
       for (std::size_t i = row + 1; i + 1 < row + static_cast<std::size_t>(size.x); ++i) {
         if (volume[i] != VoxelState::unknown) continue;
         if (is_inside(i)) {
+          if (objects.is_inside[i] != 1) continue;
           if (const auto e = exposed_at(volume, i, is_outside)) completed[begin].push_back(*e);
         } else if (const float d = near_m[half_resolution_index(volume, i)]; d <= static_cast<float>(config.reach_m)) {
           auto e = exposed_at(volume, i, is_empty);
@@ -207,9 +216,10 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   };
   const std::int32_t block = std::max(1, static_cast<std::int32_t>(std::lround(config.spacing_m / voxel_m)));
   result.points = merged(volume, joined(completed), block);
+  result.completed = result.points.size();
   const std::vector<ExpectedPoint> others = merged(volume, joined(beside), block);
   result.points.insert(result.points.end(), others.begin(), others.end());
-  for (ExpectedPoint& point : result.points) point.support = support_below(volume, result.supports, point.voxel);
+  find_supports_below(volume, result.supports, result.points);
   return result;
 }
 

@@ -43,7 +43,8 @@ struct ExpectedPoint {
 
 /// Parts of the map's workspace; its whole known space where it has none. Immutable; cheap to share.
 struct ExpectedSurface {
-  std::vector<ExpectedPoint> points;          ///< by voxel layers
+  std::vector<ExpectedPoint> points;          ///< those of completed objects first, each kind by voxel layers
+  std::size_t completed{0};                   ///< points of completed objects; the others lie beside what was seen
   std::vector<Support> supports;              ///< the largest first
   double seen_cm2{0.0};                       ///< area of the surface of objects that was seen
   double through_m{0.0};                      ///< as configured

@@ -15,15 +15,19 @@ constexpr std::int32_t kBelowSupport{8};  // voxels behind the support's surface
 constexpr int kGap{2};                    // voxels between parts of one object
 constexpr std::size_t kLeastVoxels{12};   // objects of fewer are noise
 
+/// Layers of a support's surface, column by column.
+using TopLayers = std::vector<std::int32_t>;
+
 /// Occupied voxels that are part of no support.
-std::vector<std::uint32_t> voxels_of_objects(const StateVolume& volume, std::span<const Support> supports) {
+std::vector<std::uint32_t> voxels_of_objects(const StateVolume& volume, std::span<const TopLayers> tops) {
   const auto layer = static_cast<std::size_t>(volume.layer());
   std::vector<std::uint32_t> voxels;
   for (std::size_t i = 0; i < volume.size(); ++i) {
     if (volume[i] != VoxelState::occupied) continue;
-    const std::int32_t z = volume.box().lo.z + static_cast<std::int32_t>(i / layer);
-    const bool of_support = std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
-      return z < support.top + kAboveSupport && z >= support.top - kBelowSupport && support.columns[i % layer] != 0;
+    const auto z = static_cast<std::int32_t>(i / layer);
+    const bool of_support = std::any_of(tops.begin(), tops.end(), [&](const TopLayers& top) {
+      const std::int32_t t = top[i % layer];
+      return t != kNoLayer && z < t + kAboveSupport && z >= t - kBelowSupport;
     });
     if (!of_support) voxels.push_back(static_cast<std::uint32_t>(i));
   }
@@ -73,17 +77,24 @@ Parts connected(const StateVolume& volume, std::span<const std::uint32_t> seen) 
   return parts;
 }
 
-/// The layer on which an object stands: that above the highest support under most of it, its own lowest without one.
-std::int32_t base_of(std::span<const Support> supports, std::span<const std::uint32_t> columns, std::int32_t lowest) {
-  std::int32_t base = lowest;
-  bool found = false;
-  for (const Support& support : supports) {
-    if (support.top > lowest) continue;
-    const auto above =
-        std::count_if(columns.begin(), columns.end(), [&](std::uint32_t c) { return support.columns[c] != 0; });
-    if (2 * static_cast<std::size_t>(above) < columns.size()) continue;
-    if (!found || support.top > base) base = support.top;
-    found = true;
+/// Returns the support on which an object stands: the highest that is below most of its voxels; nullptr: none is.
+const TopLayers* base_of(std::span<const TopLayers> tops, std::span<const std::uint32_t> voxels, std::size_t layer) {
+  const TopLayers* base = nullptr;
+  std::int64_t highest{0};
+  for (const TopLayers& top : tops) {
+    std::size_t above{0};
+    std::int64_t sum{0};
+    for (const std::uint32_t i : voxels) {
+      const std::int32_t t = top[i % layer];
+      if (t == kNoLayer || t > static_cast<std::int32_t>(i / layer)) continue;
+      ++above;
+      sum += t;
+    }
+    if (above == 0 || 2 * above < voxels.size()) continue;
+    const std::int64_t mean = sum / static_cast<std::int64_t>(above);
+    if (base != nullptr && mean <= highest) continue;
+    base = &top;
+    highest = mean;
   }
   return base;
 }
@@ -92,7 +103,9 @@ std::int32_t base_of(std::span<const Support> supports, std::span<const std::uin
 
 CompletedObjects complete_objects(const StateVolume& volume, std::span<const Support> supports) {
   CompletedObjects result;
-  const Parts parts = connected(volume, voxels_of_objects(volume, supports));
+  std::vector<TopLayers> tops;
+  for (const Support& support : supports) tops.push_back(top_layers(volume, support));
+  const Parts parts = connected(volume, voxels_of_objects(volume, tops));
   result.count = parts.starts.size() - 1;
   result.is_inside.assign(volume.size(), 0);
   const auto layer = static_cast<std::size_t>(volume.layer());
@@ -110,10 +123,15 @@ CompletedObjects complete_objects(const StateVolume& volume, std::span<const Sup
     std::sort(columns.begin(), columns.end());
     columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
     const std::vector<std::uint32_t> footprint = hull_columns(columns, static_cast<std::int32_t>(volume.row()));
-    const std::int32_t low_z = volume.box().lo.z;
-    const std::int32_t base = base_of(supports, columns, low_z + static_cast<std::int32_t>(lowest));
-    for (std::size_t z = static_cast<std::size_t>(std::max(base - low_z, 0)); z <= highest; ++z) {
-      for (const std::uint32_t column : footprint) result.is_inside[z * layer + column] = 1;
+    const TopLayers* base = base_of(tops, voxels, layer);
+    for (const std::uint32_t column : footprint) {
+      // Where the hull reaches beyond the support, the object ends at its lowest voxel.
+      const bool stands = base != nullptr && (*base)[column] != kNoLayer;
+      const std::size_t first = stands ? static_cast<std::size_t>(std::max((*base)[column], 0)) : lowest;
+      for (std::size_t z = first; z <= highest; ++z) result.is_inside[z * layer + column] = 1;
+      for (std::size_t z = first > 2 ? first - 2 : 0; z < first && stands; ++z) {
+        if (result.is_inside[z * layer + column] == 0) result.is_inside[z * layer + column] = 2;
+      }
     }
   }
   result.seen = parts.voxels;

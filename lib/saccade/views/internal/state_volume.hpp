@@ -39,6 +39,8 @@ class StateVolume {
     return box_.lo + Index3{static_cast<std::int32_t>(i % row_), static_cast<std::int32_t>(i % layer_ / row_),
                             static_cast<std::int32_t>(i / layer_)};
   }
+  /// States by index().
+  [[nodiscard]] const VoxelState* data() const { return states_.data(); }
   [[nodiscard]] VoxelState operator[](std::size_t index) const { return states_[index]; }
 
   /// Whether nothing hides a voxel of the box from a camera: the straight line from its centre to the camera's passes
