@@ -11,12 +11,12 @@
 namespace saccade {
 namespace {
 
-constexpr std::int32_t kPatchEdge{8};         // voxels
-constexpr std::size_t kLeastOfPatch{20};      // voxels
-constexpr double kFlat_vox{0.6};              // root mean square distance to the plane of a patch
-constexpr double kInlier_vox{1.0};            // voxels this far from a plane are part of it
-constexpr std::size_t kMaxSeeds{64};          // patches that planes are tried from
-constexpr std::size_t kMaxRefined{4096};      // voxels that a plane is fitted to in the end
+constexpr std::int32_t kPatchEdge{8};     // voxels
+constexpr std::size_t kLeastOfPatch{20};  // voxels
+constexpr double kFlat_vox{0.6};          // root mean square distance to the plane of a patch
+constexpr double kInlier_vox{1.0};        // voxels this far from a plane are part of it
+constexpr std::size_t kMaxSeeds{64};      // patches that planes are tried from
+constexpr std::size_t kMaxRefined{4096};  // voxels that a plane is fitted to in the end
 
 /// An occupied voxel with an empty one above; columns and layers counted within the volume.
 struct Top {
@@ -84,13 +84,11 @@ std::vector<Top> tops_of(const StateVolume& volume, const Executor& executor) {
     for (std::size_t z = begin; z < end; ++z) {
       for (std::size_t first = 0; first < layer; first += row) {
         const VoxelState* here = volume.data() + z * layer + first;
-        unsigned any{0};
-        for (std::size_t x = 0; x < row; ++x) any |= here[x] == VoxelState::occupied ? 1U : 0U;
-        if (any == 0) continue;
+        if (!any_occupied(here, row)) continue;
         for (std::size_t x = 0; x < row; ++x) {
           if (here[x] != VoxelState::occupied || here[x + layer] != VoxelState::empty) continue;
-          found[z].push_back({static_cast<std::int32_t>(x), static_cast<std::int32_t>(first / row),
-                              static_cast<std::int32_t>(z)});
+          found[z].push_back(
+              {static_cast<std::int32_t>(x), static_cast<std::int32_t>(first / row), static_cast<std::int32_t>(z)});
         }
       }
     }
@@ -220,9 +218,11 @@ std::size_t leave_out_holes(const StateVolume& volume, Support& support) {
 std::vector<std::uint32_t> hull_columns(std::span<const std::uint32_t> seen, std::int32_t width) {
   const auto columns_per_row = static_cast<std::uint32_t>(width);
   std::vector<Eigen::Vector2d> points;
-  for (const std::uint32_t column : seen) {
-    const std::uint32_t row = column / columns_per_row;
-    points.emplace_back(static_cast<double>(column % columns_per_row), static_cast<double>(row));
+  for (std::size_t i = 0; i < seen.size(); ++i) {
+    const std::uint32_t row = seen[i] / columns_per_row;
+    const bool within_row =
+        i > 0 && i + 1 < seen.size() && seen[i - 1] / columns_per_row == row && seen[i + 1] / columns_per_row == row;
+    if (!within_row) points.emplace_back(static_cast<double>(seen[i] % columns_per_row), static_cast<double>(row));
   }
   const std::vector<Eigen::Vector2d> hull = convex_hull(std::move(points));
   if (hull.size() < 3) return {seen.begin(), seen.end()};

@@ -27,8 +27,8 @@ constexpr double kMaxSlope{0.25};
 [[nodiscard]] std::vector<std::int32_t> top_layers(const StateVolume& volume, const Support& support);
 constexpr std::int32_t kNoLayer{std::numeric_limits<std::int32_t>::min()};
 
-/// Returns the columns within the convex hull of `seen`, which are distinct columns of a grid of `width` columns a row,
-/// x fastest. O(columns of the hull).
+/// Returns the columns within the convex hull of `seen`, which are distinct columns, in their order, of a grid of
+/// `width` columns a row, x fastest. O(columns of the hull).
 [[nodiscard]] std::vector<std::uint32_t> hull_columns(std::span<const std::uint32_t> seen, std::int32_t width);
 
 }  // namespace saccade

@@ -16,7 +16,8 @@ namespace {
 constexpr std::array<std::uint64_t, 256> bytes_of_bits() {
   std::array<std::uint64_t, 256> bytes{};
   for (std::size_t byte = 0; byte < 256; ++byte) {
-    for (std::size_t bit = 0; bit < 8; ++bit) bytes[byte] |= static_cast<std::uint64_t>((byte >> bit) & 1U) << (8 * bit);
+    for (std::size_t bit = 0; bit < 8; ++bit)
+      bytes[byte] |= static_cast<std::uint64_t>((byte >> bit) & 1U) << (8 * bit);
   }
   return bytes;
 }

@@ -55,4 +55,11 @@ class StateVolume {
   std::vector<VoxelState> states_;
 };
 
+/// Whether any of `count` voxels in a row is occupied.
+[[nodiscard]] inline bool any_occupied(const VoxelState* states, std::size_t count) {
+  unsigned any{0};
+  for (std::size_t i = 0; i < count; ++i) any |= states[i] == VoxelState::occupied ? 1U : 0U;
+  return any != 0;
+}
+
 }  // namespace saccade
