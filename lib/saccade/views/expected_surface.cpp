@@ -11,6 +11,7 @@
 
 #include "saccade/views/internal/completed_objects.hpp"
 #include "saccade/views/internal/find_supports.hpp"
+#include "saccade/views/internal/find_walls.hpp"
 #include "saccade/views/internal/state_volume.hpp"
 
 namespace saccade {
@@ -183,12 +184,18 @@ void find_supports_below(const StateVolume& volume, std::span<const std::vector<
   }
 }
 
+bool is_behind(std::span<const Wall> walls, const Eigen::Vector3d& p_m) {
+  return std::any_of(walls.begin(), walls.end(),
+                     [&](const Wall& wall) { return wall.in_front_m(p_m.head<2>()) < 0.0 && wall.faces(p_m); });
+}
+
 }  // namespace
 
 Status ExpectedSurfaceConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "expected surface"}; };
   const auto positive = [](double x) { return std::isfinite(x) && x > 0.0; };
-  if (!positive(min_support_m2)) return fail("the area of a support must be positive");
+  if (!positive(min_support_m2) || !positive(min_wall_m2))
+    return fail("the areas of a support and of a wall must be positive");
   if (!positive(reach_m) || !positive(decay_m)) return fail("the reach around objects and its decay must be positive");
   const auto share = [](double x) { return x >= 0.0 && x <= 1.0; };
   if (!share(beside_share) || !share(completed_share))
@@ -238,7 +245,8 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   result.supports = find_supports(map, volume, config.min_support_m2, executor);
   std::vector<std::vector<std::int32_t>> tops;
   for (const Support& support : result.supports) tops.push_back(top_layers(volume, support));
-  const CompletedObjects objects = complete_objects(volume, tops, executor);
+  result.walls = find_walls(volume, config.min_wall_m2, executor);
+  const CompletedObjects objects = complete_objects(volume, {tops, result.walls}, executor);
   result.seen_cm2 = seen_area_cm2(volume, objects.seen, executor);
   if (objects.objects.empty()) return result;
   for (const CompletedObject& object : objects.objects) result.objects.push_back(bounds_m(object.seen, voxel_m));
@@ -258,6 +266,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
       for (std::int32_t y = 1; y + 1 < size.y; ++y) {
         const auto row = static_cast<std::size_t>(z * volume.layer() + y * volume.row());
         for_exposed(volume, roles, row, marks, [&](std::size_t i, std::int32_t x) {
+          if (is_behind(result.walls, voxel_center(volume.voxel(i), voxel_m))) return;
           if (roles[i].reach() == VoxelRole::inside) {
             auto e =
                 exposed_at(volume, i, [&](std::size_t other) { return roles[other].opening() != VoxelRole::closed; });

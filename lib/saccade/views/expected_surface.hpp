@@ -19,6 +19,7 @@ class StateVolume;
 struct ExpectedSurfaceConfig {
   /// Objects are completed down to what they stand on: level surfaces that were seen over at least this area.
   double min_support_m2{0.08};
+  double min_wall_m2{0.16};  ///< Least seen area of a wall.
   /// Unknown space beside empty space counts up to this distance from the seen surface of an object, by e^(−d / decay),
   double reach_m{0.10};
   double decay_m{0.05};
@@ -49,6 +50,7 @@ struct ExpectedSurface {
   std::vector<ExpectedPoint> points;          ///< those of completed objects first, each kind by voxel layers
   std::size_t completed{0};                   ///< points of completed objects; the others lie beside what was seen
   std::vector<Support> supports;              ///< the largest first
+  std::vector<Wall> walls;                    ///< the largest first
   std::vector<Box> objects;                   ///< around the seen voxels of each object, world frame
   double seen_cm2{0.0};                       ///< area of the surface of objects that was seen
   double through_m{0.0};                      ///< as configured

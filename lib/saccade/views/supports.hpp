@@ -22,4 +22,25 @@ struct Support {
   [[nodiscard]] double height_at(const Eigen::Vector2d& p_m) const { return height_m + slope.dot(p_m - middle_m); }
 };
 
+/// An upright plane that things stand in front of or hang on. Nothing is expected behind it.
+struct Wall {
+  Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};  ///< world x and y, towards the side that was seen
+  double offset_m{0.0};                              ///< normal · (x, y) of its surface
+  double area_m2{0.0};                               ///< that was seen
+  double begin_m{0.0};                               ///< least along_m of what was seen, with a margin
+  double end_m{0.0};                                 ///< greatest
+  double low_m{0.0};                                 ///< world z of its lower edge
+  double high_m{0.0};                                ///< world z of its upper edge
+
+  /// Place along the wall, to the left seen from its front.
+  [[nodiscard]] double along_m(const Eigen::Vector2d& p_m) const { return normal.x() * p_m.y() - normal.y() * p_m.x(); }
+  /// Distance in front of its surface; negative behind it.
+  [[nodiscard]] double in_front_m(const Eigen::Vector2d& p_m) const { return normal.dot(p_m) - offset_m; }
+  /// Whether a place lies in front of or behind the seen part, not beside it.
+  [[nodiscard]] bool faces(const Eigen::Vector3d& p_m) const {
+    const double along = along_m(p_m.head<2>());
+    return along >= begin_m && along <= end_m && p_m.z() >= low_m && p_m.z() <= high_m;
+  }
+};
+
 }  // namespace saccade

@@ -245,6 +245,48 @@ TEST(ExpectedSurface, TheThreadCountChangesNoBit) {
   }
 }
 
+/// A wall at x = −0.1 m, seen from its front alone, with a box of 10 cm on the table that touches it, of which the top
+/// and the front were seen.
+VoxelState box_at_a_wall(const Vector3d& p) {
+  if (p.x() < -0.1) return p.x() > -0.13 && p.z() > 0.0 ? VoxelState::occupied : VoxelState::unknown;
+  return half_a_box(p + Vector3d{0.05, 0.0, 0.0});
+}
+
+TEST(ExpectedSurface, ThingsReachToAWallAndNothingIsBehindIt) {
+  const ExpectedSurface surface = surface_of(map_of(box_at_a_wall));
+  ASSERT_EQ(surface.walls.size(), 1U);
+  const Wall& wall = surface.walls.front();
+  EXPECT_NEAR(wall.normal.x(), 1.0, 1e-3);
+  EXPECT_NEAR(wall.offset_m, -0.1, 1e-3);
+  ASSERT_EQ(surface.objects.size(), 1U) << "the box alone";
+  EXPECT_NEAR(surface.objects.front().max.z(), 0.1, 1e-6);
+  EXPECT_NEAR(area_facing(surface, {0, 1, 0}), 58.0, 15.0) << "its sides reach to the wall";
+  EXPECT_NEAR(area_facing(surface, {0, -1, 0}), 58.0, 15.0);
+  EXPECT_LT(area_facing(surface, {-1, 0, 0}), 5.0);
+  for (const ExpectedPoint& point : surface.points) EXPECT_GT(point.position_m.x(), -0.1F);
+}
+
+TEST(ExpectedSurface, AWallAloneIsNoObject) {
+  const ExpectedSurface surface = surface_of(map_of([](const Vector3d& p) {
+    if (p.x() > -0.1) return VoxelState::empty;
+    return p.x() > -0.13 ? VoxelState::occupied : VoxelState::unknown;
+  }));
+  EXPECT_EQ(surface.walls.size(), 1U);
+  EXPECT_TRUE(surface.supports.empty());
+  EXPECT_TRUE(surface.objects.empty());
+  EXPECT_TRUE(surface.points.empty());
+}
+
+TEST(ExpectedSurface, TheSideOfALargeBoxIsNoWall) {
+  const ExpectedSurface surface = surface_of(map_of([](const Vector3d& p) {
+    const bool inside = p.x() < 0.1 && p.x() > -0.05 && std::abs(p.y()) < 0.25 && p.z() > 0.0 && p.z() < 0.35;
+    if (!inside) return table_at(p);
+    return p.z() > 0.33 || p.x() > 0.08 ? VoxelState::occupied : VoxelState::unknown;
+  }));
+  EXPECT_TRUE(surface.walls.empty()) << "0.175 m2 were seen, but past them, too";
+  EXPECT_GT(area_facing(surface, {-1, 0, 0}), 500.0);
+}
+
 TEST(ExpectedSurface, BadConfigurationsAreRefused) {
   const auto refused = [](auto change) {
     ExpectedSurfaceConfig config;
@@ -252,6 +294,7 @@ TEST(ExpectedSurface, BadConfigurationsAreRefused) {
     return expected_surface({}, config, {}).error().code == Errc::invalid_argument;
   };
   EXPECT_TRUE(refused([](auto& c) { c.min_support_m2 = 0.0; }));
+  EXPECT_TRUE(refused([](auto& c) { c.min_wall_m2 = 0.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.reach_m = -1.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.decay_m = 0.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.beside_share = 1.5; }));

@@ -10,6 +10,7 @@ namespace {
 
 constexpr std::int32_t kAboveSupport{2};   // voxels: what lies lower is the support's own noise
 constexpr std::int32_t kBelowSupport{8};   // voxels behind the support's surface that fusion marks
+constexpr double kTouchesWall{6.0};        // voxels in front of a wall: nearer objects reach to it
 constexpr std::size_t kLeastVoxels{12};    // objects of fewer are noise
 constexpr std::int32_t kMaxShift{6};       // half voxels from the middle of a footprint to the axis of a half turn
 constexpr std::size_t kMaxTurned{400};     // voxels that half turns are tried with
@@ -19,9 +20,20 @@ constexpr std::int32_t kBaseThickness{2};  // voxels
 /// Layers of a support's surface, column by column.
 using TopLayers = std::vector<std::int32_t>;
 
-/// Occupied voxels that are part of no support, in their order.
-std::vector<std::uint32_t> voxels_of_objects(const StateVolume& volume, std::span<const TopLayers> tops,
+bool is_of_wall(std::span<const Wall> walls, const StateVolume& volume, std::size_t voxel) {
+  if (walls.empty()) return false;
+  const double voxel_m = volume.voxel_size_m();
+  const Eigen::Vector3d p = voxel_center(volume.voxel(voxel), voxel_m);
+  return std::any_of(walls.begin(), walls.end(), [&](const Wall& wall) {
+    const double m = wall.in_front_m(p.head<2>());
+    return m <= kAboveSupport * voxel_m && m >= -kBelowSupport * voxel_m && wall.faces(p);
+  });
+}
+
+/// Occupied voxels that are part of no support or wall, in their order.
+std::vector<std::uint32_t> voxels_of_objects(const StateVolume& volume, const Surroundings& surroundings,
                                              const Executor& executor) {
+  const std::span<const TopLayers> tops = surroundings.tops;
   const auto layer = static_cast<std::size_t>(volume.layer());
   const auto row = static_cast<std::size_t>(volume.row());
   std::vector<std::vector<std::uint32_t>> found(static_cast<std::size_t>(volume.box().size().z));
@@ -37,7 +49,9 @@ std::vector<std::uint32_t> voxels_of_objects(const StateVolume& volume, std::spa
             const auto at = static_cast<std::int32_t>(z);
             return t != kNoLayer && at < t + kAboveSupport && at >= t - kBelowSupport;
           });
-          if (!of_support) found[z].push_back(static_cast<std::uint32_t>(z * layer + first + x));
+          const std::size_t i = z * layer + first + x;
+          if (!of_support && !is_of_wall(surroundings.walls, volume, i))
+            found[z].push_back(static_cast<std::uint32_t>(i));
         }
       }
     }
@@ -186,8 +200,31 @@ HalfTurn best_half_turn(const StateVolume& volume, std::span<const std::uint32_t
   return best;
 }
 
-CompletedObject completed(const StateVolume& volume, std::span<const TopLayers> tops,
+/// Adds the columns on the surface of a wall behind those of an object that touches it.
+void reach_to_wall(const StateVolume& volume, const Wall& wall, const Eigen::Vector3d& middle_m,
+                   std::vector<std::uint32_t>& columns) {
+  if (!wall.faces(middle_m)) return;
+  const double voxel_m = volume.voxel_size_m();
+  const Index3 low = volume.box().lo;
+  const auto center_m = [&](std::uint32_t column) -> Eigen::Vector2d {
+    return voxel_center(volume.voxel(column), voxel_m).head<2>();
+  };
+  double nearest_m = std::numeric_limits<double>::infinity();
+  for (const std::uint32_t column : columns) nearest_m = std::min(nearest_m, wall.in_front_m(center_m(column)));
+  if (nearest_m < 0.0 || nearest_m > kTouchesWall * voxel_m) return;
+  const std::size_t count = columns.size();
+  for (std::size_t i = 0; i < count; ++i) {
+    const Eigen::Vector2d p = center_m(columns[i]);
+    const Eigen::Vector2d on_wall = p - (wall.in_front_m(p) - 0.5 * voxel_m) * wall.normal;
+    const Index3 voxel = voxel_at({on_wall.x(), on_wall.y(), middle_m.z()}, voxel_m);
+    if (volume.box().contains(voxel))
+      columns.push_back(static_cast<std::uint32_t>((voxel.y - low.y) * volume.row() + voxel.x - low.x));
+  }
+}
+
+CompletedObject completed(const StateVolume& volume, const Surroundings& surroundings,
                           std::span<const std::uint32_t> voxels) {
+  const std::span<const TopLayers> tops = surroundings.tops;
   CompletedObject object;
   const auto layer = static_cast<std::size_t>(volume.layer());
   std::vector<std::uint32_t> columns;
@@ -196,8 +233,16 @@ CompletedObject completed(const StateVolume& volume, std::span<const TopLayers> 
     object.seen = object.seen.hull({at, at + Index3{1, 1, 1}});
     columns.push_back(static_cast<std::uint32_t>(i % layer));
   }
-  std::sort(columns.begin(), columns.end());
-  columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  const auto sort = [&] {
+    std::sort(columns.begin(), columns.end());
+    columns.erase(std::unique(columns.begin(), columns.end()), columns.end());
+  };
+  sort();
+  const Index3 size = object.seen.size();
+  const Index3 middle = object.seen.lo + Index3{size.x / 2, size.y / 2, size.z / 2};
+  for (const Wall& wall : surroundings.walls)
+    reach_to_wall(volume, wall, voxel_center(middle, volume.voxel_size_m()), columns);
+  sort();
   object.footprint = hull_columns(columns, static_cast<std::int32_t>(volume.row()));
   object.last = object.seen.hi.z - 1 - volume.box().lo.z;
   const std::int32_t lowest = object.seen.lo.z - volume.box().lo.z;
@@ -247,13 +292,14 @@ void spread(const std::uint16_t* from, std::uint16_t* to, std::size_t width, std
 
 }  // namespace
 
-CompletedObjects complete_objects(const StateVolume& volume, std::span<const TopLayers> tops,
+CompletedObjects complete_objects(const StateVolume& volume, const Surroundings& surroundings,
                                   const Executor& executor) {
   CompletedObjects result;
-  const auto parts = connected(volume, voxels_of_objects(volume, tops, executor));
+  const auto parts = connected(volume, voxels_of_objects(volume, surroundings, executor));
   result.objects.resize(parts.size());
-  executor.parallel_for(parts.size(), 1,
-                        [&](std::size_t i, std::size_t) { result.objects[i] = completed(volume, tops, parts[i]); });
+  executor.parallel_for(parts.size(), 1, [&](std::size_t i, std::size_t) {
+    result.objects[i] = completed(volume, surroundings, parts[i]);
+  });
   for (const auto& part : parts) result.seen.insert(result.seen.end(), part.begin(), part.end());
   std::sort(result.seen.begin(), result.seen.end());
   result.roles.assign(volume.size(), {});

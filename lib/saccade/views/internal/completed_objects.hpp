@@ -29,6 +29,12 @@ struct VoxelRole {
   [[nodiscard]] std::uint8_t opening() const { return bits & openings; }
 };
 
+/// What objects stand on and in front of.
+struct Surroundings {
+  std::span<const std::vector<std::int32_t>> tops;  ///< top_layers of each support
+  std::span<const Wall> walls;
+};
+
 /// A connected set of occupied voxels. Indices of columns and layers count from the volume's lowest.
 struct CompletedObject {
   IndexBox seen;                         ///< around its voxels, indices of the map
@@ -51,10 +57,8 @@ struct CompletedObjects {
 /// Finds objects and extrudes their footprints' hulls from their supports to their tops. An object that a half turn
 /// about a vertical axis does not contradict, that is, takes next to none of its voxels to known empty space, is carved
 /// where the half turn takes the unknown to known empty space. Most things on tables have that symmetry.
-/// @param tops  top_layers of each support
-/// O(voxels of the volume); the thread count never changes a bit.
-[[nodiscard]] CompletedObjects complete_objects(const StateVolume& volume,
-                                                std::span<const std::vector<std::int32_t>> tops,
+/// Objects that touch a wall reach to its surface. O(voxels of the volume); the thread count never changes a bit.
+[[nodiscard]] CompletedObjects complete_objects(const StateVolume& volume, const Surroundings& surroundings,
                                                 const Executor& executor);
 
 /// Distance to the nearest seen voxel of an object, for cells of 2³ voxels; as exact as these are.
