@@ -4,11 +4,14 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <limits>
+#include <numeric>
 #include <optional>
 #include <span>
 
 #include "saccade/views/internal/completed_objects.hpp"
 #include "saccade/views/internal/find_supports.hpp"
+#include "saccade/views/internal/find_walls.hpp"
 #include "saccade/views/internal/state_volume.hpp"
 
 namespace saccade {
@@ -58,7 +61,7 @@ std::optional<Exposed> exposed_at(const StateVolume& volume, std::size_t voxel, 
 }
 
 /// Merges what lies in one block of `block` voxels an edge and faces the same octant.
-std::vector<ExpectedPoint> merged(const StateVolume& volume, std::vector<Exposed> exposed, std::int32_t block) {
+std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const Exposed> exposed, std::int32_t block) {
   struct Keyed {
     std::uint64_t key;
     std::uint32_t index;
@@ -111,27 +114,79 @@ std::vector<ExpectedPoint> merged(const StateVolume& volume, std::vector<Exposed
 }
 
 /// Area of the occupied voxels' faces towards empty ones.
-double seen_area_cm2(const StateVolume& volume, std::span<const std::uint32_t> seen) {
+double seen_area_cm2(const StateVolume& volume, std::span<const std::uint32_t> seen, const Executor& executor) {
+  constexpr std::size_t kChunk{4096};
   const IndexBox inner = volume.box().grown(-1);
-  double area_vox{0.0};
-  for (const std::uint32_t i : seen) {
-    if (!inner.contains(volume.voxel(i))) continue;
-    const auto e = exposed_at(volume, i, [&](std::size_t other) { return volume[other] == VoxelState::empty; });
-    if (e) area_vox += static_cast<double>(e->area_vox);
-  }
+  std::vector<double> areas_vox(seen.size() / kChunk + 1);
+  executor.parallel_for(seen.size(), kChunk, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      if (!inner.contains(volume.voxel(seen[i]))) continue;
+      const auto e = exposed_at(volume, seen[i], [&](std::size_t other) { return volume[other] == VoxelState::empty; });
+      if (e) areas_vox[begin / kChunk] += static_cast<double>(e->area_vox);
+    }
+  });
+  const double area_vox = std::accumulate(areas_vox.begin(), areas_vox.end(), 0.0);
   return area_vox * volume.voxel_size_m() * volume.voxel_size_m() * 1e4;
 }
 
-/// The highest support below a voxel.
-std::int32_t support_below(const StateVolume& volume, const std::vector<Support>& supports, std::uint32_t voxel) {
-  const std::size_t column = voxel % static_cast<std::size_t>(volume.layer());
-  const std::int32_t z = volume.voxel(voxel).z;
-  std::int32_t best{-1};
-  for (std::size_t i = 0; i < supports.size(); ++i) {
-    if (supports[i].columns[column] == 0 || supports[i].top > z + 1) continue;
-    if (best < 0 || supports[i].top > supports[static_cast<std::size_t>(best)].top) best = static_cast<std::int32_t>(i);
+/// Points of one slab of layers.
+struct Points {
+  std::vector<ExpectedPoint> completed;
+  std::vector<ExpectedPoint> beside;
+};
+
+Box bounds_m(const IndexBox& voxels, double voxel_m) {
+  const auto corner_m = [&](const Index3& i) { return Eigen::Vector3d{i.x * voxel_m, i.y * voxel_m, i.z * voxel_m}; };
+  return {corner_m(voxels.lo), corner_m(voxels.hi)};
+}
+
+/// Calls add(index, x) for the unknown voxels of a row, but for its ends, that are beside something open: those in an
+/// object beside anything, those outside beside empty voxels. `marks` is room for as many.
+template <class Add>
+void for_exposed(const StateVolume& volume, const VoxelRole* all_roles, std::size_t row,
+                 std::vector<std::uint8_t>& marks, const Add& add) {
+  const std::ptrdiff_t to_y = volume.row();
+  const std::ptrdiff_t to_z = volume.layer();
+  const auto width = static_cast<std::size_t>(volume.row());
+  const VoxelState* states = volume.data() + row;
+  const VoxelRole* roles = all_roles + row;
+  marks.assign(width, 0);
+  unsigned any{0};
+  for (std::size_t x = 1; x + 1 < width; ++x) {
+    const VoxelRole* at = roles + x;
+    const unsigned beside = at[1].bits | at[-1].bits | at[to_y].bits | at[-to_y].bits | at[to_z].bits | at[-to_z].bits;
+    const unsigned of_outside = at->reach() == VoxelRole::outside ? +VoxelRole::empty : +VoxelRole::closed;
+    const unsigned wanted = at->reach() == VoxelRole::inside ? +VoxelRole::openings : of_outside;
+    const unsigned mark = states[x] == VoxelState::unknown ? beside & wanted : 0U;
+    marks[x] = static_cast<std::uint8_t>(mark);
+    any |= mark;
   }
-  return best;
+  if (any == 0) return;
+  for (std::size_t x = 1; x + 1 < width; ++x) {
+    if (marks[x] != 0) add(row + x, static_cast<std::int32_t>(x));
+  }
+}
+
+/// Tells each point the highest support below it.
+void find_supports_below(const StateVolume& volume, std::span<const std::vector<std::int32_t>> tops,
+                         std::vector<ExpectedPoint>& points) {
+  const auto layer = static_cast<std::size_t>(volume.layer());
+  for (ExpectedPoint& point : points) {
+    const std::size_t column = point.voxel % layer;
+    const auto z = static_cast<std::int32_t>(point.voxel / layer);
+    std::int32_t highest = kNoLayer;
+    for (std::size_t i = 0; i < tops.size(); ++i) {
+      const std::int32_t top = tops[i][column];
+      if (top == kNoLayer || top > z + 1 || top <= highest) continue;
+      highest = top;
+      point.support = static_cast<std::int32_t>(i);
+    }
+  }
+}
+
+bool is_behind(std::span<const Wall> walls, const Eigen::Vector3d& p_m) {
+  return std::any_of(walls.begin(), walls.end(),
+                     [&](const Wall& wall) { return wall.in_front_m(p_m.head<2>()) < 0.0 && wall.faces(p_m); });
 }
 
 }  // namespace
@@ -139,9 +194,11 @@ std::int32_t support_below(const StateVolume& volume, const std::vector<Support>
 Status ExpectedSurfaceConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "expected surface"}; };
   const auto positive = [](double x) { return std::isfinite(x) && x > 0.0; };
-  if (!positive(min_support_m2)) return fail("the area of a support must be positive");
+  if (!positive(min_support_m2) || !positive(min_wall_m2))
+    return fail("the areas of a support and of a wall must be positive");
   if (!positive(reach_m) || !positive(decay_m)) return fail("the reach around objects and its decay must be positive");
-  if (!(beside_share >= 0.0 && beside_share <= 1.0))
+  const auto share = [](double x) { return x >= 0.0 && x <= 1.0; };
+  if (!share(beside_share) || !share(completed_share))
     return fail("the share of unknown space that is surface lies within 0 and 1");
   if (!positive(spacing_m)) return fail("the distance between points must be positive");
   if (!(through_m >= 0.0 && std::isfinite(through_m)))
@@ -152,11 +209,28 @@ Status ExpectedSurfaceConfig::validate() const {
 bool ExpectedSurface::faces(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
   const Eigen::Vector3f towards = camera_m.cast<float>() - point.position_m;
   if (point.normal.dot(towards) < kLeastCosine * towards.norm()) return false;
-  return point.support < 0 || camera_m.z() > supports[static_cast<std::size_t>(point.support)].height_m;
+  const Support* below = point.support < 0 ? nullptr : &supports[static_cast<std::size_t>(point.support)];
+  return below == nullptr || camera_m.z() > below->height_at(camera_m.head<2>());
 }
 
 bool ExpectedSurface::is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
   return faces(point, camera_m) && volume->is_visible(point.voxel, camera_m, through_m);
+}
+
+std::int32_t ExpectedSurface::object_near(const Eigen::Vector3d& p_m, double within_m) const {
+  std::int32_t nearest{-1};
+  double least_m{within_m};
+  double least_to_middle_m{std::numeric_limits<double>::infinity()};
+  for (std::size_t i = 0; i < objects.size(); ++i) {
+    const Box& box = objects[i];
+    const double m = (p_m - p_m.cwiseMax(box.min).cwiseMin(box.max)).norm();
+    const double to_middle_m = (p_m - 0.5 * (box.min + box.max)).norm();
+    if (m > least_m || (m == least_m && to_middle_m >= least_to_middle_m)) continue;
+    nearest = static_cast<std::int32_t>(i);
+    least_m = m;
+    least_to_middle_m = to_middle_m;
+  }
+  return nearest;
 }
 
 Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,
@@ -171,48 +245,59 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   result.volume = std::make_shared<const StateVolume>(std::move(read));
   const StateVolume& volume = *result.volume;
   if (volume.size() == 0) return result;
-  result.supports = find_supports(volume, config.min_support_m2);
-  const CompletedObjects objects = complete_objects(volume, result.supports);
-  result.seen_cm2 = seen_area_cm2(volume, objects.seen);
-  if (objects.count == 0) return result;
-  const std::vector<float> near_m = distance_to_objects(volume, objects, config.reach_m);
+  result.supports = find_supports(map, volume, config.min_support_m2, executor);
+  std::vector<std::vector<std::int32_t>> tops;
+  for (const Support& support : result.supports) tops.push_back(top_layers(volume, support));
+  result.walls = find_walls(volume, config.min_wall_m2, executor);
+  const CompletedObjects objects = complete_objects(volume, {tops, result.walls}, executor);
+  result.seen_cm2 = seen_area_cm2(volume, objects.seen, executor);
+  if (objects.objects.empty()) return result;
+  for (const CompletedObject& object : objects.objects) result.objects.push_back(bounds_m(object.seen, voxel_m));
+  const DistanceToObjects distance{volume, objects.seen, config.reach_m, executor};
+  const VoxelRole* roles = objects.roles.data();
 
   // Layers and rows at the border have no neighbours: what lies there is expected nowhere.
   const Index3 size = box.size();
-  const auto depth = static_cast<std::size_t>(std::max(size.z - 2, 0));
-  std::vector<std::vector<Exposed>> completed(depth);
-  std::vector<std::vector<Exposed>> beside(depth);
-  executor.parallel_for(depth, 1, [&](std::size_t begin, std::size_t) {
-    const std::size_t z = begin + 1;
-    const auto is_inside = [&](std::size_t i) { return objects.is_inside[i] != 0 && volume[i] != VoxelState::empty; };
-    const auto is_outside = [&](std::size_t i) { return !is_inside(i); };
-    const auto is_empty = [&](std::size_t i) { return volume[i] == VoxelState::empty; };
-    for (std::int32_t y = 1; y + 1 < size.y; ++y) {
-      const std::size_t row = z * static_cast<std::size_t>(volume.layer()) +
-                              static_cast<std::size_t>(y) * static_cast<std::size_t>(volume.row());
-      for (std::size_t i = row + 1; i + 1 < row + static_cast<std::size_t>(size.x); ++i) {
-        if (volume[i] != VoxelState::unknown) continue;
-        if (is_inside(i)) {
-          if (const auto e = exposed_at(volume, i, is_outside)) completed[begin].push_back(*e);
-        } else if (const float d = near_m[half_resolution_index(volume, i)]; d <= static_cast<float>(config.reach_m)) {
-          auto e = exposed_at(volume, i, is_empty);
-          if (!e) continue;
+  const std::int32_t block = std::max(1, static_cast<std::int32_t>(std::lround(config.spacing_m / voxel_m)));
+  std::vector<Points> slabs(static_cast<std::size_t>((size.z - 1) / block + 1));
+  executor.parallel_for(slabs.size(), 1, [&](std::size_t slab, std::size_t) {
+    std::vector<Exposed> completed;
+    std::vector<Exposed> beside;
+    std::vector<std::uint8_t> marks;
+    const std::int32_t first = static_cast<std::int32_t>(slab) * block;
+    for (std::int32_t z = std::max(first, 1); z < std::min(first + block, size.z - 1); ++z) {
+      for (std::int32_t y = 1; y + 1 < size.y; ++y) {
+        const auto row = static_cast<std::size_t>(z * volume.layer() + y * volume.row());
+        for_exposed(volume, roles, row, marks, [&](std::size_t i, std::int32_t x) {
+          if (is_behind(result.walls, voxel_center(volume.voxel(i), voxel_m))) return;
+          if (roles[i].reach() == VoxelRole::inside) {
+            auto e =
+                exposed_at(volume, i, [&](std::size_t other) { return roles[other].opening() != VoxelRole::closed; });
+            if (!e) return;
+            e->area_vox *= static_cast<float>(config.completed_share);
+            completed.push_back(*e);
+            return;
+          }
+          const float d = distance.at_m(x, y, z);
+          if (d > static_cast<float>(config.reach_m)) return;
+          auto e = exposed_at(volume, i, [&](std::size_t other) { return roles[other].opening() == VoxelRole::empty; });
+          if (!e) return;
           e->area_vox *= static_cast<float>(config.beside_share) * std::exp(-d / static_cast<float>(config.decay_m));
-          beside[begin].push_back(*e);
-        }
+          beside.push_back(*e);
+        });
       }
     }
+    slabs[slab] = {merged(volume, completed, block), merged(volume, beside, block)};
   });
-  const auto joined = [](std::vector<std::vector<Exposed>>& parts) {
-    std::vector<Exposed> all;
-    for (const std::vector<Exposed>& part : parts) all.insert(all.end(), part.begin(), part.end());
-    return all;
-  };
-  const std::int32_t block = std::max(1, static_cast<std::int32_t>(std::lround(config.spacing_m / voxel_m)));
-  result.points = merged(volume, joined(completed), block);
-  const std::vector<ExpectedPoint> others = merged(volume, joined(beside), block);
-  result.points.insert(result.points.end(), others.begin(), others.end());
-  for (ExpectedPoint& point : result.points) point.support = support_below(volume, result.supports, point.voxel);
+  for (const Points& slab : slabs)
+    result.points.insert(result.points.end(), slab.completed.begin(), slab.completed.end());
+  result.completed = result.points.size();
+  for (const Points& slab : slabs) result.points.insert(result.points.end(), slab.beside.begin(), slab.beside.end());
+  find_supports_below(volume, tops, result.points);
+  executor.parallel_for(result.points.size(), 256, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i)
+      result.points[i].object = result.object_near(result.points[i].position_m.cast<double>(), config.reach_m);
+  });
   return result;
 }
 

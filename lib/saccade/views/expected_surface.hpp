@@ -19,14 +19,17 @@ class StateVolume;
 struct ExpectedSurfaceConfig {
   /// Objects are completed down to what they stand on: level surfaces that were seen over at least this area.
   double min_support_m2{0.08};
+  double min_wall_m2{0.16};  ///< Least seen area of a wall.
   /// Unknown space beside empty space counts up to this distance from the seen surface of an object, by e^(−d / decay),
   double reach_m{0.10};
   double decay_m{0.05};
-  double beside_share{0.3};  ///< as this share of its area: most of it turns out to be empty.
+  double beside_share{0.16};  ///< as this share of its area: most of it turns out to be empty.
+  /// The boundary of completed objects counts as this share of its area: it lies too far out, or was not seen for good.
+  double completed_share{0.8};
   /// Points nearer to each other than this, facing about the same way, become one.
   double spacing_m{0.015};
   /// A line of sight may begin with unknown space over this length: completed surfaces are guesses.
-  double through_m{0.02};
+  double through_m{0.12};
 
   /// invalid_argument for areas and lengths that are not positive and finite, or shares outside [0, 1].
   [[nodiscard]] Status validate() const;
@@ -36,6 +39,7 @@ struct ExpectedSurfaceConfig {
 struct ExpectedPoint {
   std::uint32_t voxel{0};    ///< unknown voxel at its centre: an index into ExpectedSurface::volume
   std::int32_t support{-1};  ///< index of the support below it; −1: none
+  std::int32_t object{-1};   ///< index of the nearest object; −1: none is within reach
   Eigen::Vector3f position_m{Eigen::Vector3f::Zero()};
   Eigen::Vector3f normal{Eigen::Vector3f::UnitZ()};  ///< towards empty space, of length 1
   float area_cm2{0.0F};                              ///< expected
@@ -43,8 +47,11 @@ struct ExpectedPoint {
 
 /// Parts of the map's workspace; its whole known space where it has none. Immutable; cheap to share.
 struct ExpectedSurface {
-  std::vector<ExpectedPoint> points;          ///< by voxel layers
+  std::vector<ExpectedPoint> points;          ///< those of completed objects first, each kind by voxel layers
+  std::size_t completed{0};                   ///< points of completed objects; the others lie beside what was seen
   std::vector<Support> supports;              ///< the largest first
+  std::vector<Wall> walls;                    ///< the largest first
+  std::vector<Box> objects;                   ///< around the seen voxels of each object, world frame
   double seen_cm2{0.0};                       ///< area of the surface of objects that was seen
   double through_m{0.0};                      ///< as configured
   std::shared_ptr<const StateVolume> volume;  ///< the states of voxels
@@ -55,6 +62,9 @@ struct ExpectedSurface {
   /// Whether a camera sees a point, however it is turned: at most 80° from its normal, past no support, and along a
   /// line of known empty space.
   [[nodiscard]] bool is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const;
+  /// Index of the object whose box is nearest to a place, −1 where none is within a distance; where boxes overlap, of
+  /// the one whose middle is nearest. O(objects).
+  [[nodiscard]] std::int32_t object_near(const Eigen::Vector3d& p_m, double within_m) const;
 };
 
 /// Expects surface in two places. Each object (occupied voxels above the supports, connected by gaps of two voxels at

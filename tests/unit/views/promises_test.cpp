@@ -91,7 +91,8 @@ TEST(Promises, OfSpaceWithoutASurfaceBehindItAreNotBelieved) {
   const Vector3d camera_m{0.0, -0.6, 0.3};
   const Vector3d corner_m{0.0, 0.3, 0.3};
   EXPECT_GT(with_corner(false).rays_from(camera_m, Trust::blind, corner_m), 1000.0);
-  EXPECT_LT(with_corner(false).rays_from(camera_m, Trust::credible, corner_m), 300.0) << "rays that rise go on for ever";
+  EXPECT_LT(with_corner(false).rays_from(camera_m, Trust::credible, corner_m), 300.0)
+      << "rays that rise go on for ever";
   EXPECT_GT(with_corner(true).rays_from(camera_m, Trust::credible, corner_m), 1000.0);
 }
 

@@ -17,17 +17,20 @@ constexpr int kGlanceColumns{12};       // and for a quick look
 constexpr double kMinSupport_m2{0.08};  // as ExpectedSurfaceConfig has it
 constexpr double kSupportThickness_m{0.05};
 
+double above_m(const Support& support, const Vector3d& p) { return p.z() - support.height_at(p.head<2>()); }
+
 /// A ray from a camera to the end of its range.
 struct Ray {
   Vector3d from_m;
   Vector3d to_m;
 
   [[nodiscard]] Vector3d at(double share) const { return from_m + share * (to_m - from_m); }
-  /// The share of the ray at which it passes a height, if it does.
-  [[nodiscard]] std::optional<double> passes(double height_m) const {
-    const double rise_m = to_m.z() - from_m.z();
+  /// The share of the ray at which it passes a support's plane, if it does.
+  [[nodiscard]] std::optional<double> passes(const Support& support) const {
+    const double begin_m = above_m(support, from_m);
+    const double rise_m = above_m(support, to_m) - begin_m;
     if (rise_m == 0.0) return std::nullopt;
-    const double share = (height_m - from_m.z()) / rise_m;
+    const double share = -begin_m / rise_m;
     return share >= 0.0 && share <= 1.0 ? std::optional{share} : std::nullopt;
   }
 };
@@ -48,7 +51,7 @@ struct CredibleRays::Scene {
   Scene(StateVolume states, const PlanningContext& context, const Region& bounds, const PinholeCamera& looks,
         UnknownOutside unknown_outside)
       : volume{std::move(states)},
-        supports{find_supports(volume, kMinSupport_m2)},
+        supports{find_supports(context.map, volume, kMinSupport_m2, context.executor)},
         region{bounds},
         outside{unknown_outside},
         sensor{looks},
@@ -80,18 +83,18 @@ struct CredibleRays::Scene {
   /// Whether the ray comes to what it meets through a support or from below one.
   [[nodiscard]] bool is_hidden(const Ray& ray, double met) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
-      if (ray.from_m.z() >= support.height_m) return false;
+      if (above_m(support, ray.from_m) >= 0.0) return false;
       const Vector3d p = ray.at(met);
-      if (p.z() > support.height_m) return is_over(support, ray.at(ray.passes(support.height_m).value_or(met)));
-      return p.z() > support.height_m - kSupportThickness_m && is_over(support, p);
+      if (above_m(support, p) > 0.0) return is_over(support, ray.at(ray.passes(support).value_or(met)));
+      return above_m(support, p) > -kSupportThickness_m && is_over(support, p);
     });
   }
 
   /// Whether the ray comes to a support from above once it has met something.
   [[nodiscard]] bool ends_on_support(const Ray& ray, double met) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
-      if (ray.from_m.z() <= support.height_m) return false;
-      const std::optional<double> passed = ray.passes(support.height_m);
+      if (above_m(support, ray.from_m) <= 0.0) return false;
+      const std::optional<double> passed = ray.passes(support);
       return passed && *passed >= met && is_over(support, ray.at(*passed));
     });
   }

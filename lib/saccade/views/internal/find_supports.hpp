@@ -1,20 +1,34 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// find_supports: level surfaces of a map; hull_columns: the columns within the convex hull of some.
+// find_supports: planes of a map that things stand on; top_layers: where they are; hull_columns: the columns within
+// the convex hull of some.
 
+#include <cstdint>
+#include <limits>
 #include <span>
+#include <vector>
 
 #include "saccade/views/internal/state_volume.hpp"
 #include "saccade/views/supports.hpp"
 
 namespace saccade {
 
-/// Finds the level surfaces of at least `min_area_m2`, the largest first. Voxels within one layer of each other count
-/// as one surface.
-[[nodiscard]] std::vector<Support> find_supports(const StateVolume& volume, double min_area_m2);
+/// Steepest surface that things are expected to stand on.
+constexpr double kMaxSlope{0.25};
 
-/// Returns the columns within the convex hull of `seen`, which are distinct columns of a grid of `width` columns a row,
-/// x fastest. O(columns of the hull).
+/// Finds planes that rise by kMaxSlope at most and were seen over at least `min_area_m2`, the largest first. Planes are
+/// fitted to small patches of occupied voxels below empty ones, then to where the map's signed distance is zero.
+/// Voxels within one layer of a plane are part of it. What is mostly a hole is no support, such as a plane through
+/// the tops of three boxes. O(voxels); the thread count never changes a bit.
+[[nodiscard]] std::vector<Support> find_supports(const TsdfSnapshot& map, const StateVolume& volume, double min_area_m2,
+                                                 const Executor& executor);
+
+/// Returns the first layer above a support for each column, counted from the volume's lowest; kNoLayer elsewhere.
+[[nodiscard]] std::vector<std::int32_t> top_layers(const StateVolume& volume, const Support& support);
+constexpr std::int32_t kNoLayer{std::numeric_limits<std::int32_t>::min()};
+
+/// Returns the columns within the convex hull of `seen`, which are distinct columns, in their order, of a grid of
+/// `width` columns a row, x fastest. O(columns of the hull).
 [[nodiscard]] std::vector<std::uint32_t> hull_columns(std::span<const std::uint32_t> seen, std::int32_t width);
 
 }  // namespace saccade

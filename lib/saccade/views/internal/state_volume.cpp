@@ -3,23 +3,47 @@
 
 #include <algorithm>
 #include <array>
+#include <bit>
 #include <cmath>
+#include <cstring>
 #include <limits>
 #include <utility>
 
 namespace saccade {
 namespace {
 
-/// Calls write(voxel, state) for the voxels of a brick that lie in the box and are not unknown.
+/// Eight bytes that are 1 where a bit is set.
+constexpr std::array<std::uint64_t, 256> bytes_of_bits() {
+  std::array<std::uint64_t, 256> bytes{};
+  for (std::size_t byte = 0; byte < 256; ++byte) {
+    for (std::size_t bit = 0; bit < 8; ++bit)
+      bytes[byte] |= static_cast<std::uint64_t>((byte >> bit) & 1U) << (8 * bit);
+  }
+  return bytes;
+}
+constexpr std::array<std::uint64_t, 256> kBytesOfBits{bytes_of_bits()};
+static_assert(static_cast<int>(VoxelState::empty) == 1 && static_cast<int>(VoxelState::occupied) == 2);
+static_assert(std::endian::native == std::endian::little);
+
+/// Calls write(first voxel, states, count) for the rows of a brick that lie in the box.
 template <class Write>
-void for_known(const BrickRef& brick, const Index3& corner, const IndexBox& box, const Write& write) {
+void for_rows(const BrickRef& brick, const Index3& corner, const IndexBox& box, const Write& write) {
   const Mask512 unknown = brick.unknown_mask();
   const Mask512 occupied = brick.occupied_mask();
-  IndexBox::cube(corner, kBrickEdge).intersection(box).for_each([&](const Index3& voxel) {
-    const int child = child_index(voxel);
-    if (unknown.test(child)) return;
-    write(voxel, occupied.test(child) ? VoxelState::occupied : VoxelState::empty);
-  });
+  const IndexBox part = IndexBox::cube(corner, kBrickEdge).intersection(box);
+  const std::int32_t skipped = part.lo.x - corner.x;
+  for (std::int32_t z = part.lo.z; z < part.hi.z; ++z) {
+    for (std::int32_t y = part.lo.y; y < part.hi.y; ++y) {
+      const auto slice = static_cast<std::size_t>(z - corner.z);
+      const auto shift = static_cast<unsigned>(8 * (y - corner.y));
+      const auto is_unknown = static_cast<std::size_t>((unknown.words[slice] >> shift) & 0xFFU);
+      const auto is_occupied = static_cast<std::size_t>((occupied.words[slice] >> shift) & 0xFFU);
+      const std::uint64_t states = kBytesOfBits[~is_unknown & 0xFFU] + kBytesOfBits[is_occupied];
+      std::array<VoxelState, 8> row;
+      std::memcpy(row.data(), &states, sizeof states);
+      write(Index3{part.lo.x, y, z}, row.data() + skipped, part.size().x);
+    }
+  }
 }
 
 }  // namespace
@@ -56,8 +80,9 @@ Result<StateVolume> StateVolume::read(const TsdfSnapshot& map, const IndexBox& b
         }
         return;
       }
-      for_known(brick, corner, box,
-                [&](const Index3& voxel, VoxelState state) { volume.states_[volume.index(voxel)] = state; });
+      for_rows(brick, corner, box, [&](const Index3& first, const VoxelState* states, std::int32_t count) {
+        std::copy_n(states, count, volume.states_.begin() + static_cast<std::ptrdiff_t>(volume.index(first)));
+      });
     });
   });
   return volume;

@@ -39,6 +39,8 @@ class StateVolume {
     return box_.lo + Index3{static_cast<std::int32_t>(i % row_), static_cast<std::int32_t>(i % layer_ / row_),
                             static_cast<std::int32_t>(i / layer_)};
   }
+  /// States by index().
+  [[nodiscard]] const VoxelState* data() const { return states_.data(); }
   [[nodiscard]] VoxelState operator[](std::size_t index) const { return states_[index]; }
 
   /// Whether nothing hides a voxel of the box from a camera: the straight line from its centre to the camera's passes
@@ -52,5 +54,12 @@ class StateVolume {
   std::ptrdiff_t layer_{0};
   std::vector<VoxelState> states_;
 };
+
+/// Whether any of `count` voxels in a row is occupied.
+[[nodiscard]] inline bool any_occupied(const VoxelState* states, std::size_t count) {
+  unsigned any{0};
+  for (std::size_t i = 0; i < count; ++i) any |= states[i] == VoxelState::occupied ? 1U : 0U;
+  return any != 0;
+}
 
 }  // namespace saccade
