@@ -43,7 +43,8 @@ struct BaselineGainConfig {
 };
 
 /// Sums information along rays. A ray goes to the first occupied voxel and no farther than the box in which voxels
-/// count; the space outside the workspace is transparent, a camera in a voxel that is not empty sees nothing.
+/// count; the space outside the workspace is transparent. A camera sees nothing in a voxel that is not empty, nor from
+/// below the objects. best() looks closely at the most promising poses alone.
 /// Expects a valid configuration. Its evaluate() returns invalid_argument for a pose that is not finite, with its
 /// index, and for too large a workspace; the thread count never changes a bit. O(voxels of the workspace + rays).
 [[nodiscard]] std::shared_ptr<Gain> volumetric_gain(VolumetricInformation information,

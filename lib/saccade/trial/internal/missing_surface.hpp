@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// MissingPoint, missing_of, visible_from, is_in_picture: what a map does not have yet of the true objects, and the views
-// that would show it. What the oracles share.
+// MissingPoint, missing_of, visible_from, is_in_picture: what a map does not have yet of the true objects, and the
+// views that would show it. What the oracles share.
 
 #include <span>
 #include <vector>

@@ -137,13 +137,14 @@ NamedPlanner pair_oracle_planner() {
   const auto make = [](const PlannerSetup& setup) {
     SACCADE_EXPECTS(setup.truth != nullptr);
     auto contours = std::make_shared<ContourViews>(setup.contour_views, setup.contours);
-    return PlannerParts{
-        std::make_shared<WholeWorkspace>(),
-        std::make_shared<OracleViews>(*setup.truth, std::move(contours), setup.sphere),
-        std::make_shared<PairOracle>(*setup.truth, setup.camera, setup.gain.tilt_rad, setup.max_views), setup.planner};
+    return PlannerParts{std::make_shared<WholeWorkspace>(),
+                        std::make_shared<OracleViews>(*setup.truth, std::move(contours), setup.sphere),
+                        std::make_shared<PairOracle>(*setup.truth, setup.camera, setup.gain.tilt_rad, setup.max_views),
+                        setup.planner};
   };
-  return {"oracle-2", "the first of the best two views, among more, for one who knew the scene", 200.0, false, true,
-          make, "points"};
+  return {
+      "oracle-2", "the first of the best two views, among more, for one who knew the scene", 200.0, false, true, make,
+      "points"};
 }
 
 }  // namespace saccade

@@ -12,7 +12,7 @@ namespace saccade {
 namespace {
 
 constexpr double kMinSupport_m2{0.08};  // as ExpectedSurfaceConfig
-constexpr std::int32_t kBelow_vox{2};  // of the margin below objects: what they stand on, not what is under that
+constexpr std::int32_t kBelow_vox{2};   // margin below objects: what they stand on, not what is under that
 
 IndexBox box_around(const StateVolume& volume, std::span<const std::uint32_t> voxels) {
   IndexBox box = IndexBox::cube(volume.voxel(voxels.front()), 1);
@@ -50,6 +50,7 @@ Result<BaselineScene> read_baseline_scene(const PlanningContext& context, const 
     IndexBox around = box_around(scene.volume, objects.seen).grown(margin_vox);
     around.lo.z += std::max(margin_vox - kBelow_vox, 0);
     scene.counted = around.intersection(box);
+    scene.on_support = true;
   }
   return scene;
 }

@@ -14,11 +14,18 @@ namespace saccade {
 /// whole workspace where no object was seen.
 struct BaselineScene {
   StateVolume volume;
-  IndexBox counted;  ///< empty: nothing counts
-  Region bounds;     ///< voxels count that have their centre in here, too
+  IndexBox counted;        ///< empty: nothing counts
+  Region bounds;           ///< voxels count that have their centre in here, too
+  bool on_support{false};  ///< objects were seen: cameras are to stay above what they stand on
 
   [[nodiscard]] bool counts(const Index3& voxel) const {
     return counted.contains(voxel) && contains(bounds, voxel_center(voxel, volume.voxel_size_m()));
+  }
+  /// Whether a camera sees nothing: in a voxel that is not empty, or lower than the objects.
+  [[nodiscard]] bool is_blocked(const Eigen::Vector3d& camera_m) const {
+    const Index3 voxel = voxel_at(camera_m, volume.voxel_size_m());
+    if (on_support && voxel.z < counted.lo.z) return true;
+    return volume.box().contains(voxel) && volume[volume.index(voxel)] != VoxelState::empty;
   }
 };
 /// O(voxels of the workspace).

@@ -100,8 +100,7 @@ std::vector<Ellipsoid> fitted_ellipsoids(std::span<const Eigen::Vector3d> points
   std::vector<Ellipsoid> ellipsoids;
   for (std::size_t c = 0; c < centers.size(); ++c) {
     if (counts[c] == 0.0) continue;
-    const Eigen::Matrix3d covariance =
-        moments[c] / counts[c] + point_m * point_m / 12.0 * Eigen::Matrix3d::Identity();
+    const Eigen::Matrix3d covariance = moments[c] / counts[c] + point_m * point_m / 12.0 * Eigen::Matrix3d::Identity();
     ellipsoids.push_back({centers[c], kSpread * kSpread * covariance});
   }
   return ellipsoids;

@@ -25,14 +25,14 @@ struct Ellipsoid {
                                                        double point_m);
 constexpr double kSpread{2.0};  ///< semi-axes in standard deviations: those of the outline of a uniform disc
 
-/// Outline of an ellipsoid in an image: pixels (u, v) with (u, v, 1) inverse (u, v, 1)ᵀ of the sign of its centre's.
+/// Outline of an ellipsoid in an image.
 struct Ellipse {
-  Eigen::Matrix3d conic{Eigen::Matrix3d::Identity()};  ///< negative inside
+  Eigen::Matrix3d conic{Eigen::Matrix3d::Identity()};  ///< (u, v, 1) conic (u, v, 1)ᵀ is negative inside
   int u_begin{0};                                      ///< pixels around it, within the image
   int u_end{0};
   int v_begin{0};
   int v_end{0};
-  double depth_m{0.0};  ///< of the ellipsoid's centre
+  double depth_m{0.0};  ///< depth of the ellipsoid's centre
 
   [[nodiscard]] bool contains(int u, int v) const {
     const Eigen::Vector3d x{static_cast<double>(u), static_cast<double>(v), 1.0};

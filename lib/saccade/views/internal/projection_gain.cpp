@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/views/internal/projection_gain.hpp"
 
-#include <limits>
+#include <algorithm>
 
 namespace saccade {
 namespace {
@@ -34,28 +34,17 @@ std::vector<Eigen::Vector3d> frontier_centers(const BaselineScene& scene, const 
   return centers;
 }
 
-/// An image of what is nearest.
-struct DepthBuffer {
-  int width;
-  std::vector<double> depth_m;
-  std::vector<std::uint8_t> is_frontier;
-
-  void draw(const std::vector<Ellipsoid>& ellipsoids, bool frontier, const Pose& T_camera_world,
-            const PinholeCamera& camera) {
-    for (const Ellipsoid& ellipsoid : ellipsoids) {
-      const auto ellipse = projected(ellipsoid, T_camera_world, camera);
-      if (!ellipse) continue;
-      for (int v = ellipse->v_begin; v < ellipse->v_end; ++v) {
-        for (int u = ellipse->u_begin; u < ellipse->u_end; ++u) {
-          const auto pixel = static_cast<std::size_t>(v * width + u);
-          if (ellipse->depth_m >= depth_m[pixel] || !ellipse->contains(u, v)) continue;
-          depth_m[pixel] = ellipse->depth_m;
-          is_frontier[pixel] = frontier ? 1 : 0;
-        }
-      }
-    }
-  }
+struct Outline {
+  Ellipse ellipse;
+  bool is_frontier{false};
 };
+
+void add_outlines(const std::vector<Ellipsoid>& ellipsoids, bool is_frontier, const Pose& T_camera_world,
+                  const PinholeCamera& camera, std::vector<Outline>& outlines) {
+  for (const Ellipsoid& ellipsoid : ellipsoids) {
+    if (const auto ellipse = projected(ellipsoid, T_camera_world, camera)) outlines.push_back({*ellipse, is_frontier});
+  }
+}
 
 }  // namespace
 
@@ -70,19 +59,30 @@ SceneEllipsoids scene_ellipsoids(const BaselineScene& scene, const Executor& exe
 }
 
 double frontier_pixels(const SceneEllipsoids& ellipsoids, const Pose& T_world_camera, const PinholeCamera& camera) {
-  const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  DepthBuffer image{camera.width, std::vector<double>(pixels, std::numeric_limits<double>::infinity()),
-                    std::vector<std::uint8_t>(pixels, 0)};
   const Pose T_camera_world = T_world_camera.inverse(Eigen::Isometry);
-  image.draw(ellipsoids.occupied, false, T_camera_world, camera);
-  image.draw(ellipsoids.frontier, true, T_camera_world, camera);
-  double count{0.0};
-  for (const std::uint8_t frontier : image.is_frontier) count += static_cast<double>(frontier);
-  return count;
+  std::vector<Outline> outlines;
+  add_outlines(ellipsoids.occupied, false, T_camera_world, camera, outlines);
+  add_outlines(ellipsoids.frontier, true, T_camera_world, camera, outlines);
+  std::stable_sort(outlines.begin(), outlines.end(),
+                   [](const Outline& a, const Outline& b) { return a.ellipse.depth_m < b.ellipse.depth_m; });
+  const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
+  std::vector<double> weights(pixels, 1.0);  // 0: the nearest frontier was met
+  double area_px{0.0};
+  for (const Outline& outline : outlines) {  // from the nearest on
+    const Ellipse& ellipse = outline.ellipse;
+    for (int v = ellipse.v_begin; v < ellipse.v_end; ++v) {
+      for (int u = ellipse.u_begin; u < ellipse.u_end; ++u) {
+        if (!ellipse.contains(u, v)) continue;
+        double& weight = weights[static_cast<std::size_t>(v * camera.width + u)];
+        if (outline.is_frontier) area_px += weight;
+        weight *= outline.is_frontier ? 0.0 : kOccludedWeight;
+      }
+    }
+  }
+  return area_px;
 }
 
-ProjectionGain::ProjectionGain(const BaselineGainConfig& config)
-    : config_{config}, camera_{sampled_camera(config)} {
+ProjectionGain::ProjectionGain(const BaselineGainConfig& config) : config_{config}, camera_{sampled_camera(config)} {
   SACCADE_EXPECTS(config.validate().ok());
 }
 
@@ -95,6 +95,7 @@ Result<std::vector<double>> ProjectionGain::evaluate(const PlanningContext& cont
   const SceneEllipsoids ellipsoids = scene_ellipsoids(scene, context.executor);
   context.executor.parallel_for(gains.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
+      if (scene.is_blocked(T_world_camera[i].translation())) continue;
       gains[i] = frontier_pixels(ellipsoids, T_world_camera[i], camera_);
     }
   });

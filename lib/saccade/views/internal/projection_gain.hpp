@@ -8,17 +8,19 @@
 namespace saccade {
 
 /// Cells from which clusters of voxels start.
-constexpr double kClusterCell_m{0.05};
+constexpr double kClusterCell_m{0.03};
+constexpr double kOccludedWeight{0.5};  ///< ellipsoids are coarse: what one covers is perhaps hidden
 
 /// Ellipsoids around the voxels that count.
 struct SceneEllipsoids {
-  std::vector<Ellipsoid> frontier;  ///< of unknown voxels next to an empty and to an occupied one
-  std::vector<Ellipsoid> occupied;  ///< of surface voxels
+  std::vector<Ellipsoid> frontier;  ///< around unknown voxels next to an empty and to an occupied one
+  std::vector<Ellipsoid> occupied;  ///< around surface voxels
 };
 /// O(voxels that count).
 [[nodiscard]] SceneEllipsoids scene_ellipsoids(const BaselineScene& scene, const Executor& executor);
 
-/// Pixels covered by a frontier's ellipsoid whose centre is nearer than those of all occupied ones that cover them.
+/// Counts the pixels covered by a frontier's ellipsoid, each less by kOccludedWeight for every occupied one that covers
+/// it, too, and whose centre is nearer.
 [[nodiscard]] double frontier_pixels(const SceneEllipsoids& ellipsoids, const Pose& T_world_camera,
                                      const PinholeCamera& camera);
 

@@ -30,6 +30,8 @@ constexpr double kOccupiedOccupancy{0.97};  ///< at which OctoMap clamps
 }
 constexpr double kWishedOccupied{0.2};
 constexpr double kWishedOccplane{0.8};
+/// Share of a view's rays that must touch voxels that count: a handful has any shares by chance.
+constexpr double kLeastTouched{0.1};
 
 /// Told of the voxels along each ray in their order, empty ones left out, those that do not count with the likelihood
 /// alone. One metric, chosen at compile time.
@@ -79,13 +81,13 @@ class RayInformation {
       voxels_ += voxels;
     }
   }
-  /// Information of all rays.
-  [[nodiscard]] double value() const {
+  /// Information of all rays, `rays` in number.
+  [[nodiscard]] double value([[maybe_unused]] double rays) const {
     using enum VolumetricInformation;
     if constexpr (kMetric == average_entropy) return voxels_ > 0.0 ? sum_ / voxels_ : 0.0;
     if constexpr (kMetric == area_factor) {
       const double all = occupied_ + occplane_ + unmark_;
-      if (all == 0.0) return 0.0;
+      if (all == 0.0 || all < kLeastTouched * rays) return 0.0;
       return share_rating(occupied_ / all, kWishedOccupied) + share_rating(occplane_ / all, kWishedOccplane);
     }
     return sum_;
@@ -97,7 +99,7 @@ class RayInformation {
   static inline const double kOccupiedEntropy = occupancy_entropy(kOccupiedOccupancy);
   double visible_{1.0};  ///< likelihood that the ray gets this far
   double run_{0.0};      ///< visible entropy of the unknown voxels passed without a gap
-  double entropy_{0.0};  ///< of the voxels of this ray
+  double entropy_{0.0};  ///< sum over the voxels of this ray
   bool met_{false};      ///< whether the last unknown voxel counts
   double sum_{0.0};
   double voxels_{0.0};

@@ -8,7 +8,8 @@
 namespace saccade {
 namespace {
 
-constexpr std::int32_t kUnknownReach_vox{2};  // of the unknown voxel that belongs to a frontier
+constexpr std::int32_t kUnknownReach_vox{
+    2};  // largest distance, along an axis, of the unknown voxel that belongs to a frontier
 
 /// A step to a neighbour within the density's radius.
 struct Step {
@@ -24,9 +25,8 @@ std::vector<Step> steps_within(const StateVolume& volume, double radius_vox) {
     if (static_cast<double>(step.norm()) > radius_vox) return;
     steps.push_back({i.z * volume.layer() + i.y * volume.row() + i.x, step});
   });
-  std::stable_sort(steps.begin(), steps.end(), [](const Step& a, const Step& b) {
-    return a.step_vox.squaredNorm() < b.step_vox.squaredNorm();
-  });
+  std::stable_sort(steps.begin(), steps.end(),
+                   [](const Step& a, const Step& b) { return a.step_vox.squaredNorm() < b.step_vox.squaredNorm(); });
   return steps;
 }
 
@@ -46,7 +46,7 @@ bool has_empty_face(const StateVolume& volume, std::size_t voxel) {
 struct Patch {
   double density{0.0};  ///< share of a plane's
   Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
-  Eigen::Vector3f mean_vox{Eigen::Vector3f::Zero()};  ///< of its voxels, relative to the middle one
+  Eigen::Vector3f mean_vox{Eigen::Vector3f::Zero()};  ///< centre of its voxels, relative to the middle one
 };
 
 }  // namespace
@@ -125,6 +125,7 @@ Result<std::vector<double>> SurfaceEdgeGain::evaluate(const PlanningContext& con
   context.executor.parallel_for(starts.size() - 1, 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t s = begin; s < end; ++s) {
       const Eigen::Vector3d center = T_world_camera[starts[s]].translation();
+      if (scene.is_blocked(center)) continue;
       std::vector<Eigen::Vector3d> visible;
       for (const FrontierPoint& point : points) {
         const Eigen::Vector3d p = voxel_center(volume.voxel(point.unknown), volume.voxel_size_m());

@@ -64,7 +64,7 @@ void follow(const LatticeRay& ray, const RayMap& map, const PinholeCamera& camer
   const Index3 first = voxel_at_event(ray, counted.enter);
   const auto min_range_m = static_cast<float>(camera.min_range_m);
   told.begin_ray();
-  VoxelState before = VoxelState::unknown;  // of the voxel passed last; outside the workspace nothing is known
+  VoxelState before = VoxelState::unknown;  // state of the voxel passed last; outside the workspace nothing is known
   bool outside = true;
   walk_cells<kBrickLevel>(ray, span, [&](const Index3& brick, const RaySpan& in_brick) {
     if (map.brick_is_empty(brick)) {
@@ -89,11 +89,6 @@ void follow(const LatticeRay& ray, const RayMap& map, const PinholeCamera& camer
   });
 }
 
-bool is_blocked(const StateVolume& volume, const Pose& T_world_camera) {
-  const Index3 voxel = voxel_at(T_world_camera.translation(), volume.voxel_size_m());
-  return volume.box().contains(voxel) && volume[volume.index(voxel)] != VoxelState::empty;
-}
-
 template <VolumetricInformation kMetric>
 std::vector<double> informations(const RayMap& map, const PinholeCamera& camera, std::span<const Pose> T_world_camera,
                                  const Executor& executor) {
@@ -102,7 +97,7 @@ std::vector<double> informations(const RayMap& map, const PinholeCamera& camera,
   std::vector<double> values(T_world_camera.size(), 0.0);
   executor.parallel_for(values.size(), 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      if (is_blocked(volume, T_world_camera[i])) continue;
+      if (map.scene->is_blocked(T_world_camera[i].translation())) continue;
       const SensorRays rays = sensor_rays(T_world_camera[i], volume.voxel_size_m());
       RayInformation<kMetric> told;
       for (int v = 0; v < camera.height; ++v) {
@@ -110,7 +105,7 @@ std::vector<double> informations(const RayMap& map, const PinholeCamera& camera,
           follow<kMetric>(pixel_ray(rays, camera, u, v), map, camera, reach_vox, told);
         }
       }
-      values[i] = told.value();
+      values[i] = told.value(static_cast<double>(camera.width) * camera.height);
     }
   });
   return values;
@@ -119,12 +114,42 @@ std::vector<double> informations(const RayMap& map, const PinholeCamera& camera,
 }  // namespace
 
 VolumetricGain::VolumetricGain(VolumetricInformation information, const BaselineGainConfig& config)
-    : information_{information}, config_{config}, camera_{sampled_camera(config)} {
+    : information_{information}, config_{config} {
   SACCADE_EXPECTS(config.validate().ok());
 }
 
 Result<std::vector<double>> VolumetricGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) {
+  return evaluate_with(sampled_camera(config_), context, region, T_world_camera);
+}
+
+Result<RankedViews> VolumetricGain::best(const PlanningContext& context, const RegionOfInterest& region,
+                                         std::span<const Pose> T_world_camera, std::size_t count) {
+  const std::size_t fine = std::max(kFineViews, 4 * std::min(count, T_world_camera.size()));
+  if (fine >= T_world_camera.size()) return Gain::best(context, region, T_world_camera, count);
+  BaselineGainConfig coarse = config_;
+  coarse.columns_px = std::max(1, config_.columns_px / kCoarser);
+  SACCADE_TRY(const std::vector<double> gains, evaluate_with(sampled_camera(coarse), context, region, T_world_camera));
+  std::vector<RankedView> others;
+  std::vector<Pose> chosen;
+  for (std::size_t i = 0; i < gains.size(); ++i) {
+    if (context.was_attempted(T_world_camera[i])) {
+      chosen.push_back(T_world_camera[i]);
+    } else {
+      others.push_back({T_world_camera[i], gains[i]});
+    }
+  }
+  order_by_gain(others);
+  for (std::size_t i = 0; i < std::min(fine, others.size()); ++i) chosen.push_back(others[i].T_world_camera);
+  SACCADE_TRY(RankedViews ranked, Gain::best(context, region, chosen, count));
+  ranked.evaluated = T_world_camera.size();
+  ranked.complete = others.size() <= fine;
+  return ranked;
+}
+
+Result<std::vector<double>> VolumetricGain::evaluate_with(const PinholeCamera& camera, const PlanningContext& context,
+                                                          const RegionOfInterest& region,
+                                                          std::span<const Pose> T_world_camera) const {
   using enum VolumetricInformation;
   SACCADE_CHECK(check_poses(T_world_camera));
   SACCADE_TRY(const BaselineScene scene, read_baseline_scene(context, region, config_.object_margin_m));
@@ -136,7 +161,7 @@ Result<std::vector<double>> VolumetricGain::evaluate(const PlanningContext& cont
     map.distance_vox = distance_to_occupied(scene.volume, scene.counted, reach_vox);
   }
   const auto of = [&]<VolumetricInformation kMetric>() {
-    return informations<kMetric>(map, camera_, T_world_camera, context.executor);
+    return informations<kMetric>(map, camera, T_world_camera, context.executor);
   };
   switch (information_) {
     case occlusion_aware: return of.operator()<occlusion_aware>();
