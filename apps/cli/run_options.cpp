@@ -72,7 +72,7 @@ std::string min_gain_by_strategy() {
     if (planner.min_gain == usual) continue;
     text += fixed(planner.min_gain, 0) + ' ' + planner.gain_unit + " for " + planner.name + ", ";
   }
-  return text + fixed(usual, 0) + " for the others";
+  return text + "any for baselines, " + fixed(usual, 0) + " for the others";
 }
 
 void choose_strategy(RunOptions& options, const NamedPlanner& strategy) {

@@ -3,10 +3,12 @@
 
 #include <limits>
 
+#include "saccade/explore/baseline_planners.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/scene.hpp"
 #include "saccade/trial/internal/oracle_gain.hpp"
+#include "saccade/trial/internal/pair_oracle.hpp"
 
 namespace saccade {
 namespace {
@@ -72,7 +74,9 @@ TsdfConfig SimulatedRunConfig::map() const {
 
 Planners trial_planners() {
   Planners planners = builtin_planners();
+  for (NamedPlanner& planner : baseline_planners()) planners.add(std::move(planner));
   planners.add(oracle_planner());
+  planners.add(pair_oracle_planner());
   return planners;
 }
 

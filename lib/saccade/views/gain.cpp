@@ -86,7 +86,7 @@ Result<RankedViews> Gain::best(const PlanningContext& context, const RegionOfInt
   const std::vector<Pose> poses = poses_of(ranked.views);
   const std::vector<CredibleRays::Glance> glances = rays.glances(poses, context.executor);
   std::vector<RankedView> glanced = ranked.views;
-  for (std::size_t i = 0; i < glanced.size(); ++i) glanced[i].gain = discounted(glanced[i].gain, glances[i].share);
+  for (std::size_t i = 0; i < glanced.size(); ++i) glanced[i].gain = discounted(glanced[i].gain, glances[i].credit);
   // A thorough look at the views that seem best.
   std::vector<std::size_t> order(glanced.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
@@ -95,9 +95,9 @@ Result<RankedViews> Gain::best(const PlanningContext& context, const RegionOfInt
   order.resize(std::min(order.size(), kMostLooks));
   std::vector<Pose> best;
   for (const std::size_t i : order) best.push_back(poses[i]);
-  const std::vector<double> shares = rays.shares(best, context.executor);
+  const std::vector<CredibleRays::Look> looks = rays.looks(best, context.executor);
   for (std::size_t i = 0; i < order.size(); ++i) {
-    glanced[order[i]].gain = discounted(ranked.views[order[i]].gain, shares[i]);
+    glanced[order[i]].gain = discounted(ranked.views[order[i]].gain, looks[i].credit);
   }
   ranked.views = std::move(glanced);
   order_by_gain(ranked.views);
@@ -155,9 +155,9 @@ Result<RankedViews> RayGain::best(const PlanningContext& context, const RegionOf
   const bool complete = poses.size() == others.size();
   poses.insert(poses.end(), attempted.begin(), attempted.end());
   SACCADE_TRY(RankedViews ranked, by_evaluation(*this, context, region, poses));
-  const std::vector<double> shares = rays.shares(poses_of(ranked.views), context.executor);
-  for (std::size_t i = 0; i < shares.size(); ++i) {
-    ranked.views[i].gain = discounted(ranked.views[i].gain, shares[i]);
+  const std::vector<CredibleRays::Look> looks = rays.looks(poses_of(ranked.views), context.executor);
+  for (std::size_t i = 0; i < looks.size(); ++i) {
+    ranked.views[i].gain = discounted(ranked.views[i].gain, looks[i].share);
   }
   order_by_gain(ranked.views);
   ranked.evaluated = T_world_camera.size();

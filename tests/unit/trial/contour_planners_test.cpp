@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "saccade/explore/baseline_planners.hpp"
 #include "saccade/trial/internal/oracle_gain.hpp"
 #include "saccade/views/view_gain.hpp"
 #include "unit/explore/scanned_clutter.hpp"
@@ -48,6 +49,24 @@ TEST_F(ContourPlanners, RandomContoursAreAShuffleThatTheSeedDecides) {
   EXPECT_EQ(first_of(1, 0), first_of(1, 0));
   EXPECT_NE(first_of(1, 0), first_of(2, 0));
   EXPECT_NE(first_of(1, 0), first_of(1, 1));
+}
+
+/// Baselines choose from the views of standard, by gains of their own.
+TEST_F(ContourPlanners, BaselinesRankTheContourViews) {
+  SimulatedRunConfig coarse = config();
+  coarse.contour_views.roll_step_rad = 360_deg;
+  coarse.gain_width_px = 16;
+  const std::size_t candidates = ranked(planner("standard", coarse), scene(scanned())).candidates();
+  for (const NamedPlanner& baseline : baseline_planners()) {
+    coarse.planner.min_gain = baseline.min_gain;
+    const Ranking ranking = ranked(planner(baseline.name, coarse), scene(scanned()));
+    EXPECT_EQ(ranking.candidates(), candidates) << baseline.name;
+    ASSERT_FALSE(ranking.empty()) << baseline.name;
+    EXPECT_GT(ranking.best().gain, ranking.as_good_as_best(0.0).back().gain) << baseline.name;
+    EXPECT_TRUE(test::falls(ranking.as_good_as_best(0.0)));
+    EXPECT_NE(baseline.gain_unit, "");
+    EXPECT_FALSE(baseline.needs_truth || baseline.looks_at_regions);
+  }
 }
 
 TEST_F(ContourPlanners, TheOraclesFirstViewShowsMoreOfTheObjectsThanOthers) {

@@ -12,7 +12,11 @@ namespace {
 TEST(Planners, AreKnownByTheirNamesAndReplacedByOnesOwn) {
   Planners planners = trial_planners();
   for (const NamedPlanner& planner : planners.all()) EXPECT_EQ(planners.find(planner.name)->name, planner.name);
-  EXPECT_EQ(planners.names(), "attention, surface, standard, sphere, random, random-contours, oracle");
+  EXPECT_EQ(
+      planners.names(),
+      "attention, surface, standard, sphere, random, random-contours, occlusion-aware, unobserved-voxel, "
+      "rear-side-voxel, rear-side-entropy, proximity-count, average-entropy, area-factor, surface-edge, projection, "
+      "oracle, oracle-2");
   EXPECT_NE(planners.find("saliency").error().message.find("attention, surface, standard"), std::string::npos);
   NamedPlanner own = attention_planner();
   own.name = "mine";
@@ -22,7 +26,7 @@ TEST(Planners, AreKnownByTheirNamesAndReplacedByOnesOwn) {
   own.min_gain = 8.0;
   planners.add(own);
   EXPECT_EQ(planners.find("mine")->min_gain, 8.0);
-  EXPECT_EQ(planners.all().size(), 8U);
+  EXPECT_EQ(planners.all().size(), 18U);
 }
 
 TEST(FlyingCamera, KeepsClearOfFixtures) {

@@ -3,7 +3,7 @@
 // OracleGain: what one would gain who knew the scene; a bound for planners that do not.
 
 #include "saccade/explore/planners.hpp"
-#include "saccade/trial/metrics.hpp"
+#include "saccade/trial/internal/missing_surface.hpp"
 
 namespace saccade {
 
@@ -24,7 +24,6 @@ class OracleGain final : public Gain {
   Truth truth_;
   PinholeCamera camera_;
 };
-constexpr std::size_t kOraclePoints{3000};
 
 /// The line of the oracle in the table of planners; its setup needs the truth.
 [[nodiscard]] NamedPlanner oracle_planner();

@@ -121,16 +121,31 @@ struct CredibleRays::Scene {
     return met;
   }
 
-  /// Calls believed(what the ray meets, how far that is believed, u, v) for the rays that promise something; returns
-  /// how many do.
-  template <class Believed>
-  std::size_t cast(const PinholeCamera& rays, const Pose& T_world_camera, const Believed& believed) const;
+  /// Rays of a look, counted.
+  struct Tally {
+    std::size_t promise{0};  ///< rays that promise something
+    std::size_t may{0};      ///< rays whose promise may be kept
+    double worth{0.0};       ///< the sum of how far they are believed
 
-  /// How far a promise is believed, in [0, 1].
+    [[nodiscard]] double share() const { return promise > 0 ? worth / static_cast<double>(promise) : 1.0; }
+    [[nodiscard]] double credit() const {
+      if (promise == 0) return 1.0;
+      return may > 0 ? worth / static_cast<double>(may) : 0.0;
+    }
+  };
+  /// Calls believed(what the ray meets, how far that is believed) for the rays whose promise may be kept, but for those
+  /// that is_behind_body(what the ray meets, u, v).
+  template <class Believed, class IsBehindBody>
+  Tally cast(const PinholeCamera& rays, const Pose& T_world_camera, const Believed& believed,
+             const IsBehindBody& is_behind_body) const;
+
+  [[nodiscard]] bool may_be_kept(const Ray& ray, const Met& met) const {
+    return trust == Trust::blind || (met.returns && !is_hidden(ray, met.share));
+  }
+  /// How far a promise that may be kept is believed, in [0, 1].
   [[nodiscard]] double worth(const Ray& ray, const Met& met) const {
-    if (trust == Trust::blind) return 1.0;
-    if (!met.returns || is_hidden(ray, met.share)) return 0.0;
-    return credit.is_full() ? 1.0 : credit.of(ray.at(met.share), credit.seen_from(met.voxel), ray.from_m);
+    if (trust == Trust::blind || credit.is_full()) return 1.0;
+    return credit.of(ray.at(met.share), credit.seen_from(met.voxel), ray.from_m);
   }
 };
 
@@ -149,21 +164,27 @@ Result<CredibleRays> CredibleRays::create(const PlanningContext& context, const 
   return CredibleRays{std::move(scene)};
 }
 
-template <class Believed>
-std::size_t CredibleRays::Scene::cast(const PinholeCamera& rays, const Pose& T_world_camera,
-                                      const Believed& believed) const {
-  std::size_t promising{0};
+template <class Believed, class IsBehindBody>
+CredibleRays::Scene::Tally CredibleRays::Scene::cast(const PinholeCamera& rays, const Pose& T_world_camera,
+                                                     const Believed& believed,
+                                                     const IsBehindBody& is_behind_body) const {
+  Tally tally;
   for (int v = 0; v < rays.height; ++v) {
     for (int u = 0; u < rays.width; ++u) {
       const Vector3d end{(u - rays.cx) / rays.fx, (v - rays.cy) / rays.fy, 1.0};
       const Ray ray{T_world_camera.translation(), T_world_camera * (rays.max_range_m * end)};
       const std::optional<Met> met = promised(ray);
       if (!met) continue;
-      ++promising;
-      believed(*met, worth(ray, *met), u, v);
+      ++tally.promise;
+      if (!may_be_kept(ray, *met)) continue;
+      ++tally.may;
+      if (is_behind_body(*met, u, v)) continue;
+      const double credited = worth(ray, *met);
+      tally.worth += credited;
+      if (credited > 0.0) believed(*met, credited);
     }
   }
-  return promising;
+  return tally;
 }
 
 CredibleRays::Look CredibleRays::from(const Pose& T_world_camera) const {
@@ -171,13 +192,16 @@ CredibleRays::Look CredibleRays::from(const Pose& T_world_camera) const {
   std::optional<DepthImage> body;
   if (scene_->own_body) body = scene_->own_body(T_world_camera);
   Look look;
-  const auto believed = [&](const Scene::Met& met, double worth, int u, int v) {
+  const auto is_behind_body = [&](const Scene::Met& met, int u, int v) {
     const double body_m = body ? static_cast<double>((*body)(u, v)) : 0.0;
-    if (!(worth > 0.0) || (body_m > 0.0 && body_m < met.share * sensor.max_range_m)) return;
+    return body_m > 0.0 && body_m < met.share * sensor.max_range_m;
+  };
+  const auto believed = [&](const Scene::Met& met, double worth) {
     look.promise.voxels.push_back({scene_->volume.voxel(met.voxel), worth});
   };
-  const std::size_t promising = scene_->cast(sensor, T_world_camera, believed);
-  if (promising > 0) look.share = look.promise.worth() / static_cast<double>(promising);
+  const Scene::Tally tally = scene_->cast(sensor, T_world_camera, believed, is_behind_body);
+  look.share = tally.share();
+  look.credit = tally.credit();
   return look;
 }
 
@@ -188,21 +212,22 @@ std::vector<CredibleRays::Glance> CredibleRays::glances(std::span<const Pose> T_
   std::vector<Glance> glances(T_world_camera.size());
   executor.parallel_for(glances.size(), 16, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      double sum{0.0};
-      const auto believed = [&](const Scene::Met&, double worth, int, int) { sum += worth; };
-      const std::size_t promising = scene_->cast(coarse, T_world_camera[i], believed);
-      glances[i] = {sum / rays, promising > 0 ? sum / static_cast<double>(promising) : 1.0};
+      const Scene::Tally tally = scene_->cast(
+          coarse, T_world_camera[i], [](const Scene::Met&, double) {},
+          [](const Scene::Met&, int, int) { return false; });
+      glances[i] = {tally.worth / rays, tally.credit()};
     }
   });
   return glances;
 }
 
-std::vector<double> CredibleRays::shares(std::span<const Pose> T_world_camera, const Executor& executor) const {
-  std::vector<double> shares(T_world_camera.size());
-  executor.parallel_for(shares.size(), 1, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) shares[i] = from(T_world_camera[i]).share;
+std::vector<CredibleRays::Look> CredibleRays::looks(std::span<const Pose> T_world_camera,
+                                                    const Executor& executor) const {
+  std::vector<Look> looks(T_world_camera.size());
+  executor.parallel_for(looks.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) looks[i] = from(T_world_camera[i]);
   });
-  return shares;
+  return looks;
 }
 
 }  // namespace saccade

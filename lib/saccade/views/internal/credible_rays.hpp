@@ -28,6 +28,8 @@ class CredibleRays {
   struct Look {
     Promise promise;    ///< rays that are believed, the voxels in which they end
     double share{1.0};  ///< promised by them, of what all rays promise; 1: none promises anything
+    /// The share that rays are believed of those that might be kept at all; 0: none of those that promise anything may.
+    double credit{1.0};
   };
   /// O(rays · voxels along them).
   [[nodiscard]] Look from(const Pose& T_world_camera) const;
@@ -35,12 +37,12 @@ class CredibleRays {
   /// A quick look by fewer rays, past the robot's own body.
   struct Glance {
     double credible{0.0};  ///< share of all rays that are believed
-    double share{1.0};     ///< share of those that promise something that is believed; 1: none promises anything
+    double credit{1.0};    ///< as of a Look
   };
   /// One for each pose. The same for every thread count.
   [[nodiscard]] std::vector<Glance> glances(std::span<const Pose> T_world_camera, const Executor& executor) const;
-  /// Look::share for each pose.
-  [[nodiscard]] std::vector<double> shares(std::span<const Pose> T_world_camera, const Executor& executor) const;
+  /// A Look from each pose.
+  [[nodiscard]] std::vector<Look> looks(std::span<const Pose> T_world_camera, const Executor& executor) const;
 
  private:
   struct Scene;

@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// FrontierPoint, frontier_points: where observed surface ends beside unknown space; SurfaceEdgeGain counts them.
+
+#include "saccade/views/internal/baseline_scene.hpp"
+
+namespace saccade {
+
+/// Radius within which surface counts for the density at a voxel, and the least density of core voxels as a share of
+/// that of a plane: 0.5 at the edge of a plane, 0.75 at the corner of a box.
+constexpr double kDensityRadius_vox{4.0};
+constexpr double kCoreDensity{0.7};
+/// Largest angle between the line of sight and the direction in which a frontier faces.
+constexpr double kFrontierCosine{0.5};
+
+/// An observed surface voxel at which the surface may go on.
+struct FrontierPoint {
+  std::uint32_t voxel{0};    ///< the surface voxel
+  std::uint32_t unknown{0};  ///< nearest unknown voxel with an empty one beside a face: what a view must reach
+  /// The bisector of the surface's normal and the direction in which the surface ends, of length 1.
+  Eigen::Vector3f facing{Eigen::Vector3f::UnitZ()};
+};
+/// In the order of their voxels. O(surface voxels · voxels within the radius). The thread count never changes a bit.
+[[nodiscard]] std::vector<FrontierPoint> frontier_points(const BaselineScene& scene, const Executor& executor);
+
+class SurfaceEdgeGain final : public Gain {
+ public:
+  /// Expects a valid configuration.
+  explicit SurfaceEdgeGain(const BaselineGainConfig& config);
+  [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
+                                                     std::span<const Pose> T_world_camera) override;
+
+ private:
+  BaselineGainConfig config_;
+  PinholeCamera camera_;
+};
+
+}  // namespace saccade
