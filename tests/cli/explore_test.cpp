@@ -46,9 +46,10 @@ TEST(ExploreCommand, TakesAKinectV2) {
 TEST(ExploreCommand, GoesFromViewToView) {
   const TempFolder folder;
   const fs::path run = folder / "run";
-  const Outcome outcome = run_program(explore_scene(
-      "clutter:5", run,
-      {"--image-size", "128,96", "--voxel-size", "0.02", "--max-views", "2", "--min-gain", "5", "--json", "-"}));
+  const Outcome outcome =
+      run_program(explore_scene("clutter:5", run,
+                                {"--image-size", "128,96", "--voxel-size", "0.02", "--max-views", "2", "--min-gain",
+                                 "5", "--strategy", "attention", "--json", "-"}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = outcome.json().at("result");
   EXPECT_EQ(result.at("stopped_because"), "views_used_up");
@@ -59,7 +60,9 @@ TEST(ExploreCommand, GoesFromViewToView) {
     EXPECT_EQ(view.at("index"), i);
     EXPECT_LT(view.at("unknown_left").get<std::size_t>(), unknown);
     unknown = view.at("unknown_left").get<std::size_t>();
-    EXPECT_GE(view.at("gain").get<std::size_t>(), 5U);
+    EXPECT_GE(view.at("gain").get<double>(), 5.0);
+    EXPECT_GT(view.at("gain_observed").get<double>(), 0.0);
+    EXPECT_LE(view.at("gain_observed").get<double>(), view.at("gain").get<double>() + 1e-6);
     EXPECT_TRUE(pose_from_json(view.at("T_world_camera")));
     EXPECT_TRUE(view.at("points_at_object").is_boolean());
     for (const char* phase : {"planner_map", "candidates", "segmentation", "saliency", "reachability", "evaluation",
@@ -112,7 +115,7 @@ TEST(ExploreCommand, EveryStrategyTakesAView) {
   if (kSanitized) GTEST_SKIP() << "every strategy has its own tests";
   const TempFolder folder;
   for (const std::string strategy :
-       {"attention", "surface", "standard", "sphere", "random", "random-contours", "oracle"}) {
+       {"surface", "attention", "standard", "sphere", "random", "random-contours", "proximity-count", "oracle"}) {
     const Outcome outcome =
         run_program(explore(folder / strategy, {"--strategy", strategy, "--max-views", "1", "--no-pictures",
                                                 "--min-gain", "5", "--json", "-"}));
@@ -124,7 +127,7 @@ TEST(ExploreCommand, EveryStrategyTakesAView) {
     EXPECT_GT(result.at("views")[0].at("evaluated").get<std::size_t>(), 0U);
   }
   expect_failure(run_program(explore(folder / "x", {"--strategy", "saliency"})), 2, "explore",
-                 {"--strategy", "attention, surface, standard"});
+                 {"--strategy", "surface, attention, standard"});
   expect_failure(run_program(explore(folder / "x", {"--strategy", "oracle", "--camera-command", "true"})), 2, "explore",
                  {"--strategy", "true scene"});
 }
@@ -133,8 +136,9 @@ TEST(ExploreCommand, SaliencyDecidesWhatIsLookedAtFirst) {
   if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; GoesFromViewToView runs one";
   const TempFolder folder;
   const auto first_segment = [&](const char* name, const char* saliency) {
-    const Outcome outcome = run_program(explore(folder / name, {"--saliency", saliency, "--max-views", "1",
-                                                                "--no-pictures", "--min-gain", "5", "--json", "-"}));
+    const Outcome outcome =
+        run_program(explore(folder / name, {"--strategy", "attention", "--saliency", saliency, "--max-views", "1",
+                                            "--no-pictures", "--min-gain", "5", "--json", "-"}));
     EXPECT_EQ(outcome.status, 0) << outcome.err;
     return outcome.json().at("result").at("views").at(0).at("attention").at("segment");
   };

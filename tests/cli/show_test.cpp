@@ -14,7 +14,7 @@ namespace {
 Arguments short_run(const fs::path& out) {
   return {"explore",      tiny_cell_file(), "--out",       out.string(), "--image-size", "128,96",
           "--voxel-size", "0.02",           "--max-views", "2",          "--min-gain",   "5",
-          "--quiet"};
+          "--strategy",   "attention",      "--quiet"};
 }
 
 /// The document's summary, and that it is served until it is interrupted.

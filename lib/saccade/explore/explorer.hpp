@@ -102,7 +102,7 @@ class Explorer {
   ExplorerConfig config_;
   Attempts attempts_;
   std::size_t region_{0};      ///< that is being explored; those before it are done
-  Promise promise_;            ///< of the view that is being taken
+  Promise promise_;            ///< what the view that is being taken is to show
   std::vector<Frame> frames_;  ///< frames of the view that is being taken
 };
 

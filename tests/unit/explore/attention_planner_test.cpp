@@ -12,7 +12,15 @@
 namespace saccade {
 namespace {
 
-using Attention = test::ScannedClutter;
+class Attention : public test::ScannedClutter {
+ protected:
+  /// Believes every promise, so that gains are those of all rays.
+  static ViewPlanner attention(const SimulatedRunConfig& wanted = config()) {
+    return ViewPlanner{PlannerParts{std::make_shared<SalientObjects>(wanted.attention),
+                                    std::make_shared<ContourViews>(wanted.contour_views, wanted.contours),
+                                    std::make_shared<RayGain>(gain(), Trust::blind), wanted.planner}};
+  }
+};
 
 /// What there is to see in a map.
 struct Seen {

@@ -78,7 +78,6 @@ class ScannedClutter : public ::testing::Test {
     const std::vector<Region> regions{workspace()};
     return make_planner(named, named.camera, regions, &truth());
   }
-  static ViewPlanner attention(const SimulatedRunConfig& wanted = config()) { return planner("attention", wanted); }
   static Ranking ranked(ViewPlanner planner, const PlanningScene& scene) {
     auto ranking = planner.rank(scene);
     EXPECT_TRUE(ranking) << ranking.error().to_string();

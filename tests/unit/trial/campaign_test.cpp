@@ -43,6 +43,7 @@ CampaignEntry run_of(const CampaignKey& key, std::size_t views = 2) {
     ViewRecord view;
     view.region = i;
     if (i != 1) view.gain_predicted = 321.5;
+    if (i != 1) view.gain_observed = 300.25;
     view.T_world_camera =
         Pose{Eigen::Translation3d{0.1, 0.2, 0.3 + 1.0 / 3.0} * Eigen::AngleAxisd{0.7, Eigen::Vector3d::UnitX()}};
     view.candidates = 960;
@@ -88,6 +89,7 @@ void expect_same(const CampaignEntry& stored, const CampaignEntry& expected) {
     EXPECT_EQ(std::isnan(a.views[i].gain_predicted), i == 1);
     if (i != 1) {
       EXPECT_EQ(a.views[i].gain_predicted, b.views[i].gain_predicted);
+      EXPECT_EQ(a.views[i].gain_observed, b.views[i].gain_observed);
     }
     EXPECT_LT((a.views[i].T_world_camera.matrix() - b.views[i].T_world_camera.matrix()).norm(), 1e-15);
     EXPECT_EQ(a.views[i].candidates, b.views[i].candidates);
@@ -341,10 +343,11 @@ TEST(Campaign, TablesAreQuotedAndLeaveOutWhatIsNotThere) {
       << text;
   EXPECT_NE(text.find(R"("{""max_views"":3,""voxel_size_m"":0.01}")"), std::string::npos) << text;
   const std::string views = views_csv({&run, 1}).text();
-  EXPECT_NE(views.find(",sphere,kinect-v1,7,0,,,,,,,,,,,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
+  EXPECT_NE(views.find(",sphere,kinect-v1,7,0,,,,,,,,,,,,,,,,,,,,,0.25,1000,100,,,\n"), std::string::npos) << views;
   EXPECT_NE(
-      views.find(",sphere,kinect-v1,7,1,0,321.5,960,700,260,5,1,0,1.5,2.25,0.5,0.1,3,4,1.25,20.25,2,0,7,0.507,900,"
-                 "90,0.0012,0.0034,0.9\n"),
+      views.find(
+          ",sphere,kinect-v1,7,1,0,321.5,300.25,960,700,260,5,1,0,1.5,2.25,0.5,0.1,3,4,1.25,20.25,2,0,7,0.507,900,"
+          "90,0.0012,0.0034,0.9\n"),
       std::string::npos)
       << views;
   run.key.scene = "jug";

@@ -14,10 +14,10 @@ TEST(Planners, AreKnownByTheirNamesAndReplacedByOnesOwn) {
   for (const NamedPlanner& planner : planners.all()) EXPECT_EQ(planners.find(planner.name)->name, planner.name);
   EXPECT_EQ(
       planners.names(),
-      "attention, surface, standard, sphere, random, random-contours, occlusion-aware, unobserved-voxel, "
+      "surface, attention, standard, sphere, random, random-contours, occlusion-aware, unobserved-voxel, "
       "rear-side-voxel, rear-side-entropy, proximity-count, average-entropy, area-factor, surface-edge, projection, "
       "oracle, oracle-2");
-  EXPECT_NE(planners.find("saliency").error().message.find("attention, surface, standard"), std::string::npos);
+  EXPECT_NE(planners.find("saliency").error().message.find("surface, attention, standard"), std::string::npos);
   NamedPlanner own = attention_planner();
   own.name = "mine";
   own.min_gain = 7.0;

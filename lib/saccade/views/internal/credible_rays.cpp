@@ -63,7 +63,7 @@ struct CredibleRays::Scene {
 
   struct Met {
     std::size_t voxel{0};
-    double share{0.0};  ///< of the ray
+    double share{0.0};  ///< along the ray
     bool returns{false};
   };
 
@@ -80,13 +80,21 @@ struct CredibleRays::Scene {
     return column && support.columns[*column] != 0;
   }
 
+  /// Whether a place below a support stands on another, as in a shelf.
+  [[nodiscard]] bool is_over_another(const Support& support, const Vector3d& p) const {
+    return std::any_of(supports.begin(), supports.end(), [&](const Support& other) {
+      return &other != &support && above_m(other, p) > 0.0 && is_over(other, p);
+    });
+  }
+
   /// Whether the ray comes to what it meets through a support or from below one.
   [[nodiscard]] bool is_hidden(const Ray& ray, double met) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
       if (above_m(support, ray.from_m) >= 0.0) return false;
       const Vector3d p = ray.at(met);
       if (above_m(support, p) > 0.0) return is_over(support, ray.at(ray.passes(support).value_or(met)));
-      return above_m(support, p) > -kSupportThickness_m && is_over(support, p);
+      if (!is_over(support, p)) return false;
+      return above_m(support, p) > -kSupportThickness_m || !is_over_another(support, p);
     });
   }
 

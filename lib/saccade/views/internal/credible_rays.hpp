@@ -39,7 +39,7 @@ class CredibleRays {
     double credible{0.0};  ///< share of all rays that are believed
     double credit{1.0};    ///< as of a Look
   };
-  /// One for each pose. The same for every thread count.
+  /// Glances one by one for each pose; the thread count never changes a bit.
   [[nodiscard]] std::vector<Glance> glances(std::span<const Pose> T_world_camera, const Executor& executor) const;
   /// A Look from each pose.
   [[nodiscard]] std::vector<Look> looks(std::span<const Pose> T_world_camera, const Executor& executor) const;

@@ -21,6 +21,7 @@ ViewRecord some_view() {
   view.T_world_camera = look_at({0.3, -0.7, 0.9}, {0.01, 0.02, 0.03});
   view.q = Configuration{{0.1, -0.2, 1.0 / 3.0}};
   view.gain_predicted = 321.5;
+  view.gain_observed = 300.25;
   view.measures = {0.625, 900, 90, 0.0012, std::nullopt, 0.9};
   view.reveals_object = true;
   view.candidates = 960;
@@ -47,6 +48,7 @@ TEST(RunJson, AViewComesBackToTheLastBit) {
   EXPECT_EQ(*read.q, *view.q);
   EXPECT_EQ(read.attention, view.attention);
   EXPECT_EQ(read.times, view.times);
+  EXPECT_EQ(read.gain_observed, view.gain_observed);
   EXPECT_EQ(view_to_json(read, 6), written);
   // Accuracy, Chamfer distance and F-score are written for the end of a run alone.
   EXPECT_EQ(read.measures.coverage, view.measures.coverage);
