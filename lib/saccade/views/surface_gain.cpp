@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-Status check_poses(std::span<const Pose> T_world_camera) {
+Status check_finite(std::span<const Pose> T_world_camera) {
   for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
     if (T_world_camera[i].matrix().allFinite()) continue;
     return Error{Errc::invalid_argument, "pose " + std::to_string(i) + " contains NaN or infinity", "surface gain"};
@@ -56,7 +56,7 @@ SurfaceGain::SurfaceGain(const SurfaceGainConfig& config)
 
 Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                   std::span<const Pose> T_world_camera) {
-  SACCADE_CHECK(check_poses(T_world_camera));
+  SACCADE_CHECK(check_finite(T_world_camera));
   SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
   SACCADE_TRY(const SurfaceProspect prospect, SurfaceProspect::create(context, region, std::move(surface), widened_));
   std::vector<double> gains(T_world_camera.size());
@@ -68,7 +68,7 @@ Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context
 
 Result<RankedViews> SurfaceGain::best(const PlanningContext& context, const RegionOfInterest& region,
                                       std::span<const Pose> T_world_camera, std::size_t count) {
-  SACCADE_CHECK(check_poses(T_world_camera));
+  SACCADE_CHECK(check_finite(T_world_camera));
   SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
   SACCADE_TRY(SurfaceProspect made, SurfaceProspect::create(context, region, std::move(surface), widened_));
   const auto prospect = std::make_shared<const SurfaceProspect>(std::move(made));

@@ -12,9 +12,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kColumns{32};             // rays across the picture
-constexpr int kGlanceColumns{12};       // and for a quick look
-constexpr double kMinSupport_m2{0.08};  // as ExpectedSurfaceConfig has it
+constexpr int kColumns{32};        // rays across the picture
+constexpr int kGlanceColumns{12};  // and for a quick look
 constexpr double kSupportThickness_m{0.05};
 
 double above_m(const Support& support, const Vector3d& p) { return p.z() - support.height_at(p.head<2>()); }

@@ -15,9 +15,9 @@ namespace {
 constexpr int kRounds{5};
 
 /// Points by the cells of a lattice that they lie in.
-class Cells {
+class ClusterCells {
  public:
-  Cells(std::span<const Eigen::Vector3d> points, double cell_m) {
+  ClusterCells(std::span<const Eigen::Vector3d> points, double cell_m) {
     for (const Eigen::Vector3d& p : points) box_ = box_.hull(IndexBox::cube(voxel_at(p, cell_m), 1));
     members_.resize(box_.empty() ? 0 : static_cast<std::size_t>(box_.count()));
     for (std::size_t i = 0; i < points.size(); ++i) members_[index(voxel_at(points[i], cell_m))].push_back(i);
@@ -39,7 +39,7 @@ class Cells {
 
 /// Means of the points in each cell, as centres of clusters.
 std::vector<Eigen::Vector3d> first_centers(std::span<const Eigen::Vector3d> points, double cell_m) {
-  const Cells cells{points, cell_m};
+  const ClusterCells cells{points, cell_m};
   std::vector<Eigen::Vector3d> centers;
   cells.box().for_each([&](const Index3& cell) {
     const std::vector<std::size_t>& members = cells.members(cell);
@@ -54,7 +54,7 @@ std::vector<Eigen::Vector3d> first_centers(std::span<const Eigen::Vector3d> poin
 /// Index of the centre nearest to each point, among those in cells up to two away: its cell held one at first.
 std::vector<std::size_t> nearest_centers(std::span<const Eigen::Vector3d> points,
                                          std::span<const Eigen::Vector3d> centers, double cell_m) {
-  const Cells cells{centers, cell_m};
+  const ClusterCells cells{centers, cell_m};
   std::vector<std::size_t> nearest(points.size(), 0);
   for (std::size_t i = 0; i < points.size(); ++i) {
     double best{std::numeric_limits<double>::infinity()};

@@ -256,9 +256,10 @@ std::vector<std::int32_t> top_layers(const StateVolume& volume, const Support& s
   const double voxel_m = volume.voxel_size_m();
   for (std::size_t column = 0; column < tops.size(); ++column) {
     if (support.columns[column] == 0) continue;
-    const auto x = static_cast<double>(column % static_cast<std::size_t>(volume.row()));
-    const auto y = static_cast<double>(column / static_cast<std::size_t>(volume.row()));
-    const double height_m = support.height_at(Eigen::Vector2d{low.x + x + 0.5, low.y + y + 0.5} * voxel_m);
+    const std::size_t row = column / static_cast<std::size_t>(volume.row());
+    const double x = low.x + static_cast<double>(column % static_cast<std::size_t>(volume.row())) + 0.5;
+    const double y = low.y + static_cast<double>(row) + 0.5;
+    const double height_m = support.height_at(Eigen::Vector2d{x, y} * voxel_m);
     tops[column] = static_cast<std::int32_t>(std::lround(height_m / voxel_m)) - low.z;
   }
   return tops;

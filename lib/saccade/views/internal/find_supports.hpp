@@ -15,6 +15,7 @@ namespace saccade {
 
 /// Steepest surface that things are expected to stand on.
 constexpr double kMaxSlope{0.25};
+constexpr double kMinSupport_m2{0.08};  // seen area of supports that gains of rays and of other authors heed
 
 /// Finds planes that rise by kMaxSlope at most and were seen over at least `min_area_m2`, the largest first. Planes are
 /// fitted to small patches of occupied voxels below empty ones, then to where the map's signed distance is zero.
