@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The main job in a simulated cell: a camera looks at a table from one side, and then goes to where it sees most of what
-# is still unknown, until nothing worth a move is left. Everything lands in out/demo, with a report to look at.
+# The main job in a simulated cell: a camera looks at a table from one side, and then goes to where it expects
+# to see most new surface, until nothing worth a move is left. Everything lands in out/demo, with a report to look at.
 # Usage: scripts/demo.sh (make demo builds the program first)
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
