@@ -133,7 +133,8 @@ void print_summary(const ExploreOptions& options, const ExploreRun& explored, co
   if (!refused.empty()) std::cout << "refused   " << refused << '\n';
   const std::string tilts = tilts_text(run.views, options.run.exploration);
   if (!tilts.empty()) std::cout << "tilts     " << tilts << '\n';
-  const std::string at_end = in_words(run.refused_at_end);
+  std::string at_end = in_words(run.refused_at_end);
+  if (at_end.empty()) at_end = end_text(run, options.run.strategy.gain_unit);
   std::cout << "time      " << phases_text(phases_to_json(run.views)) << '\n'
             << "stopped   " << to_string(run.stopped_because) << (at_end.empty() ? "" : ": " + at_end) << '\n'
             << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
@@ -142,6 +143,7 @@ void print_summary(const ExploreOptions& options, const ExploreRun& explored, co
 json result_json(const ExploreOptions& options, const ExploreCase& subject, const ExploreDevices& devices,
                  const ExploreRun& explored, const Measures& final) {
   const RunRecord& run = explored.record();
+  const bool ended = run.stopped_because == StopReason::regions_done && !run.regions.empty();
   return {{"scene", subject.scene.name},
           {"out", options.out.string()},
           {"robot", options.robot_command.empty() ? options.robot : "external"},
@@ -157,6 +159,8 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"phases_s", phases_to_json(run.views)},
           {"final", measures_to_json(final)},
           {"refused_at_end", refusals_to_json(run.refused_at_end)},
+          {"gain_left", ended ? json(run.regions.back().gain_left) : json(nullptr)},
+          {"gain_needed", ended ? json(run.regions.back().gain_needed) : json(nullptr)},
           {"stopped_because", to_string(run.stopped_because)}};
 }
 

@@ -87,8 +87,19 @@ Status draw_saliency(const RunFolder& out, const ViewScenes& scenes, const Execu
 
 }  // namespace
 
+std::string end_text(const RunRecord& run, const std::string& gain_unit) {
+  if (run.stopped_because != StopReason::regions_done || run.regions.empty()) return "";
+  const RegionResult& last = run.regions.back();
+  if (!(last.gain_left > 0.0)) return "no view promises anything";
+  return "the best view left promises " + fixed(last.gain_left, 1) + ' ' + gain_unit + ", " +
+         fixed(last.gain_needed, 1) + " would be worth the move";
+}
+
 ShownView shown_view(const RunFolder& out, const ViewRecord& view, std::size_t number) {
   ShownView shown{number, view};
+  if (std::isfinite(view.gain_observed)) {
+    shown.facts.emplace_back("promise kept", fixed(100.0 * view.gain_observed / view.gain_predicted, 0) + " %");
+  }
   if (view.attention) shown.facts.emplace_back("attention", attention_text(*view.attention));
   if (view.motion_s > 0.0) {
     shown.facts.emplace_back("robot", fixed(view.motion_s, 1) + " s, camera's way " + fixed(view.path_m, 2) + " m");
@@ -172,6 +183,8 @@ Status write_report(const RunFolder& out, const RunRecord& run, const Measures& 
   report.min_gain = options.run.planner.min_gain;
   report.gain_unit = options.run.strategy.gain_unit;
   report.stop_reason = to_string(run.stopped_because);
+  if (const std::string why = end_text(run, report.gain_unit); !why.empty())
+    report.facts.emplace_back("at the end", why);
   report.initial.measures = run.scan.measures;
   if (const std::string refused = in_words(run.scan.refused); !refused.empty()) {
     report.initial.facts.emplace_back("poses passed over", refused);

@@ -37,6 +37,8 @@ struct ViewScenes {
 
 /// A view for the page, with the pictures that draw_view made of it.
 [[nodiscard]] ShownView shown_view(const RunFolder& out, const ViewRecord& view, std::size_t number);
+/// "the best view left promises 12.3 cm², 14.0 would be worth the move"; empty where a run ended for another reason.
+[[nodiscard]] std::string end_text(const RunRecord& run, const std::string& gain_unit);
 /// "640 × 480, f = 525 px, 0.5–2 m", from the document.
 [[nodiscard]] std::string camera_text(const nlohmann::json& camera);
 

@@ -54,6 +54,7 @@ void Ranking::end(const PlanningScene& scene) {
 RegionResult Ranking::result_of(const PlanningScene& scene) const {
   RegionResult result;
   result.gain_left = gain_left(scene);
+  result.gain_needed = std::max(min_gain_, ranked_.least_gain);
   const bool out_of_reach = ranked_.views.empty()
                                 ? refused_.total() > 0
                                 : std::any_of(ranked_.views.begin(), ranked_.views.end(), [&](const RankedView& view) {

@@ -40,6 +40,7 @@ inline constexpr auto kRegionStatusNames = make_names<RegionStatus>({{RegionStat
 struct RegionResult {
   RegionStatus status{RegionStatus::not_begun};
   double gain_left{0.0};    ///< predicted gain of the best view not yet attempted, at the last ranking; 0: none
+  double gain_needed{0.0};  ///< a view that gains less than this was not worth going to, then
   RefusalCounts refused{};  ///< out_of_reach: reasons
 };
 
