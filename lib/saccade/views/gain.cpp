@@ -6,6 +6,7 @@
 
 #include "saccade/core/seeded_random.hpp"
 #include "saccade/views/internal/best_views.hpp"
+#include "saccade/views/internal/check_finite.hpp"
 #include "saccade/views/internal/credible_rays.hpp"
 
 namespace saccade {
@@ -80,7 +81,7 @@ void order_by_gain(std::span<RankedView> views) {
 Result<RankedViews> Gain::best(const PlanningContext& context, const RegionOfInterest& region,
                                std::span<const Pose> T_world_camera, std::size_t /*count*/) {
   SACCADE_TRY(RankedViews ranked, by_evaluation(*this, context, region, T_world_camera));
-  if (!context.sensor) return ranked;
+  if (!context.sensor || !CredibleRays::can_look_through(context.map)) return ranked;
   SACCADE_TRY(const CredibleRays rays,
               CredibleRays::create(context, region, *context.sensor, UnknownOutside::blocks, Trust::credible));
   const std::vector<Pose> poses = poses_of(ranked.views);
@@ -139,6 +140,8 @@ Result<RankedViews> RayGain::by_rays(const PlanningContext& context, const Regio
 
 Result<RankedViews> RayGain::best(const PlanningContext& context, const RegionOfInterest& region,
                                   std::span<const Pose> T_world_camera, std::size_t count) {
+  SACCADE_CHECK(check_finite(T_world_camera, "view gain"));
+  if (!CredibleRays::can_look_through(context.map)) return by_rays(context, region, T_world_camera, count);
   SACCADE_TRY(const CredibleRays rays,
               CredibleRays::create(context, region, widened_vertically(config_.sensor, config_.tilt_rad),
                                    config_.unknown_outside, trust_));
@@ -188,7 +191,7 @@ Result<RankedViews> RandomOrder::best(const PlanningContext& context, const Regi
   }
   SACCADE_CHECK(tell_gains(*told_, context, region, std::span{ranked.views}.first(next)));
   ranked.evaluated = next;
-  if (!context.sensor) return ranked;
+  if (!context.sensor || !CredibleRays::can_look_through(context.map)) return ranked;
   SACCADE_TRY(const CredibleRays rays,
               CredibleRays::create(context, region, *context.sensor, UnknownOutside::blocks, Trust::blind));
   ranked.promise = [rays](const Pose& pose) { return rays.from(pose).promise; };

@@ -3,22 +3,15 @@
 
 #include <algorithm>
 #include <cmath>
+#include <limits>
 #include <memory>
-#include <string>
 
+#include "saccade/views/internal/check_finite.hpp"
 #include "saccade/views/internal/lazy_ranking.hpp"
 #include "saccade/views/internal/surface_prospect.hpp"
 
 namespace saccade {
 namespace {
-
-Status check_finite(std::span<const Pose> T_world_camera) {
-  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
-    if (T_world_camera[i].matrix().allFinite()) continue;
-    return Error{Errc::invalid_argument, "pose " + std::to_string(i) + " contains NaN or infinity", "surface gain"};
-  }
-  return {};
-}
 
 /// Poses of one camera centre, and the most that one of them can gain.
 struct Center {
@@ -39,6 +32,64 @@ double fill_in(const SurfaceProspect& prospect, std::span<const SurfaceProspect:
   return most;
 }
 
+/// Gains of poses whose centres come near the best, by decreasing gain.
+struct Sighted {
+  std::vector<RankedView> views{};
+  double beyond{-std::numeric_limits<double>::infinity()};  ///< bounds the gains of all others
+};
+
+/// Bounds each pose by what faces its camera, and follows lines of sight from the centres that come near the best.
+Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_camera, std::size_t count,
+                const Executor& executor) {
+  std::vector<RankedView> views;
+  for (const Pose& pose : T_world_camera) views.push_back({pose});
+  const std::vector<std::size_t> starts = starts_of_centers(T_world_camera);
+  std::vector<Center> centers(starts.size() - 1);
+  const auto position = [&](const Center& center) { return T_world_camera[center.begin].translation(); };
+  executor.parallel_for(centers.size(), 8, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) {
+      centers[i] = {starts[i], starts[i + 1]};
+      centers[i].most = fill_in(prospect, prospect.facing(position(centers[i])), centers[i], views);
+    }
+  });
+  std::stable_sort(centers.begin(), centers.end(), [](const Center& a, const Center& b) { return a.most > b.most; });
+  Sighted result;
+  const auto look = [&](std::size_t from, std::size_t to) {
+    executor.parallel_for(to - from, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = from + begin; i < from + end; ++i) {
+        centers[i].most = fill_in(prospect, prospect.visible(position(centers[i])), centers[i], views);
+      }
+    });
+  };
+  const FirmBest best = firm_best(
+      centers, result.beyond, count, [](const Center& center) { return center.most; }, look);
+  for (std::size_t i = 0; i < best.looked; ++i) {
+    for (std::size_t j = centers[i].begin; j < centers[i].end; ++j) result.views.push_back(views[j]);
+  }
+  order_by_gain(result.views);
+  if (best.looked < centers.size()) result.beyond = centers[best.looked].most;
+  return result;
+}
+
+/// Takes off what the robot's own body hides, and drops views that others might beat.
+void without_body(const SurfaceProspect& prospect, Sighted& sighted, std::size_t count, const Executor& executor) {
+  std::vector<RankedView>& views = sighted.views;
+  if (!prospect.knows_body()) {
+    std::erase_if(views, [&](const RankedView& view) { return !(view.gain >= sighted.beyond); });
+    return;
+  }
+  const auto look = [&](std::size_t from, std::size_t to) {
+    executor.parallel_for(to - from, 1, [&](std::size_t begin, std::size_t end) {
+      for (std::size_t i = from + begin; i < from + end; ++i) {
+        views[i].gain = prospect.promise(views[i].T_world_camera).worth();
+      }
+    });
+  };
+  views.resize(firm_best(
+                   views, sighted.beyond, count, [](const RankedView& view) { return view.gain; }, look)
+                   .firm);
+}
+
 }  // namespace
 
 Status SurfaceGainConfig::validate() const {
@@ -56,7 +107,7 @@ SurfaceGain::SurfaceGain(const SurfaceGainConfig& config)
 
 Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                   std::span<const Pose> T_world_camera) {
-  SACCADE_CHECK(check_finite(T_world_camera));
+  SACCADE_CHECK(check_finite(T_world_camera, "surface gain"));
   SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
   SACCADE_TRY(const SurfaceProspect prospect, SurfaceProspect::create(context, region, std::move(surface), widened_));
   std::vector<double> gains(T_world_camera.size());
@@ -68,64 +119,18 @@ Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context
 
 Result<RankedViews> SurfaceGain::best(const PlanningContext& context, const RegionOfInterest& region,
                                       std::span<const Pose> T_world_camera, std::size_t count) {
-  SACCADE_CHECK(check_finite(T_world_camera));
+  SACCADE_CHECK(check_finite(T_world_camera, "surface gain"));
   SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
   SACCADE_TRY(SurfaceProspect made, SurfaceProspect::create(context, region, std::move(surface), widened_));
   const auto prospect = std::make_shared<const SurfaceProspect>(std::move(made));
+  Sighted best = sighted(*prospect, T_world_camera, count, context.executor);
+  without_body(*prospect, best, count, context.executor);
   RankedViews ranked;
+  ranked.complete = best.views.size() == T_world_camera.size();
+  ranked.views = std::move(best.views);
+  ranked.evaluated = T_world_camera.size();
   ranked.least_gain = config_.least_share * prospect->surface().seen_cm2;
   ranked.promise = [prospect](const Pose& pose) { return prospect->promise(pose); };
-  ranked.evaluated = T_world_camera.size();
-
-  // A bound for each pose, by camera centres; then lines of sight from the centres that come near the best.
-  std::vector<RankedView> views;
-  for (const Pose& pose : T_world_camera) views.push_back({pose});
-  const std::vector<std::size_t> starts = starts_of_centers(T_world_camera);
-  std::vector<Center> centers(starts.size() - 1);
-  context.executor.parallel_for(centers.size(), 8, [&](std::size_t begin, std::size_t end) {
-    for (std::size_t i = begin; i < end; ++i) {
-      centers[i] = {starts[i], starts[i + 1]};
-      const auto facing = prospect->facing(T_world_camera[starts[i]].translation());
-      centers[i].most = fill_in(*prospect, facing, centers[i], views);
-    }
-  });
-  const auto by_most = [](const Center& a, const Center& b) { return a.most > b.most; };
-  std::stable_sort(centers.begin(), centers.end(), by_most);
-  constexpr double kNothing{-std::numeric_limits<double>::infinity()};
-  const FirmBest seen = firm_best(
-      centers, kNothing, count, [](const Center& center) { return center.most; },
-      [&](std::size_t from, std::size_t to) {
-        context.executor.parallel_for(to - from, 1, [&](std::size_t begin, std::size_t end) {
-          for (std::size_t i = from + begin; i < from + end; ++i) {
-            const auto visible = prospect->visible(views[centers[i].begin].T_world_camera.translation());
-            centers[i].most = fill_in(*prospect, visible, centers[i], views);
-          }
-        });
-      });
-  for (std::size_t i = 0; i < seen.looked; ++i) {
-    for (std::size_t j = centers[i].begin; j < centers[i].end; ++j) ranked.views.push_back(views[j]);
-  }
-  order_by_gain(ranked.views);
-
-  // What the robot's own body hides of the views that are left, again the best alone.
-  const double beyond = seen.looked < centers.size() ? centers[seen.looked].most : kNothing;
-  const auto look = [&](std::size_t from, std::size_t to) {
-    context.executor.parallel_for(to - from, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = from + begin; i < from + end; ++i) {
-        ranked.views[i].gain = prospect->promise(ranked.views[i].T_world_camera).worth();
-      }
-    });
-  };
-  FirmBest best{ranked.views.size(), ranked.views.size()};
-  if (prospect->knows_body()) {
-    best = firm_best(
-        ranked.views, beyond, count, [](const RankedView& view) { return view.gain; }, look);
-  } else {
-    best.firm = static_cast<std::size_t>(std::count_if(ranked.views.begin(), ranked.views.end(),
-                                                       [&](const RankedView& view) { return view.gain >= beyond; }));
-  }
-  ranked.complete = best.firm == views.size();
-  ranked.views.resize(best.firm);
   return ranked;
 }
 

@@ -22,32 +22,14 @@ namespace {
 
 using Eigen::Vector3d;
 using enum VolumetricInformation;
-using StateAt = std::function<VoxelState(const Vector3d& p)>;
 
 constexpr double kEdge_m{0.01};
 constexpr VoxelState kUnknown{VoxelState::unknown};
 constexpr VoxelState kEmpty{VoxelState::empty};
 constexpr VoxelState kOccupied{VoxelState::occupied};
 
-/// A workspace of 0.6 m × 0.6 m × 0.5 m.
-TsdfSnapshot map_of(const StateAt& state_at) {
-  TsdfSnapshot map;
-  map.config.voxel_size_m = kEdge_m;
-  map.config.workspace = Box{{-0.3, -0.3, -0.1}, {0.3, 0.3, 0.4}};
-  parents(voxels_with_center_in(*map.config.workspace, kEdge_m)).for_each([&](const Index3& brick) {
-    BrickRef ref;
-    DenseBrick& dense = ref.densify();
-    IndexBox::cube(brick * kBrickEdge, kBrickEdge).for_each([&](const Index3& voxel) {
-      const VoxelState state = state_at(voxel_center(voxel, kEdge_m));
-      const auto i = static_cast<std::size_t>(child_index(voxel));
-      dense.w[i] = state == kUnknown ? 0 : 5;
-      dense.v[i] = state == kOccupied ? -1000 : state == kEmpty ? kTsdfOne : 0;
-    });
-    dense.update_masks();
-    test::set_brick(map, brick, std::move(ref));
-  });
-  return map;
-}
+/// A workspace of 0.6 m × 0.6 m, from 0.1 m below the table to 0.4 m above.
+TsdfSnapshot map_of(const test::StateAt& state_at) { return test::written_map(state_at); }
 
 /// Layers along x, each as thick as a voxel, from x = 0 on; empty elsewhere.
 TsdfSnapshot layers(const std::vector<VoxelState>& states) {

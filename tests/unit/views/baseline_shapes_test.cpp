@@ -21,24 +21,13 @@ constexpr double kEdge_m{0.01};
 
 /// A slab at z = 0, seen up to x = 0 from above; the space over it is empty, what is beyond unknown.
 BaselineScene half_plane() {
-  TsdfSnapshot map;
-  map.config.voxel_size_m = kEdge_m;
-  map.config.workspace = Box{{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}};
-  parents(voxels_with_center_in(*map.config.workspace, kEdge_m)).for_each([&](const Index3& brick) {
-    BrickRef ref;
-    DenseBrick& dense = ref.densify();
-    IndexBox::cube(brick * kBrickEdge, kBrickEdge).for_each([&](const Index3& voxel) {
-      const Vector3d p = voxel_center(voxel, kEdge_m);
-      const bool seen = p.x() < 0.0;
-      const bool occupied = seen && p.z() < 0.0 && p.z() > -0.02;
-      const bool empty = seen && p.z() > 0.0;
-      const auto i = static_cast<std::size_t>(child_index(voxel));
-      dense.w[i] = occupied || empty ? 5 : 0;
-      dense.v[i] = occupied ? -1000 : empty ? kTsdfOne : 0;
-    });
-    dense.update_masks();
-    test::set_brick(map, brick, std::move(ref));
-  });
+  const TsdfSnapshot map = test::written_map(
+      [](const Vector3d& p) {
+        if (p.x() >= 0.0) return VoxelState::unknown;
+        if (p.z() > 0.0) return VoxelState::empty;
+        return p.z() > -0.02 ? VoxelState::occupied : VoxelState::unknown;
+      },
+      Box{{-0.2, -0.2, -0.2}, {0.2, 0.2, 0.2}});
   const Executor executor;
   RegionOfInterest all;
   all.bounds = *map.config.workspace;

@@ -18,29 +18,11 @@ namespace saccade {
 namespace {
 
 using Eigen::Vector3d;
-using StateAt = std::function<VoxelState(const Vector3d& p)>;
 
 constexpr double kEdge_m{0.01};
 
 /// A workspace of 0.6 m × 0.6 m, from 0.1 m below the table to 0.4 m above.
-TsdfSnapshot map_of(const StateAt& state_at) {
-  TsdfSnapshot map;
-  map.config.voxel_size_m = kEdge_m;
-  map.config.workspace = Box{{-0.3, -0.3, -0.1}, {0.3, 0.3, 0.4}};
-  parents(voxels_with_center_in(*map.config.workspace, kEdge_m)).for_each([&](const Index3& brick) {
-    BrickRef ref;
-    DenseBrick& dense = ref.densify();
-    IndexBox::cube(brick * kBrickEdge, kBrickEdge).for_each([&](const Index3& voxel) {
-      const VoxelState state = state_at(voxel_center(voxel, kEdge_m));
-      const auto i = static_cast<std::size_t>(child_index(voxel));
-      dense.w[i] = state == VoxelState::unknown ? 0 : 5;
-      dense.v[i] = state == VoxelState::occupied ? -1000 : state == VoxelState::empty ? kTsdfOne : 0;
-    });
-    dense.update_masks();
-    test::set_brick(map, brick, std::move(ref));
-  });
-  return map;
-}
+TsdfSnapshot map_of(const test::StateAt& state_at) { return test::written_map(state_at); }
 
 VoxelState table_at(const Vector3d& p) {
   if (p.z() > 0.0) return VoxelState::empty;

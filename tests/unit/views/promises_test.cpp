@@ -131,6 +131,31 @@ TEST(Promises, ThatWereBrokenLoseCreditFromThereAlone) {
   EXPECT_EQ(choice.surface_from(beside_m), area_cm2) << "it was kept";
 }
 
+TEST(Promises, OfAPoseThatIsNoneAreAnError) {
+  const Choice choice{test::half_seen_box()};
+  std::vector<Pose> poses = poses_around();
+  poses[3].translation().x() = std::nan("");
+  RayGain rays{{.sensor = kSensor}};
+  EXPECT_FALSE(rays.best(choice.context(), choice.region(), poses, poses.size()));
+  SurfaceGain surface{{.sensor = kSensor}};
+  EXPECT_FALSE(surface.best(choice.context(), choice.region(), poses, 16));
+  poses[3].translation().x() = 1e300;
+  EXPECT_TRUE(surface.best(choice.context(), choice.region(), poses, 16)) << "far away, nothing is seen";
+}
+
+TEST(Promises, InAWorkspaceTooLargeToLookThroughAreBelieved) {
+  Choice choice{test::half_seen_box()};
+  RegionOfInterest near_box;
+  near_box.bounds = Box{{-0.1, -0.1, 0.0}, {0.1, 0.1, 0.2}};
+  choice.map.config.workspace = Box{{-10.0, -10.0, -0.1}, {10.0, 10.0, 10.0}};
+  RayGain gain{{.sensor = kSensor}};
+  const Pose pose = look_at({-0.28, 0.0, 0.3}, {0.0, 0.0, 0.05});
+  const auto best = gain.best(choice.context(), near_box, std::span{&pose, 1}, 16);
+  ASSERT_TRUE(best) << best.error().to_string();
+  EXPECT_GT(best->views.front().gain, 0.0);
+  EXPECT_FALSE(best->promise) << "nothing can be checked";
+}
+
 TEST(Promises, AddUpToTheGain) {
   const Choice choice{test::half_seen_box()};
   const std::vector<Pose> poses = poses_around();

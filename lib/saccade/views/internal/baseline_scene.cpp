@@ -3,7 +3,6 @@
 
 #include <algorithm>
 #include <cmath>
-#include <string>
 
 #include "saccade/views/internal/completed_objects.hpp"
 #include "saccade/views/internal/find_supports.hpp"
@@ -54,14 +53,6 @@ Result<BaselineScene> read_baseline_scene(const PlanningContext& context, const 
     scene.on_support = true;
   }
   return scene;
-}
-
-Status check_poses(std::span<const Pose> T_world_camera) {
-  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
-    if (T_world_camera[i].matrix().allFinite()) continue;
-    return Error{Errc::invalid_argument, "pose " + std::to_string(i) + " contains NaN or infinity", "baseline gain"};
-  }
-  return {};
 }
 
 PinholeCamera sampled_camera(const BaselineGainConfig& config) {

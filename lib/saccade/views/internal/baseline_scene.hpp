@@ -32,9 +32,6 @@ struct BaselineScene {
 [[nodiscard]] Result<BaselineScene> read_baseline_scene(const PlanningContext& context, const RegionOfInterest& region,
                                                         double object_margin_m);
 
-/// invalid_argument for the first pose that is not finite.
-[[nodiscard]] Status check_poses(std::span<const Pose> T_world_camera);
-
 /// The virtual camera with `columns_px` pixels across, widened for the tilt.
 [[nodiscard]] PinholeCamera sampled_camera(const BaselineGainConfig& config);
 

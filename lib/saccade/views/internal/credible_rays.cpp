@@ -156,12 +156,20 @@ struct CredibleRays::Scene {
   }
 };
 
+namespace {
+
+IndexBox box_of(const TsdfSnapshot& map) {
+  const TsdfConfig& config = map.config;
+  return config.workspace ? voxels_with_center_in(*config.workspace, config.voxel_size_m) : map.grid.known_bounds();
+}
+
+}  // namespace
+
+bool CredibleRays::can_look_through(const TsdfSnapshot& map) { return box_of(map).count() <= StateVolume::kMostVoxels; }
+
 Result<CredibleRays> CredibleRays::create(const PlanningContext& context, const RegionOfInterest& region,
                                           const PinholeCamera& sensor, UnknownOutside outside, Trust trust) {
-  const TsdfConfig& config = context.map.config;
-  const IndexBox box = config.workspace ? voxels_with_center_in(*config.workspace, config.voxel_size_m)
-                                        : context.map.grid.known_bounds();
-  SACCADE_TRY(StateVolume volume, StateVolume::read(context.map, box, context.executor));
+  SACCADE_TRY(StateVolume volume, StateVolume::read(context.map, box_of(context.map), context.executor));
   const PinholeCamera coarse = sensor.scaled_to_width(std::min(kColumns, sensor.width));
   auto scene = std::make_shared<Scene>(std::move(volume), context, region.bounds, coarse, outside);
   scene->trust = trust;
@@ -176,6 +184,7 @@ CredibleRays::Scene::Tally CredibleRays::Scene::cast(const PinholeCamera& rays, 
                                                      const Believed& believed,
                                                      const IsBehindBody& is_behind_body) const {
   Tally tally;
+  if (!T_world_camera.matrix().allFinite()) return tally;  // gains refuse such a pose
   for (int v = 0; v < rays.height; ++v) {
     for (int u = 0; u < rays.width; ++u) {
       const Vector3d end{(u - rays.cx) / rays.fx, (v - rays.cy) / rays.fy, 1.0};

@@ -20,6 +20,9 @@ namespace saccade {
 /// Credit allows. Immutable; safe for concurrent use.
 class CredibleRays {
  public:
+  /// Whether the map's workspace is small enough to be looked through: StateVolume::kMostVoxels. Where it is not, gains
+  /// are believed as they are.
+  [[nodiscard]] static bool can_look_through(const TsdfSnapshot& map);
   /// @param sensor with the rows that tilting adds. @param trust blind: everything is believed.
   /// Errors: a workspace of too many voxels; those of PlanningContext::own_body. O(voxels of the workspace).
   [[nodiscard]] static Result<CredibleRays> create(const PlanningContext& context, const RegionOfInterest& region,

@@ -28,10 +28,13 @@ FirmBest firm_best(std::vector<Item>& items, double beyond, std::size_t count, c
   const auto by_value = [&](const Item& a, const Item& b) { return value_of(a) > value_of(b); };
   while (best.looked < items.size() && best.firm < count) {
     const std::size_t end = std::min(best.looked + kBatch, items.size());
+    const std::size_t looked_before = best.looked;
     look(best.looked, end);
     best.looked = end;
     const auto looked_end = items.begin() + static_cast<std::ptrdiff_t>(best.looked);
-    std::stable_sort(items.begin(), looked_end, by_value);
+    const auto batch = items.begin() + static_cast<std::ptrdiff_t>(looked_before);
+    std::stable_sort(batch, looked_end, by_value);
+    std::inplace_merge(items.begin(), batch, looked_end, by_value);
     const double to_come = std::max(
         beyond, best.looked < items.size() ? value_of(items[best.looked]) : -std::numeric_limits<double>::infinity());
     best.firm = static_cast<std::size_t>(

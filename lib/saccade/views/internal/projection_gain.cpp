@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "saccade/views/internal/check_finite.hpp"
+
 namespace saccade {
 namespace {
 
@@ -88,7 +90,7 @@ ProjectionGain::ProjectionGain(const BaselineGainConfig& config) : config_{confi
 
 Result<std::vector<double>> ProjectionGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) {
-  SACCADE_CHECK(check_poses(T_world_camera));
+  SACCADE_CHECK(check_finite(T_world_camera, "baseline gain"));
   SACCADE_TRY(const BaselineScene scene, read_baseline_scene(context, region, config_.object_margin_m));
   std::vector<double> gains(T_world_camera.size(), 0.0);
   if (scene.counted.empty()) return gains;

@@ -5,6 +5,8 @@
 #include <cmath>
 #include <numbers>
 
+#include "saccade/views/internal/check_finite.hpp"
+
 namespace saccade {
 namespace {
 
@@ -114,7 +116,7 @@ SurfaceEdgeGain::SurfaceEdgeGain(const BaselineGainConfig& config)
 
 Result<std::vector<double>> SurfaceEdgeGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                       std::span<const Pose> T_world_camera) {
-  SACCADE_CHECK(check_poses(T_world_camera));
+  SACCADE_CHECK(check_finite(T_world_camera, "baseline gain"));
   SACCADE_TRY(const BaselineScene scene, read_baseline_scene(context, region, config_.object_margin_m));
   std::vector<double> gains(T_world_camera.size(), 0.0);
   if (scene.counted.empty()) return gains;

@@ -6,6 +6,7 @@
 #include <cstdlib>
 
 #include "saccade/map/ray_walk.hpp"
+#include "saccade/views/internal/check_finite.hpp"
 #include "saccade/views/internal/ray_information.hpp"
 #include "saccade/views/sensor_rays.hpp"
 
@@ -151,7 +152,7 @@ Result<std::vector<double>> VolumetricGain::evaluate_with(const PinholeCamera& c
                                                           const RegionOfInterest& region,
                                                           std::span<const Pose> T_world_camera) const {
   using enum VolumetricInformation;
-  SACCADE_CHECK(check_poses(T_world_camera));
+  SACCADE_CHECK(check_finite(T_world_camera, "baseline gain"));
   SACCADE_TRY(const BaselineScene scene, read_baseline_scene(context, region, config_.object_margin_m));
   if (scene.counted.empty()) return std::vector<double>(T_world_camera.size(), 0.0);
   RayMap map{&scene, {}, parents(scene.volume.box()), {}};
