@@ -185,7 +185,7 @@ void expect_extraction_anew_after_every_change(int runs) {
 }
 
 TEST(LiveMeshProperty, EqualsExtractionAnewAfterEveryChange) {
-  expect_extraction_anew_after_every_change((kMeshRuns + 1) / 2);
+  expect_extraction_anew_after_every_change((kMeshRuns + 2) / 3);
 }
 TEST(LiveMeshPropertyEvidence, EqualsExtractionAnewAfterEveryChange) {
   expect_extraction_anew_after_every_change(kMeshRuns);

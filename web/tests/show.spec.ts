@@ -23,7 +23,7 @@ let shown: Program | undefined;
 // One run for all of these: the first test follows it, the others wait until it is written.
 test.beforeAll(async () => {
   folder = mkdtempSync(join(tmpdir(), "saccade-show-"));
-  exploration = new Program(["explore", "tabletop-1", "--max-views", "2", "--out", join(folder, "run"), "--show"], join(folder, "live-token"));
+  exploration = new Program(["explore", "tabletop-1", "--saliency", "objectness", "--max-views", "2", "--out", join(folder, "run"), "--show"], join(folder, "live-token"));
   await exploration.start();
 });
 test.afterEach(async () => {
