@@ -70,6 +70,13 @@ std::string cell(const CampaignSummary& summary, std::string_view name) {
   return text.empty() ? "-" : text;
 }
 
+json calibration_json(const Calibration& calibration) {
+  return {{"views", calibration.views},
+          {"rank_correlation", optional_json(calibration.rank_correlation)},
+          {"median_kept", optional_json(calibration.median_kept)},
+          {"broken", calibration.broken}};
+}
+
 /// One line about a gap.
 void print_gap(std::ostream& out, const StrategyGap& gap, const ComparedRuns& compared) {
   const MeanEstimate& coverage = gap.of("coverage");
@@ -169,6 +176,13 @@ std::string estimate_text(const RunFigure& figure, const MeanEstimate& estimate,
   return text;
 }
 
+std::string calibration_text(const Calibration& calibration) {
+  std::string text = std::to_string(calibration.views) + (calibration.views == 1 ? " view" : " views") + " kept " +
+                     fixed(100.0 * *calibration.median_kept, 0) + " % of what they promised (median)";
+  if (calibration.rank_correlation) text += "; rank correlation " + fixed(*calibration.rank_correlation, 2);
+  return text + "; " + std::to_string(calibration.broken) + " kept less than a tenth";
+}
+
 void print_comparison(std::ostream& out, const ComparedRuns& compared) {
   constexpr std::size_t kName{18};
   constexpr std::size_t kFigure{14};
@@ -192,6 +206,11 @@ void print_comparison(std::ostream& out, const ComparedRuns& compared) {
     }
     out << cell(summary, "unknown_near_objects") << '\n';
   }
+  for (const CampaignSummary& summary : compared.summaries) {
+    if (!is_told(summary.group) || summary.calibration.views == 0) continue;
+    out << padded(summary.group.scene.value_or(std::string{kAllScenes}), kName) << label_of(summary.group, compared)
+        << ": " << calibration_text(summary.calibration) << '\n';
+  }
   for (const StrategyGap& gap : compared.gaps) {
     if (is_told(gap.a)) print_gap(out, gap, compared);
   }
@@ -204,7 +223,8 @@ json comparison_json(const ComparedRuns& compared) {
              {"strategy", summary.group.strategy},
              {"noise", summary.group.noise},
              {"runs", summary.runs},
-             {"stopped_because", summary.stopped}};
+             {"stopped_because", summary.stopped},
+             {"promises", calibration_json(summary.calibration)}};
     for (std::size_t i = 0; i < summary.figures.size(); ++i) {
       row[run_figures()[i].name] = estimate_json(summary.figures[i]);
     }

@@ -52,6 +52,10 @@ struct ComparedRuns {
 /// Writes runs.csv, views.csv, summary.csv and two pictures per scene into the folder. io_failure.
 [[nodiscard]] Status write_comparison(const std::filesystem::path& folder, const ComparedRuns& compared);
 
+/// "50 views kept 97 % of what they promised (median); rank correlation 0.94; 1 kept less than a tenth". Expects a
+/// view.
+[[nodiscard]] std::string calibration_text(const Calibration& calibration);
+
 void print_comparison(std::ostream& out, const ComparedRuns& compared);
 
 /// {summaries: […], gaps: […]}.

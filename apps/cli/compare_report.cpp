@@ -113,6 +113,10 @@ ComparisonSection section_of(const ComparedRuns& compared, const std::optional<s
   } else {
     section.facts.emplace_back("Each scene counts once, with the mean of its runs; the intervals are over scenes.");
   }
+  for (const CampaignSummary* summary : summaries) {
+    if (summary->calibration.views == 0) continue;
+    section.facts.push_back(label_of(summary->group, compared) + ": " + calibration_text(summary->calibration) + ".");
+  }
   section.plots = {coverage_plot(compared, scene), unknown_plot(compared, scene)};
   add_figures(section, compared, summaries, of_scenes);
   add_marks(section, compared, summaries);

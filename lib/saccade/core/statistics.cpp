@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <numeric>
 
 #include "saccade/core/result.hpp"
 
@@ -24,6 +25,19 @@ double probability_within(double theta, std::size_t degrees) {
     term *= cosine * cosine * static_cast<double>(k) / static_cast<double>(k + 1);
   }
   return odd ? 2.0 / std::numbers::pi * (theta + sine * sum) : sine * sum;
+}
+
+/// Ranks 1, 2, …; equal values share the mean of theirs.
+std::vector<double> ranks_of(std::span<const double> values) {
+  std::vector<std::size_t> order(values.size());
+  std::iota(order.begin(), order.end(), std::size_t{0});
+  std::sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return values[a] < values[b]; });
+  std::vector<double> ranks(values.size());
+  for (std::size_t begin = 0, end = 0; begin < order.size(); begin = end) {
+    while (end < order.size() && values[order[end]] == values[order[begin]]) ++end;
+    for (std::size_t i = begin; i < end; ++i) ranks[order[i]] = 0.5 * static_cast<double>(begin + end + 1);
+  }
+  return ranks;
 }
 
 }  // namespace
@@ -47,6 +61,23 @@ double mean(std::span<const double> values) {
   double sum = 0.0;
   for (const double value : values) sum += value;
   return values.empty() ? 0.0 : sum / static_cast<double>(values.size());
+}
+
+std::optional<double> rank_correlation(std::span<const double> a, std::span<const double> b) {
+  SACCADE_EXPECTS(a.size() == b.size());
+  const std::vector<double> ranks_a = ranks_of(a);
+  const std::vector<double> ranks_b = ranks_of(b);
+  const double middle = 0.5 * static_cast<double>(a.size() + 1);
+  double shared = 0.0;
+  double spread_a = 0.0;
+  double spread_b = 0.0;
+  for (std::size_t i = 0; i < a.size(); ++i) {
+    shared += (ranks_a[i] - middle) * (ranks_b[i] - middle);
+    spread_a += (ranks_a[i] - middle) * (ranks_a[i] - middle);
+    spread_b += (ranks_b[i] - middle) * (ranks_b[i] - middle);
+  }
+  if (spread_a == 0.0 || spread_b == 0.0) return std::nullopt;
+  return shared / std::sqrt(spread_a * spread_b);
 }
 
 MeanEstimate estimate_mean(std::span<const double> values, double confidence) {

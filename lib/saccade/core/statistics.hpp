@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Medians and means; MeanEstimate: a mean and how sure it is, by Student's t distribution.
+// Medians, means and rank correlation; MeanEstimate: a mean and how sure it is, by Student's t distribution.
 
 #include <algorithm>
 #include <cstddef>
@@ -30,6 +30,10 @@ template <class Range>
 
 /// Returns the mean, summed from the first value to the last; 0 without values.
 [[nodiscard]] double mean(std::span<const double> values);
+
+/// Spearman's rank correlation: Pearson's of the ranks, where equal values share the mean of theirs. Expects as many
+/// `a` as `b`, none of them NaN. nullopt for fewer than two pairs, and where one of them never changes. O(n log n).
+[[nodiscard]] std::optional<double> rank_correlation(std::span<const double> a, std::span<const double> b);
 
 /// Share of repetitions in which an interval holds the true mean.
 constexpr double kConfidence{0.95};

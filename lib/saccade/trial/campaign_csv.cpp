@@ -82,6 +82,24 @@ CsvTable views_csv(std::span<const CampaignEntry> runs) {
   return table;
 }
 
+namespace {
+
+/// The figures of a calibration are of views together, so that they have neither a mean over runs nor an interval.
+void add_calibration(CsvTable& table, const CampaignSummary& summary) {
+  const Calibration& calibration = summary.calibration;
+  const auto add = [&](std::string_view figure, std::optional<double> value) {
+    table.add(summary.group.scene.value_or("")).add(summary.group.strategy).add(summary.group.noise);
+    table.add(figure).add(std::uint64_t{calibration.views}).add(value).add(std::nullopt).add(std::nullopt);
+    table.end_row();
+  };
+  if (calibration.views == 0) return;
+  add("promise_rank_correlation", calibration.rank_correlation);
+  add("promise_median_kept", calibration.median_kept);
+  add("promises_broken", static_cast<double>(calibration.broken));
+}
+
+}  // namespace
+
 CsvTable summary_csv(std::span<const CampaignSummary> summaries) {
   CsvTable table{{"scene", "strategy", "noise", "figure", "n", "mean", "low", "high"}};
   for (const CampaignSummary& summary : summaries) {
@@ -93,6 +111,7 @@ CsvTable summary_csv(std::span<const CampaignSummary> summaries) {
       table.add(estimate.low()).add(estimate.high());
       table.end_row();
     }
+    add_calibration(table, summary);
   }
   return table;
 }

@@ -2,6 +2,7 @@
 #include "saccade/trial/campaign_summary.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "saccade/core/result.hpp"
 
@@ -53,11 +54,35 @@ CampaignSummary summary_of(const Runs& runs, CampaignGroup group, std::size_t bu
     summary.figures.push_back(
         mean_of(runs, by_scene, [&](const CampaignEntry& run) { return figure.of(run, budget); }));
   }
-  for (const CampaignEntry* run : runs) ++summary.stopped[std::string{to_string(run->run.stopped_because)}];
+  std::vector<const ViewRecord*> views;
+  for (const CampaignEntry* run : runs) {
+    ++summary.stopped[std::string{to_string(run->run.stopped_because)}];
+    for (const ViewRecord& view : run->run.views) views.push_back(&view);
+  }
+  summary.calibration = calibration_of(views);
   return summary;
 }
 
 }  // namespace
+
+Calibration calibration_of(std::span<const ViewRecord* const> views) {
+  std::vector<double> promised;
+  std::vector<double> observed;
+  std::vector<double> kept;
+  for (const ViewRecord* view : views) {
+    if (!std::isfinite(view->gain_observed) || !(view->gain_predicted > 0.0)) continue;
+    promised.push_back(view->gain_predicted);
+    observed.push_back(view->gain_observed);
+    kept.push_back(view->gain_observed / view->gain_predicted);
+  }
+  Calibration calibration;
+  calibration.views = kept.size();
+  calibration.rank_correlation = rank_correlation(promised, observed);
+  if (!kept.empty()) calibration.median_kept = median(kept);
+  calibration.broken = static_cast<std::size_t>(
+      std::count_if(kept.begin(), kept.end(), [](double share) { return share < kBrokenShare; }));
+  return calibration;
+}
 
 std::vector<CampaignSummary> summarize(std::span<const CampaignEntry> runs, std::size_t budget) {
   std::vector<CampaignGroup> groups;

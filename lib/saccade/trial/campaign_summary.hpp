@@ -62,11 +62,24 @@ struct CampaignGroup {
   [[nodiscard]] bool operator==(const CampaignGroup&) const = default;
 };
 
+/// Views that keep less than this share of their promise broke it.
+constexpr double kBrokenShare{0.1};
+
+/// How far views keep what gains promise, over all views whose promise was checked.
+struct Calibration {
+  std::size_t views{0};
+  std::optional<double> rank_correlation;  ///< of promised and observed gain; see rank_correlation()
+  std::optional<double> median_kept;       ///< observed gain as a share of the promised one
+  std::size_t broken{0};                   ///< views that kept less than kBrokenShare
+};
+[[nodiscard]] Calibration calibration_of(std::span<const ViewRecord* const> views);
+
 struct CampaignSummary {
   CampaignGroup group;
   std::size_t runs{0};
   std::vector<MeanEstimate> figures;           ///< as run_figures(), each over the runs that have it
   std::map<std::string, std::size_t> stopped;  ///< runs by why they stopped
+  Calibration calibration;                     ///< over all views of all runs
 
   /// Expects the name of a figure.
   [[nodiscard]] const MeanEstimate& of(std::string_view name) const { return figures[run_figure_index(name)]; }

@@ -103,6 +103,18 @@ TEST(Statistics, TheIntervalHoldsTheTrueMeanAsOftenAsItSays) {
   EXPECT_NEAR(static_cast<double>(held) / kRepetitions, 0.95, 0.006) << "seed " << kSeed;  // four standard errors
 }
 
+TEST(Statistics, RankCorrelationHeedsTheOrderAlone) {
+  using Values = std::vector<double>;
+  EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4}, Values{1, 10, 100, 1e6}).value(), 1.0);
+  EXPECT_DOUBLE_EQ(rank_correlation(Values{1, 2, 3, 4}, Values{9, 5, 4, -1}).value(), -1.0);
+  // 1 − 6 Σd²/(n(n² − 1)) with d = 0, 1, −1, 1, −1.
+  EXPECT_DOUBLE_EQ(rank_correlation(Values{10, 20, 30, 40, 50}, Values{1, 3, 2, 5, 4}).value(), 1.0 - 24.0 / 120.0);
+  // Ties share their mean rank: 1.5, 1.5, 3 against 1, 2, 3.
+  EXPECT_DOUBLE_EQ(rank_correlation(Values{7, 7, 8}, Values{1, 2, 3}).value(), 1.5 / std::sqrt(1.5 * 2.0));
+  EXPECT_FALSE(rank_correlation(Values{}, Values{}) || rank_correlation(Values{1}, Values{1}));
+  EXPECT_FALSE(rank_correlation(Values{1, 1}, Values{1, 2}));
+}
+
 TEST(Statistics, IntervalsAreApartOrNot) {
   const MeanEstimate low = estimate_mean(std::vector<double>{0.0, 0.1, 0.2});
   const MeanEstimate near = estimate_mean(std::vector<double>{0.3, 0.4, 0.5});

@@ -105,6 +105,26 @@ TEST(CampaignSummary, IsTheMeanOverSeeds) {
   EXPECT_NEAR(gap.mean, 0.1 + 0.0025, 1e-12);
 }
 
+TEST(CampaignSummary, PromisesAreJudgedOverTheViewsOfAllRuns) {
+  std::vector<CampaignEntry> runs{covering({0.2, 0.4, 0.5, 0.6}, 1), covering({0.2, 0.4, 0.5}, 2)};
+  const auto promise = [](ViewRecord& view, double promised, double observed) {
+    view.gain_predicted = promised;
+    view.gain_observed = observed;
+  };
+  promise(runs[0].run.views[0], 1000.0, 900.0);
+  promise(runs[0].run.views[1], 500.0, 250.0);
+  promise(runs[1].run.views[0], 800.0, 800.0);
+  promise(runs[1].run.views[1], 600.0, 30.0);
+  runs[0].run.views[2].gain_predicted = 100.0;  // was not checked
+  const Calibration calibration = summarize(runs, 3).front().calibration;
+  EXPECT_EQ(calibration.views, 4U);
+  EXPECT_DOUBLE_EQ(calibration.median_kept.value(), 0.7);
+  EXPECT_EQ(calibration.broken, 1U);
+  EXPECT_DOUBLE_EQ(calibration.rank_correlation.value(), 0.8);  // one pair of neighbours is swapped
+  const Calibration none = calibration_of({});
+  EXPECT_TRUE(none.views == 0 && !none.median_kept && !none.rank_correlation);
+}
+
 TEST(CampaignSummary, OverAllScenesEachSceneCountsOnce) {
   // Ten alike runs of one scene are no more than one: seeds of a scene are no samples of scenes.
   std::vector<CampaignEntry> runs;
