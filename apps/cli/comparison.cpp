@@ -46,6 +46,10 @@ std::string settings_of(const SimulatedRunConfig& config, const std::string& arm
                 {"robot", config.arm ? config.arm->name() : "free"}};
   if (map.clearing_percent != 100) settings["clearing_percent"] = map.clearing_percent;
   if (config.as_printed) settings["as_printed"] = true;
+  if (config.exploration.frame_on_way_s > 0.0) settings["frame_on_way_s"] = config.exploration.frame_on_way_s;
+  if (config.exploration.lookahead > 1) settings["lookahead"] = config.exploration.lookahead;
+  if (config.exploration.objective != Objective::surface)
+    settings["objective"] = to_string(config.exploration.objective);
   if (config.strategy.name == surface_planner().name) settings["least_share"] = config.least_share;
   if (config.strategy.name == attention_planner().name) settings["rival_share"] = config.planner.rival_share;
   if (config.arm) {

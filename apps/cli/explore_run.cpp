@@ -49,6 +49,9 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"good_enough", run.exploration.good_enough}};
   if (run.clearing_percent != 100) settings["clearing_percent"] = run.clearing_percent;
   if (run.as_printed) settings["as_printed"] = true;
+  if (run.exploration.frame_on_way_s > 0.0) settings["frame_on_way_s"] = run.exploration.frame_on_way_s;
+  if (run.exploration.lookahead > 1) settings["lookahead"] = run.exploration.lookahead;
+  if (run.exploration.objective != Objective::surface) settings["objective"] = to_string(run.exploration.objective);
   if (run.strategy.name == surface_planner().name) settings["least_share"] = run.least_share;
   if (run.weigh_by_saliency) settings["saliency"] = saliency_text(options.saliency);
   if (run.strategy.name == attention_planner().name) {

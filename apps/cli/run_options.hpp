@@ -20,8 +20,9 @@ struct RunOptions {
   CameraOptions camera;
 };
 
-/// Adds --max-views, --min-gain, --good-enough, --rivals, --gain-width, --radius, --voxel-size, --no-noise, --sensor
-/// and the camera's options.
+/// Adds --max-views, --min-gain, --good-enough, --lookahead, --objective, --frame-on-way, --rivals, --gain-width,
+/// --radius,
+/// --voxel-size, --no-noise, --sensor and the camera's options.
 /// @param min_gain  what the default of --min-gain is, for --help.
 void add_run_options(CLI::App& command, RunOptions& options, const std::string& min_gain);
 /// After parsing: fills `run` but for its strategy, threshold and seed, and throws a usage error for what makes no

@@ -139,6 +139,15 @@ Result<PlannedMotion> PlannedArm::plan(std::span<const Pose> T_world_camera, Way
   return planned;
 }
 
+std::vector<CameraSample> PlannedArm::camera_on_way(const Motion& motion, double every_s) const {
+  SACCADE_EXPECTS(every_s > 0.0);
+  std::vector<CameraSample> samples;
+  for (double t_s = every_s; t_s < motion.trajectory.duration_s(); t_s += every_s) {
+    samples.push_back({t_s, camera_pose(arm(), motion.trajectory.at(t_s).q)});
+  }
+  return samples;
+}
+
 Result<PlannedMotion> PlannedArm::plan_to_stand_by() {
   SACCADE_TRY(PlanOutcome outcome, planner_.plan(planned_from(), std::span{&stand_by_, 1}, obstacles_));
   if (!outcome.plan) return PlannedMotion{std::nullopt, outcome.refusal, std::move(outcome.why)};

@@ -52,6 +52,7 @@ class PlannedArm final : public Robot {
   /// To whichever configuration of whichever pose is the nearest: MotionPlanner.
   [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) override;
 
+  [[nodiscard]] std::vector<CameraSample> camera_on_way(const Motion& motion, double every_s) const override;
   [[nodiscard]] Result<PlannedMotion> plan_to_stand_by() override;
   /// on_way is called at the samples of the joints, and at the end. invalid_argument for a motion that does not begin
   /// where the arm stands; errors of the joints.

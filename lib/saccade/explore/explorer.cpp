@@ -40,6 +40,7 @@ Status ExplorerConfig::validate() const {
   if (!(good_enough > 0.0 && good_enough <= 1.0)) return fail("the share that is good enough is within 0 and 1");
   if (max_views < 0) return fail("the number of views must not be negative");
   if (oscillation_frames < 1) return fail("a view needs one frame at least");
+  if (lookahead < 1) return fail("one view at least is looked ahead");
   if (!(oscillation_rad >= 0.0 && oscillation_rad < 1.5)) return fail("the oscillation is within 0 and 85 degrees");
   if (!(frame_on_way_s >= 0.0 && std::isfinite(frame_on_way_s))) return fail("frames on the way need a time between");
   return {};
@@ -128,6 +129,8 @@ Result<Explorer::Outcome> Explorer::go_to_next(ViewPlanner& planner, RunRecord& 
 Result<Explorer::Outcome> Explorer::go_to_best(Ranking& ranking, ViewRecord& view) {
   view.candidates = ranking.candidates();
   view.evaluated = ranking.evaluated();
+  SACCADE_CHECK(view.times.measure(
+      Phase::planning, [&] { return look_ahead(config_.foresight(), parts_.robot, parts_.executor, ranking); }));
   while (!ranking.empty()) {
     if (cancelled()) return Outcome::cancelled;
     const std::span<const RankedView> best = ranking.as_good_as_best(config_.good_enough);  // 6–9

@@ -9,6 +9,7 @@
 
 #include "saccade/core/angle.hpp"
 #include "saccade/core/progress.hpp"
+#include "saccade/explore/foresight.hpp"
 #include "saccade/explore/recorder.hpp"
 #include "saccade/explore/stopping.hpp"
 #include "saccade/explore/view_planner.hpp"
@@ -25,10 +26,13 @@ struct ExplorerConfig {
   double oscillation_rad{5_deg};  ///< at each view the camera is tilted from minus to plus this
   int oscillation_frames{5};      ///< frames taken on the way; 1: none but the view itself
   /// Seconds of motion between frames that are fused on the way to a view (KFOM of thesis §2.2); 0: none are, the map
-  /// learns at views alone (KFOVP). For robots that know their way.
+  /// learns at views alone (KFOVP). For robots that know their way. What they are expected to show counts: Foresight.
   double frame_on_way_s{0.0};
+  int lookahead{1};                         ///< views that are chosen together: Foresight
+  Objective objective{Objective::surface};  ///< what a view is chosen by
 
   [[nodiscard]] Status validate() const;
+  [[nodiscard]] Foresight foresight() const { return {static_cast<std::size_t>(lookahead), objective, frame_on_way_s}; }
 };
 
 /// What the caller answers before the camera moves to a view.

@@ -8,6 +8,7 @@ namespace {
 
 constexpr std::size_t kContourTries{64};
 constexpr std::size_t kSurfaceTries{16};
+constexpr std::size_t kForesightTries{256};
 constexpr std::size_t kSpareViews{16};  // told ahead of those that were taken: the robot may not reach some
 constexpr std::size_t kAllViews{std::numeric_limits<std::size_t>::max()};
 
@@ -64,12 +65,14 @@ std::string Planners::names() const { return joined(planners_, ", ", &NamedPlann
 
 NamedPlanner surface_planner() {
   const auto make = [](const PlannerSetup& setup) {
-    const SurfaceGainConfig gain{
-        .sensor = setup.gain.sensor, .tilt_rad = setup.gain.tilt_rad, .least_share = setup.least_share};
+    const SurfaceGainConfig gain{.sensor = setup.gain.sensor,
+                                 .tilt_rad = setup.gain.tilt_rad,
+                                 .least_share = setup.least_share,
+                                 .one_roll = setup.looks_ahead};
     std::shared_ptr<AttentionSource> attention = std::make_shared<WholeWorkspace>();
     if (setup.weigh_by_saliency) attention = std::make_shared<SalientWorkspace>(setup.attention);
     return PlannerParts{std::move(attention), contour_views_of(setup), std::make_shared<SurfaceGain>(gain),
-                        with_tries(setup, kSurfaceTries)};
+                        with_tries(setup, setup.looks_ahead ? kForesightTries : kSurfaceTries)};
   };
   return {"surface", "views of contours by the surface that they are expected to show, in cm²", 2.0, false, false, make,
           "cm²"};

@@ -82,8 +82,24 @@ std::span<const RankedView> Ranking::as_good_as_best(double share) const {
   constexpr std::size_t kMost{64};
   const std::span<const RankedView> all{untried_};
   std::size_t count = 1;
-  while (ranked_.by_gain && count < std::min(kMost, all.size()) && all[count].gain >= share * all[0].gain) ++count;
+  while (ranked_.by_gain && !one_by_one_ && count < std::min(kMost, all.size()) &&
+         all[count].gain >= share * all[0].gain)
+    ++count;
   return all.first(count);
+}
+
+void Ranking::put_first(std::span<const std::size_t> views) {
+  std::vector<RankedView> ordered;
+  std::vector<bool> is_first(untried_.size(), false);
+  for (const std::size_t view : views) {
+    ordered.push_back(untried_[view]);
+    is_first[view] = true;
+  }
+  for (std::size_t i = 0; i < untried_.size(); ++i) {
+    if (!is_first[i]) ordered.push_back(untried_[i]);
+  }
+  untried_ = std::move(ordered);
+  one_by_one_ = true;
 }
 
 void Ranking::drop_first(std::size_t count) {

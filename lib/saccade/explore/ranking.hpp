@@ -68,6 +68,10 @@ class Ranking {
   /// The best view and those behind it that gain at least this share of it, 64 at most. Views that are not ranked by
   /// gain come one by one. Expects one view.
   [[nodiscard]] std::span<const RankedView> as_good_as_best(double share) const;
+  /// The views that are worth trying, by decreasing gain unless put_first() was called.
+  [[nodiscard]] std::span<const RankedView> untried() const { return untried_; }
+  /// Puts these views before all others, in their order. From then on views come one by one. Expects each once.
+  void put_first(std::span<const std::size_t> views);
   /// Takes out the first views, or one, once they were tried.
   void drop_first(std::size_t count);
   void drop(std::size_t view);
@@ -86,6 +90,7 @@ class Ranking {
 
   /// What a view of the chosen region is expected to make known; nothing where that cannot be told. Expects a view.
   [[nodiscard]] Promise promise(const Pose& T_world_camera) const;
+  [[nodiscard]] bool makes_promises() const { return static_cast<bool>(ranked_.promise); }
   /// What the views are chosen from, and the segment that drew the attention. Expects a view.
   [[nodiscard]] std::shared_ptr<const ViewChoice> choice() const;
   [[nodiscard]] std::optional<ViewAttention> attention() const;
@@ -109,6 +114,7 @@ class Ranking {
   std::shared_ptr<const ContourSet> contours_{};
   double first_saliency_{0.0};  ///< saliency of the first region that was chosen
   std::vector<RankedView> untried_{};
+  bool one_by_one_{false};  ///< the order is not that of the gains
   std::vector<std::pair<std::size_t, RegionResult>> left_{};
 };
 

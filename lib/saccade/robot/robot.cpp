@@ -14,6 +14,8 @@ std::vector<std::optional<Refusal>> Robot::test(std::span<const Pose> T_world_ca
 
 Result<OwnBody> Robot::own_body(const PinholeCamera& /*sensor*/) const { return OwnBody{}; }
 
+std::vector<CameraSample> Robot::camera_on_way(const Motion& /*motion*/, double /*every_s*/) const { return {}; }
+
 Result<PlannedMotion> Robot::plan_to_stand_by() {
   return PlannedMotion{std::nullopt, Refusal::declined, "the robot has no stand-by"};
 }

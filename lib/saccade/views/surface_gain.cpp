@@ -39,7 +39,7 @@ struct Sighted {
 };
 
 /// Bounds each pose by what faces its camera, and follows lines of sight from the centres that come near the best.
-Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_camera, std::size_t count,
+Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_camera, std::size_t count, bool one_roll,
                 const Executor& executor) {
   std::vector<RankedView> views;
   for (const Pose& pose : T_world_camera) views.push_back({pose});
@@ -64,7 +64,14 @@ Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_c
   const FirmBest best = firm_best(
       centers, result.beyond, count, [](const Center& center) { return center.most; }, look);
   for (std::size_t i = 0; i < best.looked; ++i) {
-    for (std::size_t j = centers[i].begin; j < centers[i].end; ++j) result.views.push_back(views[j]);
+    const auto begin = views.begin() + static_cast<std::ptrdiff_t>(centers[i].begin);
+    const auto end = views.begin() + static_cast<std::ptrdiff_t>(centers[i].end);
+    const auto by_gain = [](const RankedView& a, const RankedView& b) { return a.gain < b.gain; };
+    if (one_roll) {
+      result.views.push_back(*std::max_element(begin, end, by_gain));
+    } else {
+      result.views.insert(result.views.end(), begin, end);
+    }
   }
   order_by_gain(result.views);
   if (best.looked < centers.size()) result.beyond = centers[best.looked].most;
@@ -123,7 +130,7 @@ Result<RankedViews> SurfaceGain::best(const PlanningContext& context, const Regi
   SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
   SACCADE_TRY(SurfaceProspect made, SurfaceProspect::create(context, region, std::move(surface), widened_));
   const auto prospect = std::make_shared<const SurfaceProspect>(std::move(made));
-  Sighted best = sighted(*prospect, T_world_camera, count, context.executor);
+  Sighted best = sighted(*prospect, T_world_camera, count, config_.one_roll, context.executor);
   without_body(*prospect, best, count, context.executor);
   RankedViews ranked;
   ranked.complete = best.views.size() == T_world_camera.size();

@@ -12,6 +12,9 @@ struct SurfaceGainConfig {
   double tilt_rad{0.0};  ///< the real sensor is tilted by ± this angle: see widened_vertically
   /// A view that is expected to show less than this share of the surface that was seen so far is not worth going to.
   double least_share{0.005};
+  /// Only the best roll of each camera centre is ranked, before the robot's own body is heeded: for a choice among many
+  /// places (Foresight).
+  bool one_roll{false};
   ExpectedSurfaceConfig surface{};
 
   /// invalid_argument for a bad sensor, tilt or share; errors of the surface's configuration.
@@ -31,6 +34,7 @@ class SurfaceGain final : public Gain {
                                                      std::span<const Pose> T_world_camera) override;
   /// The best, exactly: lines of sight are followed where the bound, the area in the field of view that faces the
   /// camera, comes up to them. Those that were attempted are among them.
+  /// With one_roll, `count` of the camera centres.
   [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 
