@@ -141,6 +141,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
             "folder for the results; runs that are in it already are not repeated")
       ->required();
   add_run_options(command, options.run, min_gain_by_strategy());
+  add_foresight_options(command, options.run);
   add_value(command, "--noise", options.noise_list, "LIST",
             "noise of the depth, separated by commas: none, kinect-v1, kinect-v2 (default: that of --sensor)")
       ->excludes("--sensor")
@@ -166,6 +167,7 @@ void check_compare_options(CompareOptions& options, const Planners& planners) {
   options.seeds = parse_seeds(options.seed_list);
   require_ok(options.mesh.validate(), "--mesh-scale");
   check_run_options(options.run);
+  check_foresight(options.run, options.robot);
 }
 
 }  // namespace saccade::cli

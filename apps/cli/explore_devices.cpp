@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "explore_devices.hpp"
 
+#include <algorithm>
+
 #include "saccade/arm/urdf.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 
@@ -38,7 +40,15 @@ Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& exe
   ExploreCase subject{std::move(scene), std::nullopt, std::nullopt};
   if (!options.camera_command.empty() && subject.scene.objects.empty()) return subject;
   SACCADE_TRY(subject.rays, RayScene::build(subject.scene));
-  if (options.camera_command.empty()) {
+  const bool has_objects = std::any_of(subject.scene.objects.begin(), subject.scene.objects.end(),
+                                       [](const SceneObject& object) { return !object.support; });
+  if (options.camera_command.empty() && !has_objects && options.run.strategy.needs_truth) {
+    return Error{Errc::invalid_argument,
+                 "there is nothing but supports, and the strategy " + options.run.strategy.name +
+                     " goes by the objects that it knows; choose another one",
+                 subject.scene.name};
+  }
+  if (options.camera_command.empty() && has_objects) {
     SACCADE_TRY(subject.truth, Truth::build(*subject.rays, kTruthSpacing_m, executor));
   }
   return subject;

@@ -12,7 +12,7 @@
 
 namespace saccade::cli {
 
-/// What an exploration works on; a real camera has no truth to compare with.
+/// What an exploration works on; a real camera, and a scene of supports alone, have no truth to compare with.
 struct ExploreCase {
   Scene scene;
   std::optional<RayScene> rays;  ///< of a scene with objects

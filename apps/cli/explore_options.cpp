@@ -56,6 +56,7 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
   add_value(command, "--strategy", options.strategy, "NAME", strategy_help(planners));
   add_saliency_options(command, options.saliency);
   add_run_options(command, options, min_gain_by_strategy());
+  add_foresight_options(command, options);
 
   add_value(command, "--robot", options.robot, "ROBOT",
             "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
@@ -93,6 +94,7 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   options.run.weigh_by_saliency = options.saliency.given && options.saliency.names != "none";
   options.run.seed = global.seed;
   if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";
+  check_foresight(options, options.robot);
   check_arm_options(options, global);
 }
 

@@ -26,15 +26,6 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
             "gain below which a view is not worth going to (default: " + min_gain + ")");
   add_value(command, "--good-enough", options.run.exploration.good_enough, "SHARE",
             "share of the best view's gain at which another is as good, if the robot is there sooner");
-  add_value(command, "--lookahead", options.run.exploration.lookahead, "N",
-            "the next view is one of N that together are expected to show most; they are chosen anew after each")
-      ->check(CLI::Range(1, 100));
-  add_choice(
-      command, "--objective", options.run.exploration.objective, kObjectiveNames,
-      "what a view is chosen by: what it is expected to show, or that for the time of the motion and of looking");
-  add_value(command, "--frame-on-way", options.run.exploration.frame_on_way_s, "SECONDS",
-            "fuse a frame every so many seconds on an arm's way to a view, too; what these are expected to show counts "
-            "in the choice of the view (0: none)");
   add_value(command, "--rivals", options.run.planner.rival_share, "SHARE",
             "attention: the view of most gain is looked for among segments at least so salient, as a share of the most "
             "salient; 1: of the most salient alone, as in the thesis");
@@ -57,6 +48,24 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
              "what the simulated camera's depth is like; a Kinect v2's goes through its filter (the image is "
              "--camera's)");
   add_camera_options(command, options.camera, true);
+}
+
+void add_foresight_options(CLI::App& command, RunOptions& options) {
+  add_value(command, "--lookahead", options.run.exploration.lookahead, "N",
+            "the next view is one of N that together are expected to show most; they are chosen anew after each")
+      ->check(CLI::Range(1, 100));
+  add_choice(
+      command, "--objective", options.run.exploration.objective, kObjectiveNames,
+      "what a view is chosen by: what it is expected to show, or that for the time of the motion and of looking");
+  add_value(command, "--frame-on-way", options.run.exploration.frame_on_way_s, "SECONDS",
+            "fuse a frame every so many seconds on an arm's way to a view, too; what these are expected to show counts "
+            "in the choice of the view (0: none)");
+}
+
+void check_foresight(const RunOptions& options, const std::string& robot) {
+  if (options.run.exploration.frame_on_way_s > 0.0 && robot == "free") {
+    usage_error("--frame-on-way", "a camera that flies is at the next view at once; this needs an arm");
+  }
 }
 
 void check_run_options(RunOptions& options) {

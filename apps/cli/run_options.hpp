@@ -20,11 +20,15 @@ struct RunOptions {
   CameraOptions camera;
 };
 
-/// Adds --max-views, --min-gain, --good-enough, --lookahead, --objective, --frame-on-way, --rivals, --gain-width,
+/// Adds --max-views, --min-gain, --good-enough, --rivals, --gain-width,
 /// --radius,
 /// --voxel-size, --no-noise, --sensor and the camera's options.
 /// @param min_gain  what the default of --min-gain is, for --help.
 void add_run_options(CLI::App& command, RunOptions& options, const std::string& min_gain);
+/// Adds --lookahead, --objective and --frame-on-way, for what chooses among views.
+void add_foresight_options(CLI::App& command, RunOptions& options);
+/// After parsing: throws a usage error for frames on the way of a camera that flies.
+void check_foresight(const RunOptions& options, const std::string& robot);
 /// After parsing: fills `run` but for its strategy, threshold and seed, and throws a usage error for what makes no
 /// sense.
 void check_run_options(RunOptions& options);

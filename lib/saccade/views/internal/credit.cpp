@@ -44,7 +44,8 @@ double Credit::of(const Eigen::Vector3d& place_m, InSight seen_from, const Eigen
   const Eigen::Vector3d towards = (camera_m - place_m).normalized();
   for (std::size_t i = 0; i < broken_.size(); ++i) {
     if ((seen_from >> i & 1U) == 0) continue;
-    if ((broken_[i].center_m - place_m).normalized().dot(towards) >= kSameSide) credit *= broken_[i].kept;
+    const bool from_same_side = (broken_[i].center_m - place_m).normalized().dot(towards) >= kSameSide;
+    credit *= from_same_side ? broken_[i].kept : kElsewhere + (1.0 - kElsewhere) * broken_[i].kept;
   }
   return credit;
 }

@@ -12,10 +12,12 @@ namespace saccade {
 
 /// A voxel that is unknown although an earlier view looks right at it was promised by that view and not made known.
 /// A view from about there would fail as that one did: the promise gets no more credit than the share that the earlier
-/// view kept of its own. Immutable; safe for concurrent use.
+/// view kept of its own, and from elsewhere, where it may be seen after all, half of what that one missed is taken off.
+/// Immutable; safe for concurrent use.
 class Credit {
  public:
   static constexpr double kSameSide{0.86602540378443865};  // cosine of 30°, at the voxel
+  static constexpr double kElsewhere{0.5};                 // credit from elsewhere where nothing at all was kept
   static constexpr double kKept{0.9};                      // views that kept as much discount nothing
 
   /// The volume outlives it. @param through_m unknown length with which lines of sight may begin.
