@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "saccade/views/surface_views.hpp"
+
 namespace saccade {
 namespace {
 
@@ -18,6 +20,12 @@ std::shared_ptr<AttentionSource> regions_in_turn(const PlannerSetup& setup) {
 
 std::shared_ptr<ViewGenerator> contour_views_of(const PlannerSetup& setup) {
   return std::make_shared<ContourViews>(setup.contour_views, setup.contours);
+}
+
+std::shared_ptr<ViewGenerator> surface_views_of(const PlannerSetup& setup) {
+  SurfaceViewsConfig config;
+  config.sphere.radii_m = setup.contour_views.distances_m;
+  return std::make_shared<SurfaceViews>(contour_views_of(setup), config);
 }
 
 std::shared_ptr<Gain> rays(const PlannerSetup& setup) {
@@ -71,10 +79,12 @@ NamedPlanner surface_planner() {
                                  .one_roll = setup.looks_ahead};
     std::shared_ptr<AttentionSource> attention = std::make_shared<WholeWorkspace>();
     if (setup.weigh_by_saliency) attention = std::make_shared<SalientWorkspace>(setup.attention);
-    return PlannerParts{std::move(attention), contour_views_of(setup), std::make_shared<SurfaceGain>(gain),
+    return PlannerParts{std::move(attention), surface_views_of(setup), std::make_shared<SurfaceGain>(gain),
                         with_tries(setup, setup.looks_ahead ? kForesightTries : kSurfaceTries)};
   };
-  return {"surface", "views of contours by the surface that they are expected to show, in cm²", 2.0, false, false, make,
+  return {"surface", "views of contours and of what is missing, by the surface that they are expected to show, in cm²",
+          2.0,       false,
+          false,     make,
           "cm²"};
 }
 
