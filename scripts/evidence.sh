@@ -91,6 +91,9 @@ step attention build/release/saccade --quiet compare --scenes tabletop-1,tableto
 step attention_clutter build/release/saccade --quiet compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle \
   --robot comau --seeds 1 --max-views 5 --out "$out/attention_clutter" --json "$out/attention_clutter.json"
 
+echo "The planner beside the oracle, baselines and sphere; figures go to docs/planner.md"
+step planner scripts/evidence_planner.py build/release/saccade "$out/planner" docs/planner.md
+
 echo "Updates after a user's task: ten seeds, noise on"
 for scene in bottle jug; do
   for when in viewpoints motion; do
