@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What choosing a view takes, all computing, in a whole run: the built-in arm, a table with eight objects, 5.8 mm, five
-// views, noise on. A round is a run; its time is the mean choice. The same views for every thread count.
+// views, noise on. A round is a run; its time is the mean choice. The number of threads must not change the views.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>

@@ -58,7 +58,8 @@ void add_foresight_options(CLI::App& command, RunOptions& options) {
       command, "--objective", options.run.exploration.objective, kObjectiveNames,
       "what a view is chosen by: what it is expected to show, or that for the time of the motion and of looking");
   add_value(command, "--frame-on-way", options.run.exploration.frame_on_way_s, "SECONDS",
-            "fuse a frame every so many seconds on an arm's way to a view, too; what these are expected to show counts "
+            "fuse a frame on an arm's way to a view, too, each time that these seconds have passed; what these are "
+            "expected to show counts "
             "in the choice of the view (0: none)");
 }
 

@@ -23,7 +23,7 @@ inline constexpr auto kObjectiveNames =
 [[nodiscard]] constexpr std::string_view to_string(Objective objective) { return kObjectiveNames.of(objective); }
 
 struct Foresight {
-  /// The view is one of so many that together make known most; they are chosen anew for each. 1: the best one alone.
+  /// Views that together make known most: the next view is one of them; they are chosen anew for each. 1: the best one.
   std::size_t lookahead{1};
   Objective objective{Objective::surface};
   double frame_on_way_s{0.0};  ///< seconds between frames that are fused on the way to a view; 0: none are

@@ -9,7 +9,7 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kContourTries{64};
-constexpr std::size_t kSurfaceTries{16};
+constexpr std::size_t kSurfaceTries{4};
 constexpr std::size_t kForesightTries{256};
 constexpr std::size_t kSpareViews{16};  // told ahead of those that were taken: the robot may not reach some
 constexpr std::size_t kAllViews{std::numeric_limits<std::size_t>::max()};

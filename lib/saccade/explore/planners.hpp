@@ -28,7 +28,8 @@ struct PlannerSetup {
   /// Algorithm 4 to the letter: attention heeds the most salient segment alone, scraps are like any other, and gains of
   /// rays are believed whatever earlier views have shown.
   bool as_printed{false};
-  /// The explorer weighs more than gains (Foresight), so that it is offered many places to choose from.
+  /// The explorer weighs more than gains (Foresight, ExplorerConfig::good_enough): it is offered many places to choose
+  /// from.
   bool looks_ahead{false};
   ViewPlannerConfig planner{};    ///< min_gain and rival_share
   std::vector<Region> regions{};  ///< regions that are taken in turn

@@ -81,8 +81,8 @@ class Robot {
   /// Error means that the robot itself failed.
   [[nodiscard]] virtual Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) = 0;
 
-  /// Where the camera will be on its way, every so many seconds from `every_s` on, the end left out; empty for robots
-  /// that do not know. Expects every_s > 0.
+  /// Where the camera will be on its way, at multiples of `every_s`, the end left out; empty for robots that do not
+  /// know. Expects every_s > 0.
   [[nodiscard]] virtual std::vector<CameraSample> camera_on_way(const Motion& motion, double every_s) const;
 
   /// A motion back to where the robot stood in the beginning; a refusal where it does not know the way, or the place.

@@ -68,7 +68,7 @@ constexpr double kBrokenShare{0.1};
 /// How far views keep what gains promise, over all views whose promise was checked.
 struct Calibration {
   std::size_t views{0};
-  std::optional<double> rank_correlation;  ///< of promised and observed gain; see rank_correlation()
+  std::optional<double> rank_correlation;  ///< promised beside observed gain; see rank_correlation()
   std::optional<double> median_kept;       ///< observed gain as a share of the promised one
   std::size_t broken{0};                   ///< views that kept less than kBrokenShare
 };

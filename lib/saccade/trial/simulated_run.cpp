@@ -98,7 +98,7 @@ ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& 
   setup.weigh_by_saliency = config.weigh_by_saliency;
   setup.as_printed = config.as_printed;
   setup.least_share = config.least_share;
-  setup.looks_ahead = config.exploration.foresight().is_needed();
+  setup.looks_ahead = config.exploration.foresight().is_needed() || config.exploration.good_enough < 1.0;
   setup.planner = config.planner;
   setup.regions = {regions.begin(), regions.end()};
   setup.max_views = static_cast<std::size_t>(config.exploration.max_views);

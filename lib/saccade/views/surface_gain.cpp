@@ -57,7 +57,9 @@ Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_c
   const auto look = [&](std::size_t from, std::size_t to) {
     executor.parallel_for(to - from, 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = from + begin; i < from + end; ++i) {
-        centers[i].most = fill_in(prospect, prospect.visible(position(centers[i])), centers[i], views);
+        centers[i].most = fill_in(
+            prospect, prospect.visible(T_world_camera.subspan(centers[i].begin, centers[i].end - centers[i].begin)),
+            centers[i], views);
       }
     });
   };

@@ -115,7 +115,7 @@ TEST(Promises, BehindTheRobotsOwnBodyAreNotBelieved) {
   EXPECT_EQ(choice.surface_from({-0.6, 0.0, 0.3}), area_cm2);
 }
 
-TEST(Promises, ThatWereBrokenLoseCreditFromThereAlone) {
+TEST(Promises, ThatWereBrokenLoseCreditFromThereAboveAll) {
   Choice choice{test::half_seen_box()};
   const Vector3d failed_m{-0.6, 0.0, 0.2};
   const Vector3d beside_m{-0.58, 0.1, 0.22};
@@ -126,7 +126,8 @@ TEST(Promises, ThatWereBrokenLoseCreditFromThereAlone) {
   choice.checked = {{look_at(failed_m, {0.0, 0.0, 0.05}), 0.1}};
   EXPECT_LT(choice.rays_from(beside_m), 0.3 * rays);
   EXPECT_LT(choice.surface_from(beside_m), 0.3 * area_cm2);
-  EXPECT_NEAR(choice.surface_from(aside_m), aside_cm2, 1e-9);
+  EXPECT_LE(choice.surface_from(aside_m), aside_cm2);
+  EXPECT_GE(choice.surface_from(aside_m), 0.55 * aside_cm2) << "from elsewhere half of what it missed is taken off";
   choice.checked = {{look_at(failed_m, {0.0, 0.0, 0.05}), 0.95}};
   EXPECT_EQ(choice.surface_from(beside_m), area_cm2) << "it was kept";
 }

@@ -62,22 +62,7 @@ std::vector<SurfaceProspect::Sight> SurfaceProspect::facing(const Eigen::Vector3
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const ExpectedPoint& point = surface_.points[points_[i]];
     if ((point.position_m - center).squaredNorm() > reach_m * reach_m) continue;
-    if (surface_.faces(point, camera_m)) sights.push_back({&point, weighed_cm2(i)});
-  }
-  return sights;
-}
-
-std::vector<SurfaceProspect::Sight> SurfaceProspect::visible(const Eigen::Vector3d& camera_m) const {
-  std::vector<Sight> sights;
-  const Eigen::Vector3f center = camera_m.cast<float>();
-  const auto reach_m = 2.0F * static_cast<float>(sensor_.max_range_m);
-  for (std::size_t i = 0; i < points_.size(); ++i) {
-    const ExpectedPoint& point = surface_.points[points_[i]];
-    if ((point.position_m - center).squaredNorm() > reach_m * reach_m) continue;
-    if (!surface_.is_visible(point, camera_m)) continue;
-    const double credit =
-        in_sight_.empty() ? 1.0 : credit_->of(point.position_m.cast<double>(), in_sight_[i], camera_m);
-    sights.push_back({&point, credit * weighed_cm2(i)});
+    if (surface_.faces(point, camera_m)) sights.push_back({&point, weighed_cm2(i), i});
   }
   return sights;
 }
@@ -102,6 +87,29 @@ void SurfaceProspect::for_each_in_picture(std::span<const Sight> sights, const P
   }
 }
 
+std::vector<SurfaceProspect::Sight> SurfaceProspect::visible(std::span<const Pose> T_world_camera) const {
+  const Eigen::Vector3d camera_m = T_world_camera.front().translation();
+  std::vector<Sight> sights = facing(camera_m);
+  std::vector<std::uint8_t> in_a_picture(sights.size(), 0);
+  for (const Pose& pose : T_world_camera) {
+    for_each_in_picture(sights, pose, [&](const Sight& sight, const Eigen::Vector3f&) {
+      in_a_picture[static_cast<std::size_t>(&sight - sights.data())] = 1;
+    });
+  }
+  std::size_t count{0};
+  for (std::size_t i = 0; i < sights.size(); ++i) {
+    Sight sight = sights[i];
+    if (in_a_picture[i] == 0) continue;
+    if (!surface_.volume->is_visible(sight.point->voxel, camera_m, surface_.through_m)) continue;
+    if (!in_sight_.empty()) {
+      sight.area_cm2 *= credit_->of(sight.point->position_m.cast<double>(), in_sight_[sight.number], camera_m);
+    }
+    sights[count++] = sight;
+  }
+  sights.resize(count);
+  return sights;
+}
+
 double SurfaceProspect::area_in_picture(std::span<const Sight> sights, const Pose& T_world_camera) const {
   double area_cm2{0.0};
   for_each_in_picture(sights, T_world_camera,
@@ -121,7 +129,7 @@ Promise SurfaceProspect::promise(const Pose& T_world_camera) const {
     return (*body)(u, v) > 0.0F && (*body)(u, v) < p.z();
   };
   Promise promise;
-  for_each_in_picture(visible(T_world_camera.translation()), T_world_camera,
+  for_each_in_picture(visible(std::span{&T_world_camera, 1}), T_world_camera,
                       [&](const Sight& sight, const Eigen::Vector3f& p) {
                         if (is_behind_body(p)) return;
                         promise.voxels.push_back({surface_.volume->voxel(sight.point->voxel), sight.area_cm2});

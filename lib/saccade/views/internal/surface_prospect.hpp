@@ -26,11 +26,13 @@ class SurfaceProspect {
   struct Sight {
     const ExpectedPoint* point;
     double area_cm2;
+    std::size_t number;  ///< among the points of the region
   };
   /// Points within range that face a place and are not behind a support.
   [[nodiscard]] std::vector<Sight> facing(const Eigen::Vector3d& camera_m) const;
-  /// Those with a free line of sight, with the credit that they have from there.
-  [[nodiscard]] std::vector<Sight> visible(const Eigen::Vector3d& camera_m) const;
+  /// Those with a free line of sight that lie in a picture, with the credit that they have from there. The poses share
+  /// their place, and are one at least.
+  [[nodiscard]] std::vector<Sight> visible(std::span<const Pose> T_world_camera) const;
   /// Area of the points that lie in the picture, cm².
   [[nodiscard]] double area_in_picture(std::span<const Sight> sights, const Pose& T_world_camera) const;
   /// Area of visible points in the picture that the robot's own body does not hide; their voxels.
