@@ -57,6 +57,7 @@ void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
     if (!options.has_arm())
       usage_error("--fuse-when", "a camera that flies is at the next view at once; motion needs an arm");
     options.run.exploration.frame_on_way_s = kFrameOnWay_s;
+    options.run.exploration.way_counts = false;  // views are those of the thesis, whenever frames are fused
   }
   const bool is_file = std::filesystem::path{options.scene}.has_extension();
   if (options.before.empty() && is_file) usage_error("--before", "is needed where --scene is a file");

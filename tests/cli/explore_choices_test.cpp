@@ -16,13 +16,13 @@ Outcome explore(const std::string& scene, const fs::path& out, const Arguments& 
                      more);
 }
 
-/// A table half a metre wide, and what stands on it, or nothing.
+/// A table wider than the workspace, and what stands on it, or nothing.
 std::string table_scene(const std::string& objects) {
   return "scene: table\n"
          "workspace: {min: [-0.25, -0.25, -0.03], max: [0.25, 0.25, 0.25]}\n"
          "scan: [{from: [-0.75, 0, 0.35], look_at: [0, 0, 0.05]}]\n"
          "objects:\n"
-         "  - {name: table, box: {size: [0.5, 0.5, 0.03]}, at: [0, 0, -0.03], support: true}\n" +
+         "  - {name: table, box: {size: [1.0, 1.0, 0.03]}, at: [0, 0, -0.03], support: true}\n" +
          objects;
 }
 

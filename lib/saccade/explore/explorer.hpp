@@ -26,13 +26,16 @@ struct ExplorerConfig {
   double oscillation_rad{5_deg};  ///< at each view the camera is tilted from minus to plus this
   int oscillation_frames{5};      ///< frames taken on the way; 1: none but the view itself
   /// Seconds of motion between frames that are fused on the way to a view (KFOM of thesis §2.2); 0: none are, the map
-  /// learns at views alone (KFOVP). For robots that know their way. What they are expected to show counts: Foresight.
+  /// learns at views alone (KFOVP). For robots that know their way.
   double frame_on_way_s{0.0};
+  bool way_counts{true};                    ///< what these frames are expected to show: Foresight; false: the thesis
   int lookahead{1};                         ///< views that are chosen together: Foresight
   Objective objective{Objective::surface};  ///< what a view is chosen by
 
   [[nodiscard]] Status validate() const;
-  [[nodiscard]] Foresight foresight() const { return {static_cast<std::size_t>(lookahead), objective, frame_on_way_s}; }
+  [[nodiscard]] Foresight foresight() const {
+    return {static_cast<std::size_t>(lookahead), objective, way_counts ? frame_on_way_s : 0.0};
+  }
 };
 
 /// What the caller answers before the camera moves to a view.
