@@ -4,7 +4,7 @@
 
 Runs the campaigns (all of them, or those that are named) with `saccade compare`, each into a folder of its own under
 FOLDER, where what was done before is not done again, and writes what they come to into DOCUMENT, with what it is held
-to. Exit status 1: something that is held to was missed, 2: a campaign failed.
+to. "table" in place of a campaign runs none, and writes what there is. Exit status 1: something that is held to was missed, 2: a campaign failed.
 SACCADE_DATA: scanned meshes (../shared/data). SACCADE_UR_URDF: an arm of the kind of a UR, for the campaigns `every`."""
 import csv
 import math
@@ -22,7 +22,7 @@ DATA = pathlib.Path(os.environ.get("SACCADE_DATA", "../shared/data"))
 
 
 def campaign(title, scenes, strategies, *options, views=5):
-    return {"title": title, "options": ["--scenes", scenes, "--strategies", strategies, "--seeds", "1",
+    return {"title": title, "strategies": strategies.split(","), "options": ["--scenes", scenes, "--strategies", strategies, "--seeds", "1",
                                         "--max-views", str(views), *options]}
 
 
@@ -59,11 +59,16 @@ def campaigns():
 
 
 class Figures:
-    """The tables of a campaign that was run."""
+    """The tables of a campaign that was run, or as far as it was."""
 
-    def __init__(self, folder):
-        self.runs = list(csv.DictReader((folder / "runs.csv").open()))
-        self.views = list(csv.DictReader((folder / "views.csv").open()))
+    def __init__(self, folder, strategies):
+        def read(name):
+            with (folder / name).open() as file:
+                return [row for row in csv.DictReader(file) if row["strategy"] in strategies]
+
+        self.runs = read("runs.csv")
+        self.views = read("views.csv")
+        self.scenes = len({run["scene"] for run in self.runs})
 
     def strategies(self):
         return list(dict.fromkeys(run["strategy"] for run in self.runs))
@@ -223,8 +228,10 @@ def main():
     folder = pathlib.Path(folder)
     folder.mkdir(parents=True, exist_ok=True)
     known = campaigns()
-    failed = [name for name in names or known if not run(program, name, known[name], folder)]
-    done = {name: Figures(folder / name) for name in known if (folder / name / "runs.csv").exists()}
+    wanted = [] if names == ["table"] else names or list(known)
+    failed = [name for name in wanted if not run(program, name, known[name], folder)]
+    done = {name: Figures(folder / name, known[name]["strategies"]) for name in known
+            if (folder / name / "runs.csv").exists()}
     lines = ["# The planner, measured", "",
              "Written by `make evidence` (`scripts/evidence_planner.py`). One seed a scene, the noise of a Kinect v1; means "
              "over scenes. Nothing was chosen by the scenes clutter:201-230. [Metrics](metrics.md), "
@@ -235,7 +242,7 @@ def main():
         missed += held.missed
         shown = " ".join(known[name]["options"]).replace(str(DATA), "$SACCADE_DATA")
         lines += [f"## {known[name]['title']}", "", "```sh", f"saccade compare {shown} --out DIR", "```", "",
-                  *table(figures), "", *held.lines, ""]
+                  f"{figures.scenes} scenes.", "", *table(figures), "", *held.lines, ""]
     pathlib.Path(document).write_text("\n".join(lines).rstrip() + "\n")
     print(f"  {document}: {missed} missed; failed: {', '.join(failed) or 'none'}")
     return 2 if failed else 1 if missed else 0
