@@ -59,8 +59,7 @@ void add_foresight_options(CLI::App& command, RunOptions& options) {
       "what a view is chosen by: what it is expected to show, or that for the time of the motion and of looking");
   add_value(command, "--frame-on-way", options.run.exploration.frame_on_way_s, "SECONDS",
             "fuse a frame on an arm's way to a view, too, each time that these seconds have passed; what these are "
-            "expected to show counts "
-            "in the choice of the view (0: none)");
+            "expected to show counts in the choice of the view (0: none)");
 }
 
 void check_foresight(const RunOptions& options, const std::string& robot) {

@@ -20,9 +20,8 @@ struct RunOptions {
   CameraOptions camera;
 };
 
-/// Adds --max-views, --min-gain, --good-enough, --rivals, --gain-width,
-/// --radius,
-/// --voxel-size, --no-noise, --sensor and the camera's options.
+/// Adds --max-views, --min-gain, --good-enough, --rivals, --gain-width, --radius, --voxel-size, --no-noise, --sensor
+/// and the camera's options.
 /// @param min_gain  what the default of --min-gain is, for --help.
 void add_run_options(CLI::App& command, RunOptions& options, const std::string& min_gain);
 /// Adds --lookahead, --objective and --frame-on-way, for what chooses among views.

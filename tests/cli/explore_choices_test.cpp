@@ -57,6 +57,8 @@ TEST(ExploreChoices, RefuseWhatTheyCannotWeigh) {
   refused({"--lookahead", "0"}, {"--lookahead"});
   refused({"--objective", "time"}, {"--objective", "surface-per-second"});
   refused({"--frame-on-way", "-1"}, {"frames on the way"});
+  refused({"--frame-on-way", "nan"}, {"frame"});
+  refused({"--frame-on-way", "1e-9"}, {"frames on the way", "10 ms"});
   refused({"--frame-on-way", "0.5", "--robot", "free"}, {"--frame-on-way", "needs an arm"});
 }
 

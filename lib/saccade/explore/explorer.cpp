@@ -7,6 +7,8 @@
 namespace saccade {
 namespace {
 
+constexpr double kLeastOnWay_s{0.01};  // no camera is faster, and each frame of a plan costs a look at the map
+
 std::vector<Pose> poses_of(std::span<const RankedView> views) {
   std::vector<Pose> poses;
   for (const RankedView& view : views) poses.push_back(view.T_world_camera);
@@ -42,7 +44,8 @@ Status ExplorerConfig::validate() const {
   if (oscillation_frames < 1) return fail("a view needs one frame at least");
   if (lookahead < 1) return fail("one view at least is looked ahead");
   if (!(oscillation_rad >= 0.0 && oscillation_rad < 1.5)) return fail("the oscillation is within 0 and 85 degrees");
-  if (!(frame_on_way_s >= 0.0 && std::isfinite(frame_on_way_s))) return fail("frames on the way need a time between");
+  if (!(frame_on_way_s == 0.0 || (frame_on_way_s >= kLeastOnWay_s && std::isfinite(frame_on_way_s))))
+    return fail("frames on the way need 10 ms between them at least");
   return {};
 }
 

@@ -80,6 +80,13 @@ Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_c
   return result;
 }
 
+/// Fills in gains, with the robot's own body heeded.
+void tell_gains(const SurfaceProspect& prospect, std::span<RankedView> views, const Executor& executor) {
+  executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end) {
+    for (std::size_t i = begin; i < end; ++i) views[i].gain = prospect.promise(views[i].T_world_camera).worth();
+  });
+}
+
 /// Takes off what the robot's own body hides, and drops views that others might beat.
 void without_body(const SurfaceProspect& prospect, Sighted& sighted, std::size_t count, const Executor& executor) {
   std::vector<RankedView>& views = sighted.views;
@@ -88,11 +95,7 @@ void without_body(const SurfaceProspect& prospect, Sighted& sighted, std::size_t
     return;
   }
   const auto look = [&](std::size_t from, std::size_t to) {
-    executor.parallel_for(to - from, 1, [&](std::size_t begin, std::size_t end) {
-      for (std::size_t i = from + begin; i < from + end; ++i) {
-        views[i].gain = prospect.promise(views[i].T_world_camera).worth();
-      }
-    });
+    tell_gains(prospect, std::span{views}.subspan(from, to - from), executor);
   };
   views.resize(firm_best(
                    views, sighted.beyond, count, [](const RankedView& view) { return view.gain; }, look)
@@ -132,11 +135,23 @@ Result<RankedViews> SurfaceGain::best(const PlanningContext& context, const Regi
   SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
   SACCADE_TRY(SurfaceProspect made, SurfaceProspect::create(context, region, std::move(surface), widened_));
   const auto prospect = std::make_shared<const SurfaceProspect>(std::move(made));
-  Sighted best = sighted(*prospect, T_world_camera, count, config_.one_roll, context.executor);
+  std::vector<Pose> others;
+  std::vector<RankedView> attempted;
+  for (const Pose& pose : T_world_camera) {
+    if (context.was_attempted(pose)) {
+      attempted.push_back({pose});
+    } else {
+      others.push_back(pose);
+    }
+  }
+  Sighted best = sighted(*prospect, others, count, config_.one_roll, context.executor);
   without_body(*prospect, best, count, context.executor);
   RankedViews ranked;
-  ranked.complete = best.views.size() == T_world_camera.size();
+  ranked.complete = best.views.size() == others.size();
   ranked.views = std::move(best.views);
+  tell_gains(*prospect, attempted, context.executor);
+  ranked.views.insert(ranked.views.end(), attempted.begin(), attempted.end());
+  order_by_gain(ranked.views);
   ranked.evaluated = T_world_camera.size();
   ranked.least_gain = config_.least_share * prospect->surface().seen_cm2;
   ranked.promise = [prospect](const Pose& pose) { return prospect->promise(pose); };

@@ -32,9 +32,9 @@ class SurfaceGain final : public Gain {
   /// O(voxels of the workspace + camera centres · points · voxels between).
   [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;
-  /// The best, exactly: lines of sight are followed where the bound, the area in the field of view that faces the
-  /// camera, comes up to them. Those that were attempted are among them.
-  /// With one_roll, `count` of the camera centres.
+  /// The best that were not attempted, exactly, and those that were: lines of sight are followed where the bound, the
+  /// area in the field of view that faces the camera, comes up to the best. With one_roll, a view for each of `count`
+  /// camera centres.
   [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 

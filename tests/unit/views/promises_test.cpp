@@ -187,5 +187,27 @@ TEST(SurfaceGain, TheBestByBoundsAreTheBestOfAll) {
   }
 }
 
+TEST(SurfaceGain, ThoseThatWereAttemptedTakeNoOthersPlace) {
+  const Choice choice{test::half_seen_box()};
+  const std::vector<Pose> poses = poses_around();
+  for (const bool one_roll : {false, true}) {
+    SurfaceGain gain{{.sensor = kSensor, .one_roll = one_roll}};
+    PlanningContext context = choice.context();
+    const RankedViews before = gain.best(context, choice.region(), poses, 8).value();
+    // As if an arm had found no way to any of them.
+    context.attempted = [&](const Pose& pose) {
+      return std::any_of(before.views.begin(), before.views.end(),
+                         [&](const RankedView& view) { return view.T_world_camera.matrix() == pose.matrix(); });
+    };
+    const RankedViews after = gain.best(context, choice.region(), poses, 8).value();
+    std::size_t untried = 0;
+    for (const RankedView& view : after.views) untried += context.was_attempted(view.T_world_camera) ? 0 : 1;
+    EXPECT_GE(untried, 8U);
+    EXPECT_GE(after.views.size(), untried + before.views.size()) << "attempted ones are told too";
+    EXPECT_TRUE(std::is_sorted(after.views.begin(), after.views.end(),
+                               [](const RankedView& a, const RankedView& b) { return a.gain > b.gain; }));
+  }
+}
+
 }  // namespace
 }  // namespace saccade
