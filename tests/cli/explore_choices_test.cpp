@@ -75,6 +75,29 @@ TEST(ExploreChoices, ATableWithNothingOnItIsDoneAtOnce) {
                  {"nothing but supports", "choose another"});
 }
 
+/// Nothing behind it tells what is empty around it.
+TEST(ExploreChoices, AThingInTheAirIsSeenFromAllSides) {
+  const TempFolder folder;
+  const std::string scene =
+      "scene: in the air\n"
+      "workspace: {min: [-0.2, -0.2, 0], max: [0.2, 0.2, 0.4]}\n"
+      "scan: [{from: [-0.8, 0, 0.25], look_at: [0, 0, 0.2]}]\n"
+      "objects:\n"
+      "  - {name: box, box: {size: [0.12, 0.1, 0.15]}, at: [0, 0, 0.12], turn_deg: [0, 0, 20]}\n";
+  const Outcome outcome = explore(folder.write("air.yaml", scene).string(), folder / "run",
+                                  {"--robot", "free", "--no-noise", "--max-views", "12", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json result = outcome.json().at("result");
+  EXPECT_EQ(result.at("stopped_because"), "regions_done");
+  EXPECT_GT(result.at("final").at("coverage").get<double>(), 0.95);
+  bool kept = true;
+  for (const nlohmann::json& view : result.at("views")) {
+    const bool kept_before = kept;
+    kept = view.at("gain_observed").get<double>() >= 0.1 * view.at("gain").get<double>();
+    EXPECT_TRUE(kept || kept_before) << "two in a row broke their promises";
+  }
+}
+
 TEST(ExploreChoices, NothingSalientIsDoneAtOnce) {
   const TempFolder folder;
   const Outcome outcome = explore(tiny_cell_file(), folder / "run",

@@ -5,6 +5,7 @@
 
 #include <cstddef>
 #include <functional>
+#include <memory>
 #include <optional>
 #include <span>
 #include <vector>
@@ -17,6 +18,8 @@
 #include "saccade/sensor/camera.hpp"
 
 namespace saccade {
+
+struct ExpectedSurface;
 
 /// A view that was taken, and the share of its promise that it kept.
 struct CheckedView {
@@ -37,6 +40,8 @@ struct PlanningContext {
   std::optional<PinholeCamera> sensor{};
   /// The robot's own body in the picture of a sensor. Empty: there is none, or it is not known.
   std::function<Result<OwnBody>(const PinholeCamera& sensor)> own_body{};
+  /// Where parts of one choice leave what they expect of the map for each other; nullptr: each works it out.
+  std::shared_ptr<const ExpectedSurface>* expected{nullptr};
 
   [[nodiscard]] bool was_attempted(const Pose& T_world_camera) const { return attempted && attempted(T_world_camera); }
 

@@ -58,7 +58,7 @@ Status look_ahead(const Foresight& foresight, Robot& robot, const Executor& exec
     double value;
   };
   std::vector<Weighed> set;
-  for (const std::size_t i : best_together(promises, count, executor)) {
+  for (const std::size_t i : best_sequence(promises, count, executor)) {
     const Pose& pose = ranking.untried()[pool[i]].T_world_camera;
     SACCADE_TRY(const PlannedMotion planned, robot.plan(std::span{&pose, 1}));
     if (!planned.motion) continue;

@@ -23,7 +23,8 @@ inline constexpr auto kObjectiveNames =
 [[nodiscard]] constexpr std::string_view to_string(Objective objective) { return kObjectiveNames.of(objective); }
 
 struct Foresight {
-  /// Views that together make known most: the next view is one of them; they are chosen anew for each. 1: the best one.
+  /// Views that one after the other make known most, soonest: the next view is one of them; they are chosen anew for
+  /// each. 1: the best one.
   std::size_t lookahead{1};
   Objective objective{Objective::surface};
   double frame_on_way_s{0.0};  ///< seconds between frames that are fused on the way to a view; 0: none are
@@ -35,7 +36,7 @@ struct Foresight {
 };
 
 /// Puts the view to which the robot is to go to the front of the ranking, and behind it the others of the set, then the
-/// rest as they were. The set is best_together of `lookahead` views, or of 8 to choose from where it is 1. Of the set,
+/// rest as they were. The set is best_sequence of `lookahead` views, or of 8 to choose from where it is 1. Of the set,
 /// the view comes first that is worth most, with what frames on the way show, or most for its time. Views of the set
 /// that the robot cannot reach stay where they were. Does nothing where the gain makes no promises.
 /// Costs a motion's planning for each view of the set, and the promises of 256 views. Errors: those of the robot.

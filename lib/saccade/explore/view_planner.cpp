@@ -36,13 +36,16 @@ Result<Ranking> ViewPlanner::rank(const PlanningScene& scene) {
   const auto& [attention, generator, gain, config] = parts_;
   SACCADE_CHECK(config.validate());
   Ranking ranking{config.min_gain};
-  const PlanningContext whole = scene.context();
+  std::shared_ptr<const ExpectedSurface> expected;  // attention, views and gain share it
+  PlanningContext whole = scene.context();
+  whole.expected = &expected;
   SACCADE_TRY(const std::vector<RegionOfInterest> regions,  // 3–6
               whole.measure(Phase::saliency, [&] { return parts_.attention->regions(whole); }));
   for (const RegionOfInterest& region : regions) {  // 7
     if (region.index < scene.first_region) continue;
     if (!ranking.competes(region, config.rival_share)) break;
-    const PlanningContext context = scene.context(region.index);
+    PlanningContext context = scene.context(region.index);
+    context.expected = &expected;
     ViewCandidates found;
     RankedViews ranked;
     RefusalCounts refused;

@@ -184,6 +184,28 @@ void find_supports_below(const StateVolume& volume, std::span<const std::vector<
   }
 }
 
+/// Whether an empty voxel lies in a cavity: whichever way one goes along x and y within its object's hull, something
+/// ends the empty space, and on two sides at least that was seen.
+bool is_in_cavity(const StateVolume& volume, const VoxelRole* roles, std::size_t voxel) {
+  int seen{0};
+  for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}, volume.row(), -volume.row()}) {
+    std::size_t at = voxel;
+    while (at < volume.size() && roles[at].is_empty_inside()) at += static_cast<std::size_t>(step);
+    if (at >= volume.size() || volume[at] == VoxelState::empty) return false;
+    seen += volume[at] == VoxelState::occupied ? 1 : 0;
+  }
+  return seen >= 2;
+}
+
+/// Whether an unknown voxel closes a cavity towards what is known to be empty in it.
+bool closes_cavity(const StateVolume& volume, const VoxelRole* roles, std::size_t voxel) {
+  const std::array<std::ptrdiff_t, 6> steps{volume.layer(), 1, -1, volume.row(), -volume.row(), -volume.layer()};
+  const auto open = std::find_if(steps.begin(), steps.end(), [&](std::ptrdiff_t step) {
+    return roles[voxel + static_cast<std::size_t>(step)].is_empty_inside();
+  });
+  return open != steps.end() && is_in_cavity(volume, roles, voxel + static_cast<std::size_t>(*open));
+}
+
 bool is_behind(std::span<const Wall> walls, const Eigen::Vector3d& p_m) {
   return std::any_of(walls.begin(), walls.end(),
                      [&](const Wall& wall) { return wall.in_front_m(p_m.head<2>()) < 0.0 && wall.faces(p_m); });
@@ -201,6 +223,8 @@ Status ExpectedSurfaceConfig::validate() const {
   if (!share(beside_share) || !share(completed_share))
     return fail("the share of unknown space that is surface lies within 0 and 1");
   if (!positive(spacing_m)) return fail("the distance between points must be positive");
+  if (!(behind_opening >= 1.0 && std::isfinite(behind_opening)))
+    return fail("the surface behind an opening must be finite and at least its area");
   if (!(through_m >= 0.0 && std::isfinite(through_m)))
     return fail("the unknown length of lines of sight must not be negative");
   return {};
@@ -214,7 +238,7 @@ bool ExpectedSurface::faces(const ExpectedPoint& point, const Eigen::Vector3d& c
 }
 
 bool ExpectedSurface::is_visible(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
-  return faces(point, camera_m) && volume->is_visible(point.voxel, camera_m, through_m);
+  return faces(point, camera_m) && volume->is_visible(point.voxel, camera_m, config.through_m);
 }
 
 std::int32_t ExpectedSurface::object_near(const Eigen::Vector3d& p_m, double within_m) const {
@@ -241,7 +265,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
       map.config.workspace ? voxels_with_center_in(*map.config.workspace, voxel_m) : map.grid.known_bounds();
   SACCADE_TRY(StateVolume read, StateVolume::read(map, box, executor));
   ExpectedSurface result;
-  result.through_m = config.through_m;
+  result.config = config;
   result.volume = std::make_shared<const StateVolume>(std::move(read));
   const StateVolume& volume = *result.volume;
   if (volume.size() == 0) return result;
@@ -275,6 +299,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
                 exposed_at(volume, i, [&](std::size_t other) { return roles[other].opening() != VoxelRole::closed; });
             if (!e) return;
             e->area_vox *= static_cast<float>(config.completed_share);
+            if (closes_cavity(volume, roles, i)) e->area_vox *= static_cast<float>(config.behind_opening);
             completed.push_back(*e);
             return;
           }
@@ -299,6 +324,16 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
       result.points[i].object = result.object_near(result.points[i].position_m.cast<double>(), config.reach_m);
   });
   return result;
+}
+
+Result<std::shared_ptr<const ExpectedSurface>> expected_surface(const PlanningContext& context,
+                                                                const ExpectedSurfaceConfig& config) {
+  if (context.expected != nullptr && *context.expected && (*context.expected)->config == config)
+    return *context.expected;
+  SACCADE_TRY(ExpectedSurface made, expected_surface(context.map, config, context.executor));
+  auto surface = std::make_shared<const ExpectedSurface>(std::move(made));
+  if (context.expected != nullptr) *context.expected = surface;
+  return surface;
 }
 
 }  // namespace saccade

@@ -6,7 +6,7 @@
 #include <memory>
 #include <vector>
 
-#include "saccade/attention/region_of_interest.hpp"
+#include "saccade/attention/attention_source.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/result.hpp"
 #include "saccade/map/tsdf_map.hpp"
@@ -26,6 +26,8 @@ struct ExpectedSurfaceConfig {
   double beside_share{0.16};  ///< as this share of its area: most of it turns out to be empty.
   /// The boundary of completed objects counts as this share of its area: it lies too far out, or was not seen for good.
   double completed_share{0.8};
+  /// Where the unknown closes a cavity, there is this much more: a hemisphere has twice the area of its opening.
+  double behind_opening{2.0};
   /// Points nearer to each other than this, facing about the same way, become one.
   double spacing_m{0.015};
   /// A line of sight may begin with unknown space over this length: completed surfaces are guesses.
@@ -33,6 +35,7 @@ struct ExpectedSurfaceConfig {
 
   /// invalid_argument for areas and lengths that are not positive and finite, or shares outside [0, 1].
   [[nodiscard]] Status validate() const;
+  [[nodiscard]] bool operator==(const ExpectedSurfaceConfig&) const = default;
 };
 
 /// A piece of surface that was not seen yet.
@@ -53,7 +56,7 @@ struct ExpectedSurface {
   std::vector<Wall> walls;                    ///< the largest first
   std::vector<Box> objects;                   ///< around the seen voxels of each object, world frame
   double seen_cm2{0.0};                       ///< area of the surface of objects that was seen
-  double through_m{0.0};                      ///< as configured
+  ExpectedSurfaceConfig config;               ///< that it was made with
   std::shared_ptr<const StateVolume> volume;  ///< the states of voxels
 
   /// Whether a point may be seen from a camera, as far as that can be told without a look between them: at most 80°
@@ -69,11 +72,15 @@ struct ExpectedSurface {
 
 /// Expects surface in two places. Each object (occupied voxels above the supports, connected by gaps of two voxels at
 /// most) is completed: its footprint's convex hull is extruded from its support to its top, less what is known to be
-/// empty, and the boundary of what is unknown in there is expected to be surface. So is, with less weight, the
-/// unknown beside the empty near the seen surface of an object.
+/// empty, and the boundary of what is unknown in there is expected to be surface, of cavities more. So is, with less
+/// weight, the unknown beside the empty near the seen surface of an object.
 /// @return an empty surface for a map without objects; invalid_argument for a bad config or too large a workspace.
 /// O(voxels of the workspace). The thread count never changes a bit.
 [[nodiscard]] Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const ExpectedSurfaceConfig& config,
                                                        const Executor& executor);
+
+/// What is expected in a context's map. Parts of one choice that ask with equal configurations share it.
+[[nodiscard]] Result<std::shared_ptr<const ExpectedSurface>> expected_surface(const PlanningContext& context,
+                                                                              const ExpectedSurfaceConfig& config);
 
 }  // namespace saccade

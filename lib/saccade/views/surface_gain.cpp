@@ -13,6 +13,9 @@
 namespace saccade {
 namespace {
 
+constexpr double kBroken{0.25};       // share of a promise below which the map cannot be relied on, from then on
+constexpr double kDisappointed{0.5};  // the same for the next view
+
 /// Poses of one camera centre, and the most that one of them can gain.
 struct Center {
   std::size_t begin{0};
@@ -102,6 +105,19 @@ void without_body(const SurfaceProspect& prospect, Sighted& sighted, std::size_t
                    .firm);
 }
 
+/// Whether there is more to see than the known empty space lets one expect.
+bool is_doubtful(std::span<const CheckedView> checked) {
+  if (!checked.empty() && checked.back().kept < kDisappointed) return true;
+  return std::any_of(checked.begin(), checked.end(), [](const CheckedView& view) { return view.kept < kBroken; });
+}
+
+/// Whether a view that was not attempted promises enough.
+bool is_worth_going(const PlanningContext& context, const RankedViews& ranked) {
+  return std::any_of(ranked.views.begin(), ranked.views.end(), [&](const RankedView& view) {
+    return view.gain > 0.0 && view.gain >= ranked.least_gain && !context.was_attempted(view.T_world_camera);
+  });
+}
+
 }  // namespace
 
 Status SurfaceGainConfig::validate() const {
@@ -109,6 +125,7 @@ Status SurfaceGainConfig::validate() const {
   SACCADE_CHECK(sensor.validate());
   if (!(tilt_rad >= 0.0 && std::isfinite(tilt_rad))) return fail("the tilt must not be negative");
   if (!(least_share >= 0.0 && least_share <= 1.0)) return fail("the least share of a view lies within 0 and 1");
+  if (!(doubtful_share >= 0.0 && doubtful_share <= 1.0)) return fail("the doubtful share lies within 0 and 1");
   return surface.validate();
 }
 
@@ -120,8 +137,9 @@ SurfaceGain::SurfaceGain(const SurfaceGainConfig& config)
 Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                   std::span<const Pose> T_world_camera) {
   SACCADE_CHECK(check_finite(T_world_camera, "surface gain"));
-  SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
-  SACCADE_TRY(const SurfaceProspect prospect, SurfaceProspect::create(context, region, std::move(surface), widened_));
+  SACCADE_TRY(auto surface, expected_surface(context, config_.surface));
+  SACCADE_TRY(const SurfaceProspect prospect,
+              SurfaceProspect::create(context, region, std::move(surface), widened_, 0.0));
   std::vector<double> gains(T_world_camera.size());
   context.executor.parallel_for(gains.size(), 8, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) gains[i] = prospect.promise(T_world_camera[i]).worth();
@@ -132,8 +150,19 @@ Result<std::vector<double>> SurfaceGain::evaluate(const PlanningContext& context
 Result<RankedViews> SurfaceGain::best(const PlanningContext& context, const RegionOfInterest& region,
                                       std::span<const Pose> T_world_camera, std::size_t count) {
   SACCADE_CHECK(check_finite(T_world_camera, "surface gain"));
-  SACCADE_TRY(ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
-  SACCADE_TRY(SurfaceProspect made, SurfaceProspect::create(context, region, std::move(surface), widened_));
+  const bool doubtful = is_doubtful(context.checked);
+  SACCADE_TRY(RankedViews views,
+              ranked(context, region, T_world_camera, count, doubtful ? config_.doubtful_share : 0.0));
+  if (doubtful || is_worth_going(context, views)) return views;
+  return ranked(context, region, T_world_camera, count, config_.doubtful_share);
+}
+
+Result<RankedViews> SurfaceGain::ranked(const PlanningContext& context, const RegionOfInterest& region,
+                                        std::span<const Pose> T_world_camera, std::size_t count,
+                                        double doubtful_share) const {
+  SACCADE_TRY(auto surface, expected_surface(context, config_.surface));
+  SACCADE_TRY(SurfaceProspect made,
+              SurfaceProspect::create(context, region, std::move(surface), widened_, doubtful_share));
   const auto prospect = std::make_shared<const SurfaceProspect>(std::move(made));
   std::vector<Pose> others;
   std::vector<RankedView> attempted;

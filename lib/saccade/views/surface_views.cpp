@@ -23,14 +23,14 @@ SurfaceViews::SurfaceViews(std::shared_ptr<ViewGenerator> contours, const Surfac
 
 Result<ViewCandidates> SurfaceViews::views(const PlanningContext& context, const RegionOfInterest& region) {
   SACCADE_TRY(ViewCandidates found, contours_->views(context, region));
-  SACCADE_TRY(const ExpectedSurface surface, expected_surface(context.map, config_.surface, context.executor));
+  SACCADE_TRY(const auto surface, expected_surface(context, config_.surface));
   struct Cell {
     Eigen::Vector3d weighed_m{Eigen::Vector3d::Zero()};
     double area_cm2{0.0};
   };
   const auto before = [](const Index3& a, const Index3& b) { return zyx_less(a, b); };
   std::map<Index3, Cell, decltype(before)> cells{before};
-  for (const ExpectedPoint& point : surface.points) {
+  for (const ExpectedPoint& point : surface->points) {
     const Eigen::Vector3d p = point.position_m.cast<double>();
     if (!contains(region.bounds, p)) continue;
     Cell& cell = cells[voxel_at(p, config_.cell_m)];

@@ -89,38 +89,72 @@ Best best_addition(const Union& to, std::span<const Parts> views, const Executor
   return {static_cast<std::size_t>(most - adds.begin()), *most};
 }
 
-/// Replaces members by views that add more in their place. Returns whether one was replaced.
-bool exchange(std::vector<std::size_t>& set, const Numbered& all, const Executor& executor) {
+/// What a sequence of views is worth: what each adds, as often as there are views from there on.
+double worth_in_order(const Numbered& all, std::span<const std::size_t> sequence) {
+  Union before{all.voxels};
+  double sum = 0.0;
+  for (std::size_t i = 0; i < sequence.size(); ++i) {
+    const Parts& parts = all.promises[sequence[i]];
+    sum += static_cast<double>(sequence.size() - i) * before.added_by(parts);
+    before.add(parts);
+  }
+  return sum;
+}
+
+/// Replaces members by views that are worth more in their place. Returns whether one was replaced.
+bool exchange(std::vector<std::size_t>& sequence, const Numbered& all, const Executor& executor) {
   constexpr double kRounding{1e-9};
   bool exchanged = false;
-  for (std::size_t& member : set) {
-    Union others{all.voxels};
-    for (const std::size_t other : set) {
-      if (other != member) others.add(all.promises[other]);
-    }
-    const Best best = best_addition(others, all.promises, executor);
-    if (!(best.adds > (1.0 + kRounding) * others.added_by(all.promises[member]))) continue;
-    member = best.view;
+  for (std::size_t& member : sequence) {
+    std::vector<double> worth(all.promises.size());
+    const auto place = static_cast<std::size_t>(&member - sequence.data());
+    executor.parallel_for(worth.size(), 8, [&](std::size_t begin, std::size_t end) {
+      std::vector<std::size_t> changed = sequence;
+      for (std::size_t i = begin; i < end; ++i) {
+        changed[place] = i;
+        worth[i] = worth_in_order(all, changed);
+      }
+    });
+    const auto most = std::max_element(worth.begin(), worth.end());
+    if (!(*most > (1.0 + kRounding) * worth[member])) continue;
+    member = static_cast<std::size_t>(most - worth.begin());
     exchanged = true;
   }
   return exchanged;
 }
 
+/// Puts first what shows most, then what adds most to that.
+std::vector<std::size_t> in_greedy_order(const Numbered& all, std::vector<std::size_t> views) {
+  Union before{all.voxels};
+  for (auto next = views.begin(); next != views.end(); ++next) {
+    const auto adds_less = [&](std::size_t a, std::size_t b) {
+      return before.added_by(all.promises[a]) < before.added_by(all.promises[b]);
+    };
+    std::iter_swap(next, std::max_element(next, views.end(), adds_less));
+    before.add(all.promises[*next]);
+  }
+  return views;
+}
+
 }  // namespace
 
-std::vector<std::size_t> best_together(std::span<const Promise> promises, std::size_t count, const Executor& executor) {
+std::vector<std::size_t> best_sequence(std::span<const Promise> promises, std::size_t count, const Executor& executor) {
   constexpr int kRounds{4};
   const Numbered all{promises};
-  std::vector<std::size_t> set;
+  std::vector<std::size_t> sequence;
   Union together{all.voxels};
-  while (set.size() < std::min(count, promises.size())) {
+  while (sequence.size() < std::min(count, promises.size())) {
     const Best best = best_addition(together, all.promises, executor);
     if (!(best.adds > 0.0)) break;
     together.add(all.promises[best.view]);
-    set.push_back(best.view);
+    sequence.push_back(best.view);
   }
-  for (int round = 0; round < kRounds && set.size() > 1 && exchange(set, all, executor);) ++round;
-  return set;
+  for (int round = 0; round < kRounds && sequence.size() > 1; ++round) {
+    if (!exchange(sequence, all, executor)) break;
+    std::vector<std::size_t> ordered = in_greedy_order(all, sequence);
+    if (worth_in_order(all, ordered) > worth_in_order(all, sequence)) sequence = std::move(ordered);
+  }
+  return sequence;
 }
 
 double worth_together(std::span<const Promise> promises) {

@@ -11,7 +11,6 @@
 #include <utility>
 #include <vector>
 
-#include "saccade/views/surface_gain.hpp"
 #include "support/written_map.hpp"
 
 namespace saccade {
@@ -47,15 +46,6 @@ double area_facing(const ExpectedSurface& surface, const Eigen::Vector3f& direct
     if (point.normal.dot(direction) > 0.866F) area_cm2 += static_cast<double>(point.area_cm2);
   }
   return area_cm2;
-}
-
-double gain_from(const TsdfSnapshot& map, const Vector3d& camera_m) {
-  SurfaceGain gain{{.sensor = {160, 120, 131.25, 131.25, 79.5, 59.5, 0.1, 2.0}}};
-  const Executor executor;
-  const Pose pose = look_at(camera_m, {0.0, 0.0, 0.05});
-  RegionOfInterest all;
-  all.bounds = *map.config.workspace;
-  return gain.evaluate({map, executor}, all, std::span{&pose, 1}).value().front();
 }
 
 /// Unknown sides measure 9 cm × 9 cm; what lies at an edge faces two ways, or three. A share of 0.8 counts.
@@ -269,6 +259,42 @@ TEST(ExpectedSurface, TheSideOfALargeBoxIsNoWall) {
   EXPECT_GT(area_facing(surface, {-1, 0, 0}), 500.0);
 }
 
+/// A pot of 20 cm, its walls and the upper half of its inside known; `notch` opens its side towards +x down to there.
+VoxelState half_a_pot(const Vector3d& p, bool notch) {
+  const double to_axis = p.cwiseAbs().head<2>().maxCoeff();
+  if (to_axis > 0.1 || p.z() < 0.0 || p.z() > 0.2) return table_at(p);
+  if (notch && p.z() > 0.1 && p.x() > 0.08) return VoxelState::empty;
+  if (to_axis > 0.08) return VoxelState::occupied;
+  return p.z() > 0.1 ? VoxelState::empty : VoxelState::unknown;
+}
+
+TEST(ExpectedSurface, BehindTheOpeningOfACavityThereIsMoreThanTheOpening) {
+  const auto facing_up = [](bool notch, double behind_opening) {
+    const TsdfSnapshot map = map_of([&](const Vector3d& p) { return half_a_pot(p, notch); });
+    return area_facing(surface_of(map, {.behind_opening = behind_opening}), {0, 0, 1});
+  };
+  const double opening_cm2 = 0.8 * 16.0 * 16.0;
+  EXPECT_NEAR(facing_up(false, 1.0), opening_cm2, 0.05 * opening_cm2);
+  EXPECT_NEAR(facing_up(false, 2.0), 2.0 * opening_cm2, 0.1 * opening_cm2);
+  EXPECT_NEAR(facing_up(true, 2.0), opening_cm2, 0.05 * opening_cm2) << "open to one side, it is no cavity";
+}
+
+TEST(ExpectedSurface, IsWorkedOutOnceForAChoice) {
+  const TsdfSnapshot map = map_of(half_a_box);
+  const Executor executor;
+  std::shared_ptr<const ExpectedSurface> shared;
+  PlanningContext context{map, executor};
+  const auto alone = expected_surface(context, {}).value();
+  context.expected = &shared;
+  const auto first = expected_surface(context, {}).value();
+  EXPECT_NE(first, alone);
+  EXPECT_EQ(first->points.size(), alone->points.size());
+  EXPECT_EQ(expected_surface(context, {}).value(), first);
+  const auto other = expected_surface(context, {.completed_share = 0.4}).value();
+  EXPECT_NE(other, first) << "it was made with another configuration";
+  EXPECT_NEAR(area_facing(*other, {-1, 0, 0}), 0.5 * area_facing(*first, {-1, 0, 0}), 1.0);
+}
+
 TEST(ExpectedSurface, BadConfigurationsAreRefused) {
   const auto refused = [](auto change) {
     ExpectedSurfaceConfig config;
@@ -281,59 +307,9 @@ TEST(ExpectedSurface, BadConfigurationsAreRefused) {
   EXPECT_TRUE(refused([](auto& c) { c.decay_m = 0.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.beside_share = 1.5; }));
   EXPECT_TRUE(refused([](auto& c) { c.completed_share = -0.1; }));
+  EXPECT_TRUE(refused([](auto& c) { c.behind_opening = 0.9; }));
   EXPECT_TRUE(refused([](auto& c) { c.spacing_m = 0.0; }));
   EXPECT_TRUE(refused([](auto& c) { c.through_m = -0.1; }));
-}
-
-TEST(SurfaceGain, IsTheAreaThatIsExpectedInThePicture) {
-  const TsdfSnapshot map = map_of(half_a_box);
-  EXPECT_NEAR(gain_from(map, {-0.6, 0.0, 0.1}), 65.0, 20.0);
-  EXPECT_LT(gain_from(map, {0.6, 0.0, 0.1}), 10.0);
-  const double two_sides = gain_from(map, {-0.45, 0.45, 0.1});
-  EXPECT_NEAR(two_sides, 130.0, 30.0);
-}
-
-TEST(SurfaceGain, TheThreadCountChangesNoBit) {
-  const TsdfSnapshot map = map_of(half_a_box);
-  RegionOfInterest all;
-  all.bounds = *map.config.workspace;
-  std::vector<Pose> poses;
-  for (int i = 0; i < 60; ++i)
-    poses.push_back(look_at({0.6 * std::cos(i), 0.6 * std::sin(i), 0.01 * i}, {0.0, 0.0, 0.05}));
-  std::vector<std::vector<double>> gains;
-  for (const std::size_t threads : {1U, 2U, 5U}) {
-    SurfaceGain gain{{}};
-    const Executor executor = Executor::with_threads(threads);
-    gains.push_back(gain.evaluate({map, executor}, all, poses).value());
-  }
-  EXPECT_GT(*std::max_element(gains[0].begin(), gains[0].end()), 50.0);
-  EXPECT_EQ(gains[1], gains[0]);
-  EXPECT_EQ(gains[2], gains[0]);
-}
-
-TEST(SurfaceGain, PosesThatAreNoneAreRefused) {
-  SurfaceGain gain{{}};
-  const Executor executor;
-  const TsdfSnapshot map = map_of(half_a_box);
-  std::array<Pose, 2> poses{Pose::Identity(), Pose::Identity()};
-  poses[1].translation().x() = std::nan("");
-  const auto refused = gain.evaluate({map, executor}, {}, poses);
-  ASSERT_FALSE(refused);
-  EXPECT_NE(refused.error().to_string().find("pose 1"), std::string::npos);
-}
-
-TEST(SurfaceGain, NothingIsSeenThroughATable) {
-  const TsdfSnapshot map = map_of(half_a_box);
-  EXPECT_EQ(gain_from(map, {-0.6, 0.0, -0.05}), 0.0);
-  EXPECT_EQ(gain_from(map, {0.0, 0.0, -0.6}), 0.0);
-}
-
-TEST(SurfaceGain, UnknownSpaceInBetweenHides) {
-  const TsdfSnapshot map = map_of([](const Vector3d& p) {
-    return p.x() < -0.15 && p.x() > -0.25 && p.z() > 0.0 ? VoxelState::unknown : half_a_box(p);
-  });
-  EXPECT_LT(gain_from(map, {-0.6, 0.0, 0.1}), 25.0);
-  EXPECT_NEAR(gain_from(map, {0.0, 0.6, 0.1}), 65.0, 20.0);
 }
 
 }  // namespace

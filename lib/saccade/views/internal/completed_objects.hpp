@@ -27,6 +27,8 @@ struct VoxelRole {
   std::uint8_t bits{0};
   [[nodiscard]] std::uint8_t reach() const { return bits & inside; }
   [[nodiscard]] std::uint8_t opening() const { return bits & openings; }
+  /// Known to be empty, in an object's hull.
+  [[nodiscard]] bool is_empty_inside() const { return bits == (+inside | +empty); }
 };
 
 /// What objects stand on and in front of.

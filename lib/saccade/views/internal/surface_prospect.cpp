@@ -10,6 +10,8 @@
 namespace saccade {
 namespace {
 
+constexpr double kThroughAll_m{1e6};
+
 /// Returns the saliency of the segment nearest to each place, as a share of the largest; 0: no segment is near.
 std::vector<double> saliency_near(std::span<const Eigen::Vector3d> places_m, const SalientSurface& surface,
                                   const Executor& executor) {
@@ -26,9 +28,11 @@ std::vector<double> saliency_near(std::span<const Eigen::Vector3d> places_m, con
 }  // namespace
 
 Result<SurfaceProspect> SurfaceProspect::create(const PlanningContext& context, const RegionOfInterest& region,
-                                                ExpectedSurface surface, const PinholeCamera& sensor) {
+                                                std::shared_ptr<const ExpectedSurface> surface,
+                                                const PinholeCamera& sensor, double doubtful_share) {
   SurfaceProspect prospect{std::move(surface), sensor};
-  const std::vector<ExpectedPoint>& points = prospect.surface_.points;
+  prospect.doubtful_share_ = doubtful_share;
+  const std::vector<ExpectedPoint>& points = prospect.surface_->points;
   for (std::size_t i = 0; i < points.size(); ++i) {
     if (contains(region.bounds, points[i].position_m.cast<double>())) prospect.points_.push_back(i);
   }
@@ -37,8 +41,8 @@ Result<SurfaceProspect> SurfaceProspect::create(const PlanningContext& context, 
     for (const std::size_t j : prospect.points_) places_m.push_back(points[j].position_m.cast<double>());
     prospect.weights_ = saliency_near(places_m, *region.surface, context.executor);
   }
-  auto credit =
-      std::make_shared<const Credit>(context.checked, sensor, *prospect.surface_.volume, prospect.surface_.through_m);
+  const double through_m = doubtful_share > 0.0 ? kThroughAll_m : prospect.surface_->config.through_m;
+  auto credit = std::make_shared<const Credit>(context.checked, sensor, *prospect.surface_->volume, through_m);
   if (!credit->is_full()) {
     prospect.in_sight_.resize(prospect.points_.size());
     context.executor.parallel_for(prospect.points_.size(), 64, [&](std::size_t begin, std::size_t end) {
@@ -60,9 +64,9 @@ std::vector<SurfaceProspect::Sight> SurfaceProspect::facing(const Eigen::Vector3
   const Eigen::Vector3f center = camera_m.cast<float>();
   const auto reach_m = 2.0F * static_cast<float>(sensor_.max_range_m);  // no field of view is so wide
   for (std::size_t i = 0; i < points_.size(); ++i) {
-    const ExpectedPoint& point = surface_.points[points_[i]];
+    const ExpectedPoint& point = surface_->points[points_[i]];
     if ((point.position_m - center).squaredNorm() > reach_m * reach_m) continue;
-    if (surface_.faces(point, camera_m)) sights.push_back({&point, weighed_cm2(i), i});
+    if (surface_->faces(point, camera_m)) sights.push_back({&point, weighed_cm2(i), i});
   }
   return sights;
 }
@@ -87,6 +91,12 @@ void SurfaceProspect::for_each_in_picture(std::span<const Sight> sights, const P
   }
 }
 
+double SurfaceProspect::in_sight(const ExpectedPoint& point, const Eigen::Vector3d& camera_m) const {
+  const StateVolume& volume = *surface_->volume;
+  if (volume.is_visible(point.voxel, camera_m, surface_->config.through_m)) return 1.0;
+  return doubtful_share_ > 0.0 && volume.is_visible(point.voxel, camera_m, kThroughAll_m) ? doubtful_share_ : 0.0;
+}
+
 std::vector<SurfaceProspect::Sight> SurfaceProspect::visible(std::span<const Pose> T_world_camera) const {
   const Eigen::Vector3d camera_m = T_world_camera.front().translation();
   std::vector<Sight> sights = facing(camera_m);
@@ -100,7 +110,9 @@ std::vector<SurfaceProspect::Sight> SurfaceProspect::visible(std::span<const Pos
   for (std::size_t i = 0; i < sights.size(); ++i) {
     Sight sight = sights[i];
     if (in_a_picture[i] == 0) continue;
-    if (!surface_.volume->is_visible(sight.point->voxel, camera_m, surface_.through_m)) continue;
+    const double share = in_sight(*sight.point, camera_m);
+    if (share == 0.0) continue;
+    sight.area_cm2 *= share;
     if (!in_sight_.empty()) {
       sight.area_cm2 *= credit_->of(sight.point->position_m.cast<double>(), in_sight_[sight.number], camera_m);
     }
@@ -132,7 +144,7 @@ Promise SurfaceProspect::promise(const Pose& T_world_camera) const {
   for_each_in_picture(visible(std::span{&T_world_camera, 1}), T_world_camera,
                       [&](const Sight& sight, const Eigen::Vector3f& p) {
                         if (is_behind_body(p)) return;
-                        promise.voxels.push_back({surface_.volume->voxel(sight.point->voxel), sight.area_cm2});
+                        promise.voxels.push_back({surface_->volume->voxel(sight.point->voxel), sight.area_cm2});
                       });
   return promise;
 }
