@@ -33,7 +33,7 @@ struct CompareOptions {
 
   // As they were given.
   std::string scene_list;
-  std::string strategy_list{"attention,standard"};
+  std::string strategy_list{"surface,attention,standard"};
   std::string noise_list;
   std::string seed_list{"1-10"};
 };

@@ -246,8 +246,8 @@ TEST(CompareCommand, RefusesWhatItCannotDo) {
 
   const Outcome ranges = run_program({"compare", "--out", out.string(), "--scenes", "clutter:1-30,clutter:7", "--seeds",
                                       "1", "--noise", "none,kinect-v2", "--list"});
-  EXPECT_NE(ranges.out.find("120 runs, 0 of them done"), std::string::npos) << ranges.out << ranges.err;
-  for (const char* part : {"kinect-v2", "attention", "standard"})
+  EXPECT_NE(ranges.out.find("180 runs, 0 of them done"), std::string::npos) << ranges.out << ranges.err;
+  for (const char* part : {"kinect-v2", "surface", "attention", "standard"})
     EXPECT_NE(ranges.out.find(part), std::string::npos) << part;
   const Outcome listed = run_program(compare(out, {"--list"}));
   EXPECT_EQ(listed.status, 0) << listed.err;
