@@ -21,7 +21,7 @@ void add_package(const std::string& text, UrdfConfig& config) {
 
 CLI::Option* add_arm_options(CLI::App& command, ArmOptions& options) {
   CLI::Option* robot = add_value(command, "robot", options.robot, "URDF",
-                                 "a URDF file, or the name of a built-in robot (comau_smart_six)");
+                                 "a URDF file, or the name of a built-in robot (comau_smart_six, ur_like)");
   add_value(command, "--base", options.urdf.base, "LINK", "link that the chain begins with; default: the root");
   add_value(command, "--tip", options.urdf.tip, "LINK", "flange; default: the end of the longest chain");
   add_value(command, "--camera-frame", options.urdf.camera, "LINK",

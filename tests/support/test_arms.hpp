@@ -79,6 +79,19 @@ inline std::vector<DhRow> offset_rows() {
           {-1, 0, 0, 0, kRight, -kLimit, kLimit},          {1, 1.1, 0.08, 0, 0, -kLimit, kLimit}};
 }
 
+/// A UR5e: axes 2, 3 and 4 are parallel.
+inline std::vector<DhRow> ur_rows() {
+  return {{1, 0, 0.1625, 0, kRight}, {1, 0, 0, -0.425, 0},       {1, 0, 0, -0.3922, 0},
+          {1, 0, 0.1333, 0, kRight}, {1, 0, 0.0997, 0, -kRight}, {1, 0, 0.0996, 0, 0}};
+}
+
+/// Such an arm whose axis 1 leans, whose links lie beside each other and whose wrist encloses 80° and 75°.
+inline std::vector<DhRow> oblique_parallel_rows() {
+  constexpr double kDegree{std::numbers::pi / 180.0};
+  return {{1, 0.2, 0.2, 0.05, -70 * kDegree}, {-1, 0.5, 0.05, 0.4, 0},          {1, 0, -0.03, 0.35, std::numbers::pi},
+          {-1, 0.3, 0.1, 0.04, 80 * kDegree}, {1, 0.7, 0.09, 0, -75 * kDegree}, {1, 0, 0.1, 0, 0}};
+}
+
 /// Axis 1 leans, and the wrist's neighbouring axes enclose 60° and 75° instead of right angles.
 inline std::vector<DhRow> oblique_rows() {
   constexpr double kDegree{std::numbers::pi / 180.0};

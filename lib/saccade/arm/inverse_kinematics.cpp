@@ -3,9 +3,11 @@
 
 #include <optional>
 #include <utility>
+#include <variant>
 
 #include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/internal/numeric_ik.hpp"
+#include "saccade/arm/internal/parallel_axes.hpp"
 #include "saccade/arm/internal/spherical_wrist.hpp"
 #include "saccade/arm/kinematics.hpp"
 
@@ -30,7 +32,7 @@ Configuration IkTable::solution(std::size_t pose, std::size_t i) const {
 }
 
 struct InverseKinematics::Solvers {
-  std::optional<SphericalWrist> wrist;
+  std::optional<std::variant<SphericalWrist, ParallelAxes>> closed_form;
   NumericIk numeric;
 };
 
@@ -42,8 +44,11 @@ Result<InverseKinematics> InverseKinematics::create(ArmModel arm, const IkConfig
   Solvers solvers{std::nullopt, std::move(numeric)};
   if (config.method != IkMethod::numeric) {
     auto wrist = SphericalWrist::find(*shared);
+    auto parallel = ParallelAxes::find(*shared);
     if (wrist) {
-      solvers.wrist = *std::move(wrist);
+      solvers.closed_form = *std::move(wrist);
+    } else if (parallel) {
+      solvers.closed_form = *std::move(parallel);
     } else if (config.method == IkMethod::closed_form) {
       return wrist.error();
     } else {
@@ -54,17 +59,21 @@ Result<InverseKinematics> InverseKinematics::create(ArmModel arm, const IkConfig
   return ik;
 }
 
-IkMethod InverseKinematics::method() const { return solvers_->wrist ? IkMethod::closed_form : IkMethod::numeric; }
+IkMethod InverseKinematics::method() const { return solvers_->closed_form ? IkMethod::closed_form : IkMethod::numeric; }
 
-bool InverseKinematics::refines() const { return solvers_->wrist && !solvers_->wrist->is_exact(); }
+bool InverseKinematics::refines() const {
+  const auto& form = solvers_->closed_form;
+  return form && !std::visit([](const auto& solver) { return solver.is_exact(); }, *form);
+}
 
 void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference,
                                std::vector<Configuration>& solutions) const {
-  if (!solvers_->wrist) {
+  if (!solvers_->closed_form) {
     for (const Configuration& q : solvers_->numeric.solve(T_world_camera, reference)) solutions.push_back(q);
     return;
   }
-  const WristSolutions found = solvers_->wrist->solve(T_world_camera, reference);
+  const ClosedFormSolutions found =
+      std::visit([&](const auto& solver) { return solver.solve(T_world_camera, reference); }, *solvers_->closed_form);
   for (std::size_t i = 0; i < found.count; ++i) {
     Configuration q = found.q[i];
     if (!meets(camera_pose(*arm_, q), T_world_camera) && !refine(*arm_, T_world_camera, q)) continue;

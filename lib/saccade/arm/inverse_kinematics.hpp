@@ -17,7 +17,7 @@ namespace saccade {
 
 enum class IkMethod {
   automatic,    ///< closed form where it applies, else numeric
-  closed_form,  ///< SphericalWrist
+  closed_form,  ///< SphericalWrist, ParallelAxes
   numeric,      ///< NumericIk
 };
 inline constexpr auto kIkMethodNames = make_names<IkMethod>(

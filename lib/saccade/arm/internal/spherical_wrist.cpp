@@ -16,49 +16,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double kExact{1e-12};     ///< axes that meet or are parallel to the last digits
-constexpr double kOblique{1e-3};    ///< axes that must not be parallel differ by more, rad
-constexpr double kSingular{1e-10};  ///< below this length or angle a direction is none
-constexpr double kSlack{1e-12};     ///< how far beyond the reach a pose may lie by rounding, relative
-
-double square_of(double x) { return x * x; }
-
-double wrapped(double angle_rad) { return std::remainder(angle_rad, 2.0 * pi); }
-
-/// Angle between unit vectors, in [0, π].
-double angle_between(const Vector3d& a, const Vector3d& b) { return std::atan2(a.cross(b).norm(), a.dot(b)); }
-
-/// Angle of the turn about a unit axis that takes a's part across it to b's.
-double angle_about(const Vector3d& axis, const Vector3d& a, const Vector3d& b) {
-  return std::atan2(axis.dot(a.cross(b)), a.dot(b) - axis.dot(a) * axis.dot(b));
-}
-
-/// r turned about a unit axis, without a matrix.
-Vector3d turned(const Vector3d& axis, double angle_rad, const Vector3d& r) {
-  const double s = std::sin(angle_rad);
-  const double c = std::cos(angle_rad);
-  return c * r + s * axis.cross(r) + (1.0 - c) * axis.dot(r) * axis;
-}
-
-Error misfit(const ArmModel& arm, const std::string& what) {
-  return {Errc::unsupported, "no closed form: " + what, "arm " + arm.name()};
-}
-
-/// Point nearest to two lines (the middle of their shortest connection), and how far apart they are.
-struct Meeting {
-  Vector3d p;
-  double distance_m;
-};
-Meeting meeting_of(const Vector3d& p, const Vector3d& a, const Vector3d& q, const Vector3d& b) {
-  const double ab = a.dot(b);
-  const Vector3d d = q - p;
-  const double sin2 = 1.0 - ab * ab;
-  const double s = (d.dot(a) - ab * d.dot(b)) / sin2;
-  const double t = (ab * d.dot(a) - d.dot(b)) / sin2;
-  const Vector3d on_a = p + s * a;
-  const Vector3d on_b = q + t * b;
-  return {0.5 * (on_a + on_b), (on_a - on_b).norm()};
-}
+constexpr double kSingular{1e-10};  // below this angle a direction is none
+constexpr double kSlack{1e-12};     // how far beyond the reach a pose may lie by rounding, relative
 
 double distance_to_line(const Vector3d& p, const Vector3d& q, const Vector3d& axis) { return axis.cross(p - q).norm(); }
 
@@ -72,44 +31,34 @@ struct SphericalWrist::Shoulder {
 };
 
 Result<SphericalWrist> SphericalWrist::find(const ArmModel& arm) {
-  if (arm.dof() != 6) return misfit(arm, "it has " + std::to_string(arm.dof()) + " joints, not six");
+  const ArmPoses zero = forward_kinematics(arm, Configuration::Zero(arm.dof()));
+  SACCADE_TRY(const JointAxes axes, JointAxes::of(arm, zero));
   SphericalWrist ik;
-  const ArmPoses zero = forward_kinematics(arm, Configuration::Zero(6));
-  std::array<Vector3d, 6> p;
-  for (int i = 0; i < 6; ++i) {
-    const auto k = static_cast<std::size_t>(i);
-    if (arm.joint(i).kind == JointKind::prismatic) return misfit(arm, "joint " + arm.joint(i).name + " is prismatic");
-    ik.axis_[k] = zero.T_world_link[k + 1].linear() * arm.joint(i).axis_joint;
-    p[k] = zero.T_world_link[k + 1].translation();
-    ik.lower_[k] = arm.joint(i).limits.lower;
-    ik.upper_limit_[k] = arm.joint(i).limits.upper;
-  }
-  const auto& a = ik.axis_;
-  const auto parallel = [&a](std::size_t i, std::size_t k) { return a[i].cross(a[k]).norm() < kOblique; };
-  if (parallel(3, 4) || parallel(4, 5)) return misfit(arm, "neighbouring axes of its wrist are parallel");
+  ik.axes_ = axes;
+  const auto& a = axes.axis;
+  const auto& p = axes.point;
+  if (axes.are_parallel(3, 4) || axes.are_parallel(4, 5))
+    return no_closed_form(arm, "neighbouring axes of its wrist are parallel");
   const Meeting wrist = meeting_of(p[3], a[3], p[4], a[4]);
   const double off_wrist_m = std::max(wrist.distance_m, distance_to_line(wrist.p, p[5], a[5]));
-  if (off_wrist_m > kTolerance) return misfit(arm, "the last three axes do not meet in a point");
-  const double off_parallel = a[1].cross(a[2]).norm();
-  if (off_parallel > kTolerance) return misfit(arm, "axes 2 and 3 are not parallel");
-  if (parallel(0, 1)) return misfit(arm, "axes 1 and 2 are parallel");
-  ik.exact_ = off_wrist_m < kExact && off_parallel < kExact;
+  if (off_wrist_m > JointAxes::kTolerance) return no_closed_form(arm, "the last three axes do not meet in a point");
+  const double off_parallel = axes.off_parallel(1, 2);
+  if (off_parallel > JointAxes::kTolerance) return no_closed_form(arm, "axes 2 and 3 are not parallel");
+  if (axes.are_parallel(0, 1)) return no_closed_form(arm, "axes 1 and 2 are parallel");
+  ik.exact_ = off_wrist_m < JointAxes::kExact && off_parallel < JointAxes::kExact;
 
-  ik.p1_ = p[0];
-  ik.p2_ = p[1];
   ik.p_camera_wrist_ = zero.T_world_camera.inverse() * wrist.p;
   ik.R_camera_world_ = zero.T_world_camera.linear().transpose();
   ik.wrist_along_a2_ = a[1].dot(wrist.p - p[0]);
   ik.u_ = a[1].unitOrthogonal();
   ik.v_ = a[1].cross(ik.u_);
   const auto in_plane = [&ik](const Vector3d& d) { return Vector2d{ik.u_.dot(d), ik.v_.dot(d)}; };
-  ik.upper_ = in_plane(p[2] - p[1]);
-  ik.fore_ = in_plane(wrist.p - p[2]);
-  ik.upper_m_ = ik.upper_.norm();
-  ik.fore_m_ = ik.fore_.norm();
-  if (std::min(ik.upper_m_, ik.fore_m_) < kOblique) return misfit(arm, "its upper arm or its forearm has no length");
-  ik.sign3_ = a[1].dot(a[2]) > 0.0 ? 1.0 : -1.0;
-  ik.elbow_zero_ = std::atan2(ik.fore_.y(), ik.fore_.x()) - std::atan2(ik.upper_.y(), ik.upper_.x());
+  const Vector2d upper = in_plane(p[2] - p[1]);
+  const Vector2d fore = in_plane(wrist.p - p[2]);
+  if (std::min(upper.norm(), fore.norm()) < JointAxes::kOblique)
+    return no_closed_form(arm, "its upper arm or its forearm has no length");
+  ik.links_ = TwoLinks{upper, fore};
+  ik.sign3_ = axes.sign(1, 2);
   ik.alpha_ = angle_between(a[3], a[4]);
   ik.beta_ = angle_between(a[4], a[5]);
   ik.phi5_ = angle_about(a[4], a[5], a[3]);
@@ -117,98 +66,68 @@ Result<SphericalWrist> SphericalWrist::find(const ArmModel& arm) {
   return ik;
 }
 
-bool SphericalWrist::allowed(int joint, double angle_rad) const {
-  const auto k = static_cast<std::size_t>(joint);
-  return has_turn_within(angle_rad, lower_[k], upper_limit_[k]);
-}
-
-WristSolutions SphericalWrist::solve(const Pose& T_world_camera, const Configuration& reference) const {
+ClosedFormSolutions SphericalWrist::solve(const Pose& T_world_camera, const Configuration& reference) const {
   SACCADE_EXPECTS(reference.size() == 6);
-  WristSolutions found;
+  ClosedFormSolutions found;
   // a₂ · e^(−ξ₁q₁) r = wrist_along_a2: A cos q₁ + B sin q₁ = C.
-  const Vector3d r = T_world_camera * p_camera_wrist_ - p1_;
-  const double along = axis_[0].dot(r);
-  const double a12 = axis_[0].dot(axis_[1]);
-  const double A = axis_[1].dot(r) - a12 * along;
-  const double B = axis_[0].dot(axis_[1].cross(r));
-  const double C = wrist_along_a2_ - a12 * along;
-  const double h = std::hypot(A, B);
-  if (std::fabs(C) > h + kSlack * (upper_m_ + fore_m_)) return found;
+  const auto& a = axes_.axis;
+  const Vector3d r = T_world_camera * p_camera_wrist_ - axes_.point[0];
+  const double along = a[0].dot(r);
+  const double a12 = a[0].dot(a[1]);
+  const AnglePair shoulders = angles_with(a[1].dot(r) - a12 * along, a[0].dot(a[1].cross(r)),
+                                          wrist_along_a2_ - a12 * along, kSlack * links_.reach_m());
   const Eigen::Matrix3d R = T_world_camera.linear() * R_camera_world_;
   const auto with = [&](double q1) {
-    if (!allowed(0, q1)) return;
-    const Vector3d wrist = p1_ + turned(axis_[0], -q1, r) - p2_;
-    solve_elbow({q1, {u_.dot(wrist), v_.dot(wrist)}, rotation_about(axis_[0], -q1) * R}, reference, found);
+    if (!axes_.allow(0, q1)) return;
+    const Vector3d wrist = axes_.point[0] + turned(a[0], -q1, r) - axes_.point[1];
+    solve_elbow({q1, {u_.dot(wrist), v_.dot(wrist)}, rotation_about(a[0], -q1) * R}, reference, found);
   };
-  if (h < kSingular) {
-    with(reference[0]);
-    return found;
-  }
-  const double middle = std::atan2(B, A);
-  const double half = std::atan2(std::sqrt(std::max(0.0, (h - C) * (h + C))), C);
-  with(wrapped(middle + half));
-  if (half > kSingular && half < pi - kSingular) with(wrapped(middle - half));
+  if (shoulders.is_free) with(reference[0]);
+  for (std::size_t i = 0; i < shoulders.count; ++i) with(shoulders.rad[i]);
   return found;
 }
 
 void SphericalWrist::solve_elbow(const Shoulder& shoulder, const Configuration& reference,
-                                 WristSolutions& found) const {
-  // |wrist|² = upper² + fore² + 2 upper fore cos γ, γ: the angle from the upper arm to the forearm.
-  const double distance2 = shoulder.wrist.squaredNorm();
-  const double longest2 = square_of(upper_m_ + fore_m_);
-  const double folded = longest2 - distance2;                          // 4 upper fore sin²(γ/2)
-  const double stretched = distance2 - square_of(upper_m_ - fore_m_);  // 4 upper fore cos²(γ/2)
-  if (folded < -kSlack * longest2 || stretched < -kSlack * longest2) return;
-  const double gamma = 2.0 * std::atan2(std::sqrt(std::max(0.0, folded)), std::sqrt(std::max(0.0, stretched)));
-  const bool twice = gamma > kSingular && gamma < pi - kSingular;
-  const bool direction_is_free = distance2 < square_of(kSingular);
-  const double direction = direction_is_free ? 0.0 : std::atan2(shoulder.wrist.y(), shoulder.wrist.x());
-  for (const double bend : {gamma, -gamma}) {
-    if (bend == -gamma && !twice) break;
-    const double q3 = wrapped(sign3_ * (bend - elbow_zero_));
-    if (!allowed(2, q3)) continue;
-    const Vector2d arm = upper_ + Eigen::Rotation2Dd{sign3_ * q3} * fore_;
-    const double q2 = direction_is_free ? reference[1] : wrapped(direction - std::atan2(arm.y(), arm.x()));
-    if (allowed(1, q2)) solve_wrist(shoulder, q2, q3, reference, found);
+                                 ClosedFormSolutions& found) const {
+  const TwoLinks::Solutions elbows = links_.reach(shoulder.wrist, reference[1]);
+  for (std::size_t i = 0; i < elbows.count; ++i) {
+    const double q2 = elbows.angles[i].first;
+    const double q3 = sign3_ * elbows.angles[i].second;
+    if (axes_.allow(2, q3) && axes_.allow(1, q2)) solve_wrist(shoulder, q2, q3, reference, found);
   }
 }
 
 void SphericalWrist::solve_wrist(const Shoulder& shoulder, double q2, double q3, const Configuration& reference,
-                                 WristSolutions& found) const {
-  // R₄ R₅ R₆ = G. The angle θ between axis 4 and axis 6, which G leads to u, is a side of the spherical triangle of the
-  // three axes, q₅ − φ the angle across it: sin²((q₅ − φ)/2) = sin((θ + α − β)/2) sin((θ − α + β)/2) / (sin α sin β).
-  const Eigen::Matrix3d G = rotation_about(axis_[1], -(q2 + sign3_ * q3)) * shoulder.R_1_tip;
-  const Vector3d u = G * axis_[5];
-  const double theta = angle_between(axis_[3], u);
-  const double open = std::sin(0.5 * (theta + alpha_ - beta_)) * std::sin(0.5 * (theta - alpha_ + beta_));
-  const double shut = std::sin(0.5 * (alpha_ + beta_ - theta)) * std::sin(0.5 * (alpha_ + beta_ + theta));
-  if (open < -kSlack || shut < -kSlack) return;
-  const double half = 2.0 * std::atan2(std::sqrt(std::max(0.0, open)), std::sqrt(std::max(0.0, shut)));
-  const bool twice = half > kSingular && half < pi - kSingular;
-  for (const double bend : {half, -half}) {
-    if (bend == -half && !twice) break;
+                                 ClosedFormSolutions& found) const {
+  // R₄ R₅ R₆ = G, which leads axis 6 to u. The angle θ between axis 4 and u is a side of the three axes' triangle.
+  const Eigen::Matrix3d G = rotation_about(axes_.axis[1], -(q2 + sign3_ * q3)) * shoulder.R_1_tip;
+  const Vector3d u = G * axes_.axis[5];
+  const double theta = angle_between(axes_.axis[3], u);
+  const AnglePair bends = angles_across(alpha_, beta_, theta);
+  for (std::size_t i = 0; i < bends.count; ++i) {
+    const double bend = bends.rad[i];
     Eigen::Matrix<double, 6, 1> q;
     q << shoulder.q1, q2, q3, 0.0, wrapped(phi5_ + bend), 0.0;
-    if (!allowed(4, q[4])) continue;
-    const Vector3d before = turned(axis_[4], q[4], axis_[5]);
+    if (!axes_.allow(4, q[4])) continue;
+    const Vector3d before = turned(axes_.axis[4], q[4], axes_.axis[5]);
     const bool in_line = theta < kSingular || theta > pi - kSingular;
-    q[3] = in_line ? reference[3] : angle_about(axis_[3], before, u);
-    if (!allowed(3, q[3])) continue;
-    const Vector3d across = turned(axis_[4], -q[4], turned(axis_[3], -q[3], G * across6_));
-    q[5] = angle_about(axis_[5], across6_, across);
+    q[3] = in_line ? reference[3] : angle_about(axes_.axis[3], before, u);
+    if (!axes_.allow(3, q[3])) continue;
+    const Vector3d across = turned(axes_.axis[4], -q[4], turned(axes_.axis[3], -q[3], G * across6_));
+    q[5] = angle_about(axes_.axis[5], across6_, across);
     if (in_line) give_way(theta < 1.0 ? 1.0 : -1.0, q);
-    if (allowed(3, q[3]) && allowed(5, q[5])) found.q[found.count++] = q;
+    if (axes_.allow(3, q[3]) && axes_.allow(5, q[5])) found.q[found.count++] = q;
   }
 }
 
 /// With axes 4 and 6 in one line only q4 + sign · q6 counts: where q6 breaks its limits, q4 takes what is missing.
 void SphericalWrist::give_way(double sign, Eigen::Matrix<double, 6, 1>& q) const {
-  if (allowed(5, q[5])) return;
-  const double to_lower = wrapped(lower_[5] - q[5]);
-  const double to_upper = wrapped(upper_limit_[5] - q[5]);
+  if (axes_.allow(5, q[5])) return;
+  const double to_lower = wrapped(axes_.lower[5] - q[5]);
+  const double to_upper = wrapped(axes_.upper[5] - q[5]);
   const bool lower_first = std::fabs(to_lower) <= std::fabs(to_upper);
   for (const double change : {lower_first ? to_lower : to_upper, lower_first ? to_upper : to_lower}) {
-    if (!allowed(3, q[3] - sign * change)) continue;
+    if (!axes_.allow(3, q[3] - sign * change)) continue;
     q[3] -= sign * change;
     q[5] += change;
     return;

@@ -5,15 +5,9 @@
 #include <Eigen/Core>
 #include <array>
 
-#include "saccade/arm/arm_model.hpp"
+#include "saccade/arm/internal/joint_axes.hpp"
 
 namespace saccade {
-
-/// The solutions of one pose: at most two shoulders, two elbows and two wrists.
-struct WristSolutions {
-  std::array<Eigen::Matrix<double, 6, 1>, 8> q;  ///< rad; the first `count` are set
-  std::size_t count{0};
-};
 
 /// Solves arms whose axes 4, 5 and 6 meet in a point, the wrist's centre, whose axes 2 and 3 are parallel, and whose
 /// axis 1 is not parallel to them: nearly all industrial arms. Offsets and angles are as they come: shoulders beside
@@ -32,9 +26,6 @@ struct WristSolutions {
 /// Two solutions that fall together (arm stretched or folded, wrist straight) are returned once.
 class SphericalWrist {
  public:
-  /// Axes of a description that was rounded count as meeting or parallel within this; is_exact() tells.
-  static constexpr double kTolerance{1e-4};
-
   /// unsupported, saying what about the arm does not fit.
   [[nodiscard]] static Result<SphericalWrist> find(const ArmModel& arm);
 
@@ -43,30 +34,26 @@ class SphericalWrist {
 
   /// All solutions in which every angle, give or take whole turns, is within its limits. Angles are in (−π, π] but for
   /// those taken from the reference. Order: shoulder, elbow, wrist. A microsecond or two; safe for concurrent use.
-  [[nodiscard]] WristSolutions solve(const Pose& T_world_camera, const Configuration& reference) const;
+  [[nodiscard]] ClosedFormSolutions solve(const Pose& T_world_camera, const Configuration& reference) const;
 
  private:
   struct Shoulder;
   SphericalWrist() = default;
-  [[nodiscard]] bool allowed(int joint, double angle_rad) const;
-  void solve_elbow(const Shoulder& shoulder, const Configuration& reference, WristSolutions& found) const;
+  void solve_elbow(const Shoulder& shoulder, const Configuration& reference, ClosedFormSolutions& found) const;
   void solve_wrist(const Shoulder& shoulder, double q2, double q3, const Configuration& reference,
-                   WristSolutions& found) const;
+                   ClosedFormSolutions& found) const;
   void give_way(double sign, Eigen::Matrix<double, 6, 1>& q) const;
 
   bool exact_{true};
-  std::array<Eigen::Vector3d, 6> axis_;  // unit, world frame, q = 0
-  Eigen::Vector3d p1_, p2_;              // points on axes 1 and 2
-  Eigen::Vector3d p_camera_wrist_;       // the wrist's centre in the camera's frame, always the same
-  Eigen::Matrix3d R_camera_world_;       // of the camera at q = 0
-  double wrist_along_a2_{0.0};           // of the wrist's centre from p1 at q = 0
-  Eigen::Vector3d u_, v_;                // plane across axis 2
-  Eigen::Vector2d upper_, fore_;         // axis 2 to axis 3, axis 3 to the wrist's centre at q = 0, in that plane
-  double upper_m_{0.0}, fore_m_{0.0}, elbow_zero_{0.0};
+  JointAxes axes_;
+  Eigen::Vector3d p_camera_wrist_;             // the wrist's centre in the camera's frame, always the same
+  Eigen::Matrix3d R_camera_world_;             // of the camera at q = 0
+  double wrist_along_a2_{0.0};                 // of the wrist's centre from axis 1's point at q = 0
+  Eigen::Vector3d u_, v_;                      // plane across axis 2
+  TwoLinks links_;                             // axis 2 to axis 3, axis 3 to the wrist's centre at q = 0, in that plane
   double sign3_{1.0};                          // axis 3 = sign · axis 2
   double alpha_{0.0}, beta_{0.0}, phi5_{0.0};  // angles between axes 4 and 5, 5 and 6; q5 where 4, 5, 6 lie in a plane
   Eigen::Vector3d across6_;                    // unit, across axis 6
-  std::array<double, 6> lower_{}, upper_limit_{};
 };
 
 }  // namespace saccade
