@@ -71,6 +71,15 @@ class Figures:
         self.views = read("views.csv")
         self.scenes = len({run["scene"] for run in self.runs})
 
+    def beside(self, other):
+        """These figures with those of another campaign's runs in the same scenes."""
+        scenes = {run["scene"] for run in self.runs}
+        joined = Figures.__new__(Figures)
+        joined.runs = self.runs + [run for run in other.runs if run["scene"] in scenes]
+        joined.views = self.views + [view for view in other.views if view["scene"] in scenes]
+        joined.scenes = self.scenes
+        return joined
+
     def strategies(self):
         return list(dict.fromkeys(run["strategy"] for run in self.runs))
 
@@ -253,9 +262,13 @@ def main():
     for name, figures in done.items():
         held = hold(name, figures, done)
         missed += held.missed
-        shown = " ".join(known[name]["options"]).replace(str(DATA), "$SACCADE_DATA")
-        lines += [f"## {known[name]['title']}", "", "```sh", f"saccade compare {shown} --out DIR", "```", "",
-                  f"{figures.scenes} scenes.", "", *table(figures), "", *held.lines, ""]
+        shown, note = figures, ""
+        if name == "baselines_flying" and "clutter_flying" in done:
+            shown = figures.beside(done["clutter_flying"])
+            note = " The last five rows are the campaign `clutter_flying` in these scenes."
+        told = " ".join(known[name]["options"]).replace(str(DATA), "$SACCADE_DATA")
+        lines += [f"## {known[name]['title']}", "", "```sh", f"saccade compare {told} --out DIR", "```", "",
+                  f"{figures.scenes} scenes.{note}", "", *table(shown), "", *held.lines, ""]
     pathlib.Path(document).write_text("\n".join(lines).rstrip() + "\n")
     print(f"  {document}: {missed} missed; failed: {', '.join(failed) or 'none'}")
     return 2 if failed else 1 if missed else 0

@@ -148,6 +148,7 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
       ->excludes("--no-noise");
   add_value(command, "--robot", options.robot, "ROBOT",
             "what carries the camera: free, which flies, comau, or a URDF file");
+  add_reading_options(command, options.arm_reading);
   add_value(command, "--mesh-scale", options.mesh.scale, "METRES", "metres per unit of mesh files");
   add_choice(command, "--mesh-up", options.mesh.up, kUpAxisNames,
              "the axis of mesh files that points up (default: z, but y for glTF)");
@@ -168,6 +169,8 @@ void check_compare_options(CompareOptions& options, const Planners& planners) {
   require_ok(options.mesh.validate(), "--mesh-scale");
   check_run_options(options.run);
   check_foresight(options.run, options.robot);
+  check_arm_options(options.arm_reading);
+  if (options.robot == "free") require_no_reading(options.arm_reading);
 }
 
 }  // namespace saccade::cli

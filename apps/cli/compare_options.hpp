@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "robot_options.hpp"
 #include "run_options.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 
@@ -23,6 +24,7 @@ struct CompareOptions {
   std::vector<std::uint64_t> seeds;  ///< ascending
   std::filesystem::path out;
   RunOptions run;
+  ArmOptions arm_reading;     ///< its robot is not used
   std::string robot{"free"};  ///< a built-in arm, a URDF, or free
   MeshSceneConfig mesh;       ///< of scenes that are mesh files
   std::size_t jobs{0};        ///< runs at once; 0: as many as threads

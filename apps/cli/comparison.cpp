@@ -109,7 +109,7 @@ Result<Comparison> Comparison::create(const CompareOptions& options) {
     for (Scene& scene : scenes) SACCADE_CHECK(comparison.add_scene(std::move(scene), name));
   }
   if (options.robot != "free") {
-    SACCADE_TRY(UrdfArm read, find_robot(options.robot));
+    SACCADE_TRY(UrdfArm read, find_robot(options.robot, options.arm_reading.urdf));
     comparison.arm_hash_ = arm_hash(read.arm);
     comparison.arm_ = std::make_shared<const ArmModel>(std::move(read.arm));
   }

@@ -21,6 +21,7 @@
 #include "saccade/io/maps/ternary_export.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/mesh.hpp"
+#include "server/show/arm_reading.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -147,6 +148,7 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
   return {{"scene", subject.scene.name},
           {"out", options.out.string()},
           {"robot", options.robot_command.empty() ? options.robot : "external"},
+          {"arm_reading", server::arm_reading_to_json(options.arm_reading.urdf)},
           {"strategy", options.run.strategy.name},
           {"noise", options.run.noise && options.camera_command.empty()},
           {"sensor", options.camera_command.empty() ? json(to_string(options.run.sensor)) : json(nullptr)},

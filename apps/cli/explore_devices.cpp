@@ -31,7 +31,7 @@ Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const E
 
 Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options) {
   if (!options.has_arm()) return std::optional<ArmModel>{};
-  SACCADE_TRY(UrdfArm read, find_robot(options.robot));
+  SACCADE_TRY(UrdfArm read, find_robot(options.robot, options.arm_reading.urdf));
   return std::optional{std::move(read.arm)};
 }
 

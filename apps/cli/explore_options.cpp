@@ -19,6 +19,7 @@ std::string strategy_help(const Planners& planners) {
 }  // namespace
 
 void add_arm_options(CLI::App& command, ExploreOptions& options) {
+  add_reading_options(command, options.arm_reading);
   add_value(command, "--fixture", options.fixtures, "X0,Y0,Z0,X1,Y1,Z1",
             "a solid box that the arm keeps clear of, besides those of the scene; may be repeated");
   add_value(command, "--free", options.free, "X0,Y0,Z0,X1,Y1,Z1",
@@ -33,6 +34,8 @@ void add_arm_options(CLI::App& command, ExploreOptions& options) {
 }
 
 void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
+  check_arm_options(options.arm_reading);
+  if (!options.has_arm()) require_no_reading(options.arm_reading);
   for (const std::string& text : options.fixtures) {
     options.arm.obstacles.fixtures.push_back(parse_box("--fixture", text));
   }

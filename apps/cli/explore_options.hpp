@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "robot_options.hpp"
 #include "run_options.hpp"
 #include "segment_saliency.hpp"
 #include "serve.hpp"
@@ -17,7 +18,8 @@ namespace saccade::cli {
 struct ExploreOptions : RunOptions {
   std::string scene;
   std::filesystem::path out;
-  std::string robot;  ///< a built-in arm, a URDF, or free; empty: an arm, or free with a camera of one's own
+  ArmOptions arm_reading;  ///< its robot is not used
+  std::string robot;       ///< a built-in arm, a URDF, or free; empty: an arm, or free with a camera of one's own
   std::vector<std::string> fixtures;  ///< as they were given
   std::vector<std::string> free;      ///< boxes, too
   PlannedArmConfig arm;
@@ -41,7 +43,7 @@ struct ExploreOptions : RunOptions {
   [[nodiscard]] std::vector<Box> free_boxes() const;
 };
 
-/// Adds --fixture, --free, --obstacle-cell, --unknown-is-free and --planner.
+/// Adds what add_reading_options does, --fixture, --free, --obstacle-cell, --unknown-is-free and --planner.
 void add_arm_options(CLI::App& command, ExploreOptions& options);
 /// After parsing: fills `arm`. Throws a usage error for what makes no sense.
 void check_arm_options(ExploreOptions& options, const GlobalOptions& global);

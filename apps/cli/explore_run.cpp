@@ -17,6 +17,7 @@
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/ray_scene.hpp"
+#include "server/show/arm_reading.hpp"
 #include "view_json.hpp"
 
 namespace saccade::cli {
@@ -48,6 +49,8 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"min_gain", run.planner.min_gain},
                 {"good_enough", run.exploration.good_enough}};
   if (run.clearing_percent != 100) settings["clearing_percent"] = run.clearing_percent;
+  if (json reading = server::arm_reading_to_json(options.arm_reading.urdf); !reading.empty())
+    settings["arm_reading"] = std::move(reading);
   if (run.as_printed) settings["as_printed"] = true;
   if (run.exploration.frame_on_way_s > 0.0) settings["frame_on_way_s"] = run.exploration.frame_on_way_s;
   if (run.exploration.lookahead > 1) settings["lookahead"] = run.exploration.lookahead;

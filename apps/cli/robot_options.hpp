@@ -20,15 +20,20 @@ namespace saccade::cli {
 constexpr int kNumericRestarts{10};
 
 struct ArmOptions {
-  std::string robot;
+  std::string robot;  ///< a built-in arm or a URDF file, where a command has this as its subject
   UrdfConfig urdf;
   std::vector<std::string> packages;
   bool drop_beyond_tip{false};
+  std::string given{};  ///< the first of the options that was given; empty: none
 };
 
-/// Adds the robot and --base, --tip, --camera-frame, --package, --drop-beyond-tip. Returns the option of the robot.
+/// Adds --base, --base-at, --tip, --camera-frame, --package, --drop-beyond-tip: how the description of an arm is read.
+void add_reading_options(CLI::App& command, ArmOptions& options);
+/// Adds the robot and these. Returns the option of the robot.
 CLI::Option* add_arm_options(CLI::App& command, ArmOptions& options);
 /// After parsing: fills `urdf`; throws a usage error for what makes no sense.
 void check_arm_options(ArmOptions& options);
+/// Throws a usage error where one of the options was given although no arm carries the camera.
+void require_no_reading(const ArmOptions& options);
 
 }  // namespace saccade::cli

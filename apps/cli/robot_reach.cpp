@@ -57,15 +57,6 @@ Result<double> points_height_m(const ReachOptions& options, const std::vector<Fi
                "--height"};
 }
 
-Result<UrdfArm> read_arm(const ReachOptions& options) {
-  SACCADE_TRY(UrdfArm robot, find_robot(options.arm.robot, options.arm.urdf));
-  if (!options.T_world_base) return robot;
-  ArmDescription description = robot.arm.description();
-  description.T_world_base = *options.T_world_base;
-  SACCADE_TRY(ArmModel arm, ArmModel::create(std::move(description)));
-  return UrdfArm{std::move(arm), std::move(robot.notes)};
-}
-
 IkConfig ik_config() {
   IkConfig config;
   config.numeric.restarts = kNumericRestarts;
@@ -74,7 +65,7 @@ IkConfig ik_config() {
 
 /// Nothing here takes long, so that what is asked for wrongly is refused at once.
 Result<ReachTask> make_task(const ReachOptions& options) {
-  SACCADE_TRY(UrdfArm robot, read_arm(options));
+  SACCADE_TRY(UrdfArm robot, find_robot(options.arm.robot, options.arm.urdf));
   SACCADE_TRY(const Scene scene, find_scene(options.scene));
   SACCADE_TRY(std::vector<FixtureBox> fixtures, fixture_boxes(scene));
   SACCADE_TRY(InverseKinematics ik, InverseKinematics::create(robot.arm, ik_config()));
@@ -153,13 +144,6 @@ Result<int> run_reach(const ReachOptions& options, const GlobalOptions& global) 
   return finish(map);
 }
 
-Pose parse_base(const std::string& text) {
-  const std::vector<double> n = parse_numbers("--base-at", text, 0);
-  if (n.size() != 3 && n.size() != 4) usage_error("--base-at", "needs X,Y,Z or X,Y,Z,DEGREES, not '" + text + "'");
-  const double turn_rad = n.size() == 4 ? to_rad(n[3]) : 0.0;
-  return Eigen::Translation3d{n[0], n[1], n[2]} * Eigen::AngleAxisd{turn_rad, Eigen::Vector3d::UnitZ()};
-}
-
 void add_grid_options(CLI::App& command, ReachOptions& options) {
   add_value(command, "--scene", options.scene, "SCENE",
             "gives workspace and obstacles (its fixtures and supports, as boxes): a built-in scene, clutter:SEED or a "
@@ -180,11 +164,6 @@ void add_robot_reach(CLI::App& robot, const GlobalOptions& global, Action& actio
   auto options = std::make_shared<ReachOptions>();
   CLI::App* command = robot.add_subcommand("reach", "draws where in a workspace an arm can take view poses");
   add_arm_options(*command, options->arm)->capture_default_str();
-  command
-      ->add_option_function<std::string>(
-          "--base-at", [options](const std::string& text) { options->T_world_base = parse_base(text); },
-          "where the chain's first link (--base) stands, turned about z by DEGREES (default: the world's origin)")
-      ->type_name("X,Y,Z[,DEGREES]");
   add_grid_options(*command, *options);
   add_value(*command, "--out", options->out, "DIR", "folder for reach.png, reach.csv and reach.json")->required();
   command->add_flag("--force", options->force, "write into a folder that holds other files");

@@ -17,7 +17,6 @@ namespace saccade::cli {
 
 struct ReachOptions {
   ArmOptions arm{"comau_smart_six", {}, {}, false};
-  std::optional<Pose> T_world_base;
   std::string scene{"tabletop-1"};
   std::optional<Box> workspace;
   std::optional<double> height_m;

@@ -12,6 +12,7 @@
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/map/tsdf_map.hpp"
+#include "server/show/arm_reading.hpp"
 #include "summary.hpp"
 #include "update.hpp"
 
@@ -168,6 +169,7 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"before", subject.before.scene.name},
               {"out", options.out.string()},
               {"robot", options.robot},
+              {"arm_reading", server::arm_reading_to_json(options.arm_reading.urdf)},
               {"fuse_when", to_string(options.fuse_when)},
               {"noise", options.run.noise},
               {"sensor", to_string(options.run.sensor)},

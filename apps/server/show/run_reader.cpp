@@ -8,6 +8,7 @@
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/io/runs/run_json.hpp"
+#include "server/show/arm_reading.hpp"
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
 #include "server/show/run_layers.hpp"
@@ -148,7 +149,7 @@ Status RunReader::read_step(const json& result, const json& view, std::size_t nu
                pictures_of_view(folder_, number)};
   SACCADE_CHECK(add_choice(result, number, read));
   SACCADE_CHECK(add_map(number, read));
-  add_arm(text_in(result, "robot"), record.q, read);
+  add_arm(result, record.q, read);
   steps_.push_back(std::move(read));
   return {};
 }
@@ -196,10 +197,12 @@ Status RunReader::add_map(std::size_t number, ReadStep& out) {
   return {};
 }
 
-void RunReader::add_arm(const std::string& name, const std::optional<Configuration>& q, ReadStep& out) {
+void RunReader::add_arm(const json& result, const std::optional<Configuration>& q, ReadStep& out) {
+  const std::string name = text_in(result, "robot");
   if (!q || name.empty()) return;
   if (name != arm_name_) {
-    auto read = find_robot(name);
+    const auto reading = arm_reading_from_json(entry_in(result, "arm_reading"));
+    auto read = reading ? find_robot(name, *reading) : Result<UrdfArm>{reading.error()};
     why_no_arm_ = read ? "" : "not shown: " + read.error().to_string();
     arm_ = read ? std::optional{std::move(read->arm)} : std::nullopt;
     arm_name_ = name;

@@ -44,7 +44,7 @@ class RunReader {
   [[nodiscard]] Status add_choice(const nlohmann::json& result, std::size_t number, ReadStep& out);
   [[nodiscard]] Status add_attention(const StepMap& before, const ViewChoice& choice, std::size_t step,
                                      std::vector<Layer>& layers);
-  void add_arm(const std::string& name, const std::optional<Configuration>& q, ReadStep& out);
+  void add_arm(const nlohmann::json& result, const std::optional<Configuration>& q, ReadStep& out);
   [[nodiscard]] Status add_map(std::size_t number, ReadStep& out);
   [[nodiscard]] Status add_end(SceneDocument& document) const;
   void add_trajectory(SceneDocument& document) const;

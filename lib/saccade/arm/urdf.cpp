@@ -293,6 +293,7 @@ class ArmBuilder {
     arm_.flange_name = tip_;
     arm_.T_link_flange = flange.T_link_frame;
     arm_.camera_name = camera_;
+    if (config_.T_world_base) arm_.T_world_base = *config_.T_world_base;
     arm_.T_flange_camera = flange.T_link_frame.inverse() * camera->second.T_link_frame;
     if (without_acceleration_ > 0) {
       notes_.push_back(std::to_string(without_acceleration_) + " of " + std::to_string(arm_.joints.size()) +

@@ -4,6 +4,7 @@
 
 #include <filesystem>
 #include <map>
+#include <optional>
 #include <string>
 #include <string_view>
 #include <vector>
@@ -21,9 +22,10 @@ struct UrdfConfig {
   std::string camera;  ///< optical frame, fixed to the flange; empty: kCameraFrame if there is one, else the flange
   /// Folders of packages by name, for package://NAME/…; other names are looked for at the URDF and the folders above.
   std::map<std::string, std::filesystem::path> packages;
-  double default_speed{1.0};        ///< of continuous joints without one, rad/s
-  double acceleration_time_s{0.5};  ///< joints without an acceleration reach their speed in this time
-  bool keep_beyond_tip{true};       ///< bodies fixed behind the flange belong to the arm
+  double default_speed{1.0};           ///< of continuous joints without one, rad/s
+  double acceleration_time_s{0.5};     ///< joints without an acceleration reach their speed in this time
+  bool keep_beyond_tip{true};          ///< bodies fixed behind the flange belong to the arm
+  std::optional<Pose> T_world_base{};  ///< where the chain's first link stands; nullopt: as the file says
 };
 
 struct UrdfArm {
@@ -35,8 +37,8 @@ struct UrdfArm {
 /// where joints that are not on the chain stand still at 0, or at the limit next to it. Meshes are taken relative to
 /// `folder`. The attribute `acceleration` (or `drake:acceleration`) of <limit> is read, as URDF itself has none.
 /// corrupt_data for what is no URDF or no tree, and for limits or axes that make no sense; not_found for meshes and
-/// packages; invalid_argument for links that are not there; unsupported for mimic, planar and floating joints on the
-/// chain. One line that names the joint or link.
+/// packages; invalid_argument for links that are not there and a T_world_base that is not rigid; unsupported for mimic,
+/// planar and floating joints on the chain. One line that names the joint or link.
 [[nodiscard]] Result<UrdfArm> parse_urdf(const std::string& urdf, const std::filesystem::path& folder = {},
                                          const UrdfConfig& config = {});
 /// The same from a file.

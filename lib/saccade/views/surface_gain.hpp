@@ -12,8 +12,8 @@ struct SurfaceGainConfig {
   double tilt_rad{0.0};  ///< the real sensor is tilted by ± this angle: see widened_vertically
   /// A view that is expected to show less than this share of the surface that was seen so far is not worth going to.
   double least_share{0.005};
-  /// Share of their area that points behind unknown space count for once the other promises are not worth going to, or
-  /// one was broken; 0: none. So a thing without a table or walls behind it is seen from all sides, although no return
+  /// Share of their area that points behind unknown space count for once the other promises are not worth going to or
+  /// were broken; 0: none. So a thing without a table or walls behind it is seen from all sides, although no return
   /// tells that the space around it is empty.
   double doubtful_share{0.1};
   /// Only the best roll of each camera centre is ranked, before the robot's own body is heeded: for a choice among many
@@ -28,8 +28,8 @@ struct SurfaceGainConfig {
 /// Gains are in cm² of expected surface within the region that lies in the camera's field of view and range, that
 /// ExpectedSurface::is_visible from it, and that the robot's own body does not hide. Surface that an earlier view
 /// promised and failed to show counts less from about there: by the share that the earlier view kept of its promise.
-/// Where all of that is not worth a view, or a view kept less than a tenth of its promise, best() also counts what is
-/// behind unknown space (doubtful_share).
+/// Where all of that is not worth a view, a view kept less than a quarter of its promise, or the last one less than
+/// half, best() also counts what is behind unknown space (doubtful_share).
 class SurfaceGain final : public Gain {
  public:
   /// Expects a valid configuration.

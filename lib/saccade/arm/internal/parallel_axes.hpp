@@ -12,9 +12,8 @@ namespace saccade {
 /// not parallel to their neighbours: those of Universal Robots and many like them. Offsets and angles are as they come.
 ///
 /// Axes are taken in the world with q = 0, as in SphericalWrist. With T(q) T(0)⁻¹ = e₁ e₂ e₃ e₄ e₅ e₆ = G:
-///  - q₁: joints 5 and 6 leave P where it is, and joints 2 to 4 what it measures along a₂, so that G P, turned back
-///  about
-///    axis 1, measures along a₂ what it does at q = 0;
+///  - q₁: joints 5 and 6 leave P where it is, and joints 2 to 4 leave how far it lies along a₂: turned back about
+///    axis 1, G P lies as far along a₂ as P does at q = 0;
 ///  - q₅: joints 2 to 4 leave a₂ as it is and joint 6 leaves a₆, so that the angle between a₂ and R₅ a₆ is known;
 ///  - q₆: it takes what G and R₁ make of a₂ to R₅⁻¹ a₂;
 ///  - q₂ and q₃: what is left, e₂ e₃ e₄, is a motion in the plane across a₂, where axis 4 lies at the end of two links;
