@@ -195,7 +195,7 @@ export class Annotator {
       const seen = await this.pixels(screen);
       const wrong = seen.filter((one) => one.some((c, i) => Math.abs(c - color[i]!) > within));
       expect(wrong, `not ${color.join(" ")}`).toEqual([]);
-    }).toPass({ timeout: 20_000 });
+    }).toPass({ timeout: 60_000 });  // the first picture of a cold browser takes its time
   }
 
   // Files.
