@@ -28,8 +28,8 @@ Result<UrdfConfig> arm_reading_from_json(const json& value) {
     config.base = value.value("base", "");
     config.tip = value.value("tip", "");
     config.camera = value.value("camera_frame", "");
-    for (const auto& [name, folder] : value.value("packages", json::object()).items())
-      config.packages[name] = folder.get<std::string>();
+    const json packages = value.value("packages", json::object());
+    for (const auto& [name, folder] : packages.items()) config.packages[name] = folder.get<std::string>();
     config.keep_beyond_tip = !value.value("drop_beyond_tip", false);
     if (value.contains("T_world_base")) {
       SACCADE_TRY(config.T_world_base, pose_from_json(value.at("T_world_base")));
