@@ -3,23 +3,30 @@
 
 #include <algorithm>
 
+#include "cell_options.hpp"
 #include "saccade/arm/urdf.hpp"
+#include "saccade/io/maps/sacmap.hpp"
 #include "saccade/scene/scene_yaml.hpp"
+#include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
 
+bool same_box(const Box& a, const Box& b) { return a.min == b.min && a.max == b.max; }
+
 Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const ExploreCase& subject,
                                           const std::optional<ArmModel>& arm) {
   if (!options.robot_command.empty()) {
-    ExternalRobotConfig config;
-    config.command = options.robot_command;
-    config.start_timeout_s = config.move_timeout_s = options.process_timeout_s;
-    SACCADE_TRY(std::unique_ptr<ExternalRobot> robot, ExternalRobot::start(config));
+    SACCADE_TRY(std::unique_ptr<ProgramRobot> robot,
+                ProgramRobot::start(program_config(options, options.robot_command, options.cell.robot)));
     return std::unique_ptr<Robot>{std::move(robot)};
   }
   if (arm) {
-    SACCADE_TRY(PlannedArm robot, simulated_arm(*arm, subject.scene, options.run, options.arm));
+    std::shared_ptr<JointController> joints;
+    if (!options.joints_command.empty()) {
+      SACCADE_TRY(joints, ProgramJoints::start(joints_config(options, *arm)));
+    }
+    SACCADE_TRY(PlannedArm robot, planned_arm(*arm, subject.scene, options.run, options.arm, std::move(joints)));
     return std::unique_ptr<Robot>{std::make_unique<PlannedArm>(std::move(robot))};
   }
   if (!subject.rays) return std::unique_ptr<Robot>{std::make_unique<FreeRobot>()};
@@ -32,7 +39,7 @@ Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const E
 Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options) {
   if (!options.has_arm()) return std::optional<ArmModel>{};
   SACCADE_TRY(UrdfArm read, find_robot(options.robot, options.arm_reading.urdf));
-  return std::optional{std::move(read.arm)};
+  return std::optional{options.speed ? slowed(read.arm, *options.speed) : std::move(read.arm)};
 }
 
 Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& executor) {
@@ -54,6 +61,21 @@ Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& exe
   return subject;
 }
 
+Result<TsdfMap> map_to_begin_with(const ExploreOptions& options, const Scene& scene, const Executor& executor) {
+  TsdfConfig config = options.run.map();
+  config.workspace = scene.workspace;
+  if (options.map.empty()) return TsdfMap::create(config);
+  SACCADE_TRY(TsdfSnapshot saved, load_map(options.map, executor));
+  const auto fail = [&](const std::string& what) { return Error{Errc::invalid_argument, what, options.map.string()}; };
+  if (saved.config.voxel_size_m != config.voxel_size_m) {
+    return fail("the map has voxels of " + fixed(1e3 * saved.config.voxel_size_m, 2) + " mm, not " +
+                fixed(1e3 * config.voxel_size_m, 2) + "; give the same --voxel-size, in metres");
+  }
+  if (!saved.config.workspace) saved.config.workspace = config.workspace;
+  if (!same_box(*saved.config.workspace, scene.workspace)) return fail("the map was made in another workspace");
+  return TsdfMap{std::move(saved)};
+}
+
 Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const ExploreCase& subject,
                                             const std::optional<ArmModel>& arm, const Executor& executor) {
   SACCADE_TRY(std::unique_ptr<Robot> robot, open_robot(options, subject, arm));
@@ -63,11 +85,9 @@ Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const
     SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::move(camera), std::move(robot), own, executor));
     return ExploreDevices{std::move(carried)};
   }
-  ExternalCameraConfig config;
-  config.command = options.camera_command;
-  config.start_timeout_s = config.capture_timeout_s = options.process_timeout_s;
-  SACCADE_TRY(ExternalCamera started, ExternalCamera::start(config));
-  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::make_unique<ExternalCamera>(std::move(started)),
+  SACCADE_TRY(ProgramCamera started,
+              ProgramCamera::start(program_config(options, options.camera_command, options.cell.camera)));
+  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::make_unique<ProgramCamera>(std::move(started)),
                                                            std::move(robot), own, executor));
   return ExploreDevices{std::move(carried)};
 }

@@ -6,8 +6,7 @@
 #include <optional>
 
 #include "explore_options.hpp"
-#include "saccade/devices/external_camera.hpp"
-#include "saccade/devices/external_robot.hpp"
+#include "saccade/devices/programs.hpp"
 #include "saccade/trial/carried_camera.hpp"
 
 namespace saccade::cli {
@@ -23,6 +22,11 @@ struct ExploreCase {
 [[nodiscard]] Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options);
 /// The built-in scene or file.
 [[nodiscard]] Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& executor);
+
+/// The map that the options name, or one in which nothing is known, in the scene's workspace. invalid_argument for a
+/// map with another voxel size or workspace; errors of load_map.
+[[nodiscard]] Result<TsdfMap> map_to_begin_with(const ExploreOptions& options, const Scene& scene,
+                                                const Executor& executor);
 
 class ExploreDevices {
  public:

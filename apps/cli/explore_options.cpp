@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "add_value.hpp"
+#include "cell_options.hpp"
 #include "robot_options.hpp"
 
 namespace saccade::cli {
@@ -20,6 +21,9 @@ std::string strategy_help(const Planners& planners) {
 
 void add_arm_options(CLI::App& command, ExploreOptions& options) {
   add_reading_options(command, options.arm_reading);
+  add_value(command, "--speed", options.speed, "SHARE", "share of the speeds that the arm's URDF allows");
+  add_value(command, "--joints-command", options.joints_command, "COMMAND",
+            "a program that moves the arm's joints along trajectories that are planned here (docs/processes.md)");
   add_value(command, "--fixture", options.fixtures, "X0,Y0,Z0,X1,Y1,Z1",
             "a solid box that the arm keeps clear of, besides those of the scene; may be repeated");
   add_value(command, "--free", options.free, "X0,Y0,Z0,X1,Y1,Z1",
@@ -41,19 +45,48 @@ void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
   }
   options.arm.planner.seed = global.seed;
   options.arm.ik.numeric.restarts = kNumericRestarts;
+  if (!options.has_arm() && !options.joints_command.empty())
+    usage_error("--joints-command", "needs an arm that plans: give --robot, a URDF");
+  if (options.speed && !(*options.speed > 0.0 && *options.speed <= 1.0))
+    usage_error("--speed", "is a share of the arm's own speed: above 0, at most 1");
   require_positive(options.arm.obstacles.cell_size_m, "--obstacle-cell");
   require_ok(options.arm.validate(), "--obstacle-cell, --fixture");
   static_cast<void>(options.free_boxes());
 }
 
 std::vector<Box> ExploreOptions::free_boxes() const {
-  std::vector<Box> boxes;
+  std::vector<Box> boxes = cell.free;
   for (const std::string& text : free) boxes.push_back(parse_box("--free", text));
   return boxes;
 }
 
+void add_device_options(CLI::App& command, ExploreOptions& options) {
+  add_value(command, "--robot-command", options.robot_command, "COMMAND",
+            "a program that moves a robot, which plans for itself (docs/processes.md)")
+      ->excludes("--robot");
+  add_value(command, "--camera-command", options.camera_command, "COMMAND",
+            "a program that has a depth camera (docs/processes.md); there is no truth to compare with then");
+  add_value(command, "--process-timeout", options.process_timeout_s, "SECONDS",
+            "seconds after which such a program that does not answer is given up");
+  command
+      .add_option("--tracking", options.tracking,
+                  "where the poses of frames come from: forced, from the robot; hint, ICP that begins there, or the "
+                  "robot where ICP refuses; icp, ICP alone, and nothing where it refuses (default: forced)")
+      ->transform(CLI::CheckedTransformer(std::map<std::string, TrackingMode>{
+          {"forced", TrackingMode::forced}, {"hint", TrackingMode::hint}, {"icp", TrackingMode::icp}}));
+  add_value(command, "--map", options.map, "FILE", "a saved map (.sacmap) to go on from, in place of an unknown one");
+}
+
+void check_device_options(ExploreOptions& options) {
+  require_positive(options.process_timeout_s, "--process-timeout");
+  take_cell(options);
+  options.run.exploration.camera_clock_offset_s = options.cell.camera_clock_offset_s;
+  options.run.exploration.tracking = options.tracking.value_or(TrackingMode::forced);
+}
+
 void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners) {
-  add_value(command, "scene", options.scene, "SCENE", "name of a built-in scene, clutter:SEED, or a YAML file")
+  add_value(command, "scene", options.scene, "SCENE",
+            "name of a built-in scene, clutter:SEED, or a YAML file of a scene or a cell (docs/cell.md)")
       ->required();
   add_value(command, "--out", options.out, "RUN", "folder for the results; made if it is not there")->required();
   add_value(command, "--strategy", options.strategy, "NAME", strategy_help(planners));
@@ -65,13 +98,7 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
             "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
             "--camera-command");
   add_arm_options(command, options);
-  add_value(command, "--robot-command", options.robot_command, "COMMAND",
-            "a program that moves a robot (docs/processes.md)")
-      ->excludes("--robot");
-  add_value(command, "--camera-command", options.camera_command, "COMMAND",
-            "a program that has a depth camera (docs/processes.md); there is no truth to compare with then");
-  add_value(command, "--process-timeout", options.process_timeout_s, "SECONDS",
-            "seconds after which such a program that does not answer is given up");
+  add_device_options(command, options);
   command.add_flag("--step", options.step, "ask before each move");
   command.add_flag("--resume", options.resume, "go on with the interrupted run in RUN");
   command.add_flag("--no-pictures{false}", options.write_pictures,
@@ -84,7 +111,7 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
 void check_explore_options(ExploreOptions& options, const GlobalOptions& global) {
   if (options.resume && options.force) usage_error("--resume", "goes on with a run, --force starts it anew: not both");
   if (!options.show && !options.serve.given.empty()) usage_error(options.serve.given, "is for --show");
-  require_positive(options.process_timeout_s, "--process-timeout");
+  check_device_options(options);
   check_run_options(options);
   const auto strategy = global.planners.find(options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");

@@ -10,6 +10,7 @@
 #include "command.hpp"
 #include "robot_options.hpp"
 #include "run_options.hpp"
+#include "saccade/devices/cell.hpp"
 #include "segment_saliency.hpp"
 #include "serve.hpp"
 
@@ -23,8 +24,14 @@ struct ExploreOptions : RunOptions {
   std::vector<std::string> fixtures;  ///< as they were given
   std::vector<std::string> free;      ///< boxes, too
   PlannedArmConfig arm;
-  std::string robot_command;   ///< a program that moves a robot; empty: robot
-  std::string camera_command;  ///< a program that has a camera; empty: a simulated one
+  std::string joints_command;              ///< a program that moves the arm's joints; empty: they are simulated
+  std::optional<double> speed{};           ///< share of the arm's speeds; nullopt: all of them
+  std::optional<TrackingMode> tracking{};  ///< nullopt: forced
+  std::filesystem::path map;               ///< saved map to go on from; empty: nothing is known
+  Cell cell;                               ///< that the scene's file describes
+  std::optional<Error> cell_problem{};     ///< what is wrong with that file
+  std::string robot_command;               ///< a program that moves a robot; empty: robot
+  std::string camera_command;              ///< a program that has a camera; empty: a simulated one
   double process_timeout_s{60.0};
   bool step{false};
   bool resume{false};
@@ -39,14 +46,23 @@ struct ExploreOptions : RunOptions {
   /// What each view was chosen from, and the map after it, for saccade show.
   [[nodiscard]] bool keeps_views() const { return write_pictures || show; }
   [[nodiscard]] bool has_arm() const { return robot_command.empty() && robot != "free"; }
+  /// A real robot or arm, which is not where a simulated one would be.
+  [[nodiscard]] bool moves_real() const { return !robot_command.empty() || !joints_command.empty(); }
   /// Boxes that are known to be free from the beginning.
   [[nodiscard]] std::vector<Box> free_boxes() const;
 };
 
-/// Adds what add_reading_options does, --fixture, --free, --obstacle-cell, --unknown-is-free and --planner.
+/// Adds what add_reading_options does, --speed, --joints-command, --fixture, --free, --obstacle-cell, --unknown-is-free
+/// and --planner.
 void add_arm_options(CLI::App& command, ExploreOptions& options);
 /// After parsing: fills `arm`. Throws a usage error for what makes no sense.
 void check_arm_options(ExploreOptions& options, const GlobalOptions& global);
+
+/// Adds --camera-command, --robot-command, --process-timeout, --tracking and --map.
+void add_device_options(CLI::App& command, ExploreOptions& options);
+/// After parsing: takes the cell's file in, fills `run.exploration.tracking`, and throws a usage error for what makes
+/// no sense.
+void check_device_options(ExploreOptions& options);
 
 /// Adds the options to the command.
 void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners);

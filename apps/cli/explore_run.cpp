@@ -37,6 +37,7 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
                 {"obstacle_cell_m", options.arm.obstacles.cell_size_m},
                 {"unknown_is_obstacle", options.arm.obstacles.unknown_is_obstacle},
                 {"planner", options.arm.planner.planner},
+                {"joints", options.joints_command.empty() ? "simulated" : options.joints_command},
                 {"camera", options.camera_command.empty() ? "simulated" : options.camera_command},
                 {"intrinsics", camera_to_json(camera)},
                 {"sensor", to_string(run.sensor)},
@@ -52,6 +53,9 @@ json settings_of(const ExploreOptions& options, const ExploreCase& subject, cons
   if (json reading = server::arm_reading_to_json(options.arm_reading.urdf); !reading.empty())
     settings["arm_reading"] = std::move(reading);
   if (run.as_printed) settings["as_printed"] = true;
+  if (options.speed) settings["speed"] = *options.speed;
+  if (!options.map.empty()) settings["map"] = options.map.string();
+  if (run.exploration.tracking != TrackingMode::forced) settings["tracking"] = to_string(run.exploration.tracking);
   if (run.exploration.frame_on_way_s > 0.0) settings["frame_on_way_s"] = run.exploration.frame_on_way_s;
   if (run.exploration.lookahead > 1) settings["lookahead"] = run.exploration.lookahead;
   if (run.exploration.objective != Objective::surface) settings["objective"] = to_string(run.exploration.objective);
@@ -104,17 +108,17 @@ ExploreRun::ExploreRun(const ExploreOptions& options, const ExploreCase& subject
 Result<std::unique_ptr<ExploreRun>> ExploreRun::create(const ExploreOptions& options, const ExploreCase& subject,
                                                        ExploreDevices& devices, const RunFolder& out,
                                                        const Executor& executor, ProgressBar& progress) {
-  TsdfConfig config = options.run.map();
-  config.workspace = subject.scene.workspace;
-  SACCADE_TRY(TsdfMap map, TsdfMap::create(config));
+  SACCADE_TRY(TsdfMap map, map_to_begin_with(options, subject.scene, executor));
   return std::unique_ptr<ExploreRun>{
       new ExploreRun{options, subject, devices, out, executor, progress, std::move(map)}};
 }
 
 Status ExploreRun::resume(SavedExploration saved) {
   for (const auto& [key, value] : journal_.settings.items()) {
-    // Journals did not name the sensor while there was but one.
-    const json missing = key == "sensor" ? json(to_string(DepthSensor::kinect_v1)) : json(nullptr);
+    // Journals did not name the sensor or the joints while there was but one kind.
+    const json missing = key == "sensor"   ? json(to_string(DepthSensor::kinect_v1))
+                         : key == "joints" ? json("simulated")
+                                           : json(nullptr);
     const json then = saved.journal.settings.value(key, missing);
     if (then == value) continue;
     return Error{Errc::invalid_argument,
@@ -127,11 +131,18 @@ Status ExploreRun::resume(SavedExploration saved) {
   before_ = map_.snapshot();
   if (truth_meter_) truth_meter_->begin(before_);
   devices_.resume_at(journal_.frames());
-  return journal_.q ? devices_.place_arm(*journal_.q) : Status{};
+  return journal_.q && !options_.moves_real() ? devices_.place_arm(*journal_.q) : Status{};
 }
 
 Status ExploreRun::run(const std::function<void()>& recorded) {
   recorded_ = recorded;
+  const Status ended = run_to_end();
+  if (ended.ok() || ended.error().code != Errc::cancelled) return ended;
+  journal_.run.stopped_because = StopReason::cancelled;  // a program that hung when the user interrupted
+  return {};
+}
+
+Status ExploreRun::run_to_end() {
   Progress cancel;
   const CancelOnInterrupt guard{cancel};
   const Approve approve = [this](const RankedView& view) { return ask(view); };
@@ -140,7 +151,8 @@ Status ExploreRun::run(const std::function<void()>& recorded) {
   if (!journal_.scanned) {
     progress_.update("initial scan", 0, 0);
     for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
-    SACCADE_TRY(const ScanRecord scan, explorer.scan(subject_.scene.scan));
+    const std::vector<Pose>& poses = subject_.scene.scan;  // a map that was given makes them unnecessary
+    SACCADE_TRY(const ScanRecord scan, explorer.scan(options_.map.empty() ? poses : std::vector<Pose>{}));
     if (!scan.complete) {
       journal_.run.stopped_because = StopReason::cancelled;
       return {};

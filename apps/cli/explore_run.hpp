@@ -34,6 +34,7 @@ class ExploreRun final : private Recorder {
  private:
   ExploreRun(const ExploreOptions& options, const ExploreCase& subject, ExploreDevices& devices, const RunFolder& out,
              const Executor& executor, ProgressBar& progress, TsdfMap map);
+  [[nodiscard]] Status run_to_end();
   [[nodiscard]] Approval ask(const RankedView& view);
   [[nodiscard]] Status scanned(ScanRecord& scan, const TsdfSnapshot& map) override;
   [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) override;

@@ -28,8 +28,11 @@ void install_interrupt_handler() {
   action.sa_flags = SA_RESTART;
   sigaction(SIGINT, &action, nullptr);
   sigaction(SIGTERM, &action, nullptr);
-  signal(SIGPIPE, SIG_IGN);  // a closed pipe becomes an error of the write
-  signal(SIGXFSZ, SIG_IGN);  // and so does a file beyond the size limit
+  struct sigaction hangup {};
+  sigaction(SIGHUP, nullptr, &hangup);
+  if (hangup.sa_handler != SIG_IGN) sigaction(SIGHUP, &action, nullptr);  // nohup stays what it is
+  signal(SIGPIPE, SIG_IGN);                                               // a closed pipe becomes an error of the write
+  signal(SIGXFSZ, SIG_IGN);                                               // and so does a file beyond the size limit
 }
 
 int interrupt_signal() { return caught.load(); }

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Ctrl-C and SIGTERM: the first asks the work to stop and keep what it has, the second ends the program at once.
+// Ctrl-C, SIGTERM and SIGHUP: the first asks the work to stop and keep what it has, the second ends the program at
+// once.
 
 #include "saccade/core/progress.hpp"
 

@@ -59,7 +59,7 @@ Result<std::vector<Pose>> scan_motion(const Scene& scene, const ArmModel& arm, d
   // Whoever teaches the arm its way sees the objects, which no map knows yet.
   for (SceneObject& object : seen.objects) object.fixture = true;
   const SimulatedRunConfig run;
-  SACCADE_TRY(PlannedArm robot, simulated_arm(arm, seen, run, config));
+  SACCADE_TRY(PlannedArm robot, planned_arm(arm, seen, run, config));
 
   std::vector<Pose> poses{robot.T_world_camera()};
   const double between_s = pace / kFrameRate_hz;  // in the time of the planned motions, which are the fastest

@@ -6,6 +6,7 @@
 #include <cstdlib>
 #include <vector>
 
+#include "saccade/devices/internal/joint_messages.hpp"
 #include "saccade/devices/internal/process_messages.hpp"
 #include "saccade/io/files/text_scan.hpp"
 
@@ -16,7 +17,7 @@ void require(bool condition) {
 }
 
 /// Pixels of a camera that said what it is; missing ones are 0.
-void decode(const saccade::ExternalCameraFormat& format, std::string_view pixels) {
+void decode(const saccade::ProgramCameraFormat& format, std::string_view pixels) {
   constexpr std::size_t kMostBytes{1 << 16};
   require(format.camera.validate().ok() && format.frame_bytes() <= saccade::kMaxFrameBytes);
   if (format.frame_bytes() > kMostBytes) return;
@@ -44,8 +45,10 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   } else {
     require_one_line(saccade::readable(format.error().message, size + 400));
   }
-  static_cast<void>(saccade::parse_robot_hello(line));
-  if (const auto capture = saccade::parse_capture_answer(line, 0, 16)) {
+  static_cast<void>(saccade::parse_ready(line));
+  static_cast<void>(saccade::parse_joint_answer(line, 6));
+  static_cast<void>(saccade::parse_sample_answer(line, 0));
+  if (const auto capture = saccade::parse_capture_answer(line, 0, 16, saccade::Pose::Identity())) {
     if (capture->T_world_camera) require(capture->T_world_camera->matrix().allFinite());
   }
   if (const auto move = saccade::parse_move_answer(line, 0, saccade::Pose::Identity())) {

@@ -18,6 +18,7 @@ json arm_reading_to_json(const UrdfConfig& config) {
   for (const auto& [name, folder] : config.packages) value["packages"][name] = folder.string();
   if (!config.keep_beyond_tip) value["drop_beyond_tip"] = true;
   if (config.T_world_base) value["T_world_base"] = pose_to_json(*config.T_world_base);
+  if (config.T_flange_camera) value["T_flange_camera"] = pose_to_json(*config.T_flange_camera);
   return value;
 }
 
@@ -33,6 +34,9 @@ Result<UrdfConfig> arm_reading_from_json(const json& value) {
     config.keep_beyond_tip = !value.value("drop_beyond_tip", false);
     if (value.contains("T_world_base")) {
       SACCADE_TRY(config.T_world_base, pose_from_json(value.at("T_world_base")));
+    }
+    if (value.contains("T_flange_camera")) {
+      SACCADE_TRY(config.T_flange_camera, pose_from_json(value.at("T_flange_camera")));
     }
   } catch (const json::exception& e) {
     return Error{Errc::corrupt_data, message_of(e), "arm_reading"};

@@ -148,6 +148,20 @@ std::vector<CameraSample> PlannedArm::camera_on_way(const Motion& motion, double
   return samples;
 }
 
+bool PlannedArm::still_free(const Motion& motion, double t_s) const {
+  const double end_s = motion.trajectory.duration_s();
+  double from_s = std::max(t_s, motion.retreat_s);
+  while (from_s < end_s) {
+    const double to_s = std::min(from_s + kLookAhead_s, end_s);
+    if (reachability_.collision().motion_contact(motion.trajectory.at(from_s).q, motion.trajectory.at(to_s).q,
+                                                 obstacles_)) {
+      return false;
+    }
+    from_s = to_s;
+  }
+  return true;
+}
+
 Result<PlannedMotion> PlannedArm::plan_to_stand_by() {
   SACCADE_TRY(PlanOutcome outcome, planner_.plan(planned_from(), std::span{&stand_by_, 1}, obstacles_));
   if (!outcome.plan) return PlannedMotion{std::nullopt, outcome.refusal, std::move(outcome.why)};
@@ -194,18 +208,22 @@ Status PlannedArm::check_start(const Motion& motion) const {
 
 Result<std::optional<Arrival>> PlannedArm::execute(const Motion& motion, const OnWay& on_way) {
   SACCADE_CHECK(check_start(motion));
+  JointPath driven{q_};
   JointObserver observer;
   if (on_way) {
     observer = [&](const JointSample& sample) {
       q_ = sample.q;
-      on_way({sample.t_s, T_world_camera()});
+      driven.push_back(q_);
+      return on_way({sample.t_s, T_world_camera(), sample.time_s});
     };
   }
-  SACCADE_TRY(q_, joints_->execute(motion.trajectory, observer));
-  way_->add(motion.trajectory);
+  SACCADE_TRY(const JointArrival arrival, joints_->execute(motion.trajectory, observer));
+  q_ = arrival.q;
+  driven.push_back(q_);
+  motions_.push_back(arrival.stopped ? parametrise(arm(), driven) : motion.trajectory);
+  way_->add(motions_.back());
   retreat_.reset();
-  motions_.push_back(motion.trajectory);
-  return std::optional{Arrival{T_world_camera(), motion.trajectory.duration_s()}};
+  return std::optional{Arrival{T_world_camera(), motions_.back().duration_s(), arrival.stopped}};
 }
 
 }  // namespace saccade

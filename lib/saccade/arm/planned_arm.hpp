@@ -53,6 +53,8 @@ class PlannedArm final : public Robot {
   [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) override;
 
   [[nodiscard]] std::vector<CameraSample> camera_on_way(const Motion& motion, double every_s) const override;
+  /// Looks at straight lines between positions kLookAhead_s apart.
+  [[nodiscard]] bool still_free(const Motion& motion, double t_s) const override;
   [[nodiscard]] Result<PlannedMotion> plan_to_stand_by() override;
   /// on_way is called at the samples of the joints, and at the end. invalid_argument for a motion that does not begin
   /// where the arm stands; errors of the joints.
@@ -77,6 +79,7 @@ class PlannedArm final : public Robot {
     ObstacleMap obstacles;
     Configuration start;
   };
+  static constexpr double kLookAhead_s{0.05};
   PlannedArm(Parts parts, std::shared_ptr<JointController> joints);
   [[nodiscard]] static Result<Parts> make_parts(const ArmModel& arm, const TsdfConfig& map,
                                                 const PlannedArmConfig& config);

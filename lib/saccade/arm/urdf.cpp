@@ -148,7 +148,8 @@ class ArmBuilder {
     SACCADE_CHECK(known(tip_, "tip"));
     if (camera_.empty()) {
       camera_ = tip_;
-      notes_.push_back("no camera is mounted: its frame is taken to be that of " + tip_ + ", z forward");
+      if (!config_.T_flange_camera)
+        notes_.push_back("no camera is mounted: its frame is taken to be that of " + tip_ + ", z forward");
     }
     auto chain = tree_.path(base_, tip_);
     if (!chain) return wrong(Errc::invalid_argument, "does not come behind the base " + base_, "link " + tip_);
@@ -294,7 +295,8 @@ class ArmBuilder {
     arm_.T_link_flange = flange.T_link_frame;
     arm_.camera_name = camera_;
     if (config_.T_world_base) arm_.T_world_base = *config_.T_world_base;
-    arm_.T_flange_camera = flange.T_link_frame.inverse() * camera->second.T_link_frame;
+    arm_.T_flange_camera =
+        config_.T_flange_camera.value_or(flange.T_link_frame.inverse() * camera->second.T_link_frame);
     if (without_acceleration_ > 0) {
       notes_.push_back(std::to_string(without_acceleration_) + " of " + std::to_string(arm_.joints.size()) +
                        " joints have no acceleration limit: they are taken to reach their speed in " +

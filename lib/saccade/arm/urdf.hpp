@@ -26,6 +26,8 @@ struct UrdfConfig {
   double acceleration_time_s{0.5};     ///< joints without an acceleration reach their speed in this time
   bool keep_beyond_tip{true};          ///< bodies fixed behind the flange belong to the arm
   std::optional<Pose> T_world_base{};  ///< where the chain's first link stands; nullopt: as the file says
+  /// Where the camera's optical frame is on the flange, as it was measured; nullopt: as the file says.
+  std::optional<Pose> T_flange_camera{};
 };
 
 struct UrdfArm {

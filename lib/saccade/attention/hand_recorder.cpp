@@ -31,18 +31,17 @@ bool HandRecorder::is_inside(const HandSample& sample) const {
 }
 
 std::optional<HandTrajectory> HandRecorder::push(const HandSample& sample) {
-  const bool is_good =
-      std::isfinite(sample.time_s) && sample.position_m.allFinite() && (!last_time_s_ || sample.time_s > *last_time_s_);
-  if (!is_good) {
-    ++bad_samples_;
-    return std::nullopt;
-  }
-  last_time_s_ = sample.time_s;
+  const bool later = std::isfinite(sample.time_s) && (!last_time_s_ || sample.time_s > *last_time_s_);
   std::optional<HandTrajectory> finished;
-  if (!task_.empty()) {
+  if (later && !task_.empty()) {
     const double away_s = sample.time_s - task_[inside_ - 1].time_s;
     if (away_s > config_.dropout_s || task_.size() >= config_.max_samples) finished = finish();
   }
+  if (!later || !sample.position_m.allFinite()) {
+    ++bad_samples_;
+    return finished;
+  }
+  last_time_s_ = sample.time_s;
   const bool inside = is_inside(sample);
   if (inside || !task_.empty()) task_.push_back(sample);
   if (inside) inside_ = task_.size();

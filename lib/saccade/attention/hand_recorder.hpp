@@ -23,7 +23,7 @@ struct HandRecorderConfig {
 
 /// Thesis §2.2.4, Fig. 2.6. A task begins with the first good sample inside the workspace and ends with the last one
 /// before the hand was outside, or nothing was heard of it, for longer than `dropout_s`. Samples that are not finite,
-/// or whose time does not increase, are counted and left out.
+/// or whose time does not increase, are counted and left out; time passes with those whose position alone is not.
 class HandRecorder {
  public:
   /// invalid_argument as validate().

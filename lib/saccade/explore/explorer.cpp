@@ -44,6 +44,7 @@ Status ExplorerConfig::validate() const {
   if (oscillation_frames < 1) return fail("a view needs one frame at least");
   if (lookahead < 1) return fail("one view at least is looked ahead");
   if (!(oscillation_rad >= 0.0 && oscillation_rad < 1.5)) return fail("the oscillation is within 0 and 85 degrees");
+  SACCADE_CHECK(icp.validate());
   if (!(frame_on_way_s == 0.0 || (frame_on_way_s >= kLeastOnWay_s && std::isfinite(frame_on_way_s))))
     return fail("frames on the way need 10 ms between them at least");
   return {};
@@ -99,7 +100,7 @@ Result<StandByResult> Explorer::return_to_stand_by() {
   if (!planned.motion) return StandByResult{false, planned.refusal, 0.0};
   SACCADE_TRY(const std::optional<Arrival> arrival, parts_.robot.execute(*planned.motion));
   if (!arrival) return StandByResult{false, Refusal::declined, 0.0};
-  return StandByResult{true, std::nullopt, arrival->motion_s};
+  return StandByResult{!arrival->stopped, std::nullopt, arrival->motion_s};
 }
 
 PlanningScene Explorer::scene(PhaseTimes& times) const {
@@ -124,7 +125,7 @@ Result<Explorer::Outcome> Explorer::go_to_next(ViewPlanner& planner, RunRecord& 
     if (ranking.empty()) return Outcome::nowhere_to_go;
     SACCADE_TRY(const Outcome outcome, go_to_best(ranking, view));  // 6–12
     result_of(run, region_).gain_left = ranking.gain_left(scene(view.times));
-    if (outcome != Outcome::nowhere_to_go) return outcome;
+    if (outcome == Outcome::arrived || outcome == Outcome::cancelled) return outcome;
   }
 }
 
@@ -150,6 +151,10 @@ Result<Explorer::Outcome> Explorer::go_to_best(Ranking& ranking, ViewRecord& vie
     if (approval == Approval::go) {
       promise_ = ranking.promise(chosen.T_world_camera);
       SACCADE_TRY(const std::optional<Arrival> arrival, move(*planned.motion, view));  // 12
+      if (arrival && arrival->stopped) {  // something new stands in the way
+        attempts_.add_refused(ranking.region(), std::span{&chosen, 1}, Refusal::no_path);
+        return cancelled() ? Outcome::cancelled : Outcome::stopped_on_way;
+      }
       if (arrival) {
         view.region = ranking.region();
         view.T_world_camera = chosen.T_world_camera;

@@ -15,6 +15,7 @@
 #include "saccade/explore/view_planner.hpp"
 #include "saccade/robot/robot.hpp"
 #include "saccade/sensor/camera.hpp"
+#include "saccade/tracking/reconstruction.hpp"
 
 namespace saccade {
 
@@ -31,6 +32,15 @@ struct ExplorerConfig {
   bool way_counts{true};                    ///< what these frames are expected to show: Foresight; false: the thesis
   int lookahead{1};                         ///< views that are chosen together: Foresight
   Objective objective{Objective::surface};  ///< what a view is chosen by
+
+  /// Where the poses of frames come from: forced takes the robot's; hint lets ICP begin there, and takes the robot's
+  /// where ICP refuses; icp lets it begin where the robot's motion leads from the last tracked pose, and does not fuse
+  /// what it refuses.
+  TrackingMode tracking{TrackingMode::forced};
+  /// Added to the camera's times for those of the robot. Frames on the way that have a time are fused where the robot
+  /// was then, where that has a clock too.
+  double camera_clock_offset_s{0.0};
+  IcpConfig icp{.max_translation_m = 0.08, .max_rotation_rad = 0.15};
 
   [[nodiscard]] Status validate() const;
   [[nodiscard]] Foresight foresight() const {
@@ -61,7 +71,7 @@ struct StandByResult {
   double motion_s{0.0};              ///< duration of the way of a real arm
 };
 
-/// One caller at a time. What is fused comes from the camera, at the poses that the robot says it reached.
+/// One caller at a time. What is fused comes from the camera, at poses by ExplorerConfig::tracking.
 class Explorer {
  public:
   Explorer(ExplorerParts parts, const ExplorerConfig& config) : parts_{std::move(parts)}, config_{config} {}
@@ -89,7 +99,7 @@ class Explorer {
   [[nodiscard]] Result<StandByResult> return_to_stand_by();
 
  private:
-  enum class Outcome : std::uint8_t { arrived, nowhere_to_go, cancelled };
+  enum class Outcome : std::uint8_t { arrived, nowhere_to_go, stopped_on_way, cancelled };
 
   [[nodiscard]] PlanningScene scene(PhaseTimes& times) const;
   [[nodiscard]] std::optional<StopReason> stopped(const RunRecord& run) const;
@@ -98,11 +108,17 @@ class Explorer {
   [[nodiscard]] Result<Outcome> go_to_next(ViewPlanner& planner, RunRecord& run, ViewRecord& view);
   [[nodiscard]] Result<Outcome> go_to_best(Ranking& ranking, ViewRecord& view);
   [[nodiscard]] Result<std::optional<Arrival>> move(const Motion& motion, ViewRecord& view);
+  /// Fuses a frame on the way to a view. Returns whether what it shows stands in the way.
+  [[nodiscard]] Result<bool> fuse_on_way(Frame frame, const CameraSample& at, const Motion& motion, ViewRecord& view);
   [[nodiscard]] Status look(ViewRecord& view);
   /// Fills in gain_observed.
   void check_promise(ViewRecord& view) const;
   [[nodiscard]] Result<Outcome> scan_from(const Pose& T_world_camera, ScanRecord& scan);
-  [[nodiscard]] Status fuse(const Pose& T_world_camera, bool keep);
+  /// Fuses a frame that the robot's motion has at a pose. Returns whether it was fused.
+  [[nodiscard]] Result<bool> fuse(Frame frame, const Pose& T_world_robot, bool keep, TrackedFrames& tracking);
+  /// Returns the pose at which a frame is fused; nullopt: ICP refused it.
+  [[nodiscard]] Result<std::optional<Pose>> track(const Frame& frame, const Pose& T_world_robot,
+                                                  TrackedFrames& tracking);
   [[nodiscard]] Result<double> farthest_tilt_rad(const Pose& T_world_view, double wanted_rad);
 
   ExplorerParts parts_;
@@ -111,6 +127,8 @@ class Explorer {
   std::size_t region_{0};      ///< that is being explored; those before it are done
   Promise promise_;            ///< what the view that is being taken is to show
   std::vector<Frame> frames_;  ///< frames of the view that is being taken
+  /// Where ICP last found the camera, as seen from where the robot had it.
+  Pose T_robot_tracked_{Pose::Identity()};
 };
 
 }  // namespace saccade

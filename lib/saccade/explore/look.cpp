@@ -1,9 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 // What the explorer does at a view and on its way there: it moves, tilts the camera, takes frames and fuses them.
+#include <algorithm>
 #include <cmath>
+#include <utility>
 #include <vector>
 
 #include "saccade/explore/explorer.hpp"
+#include "saccade/explore/internal/timed_frame.hpp"
 
 namespace saccade {
 namespace {
@@ -29,6 +32,18 @@ std::vector<double> tilts_towards(double farthest_rad) {
 
 }  // namespace
 
+void TrackedFrames::add(const Pose& T_robot_tracked) {
+  ++tracked;
+  const double share = 1.0 / static_cast<double>(tracked);
+  correction_m += share * (T_robot_tracked.translation().norm() - correction_m);
+  correction_rad += share * (Eigen::AngleAxisd{T_robot_tracked.linear()}.angle() - correction_rad);
+}
+
+void TrackedFrames::refuse(std::string reason) {
+  ++refused;
+  why = std::move(reason);
+}
+
 Result<double> Explorer::farthest_tilt_rad(const Pose& T_world_view, double wanted_rad) {
   for (const double tilt_rad : tilts_towards(wanted_rad)) {
     const Pose pose = tilted(T_world_view, tilt_rad);
@@ -38,29 +53,64 @@ Result<double> Explorer::farthest_tilt_rad(const Pose& T_world_view, double want
   return 0.0;
 }
 
-Status Explorer::fuse(const Pose& T_world_camera, bool keep) {
-  SACCADE_TRY(Frame frame, parts_.camera.capture(T_world_camera));
+Result<std::optional<Pose>> Explorer::track(const Frame& frame, const Pose& T_world_robot, TrackedFrames& tracking) {
+  if (config_.tracking == TrackingMode::forced || parts_.map.content().grid.empty())
+    return std::optional{T_world_robot};
+  const bool carries = config_.tracking == TrackingMode::icp;
+  const Pose start = carries ? T_world_robot * T_robot_tracked_ : T_world_robot;
+  SACCADE_TRY(const FrameReport report, track_frame(parts_.map.content(), frame, parts_.camera.intrinsics(), start,
+                                                    parts_.executor, config_.icp));
+  if (report.status == FrameReport::Status::lost) {
+    tracking.refuse(report.why);
+    return carries ? std::optional<Pose>{} : std::optional{T_world_robot};
+  }
+  T_robot_tracked_ = T_world_robot.inverse() * report.T_world_camera;
+  tracking.add(T_robot_tracked_);
+  return std::optional{report.T_world_camera};
+}
+
+Result<bool> Explorer::fuse(Frame frame, const Pose& T_world_robot, bool keep, TrackedFrames& tracking) {
   const ColorImage* color = frame.color ? &*frame.color : nullptr;
-  const Pose T_world_frame = frame.T_world_camera.value_or(T_world_camera);
-  SACCADE_TRY([[maybe_unused]] const FusionStats stats,
-              parts_.map.integrate(parts_.camera.intrinsics(), frame.depth, T_world_frame, parts_.executor, color));
+  SACCADE_TRY(frame.T_world_camera, track(frame, T_world_robot, tracking));
+  if (!frame.T_world_camera) return false;
+  SACCADE_TRY(
+      [[maybe_unused]] const FusionStats stats,
+      parts_.map.integrate(parts_.camera.intrinsics(), frame.depth, *frame.T_world_camera, parts_.executor, color));
   if (keep) frames_.push_back(std::move(frame));
-  return {};
+  return true;
+}
+
+Result<bool> Explorer::fuse_on_way(Frame frame, const CameraSample& at, const Motion& motion, ViewRecord& view) {
+  SACCADE_TRY(const bool fused, fuse(std::move(frame), at.T_world_camera, false, view.tracking));
+  if (!fused) return false;
+  ++view.frames_on_way;
+  SACCADE_CHECK(parts_.robot.follow(parts_.map.content(), parts_.executor));
+  return !parts_.robot.still_free(motion, at.t_s);
 }
 
 Result<std::optional<Arrival>> Explorer::move(const Motion& motion, ViewRecord& view) {
-  Status fused;
   double next_s = config_.frame_on_way_s;
+  TimedFrame waiting{config_.camera_clock_offset_s};  // a frame with a time, until the robot has told where it was then
+  const auto take = [&](const CameraSample& sample) -> Result<bool> {
+    if (const auto at = waiting.reached(sample)) return fuse_on_way(waiting.take(), *at, motion, view);
+    if (config_.frame_on_way_s <= 0.0 || sample.t_s < next_s || waiting.holds()) return false;
+    next_s = std::max(next_s + config_.frame_on_way_s, sample.t_s);
+    SACCADE_TRY(Frame frame, parts_.camera.capture(sample.T_world_camera));
+    CameraSample at = sample;
+    at.T_world_camera = frame.T_world_camera.value_or(sample.T_world_camera);
+    if (waiting.hold(frame, sample)) return false;
+    return fuse_on_way(std::move(frame), at, motion, view);
+  };
+  Result<bool> blocked{false};
   const OnWay on_way = [&](const CameraSample& sample) {
     view.path.emplace_back(sample.T_world_camera.translation());
-    if (config_.frame_on_way_s <= 0.0 || sample.t_s < next_s || !fused.ok() || cancelled()) return;
-    next_s += config_.frame_on_way_s;
-    fused = view.times.measure(Phase::fusion, [&] { return fuse(sample.T_world_camera, false); });
-    ++view.frames_on_way;
+    if (cancelled()) return Advance::stop;
+    blocked = view.times.measure(Phase::fusion, [&] { return take(sample); });
+    return blocked.ok() && !*blocked ? Advance::go_on : Advance::stop;
   };
   auto arrival = view.times.measure(Phase::motion, [&] { return parts_.robot.execute(motion, on_way); });
   view.path_m = length_m(view.path);
-  if (!fused.ok()) return fused.error();
+  if (!blocked.ok()) return blocked.error();
   return arrival;
 }
 
@@ -80,9 +130,12 @@ Status Explorer::look(ViewRecord& view) {
       if (!planned.motion) continue;
       SACCADE_TRY(const std::optional<Arrival> arrival, parts_.robot.execute(*planned.motion));
       if (!arrival) continue;
+      if (arrival->stopped) break;  // the caller cancelled
       motion_s += arrival->motion_s;
-      SACCADE_CHECK(fuse(arrival->T_world_camera, true));
-      ++view.frames;
+      SACCADE_TRY(Frame frame, parts_.camera.capture(arrival->T_world_camera));
+      const Pose at = frame.T_world_camera.value_or(arrival->T_world_camera);
+      SACCADE_TRY(const bool fused, fuse(std::move(frame), at, true, view.tracking));
+      if (fused) ++view.frames;
     }
     view.motion_s += motion_s;
     return {};
@@ -130,6 +183,7 @@ Result<Explorer::Outcome> Explorer::scan_from(const Pose& T_world_camera, ScanRe
   if (approval == Approval::stop) return Outcome::cancelled;
   if (approval == Approval::skip) return Outcome::nowhere_to_go;
   SACCADE_TRY(const std::optional<Arrival> arrival, parts_.robot.execute(*planned.motion));
+  if (arrival && arrival->stopped) return Outcome::cancelled;
   if (!arrival) {
     scan.refused.add(Refusal::declined);
     return Outcome::nowhere_to_go;

@@ -41,6 +41,19 @@ struct Tilt {
   [[nodiscard]] bool operator==(const Tilt&) const = default;
 };
 
+/// How frames were tracked whose poses were not taken as the robot has them.
+struct TrackedFrames {
+  std::size_t tracked{0};
+  std::size_t refused{0};    ///< ICP found no pose that can be believed
+  double correction_m{0.0};  ///< mean distance of the tracked poses from those of the robot
+  double correction_rad{0.0};
+  std::string why{};  ///< the last refusal
+
+  void add(const Pose& T_robot_tracked);
+  void refuse(std::string reason);
+  [[nodiscard]] bool operator==(const TrackedFrames&) const = default;
+};
+
 /// What a view was chosen from. The large part of a record, which is kept in a file of its own; world frame.
 struct ViewChoice {
   Region region{};                         ///< that gains are of
@@ -81,7 +94,8 @@ struct ViewRecord {
   RefusalCounts refused{};                ///< candidates that the robot cannot take, and those without a path
   std::size_t frames{0};                  ///< fused at the view
   std::size_t frames_on_way{0};
-  Tilt tilt{};  ///< ±oscillation_rad, or as far towards either end as the robot could
+  TrackedFrames tracking{};  ///< tracking of all these frames
+  Tilt tilt{};               ///< ±oscillation_rad, or as far towards either end as the robot could
   PhaseTimes times{};
   double motion_s{0.0};                        ///< duration of motion and oscillation of a real arm; 0 where not known
   double retreat_s{0.0};                       ///< its share in which the arm backs out of a contact

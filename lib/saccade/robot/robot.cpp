@@ -16,6 +16,8 @@ Result<OwnBody> Robot::own_body(const PinholeCamera& /*sensor*/) const { return 
 
 std::vector<CameraSample> Robot::camera_on_way(const Motion& /*motion*/, double /*every_s*/) const { return {}; }
 
+bool Robot::still_free(const Motion& /*motion*/, double /*t_s*/) const { return true; }
+
 Result<PlannedMotion> Robot::plan_to_stand_by() {
   return PlannedMotion{std::nullopt, Refusal::declined, "the robot has no stand-by"};
 }

@@ -39,14 +39,16 @@ struct PlannedMotion {
 struct Arrival {
   Pose T_world_camera{Pose::Identity()};  ///< where the camera is, which an arm knows better than the one who asked
   double motion_s{0.0};                   ///< what the way takes a real arm; 0 where that is not known
+  bool stopped{false};                    ///< on the way, because the observer said so or the caller cancelled
 };
 
 /// Where the camera is on its way.
 struct CameraSample {
   double t_s{0.0};  ///< since the motion began
   Pose T_world_camera{Pose::Identity()};
+  std::optional<double> time_s{};  ///< on the clock of the robot, where it has one
 };
-using OnWay = std::function<void(const CameraSample& sample)>;
+using OnWay = std::function<Advance(const CameraSample& sample)>;
 
 enum class Way : std::uint8_t {
   any,
@@ -85,11 +87,15 @@ class Robot {
   /// know. Expects every_s > 0.
   [[nodiscard]] virtual std::vector<CameraSample> camera_on_way(const Motion& motion, double every_s) const;
 
+  /// Whether the rest of a motion under way, from `t_s` on, touches nothing of the map that was followed last. true for
+  /// robots that do not know.
+  [[nodiscard]] virtual bool still_free(const Motion& motion, double t_s) const;
+
   /// A motion back to where the robot stood in the beginning; a refusal where it does not know the way, or the place.
   [[nodiscard]] virtual Result<PlannedMotion> plan_to_stand_by();
 
-  /// Makes the motion that was planned last. `on_way` is called at every sample of the camera's path, for robots that
-  /// know it; configuration() is then that of the sample.
+  /// Makes the motion that was planned last. `on_way` is called at samples of the camera's path, for robots that know
+  /// it, and may stop the motion; configuration() is then that of the sample.
   /// @return nullopt when the robot declines after all, and has not moved. An Error means that its pose is not known.
   [[nodiscard]] virtual Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way = {}) = 0;
 

@@ -3,6 +3,7 @@
 // Configuration: where the joints of an arm are; Trajectory: where they are at which time.
 
 #include <Eigen/Core>
+#include <cstdint>
 #include <vector>
 
 namespace saccade {
@@ -17,6 +18,9 @@ using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>
 
 /// Straight lines between configurations, the first being the start. Empty, or one configuration: no motion.
 using JointPath = std::vector<Configuration>;
+
+/// What an observer of a motion says at each sample.
+enum class Advance : std::uint8_t { go_on, stop };
 
 /// A motion with constant accelerations on each of its pieces: continuous in position and speed, at rest in the
 /// beginning and at the end.

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "saccade/core/angle.hpp"
+#include "saccade/devices/cell.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/yaml_map.hpp"
@@ -200,7 +201,9 @@ void read_list(const YAML::Node& node, const Read& read) {
 Scene read_document(const YAML::Node& document, const fs::path& folder) {
   YamlMap map{document, "a scene"};
   Scene scene;
-  scene.name = yaml_text(map.need("scene"));
+  const YAML::Node cell = map.find("cell");
+  scene.name = yaml_text(cell.IsDefined() ? cell : map.need("scene"));
+  for (const std::string_view key : kCellKeys) static_cast<void>(map.find(std::string{key}));  // read_cell's
   scene.workspace = read_box(map.need("workspace"), "the workspace");
   scene.max_deviation_m = map.number("max_deviation", scene.max_deviation_m);
   read_list(map.find("objects"), [&](const YAML::Node& item) { scene.objects.push_back(read_object(item, folder)); });

@@ -6,6 +6,29 @@
 
 namespace saccade {
 
+Result<FrameReport> track_frame(const TsdfSnapshot& map, const Frame& frame, const PinholeCamera& camera,
+                                const Pose& T_world_start, const Executor& executor, const IcpConfig& icp) {
+  if (frame.depth.width() != camera.width || frame.depth.height() != camera.height) {
+    return Error{Errc::size_mismatch, "the depth image and the camera differ in size", frame.name};
+  }
+  FrameReport report;
+  report.T_world_camera = T_world_start;
+  Stopwatch stopwatch;
+  SACCADE_TRY(const SurfaceView view, raycast(map, camera, T_world_start, executor));
+  report.raycast_ms = stopwatch.lap_ms();
+  const PointImage model = to_points(view, executor);
+  const PointImage measured = to_points(frame.depth, camera, executor);
+  report.icp = align(measured, model, camera, Pose::Identity(), executor, icp);
+  report.track_ms = stopwatch.lap_ms();
+  if (report.icp.converged) {
+    report.T_world_camera = T_world_start * report.icp.T_model_camera;
+  } else {
+    report.status = FrameReport::Status::lost;
+    report.why = report.icp.why;
+  }
+  return report;
+}
+
 Result<Reconstruction> Reconstruction::create(const ReconstructionConfig& config) {
   SACCADE_CHECK(config.icp.validate());
   SACCADE_TRY(TsdfMap map, TsdfMap::create(config.map));
@@ -41,8 +64,13 @@ Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCam
     report.T_world_camera = hint.value_or(Pose::Identity());  // nothing to align to: the first frame defines the world
   } else {
     const Pose resumed_or_last = T_world_resume_.value_or(T_world_last_.value_or(Pose::Identity()));
-    SACCADE_CHECK(track(frame, camera, mode == TrackingMode::hint ? *hint : resumed_or_last, executor, report));
-    if (report.status == FrameReport::Status::lost) return report;
+    const Pose& start = mode == TrackingMode::hint ? *hint : resumed_or_last;
+    const Pose kept = report.T_world_camera;
+    SACCADE_TRY(report, track_frame(map_.content(), frame, camera, start, executor, icp_));
+    if (report.status == FrameReport::Status::lost) {
+      report.T_world_camera = kept;
+      return report;
+    }
   }
   const ColorImage* color = frame.color ? &*frame.color : nullptr;
   SACCADE_TRY(report.fusion, map_.integrate(camera, frame.depth, report.T_world_camera, executor, color));
@@ -50,27 +78,6 @@ Result<FrameReport> Reconstruction::process(const Frame& frame, const PinholeCam
   T_world_last_ = report.T_world_camera;
   T_world_resume_.reset();
   return report;
-}
-
-Status Reconstruction::track(const Frame& frame, const PinholeCamera& camera, const Pose& T_world_start,
-                             const Executor& executor, FrameReport& report) const {
-  if (frame.depth.width() != camera.width || frame.depth.height() != camera.height) {
-    return Error{Errc::size_mismatch, "the depth image and the camera differ in size", frame.name};
-  }
-  Stopwatch stopwatch;
-  SACCADE_TRY(const SurfaceView view, raycast(map_.content(), camera, T_world_start, executor));
-  report.raycast_ms = stopwatch.lap_ms();
-  const PointImage model = to_points(view, executor);
-  const PointImage measured = to_points(frame.depth, camera, executor);
-  report.icp = align(measured, model, camera, Pose::Identity(), executor, icp_);
-  report.track_ms = stopwatch.lap_ms();
-  if (report.icp.converged) {
-    report.T_world_camera = T_world_start * report.icp.T_model_camera;
-  } else {
-    report.status = FrameReport::Status::lost;
-    report.why = report.icp.why;
-  }
-  return {};
 }
 
 }  // namespace saccade

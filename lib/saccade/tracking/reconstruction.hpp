@@ -44,6 +44,12 @@ struct FrameReport {
   double integrate_ms{0.0};
 };
 
+/// Finds the pose of a frame by ICP against what a map shows from `T_world_start`; nothing is fused. A lost track is a
+/// result. Errors: size_mismatch, and those of raycast.
+[[nodiscard]] Result<FrameReport> track_frame(const TsdfSnapshot& map, const Frame& frame, const PinholeCamera& camera,
+                                              const Pose& T_world_start, const Executor& executor,
+                                              const IcpConfig& icp = {});
+
 /// KinectFusion's loop (thesis §2.2.1): ray cast, convert, track, integrate. One frame at a time, one thread calling;
 /// snapshots of map() may be taken from other threads.
 class Reconstruction {
@@ -73,9 +79,6 @@ class Reconstruction {
 
  private:
   Reconstruction(TsdfMap map, const IcpConfig& icp) : map_{std::move(map)}, icp_{icp} {}
-  /// ICP against the ray cast from `start`; fills the report.
-  [[nodiscard]] Status track(const Frame& frame, const PinholeCamera& camera, const Pose& T_world_start,
-                             const Executor& executor, FrameReport& report) const;
 
   TsdfMap map_;
   IcpConfig icp_;

@@ -23,7 +23,7 @@ Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRun
   robot_config.planner.seed = config.seed;
   // A search that ran out of time would depend on the machine and on what else runs there.
   robot_config.planner.budget_s = std::numeric_limits<double>::infinity();
-  SACCADE_TRY(PlannedArm robot, simulated_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
+  SACCADE_TRY(PlannedArm robot, planned_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
   return std::unique_ptr<Robot>{std::make_unique<PlannedArm>(std::move(robot))};
 }
 
@@ -126,8 +126,8 @@ Result<FreeRobot> flying_camera(const RayScene& scene) {
   }};
 }
 
-Result<PlannedArm> simulated_arm(const ArmModel& arm, const Scene& scene, const SimulatedRunConfig& config,
-                                 PlannedArmConfig robot) {
+Result<PlannedArm> planned_arm(const ArmModel& arm, const Scene& scene, const SimulatedRunConfig& config,
+                               PlannedArmConfig robot, std::shared_ptr<JointController> joints) {
   if (!scene.objects.empty()) {
     SACCADE_TRY(const std::vector<FixtureBox> fixtures, fixture_boxes(scene));
     for (const FixtureBox& fixture : fixtures) robot.obstacles.fixtures.push_back(fixture.box);
@@ -135,7 +135,7 @@ Result<PlannedArm> simulated_arm(const ArmModel& arm, const Scene& scene, const 
   robot.first_poses = scene.scan;
   TsdfConfig map = config.map();
   map.workspace = scene.workspace;
-  return PlannedArm::create(arm, map, robot);
+  return PlannedArm::create(arm, map, robot, std::move(joints));
 }
 
 Measures measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {

@@ -73,10 +73,13 @@ struct SimulatedRunConfig {
 constexpr double kCameraClearance_m{0.1};
 [[nodiscard]] Result<FreeRobot> flying_camera(const RayScene& scene);
 
-/// An arm in the scene, as it stands at the first view of the initial scan, if `robot` says nothing else. The scene's
-/// fixture_boxes are added to its fixtures. Errors: those of fixture_boxes and PlannedArm::create.
-[[nodiscard]] Result<PlannedArm> simulated_arm(const ArmModel& arm, const Scene& scene,
-                                               const SimulatedRunConfig& config, PlannedArmConfig robot = {});
+/// An arm in the scene, as it stands at the first view of the initial scan, if neither `robot` nor `joints` says
+/// anything else. The scene's fixture_boxes are added to its fixtures. Errors: those of fixture_boxes and
+/// PlannedArm::create.
+/// @param joints  moves the arm; nullptr: it is simulated
+[[nodiscard]] Result<PlannedArm> planned_arm(const ArmModel& arm, const Scene& scene, const SimulatedRunConfig& config,
+                                             PlannedArmConfig robot = {},
+                                             std::shared_ptr<JointController> joints = nullptr);
 
 /// Measures the map and its mesh. Cost: measure() + extract_mesh().
 [[nodiscard]] Measures measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor);

@@ -138,7 +138,10 @@ TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
   ASSERT_TRUE(planned.motion);
   EXPECT_EQ(moving.configuration(), arm().middle());  // nothing has moved
   std::vector<CameraSample> samples;
-  const auto arrival = moving.execute(*planned.motion, [&](const CameraSample& sample) { samples.push_back(sample); });
+  const auto arrival = moving.execute(*planned.motion, [&](const CameraSample& sample) {
+    samples.push_back(sample);
+    return Advance::go_on;
+  });
   ASSERT_TRUE(arrival && *arrival);
   EXPECT_EQ((*arrival)->motion_s, planned.motion->trajectory.duration_s());
   EXPECT_LT(test::miss((*arrival)->T_world_camera, goals[planned.motion->goal]), 1e-6);
@@ -160,11 +163,11 @@ TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
 class LazyJoints final : public JointController {
  public:
   [[nodiscard]] Result<Configuration> position() override { return q; }
-  [[nodiscard]] Result<Configuration> execute(const Trajectory& trajectory, const JointObserver& observer) override {
+  [[nodiscard]] Result<JointArrival> execute(const Trajectory& trajectory, const JointObserver& observer) override {
     if (broken) return Error{Errc::unavailable, "the bus is silent", "joints"};
-    observer({0.0, q});
+    static_cast<void>(observer({0.0, q, std::nullopt}));
     q = trajectory.at(0.5 * trajectory.duration_s()).q;
-    return q;
+    return JointArrival{q};
   }
   Configuration q{0.1 * Configuration::Ones(6)};
   bool broken{false};
@@ -178,7 +181,7 @@ TEST_F(SimulatedArm, StandsWhereItsJointsSay) {
   EXPECT_EQ(moving.configuration(), joints->q);
   const PlannedMotion planned = moving.plan(poses(3)).value();
   ASSERT_TRUE(planned.motion);
-  const auto arrival = moving.execute(*planned.motion, [](const CameraSample&) {});
+  const auto arrival = moving.execute(*planned.motion, [](const CameraSample&) { return Advance::go_on; });
   ASSERT_TRUE(arrival && *arrival);
   EXPECT_EQ(moving.configuration(), joints->q);
   EXPECT_EQ((*arrival)->T_world_camera.matrix(), camera_pose(arm(), joints->q).matrix());

@@ -23,7 +23,7 @@ constexpr double kPatience_s{8.0};
 constexpr double kShort_s{0.15};
 
 std::unique_ptr<ExternalProcess> started(const std::string& command) {
-  auto process = ExternalProcess::start("camera", command);
+  auto process = ExternalProcess::start({"camera", command, {}, {}});
   EXPECT_TRUE(process.ok());
   return std::move(process).value();
 }
@@ -67,7 +67,7 @@ TEST(ExternalProcess, AProgramThatIsNotThere) {
   expect_says(error_of("/nowhere/at-all --fast"), Errc::not_found, "no such program");
   expect_says(error_of("/nowhere/at-all --fast"), Errc::not_found, "/nowhere/at-all: not found");
   expect_says(error_of("/etc/passwd"), Errc::io_failure, "exit status 126");
-  EXPECT_FALSE(ExternalProcess::start("camera", " ").ok());
+  EXPECT_FALSE(ExternalProcess::start({"camera", " ", {}, {}}).ok());
 }
 
 TEST(ExternalProcess, AProgramThatEnds) {

@@ -42,8 +42,8 @@ TEST(ProcessMessages, HelloOfACamera) {
   const auto format = parse_camera_hello(hello_with("color", R"("rgb8")"));
   ASSERT_TRUE(format.ok()) << format.error().to_string();
   EXPECT_EQ(format->camera, (PinholeCamera{4, 2, 5.0, 5.0, 2.0, 1.0, 0.1, 3.0}));
-  EXPECT_EQ(format->depth, ExternalDepth::uint16_mm);
-  EXPECT_EQ(format->color, ExternalColor::rgb8);
+  EXPECT_EQ(format->depth, ProgramDepth::uint16_mm);
+  EXPECT_EQ(format->color, ProgramColor::rgb8);
   EXPECT_EQ(format->frame_bytes(), 8U * 5U);
   EXPECT_EQ(parse_camera_hello(hello_with("depth", R"("float32_m")"))->frame_bytes(), 8U * 4U);
 }
@@ -73,16 +73,16 @@ TEST(ProcessMessages, BadHellosAreRefused) {
   expect_refused(parse_camera_hello(large), Errc::corrupt_data, "a frame of 536870912 bytes is more than");
   expect_refused(parse_camera_hello("[1]"), Errc::corrupt_data, "it is no JSON object: '[1]'");
   expect_refused(parse_camera_hello(R"({"saccade": 1, "cx": 1e999})"), Errc::corrupt_data, "it is not JSON");
-  expect_refused(parse_robot_hello("hi\x01\xFF"), Errc::corrupt_data, "it is not JSON: 'hi ?'");
-  expect_refused(parse_robot_hello("{}"), Errc::corrupt_data, "the key saccade is missing");
-  EXPECT_TRUE(parse_robot_hello(R"({"saccade": 1})").ok());
+  expect_refused(parse_ready("hi\x01\xFF"), Errc::corrupt_data, "it is not JSON: 'hi ?'");
+  expect_refused(parse_ready("{}"), Errc::corrupt_data, "the key saccade is missing");
+  EXPECT_TRUE(parse_ready(R"({"saccade": 1})").ok());
 }
 
 TEST(ProcessMessages, BadCapturesAreRefused) {
   const auto refused = [](const std::string& line, Errc code, const std::string& words) {
-    expect_refused(parse_capture_answer(line, 7, 16), code, words);
+    expect_refused(parse_capture_answer(line, 7, 16, Pose::Identity()), code, words);
   };
-  EXPECT_TRUE(parse_capture_answer(R"({"number": 7, "bytes": 16})", 7, 16).ok());
+  EXPECT_TRUE(parse_capture_answer(R"({"number": 7, "bytes": 16})", 7, 16, Pose::Identity()).ok());
   refused("", Errc::corrupt_data, "it is not JSON: ''");
   refused(R"({"number": 6, "bytes": 16})", Errc::corrupt_data, "number must be 7, not 6");
   refused(R"({"bytes": 16})", Errc::corrupt_data, "the key number is missing");
@@ -93,6 +93,8 @@ TEST(ProcessMessages, BadCapturesAreRefused) {
   refused(R"({"number": 7, "bytes": 16, "T_world_camera": 3})", Errc::corrupt_data, "4x4 nested array");
   refused(R"({"number": 7, "bytes": 16, "T_world_camera": [[2,0,0,7],[0,1,0,8],[0,0,1,9],[0,0,0,1]]})",
           Errc::invalid_argument, "T_world_camera: the pose is no rotation");
+  refused(R"({"number": 7, "bytes": 16, "T_world_camera": [[1,0,0,0],[0,1,0,800],[0,0,1,0],[0,0,0,1]]})",
+          Errc::corrupt_data, "T_world_camera is 800 m from the pose that was asked for");
 }
 
 TEST(ProcessMessages, BadMovesAreRefused) {
@@ -105,6 +107,8 @@ TEST(ProcessMessages, BadMovesAreRefused) {
   refused(R"({"number": 3, "reached": 1})", Errc::corrupt_data, "reached must be true or false");
   refused(R"({"number": 3, "reached": false, "why": 4})", Errc::corrupt_data, "why must be a text");
   refused(R"({"number": 3, "reached": true, "T_world_camera": [[1,0,0,0]]})", Errc::corrupt_data, "4x4 nested array");
+  refused(R"({"number": 3, "reached": true, "T_world_camera": [[1,0,0,801],[0,1,0,2],[0,0,1,3],[0,0,0,1]]})",
+          Errc::corrupt_data, "800 m");
   const auto there = parse_move_answer(R"({"number": 3, "reached": true})", 3, T_world_camera);
   ASSERT_TRUE(there.ok() && there->T_world_camera.has_value());
   EXPECT_TRUE(there->T_world_camera->isApprox(T_world_camera));
@@ -115,9 +119,9 @@ TEST(ProcessMessages, BadMovesAreRefused) {
 }
 
 TEST(ProcessMessages, DepthInMetresAndColor) {
-  ExternalCameraFormat format;
+  ProgramCameraFormat format;
   format.camera = {3, 2, 5.0, 5.0, 1.0, 0.5, 0.1, 3.0};
-  format.color = ExternalColor::rgb8;
+  format.color = ProgramColor::rgb8;
   const std::vector<float> sent{
       1.5F, std::numeric_limits<float>::quiet_NaN(), -2.0F, std::numeric_limits<float>::infinity(), 0.05F, -9.0F};
   std::vector<std::byte> bytes(format.frame_bytes());
@@ -160,13 +164,14 @@ TEST(ProcessMessages, TheTranscriptInTheDocumentIsSo) {
         const auto format = parse_camera_hello(text);
         EXPECT_TRUE(format.ok() && format->frame_bytes() == 76800) << text;
       } else if (kind == "hello") {
-        EXPECT_TRUE(parse_robot_hello(text).ok()) << text;
+        EXPECT_TRUE(parse_ready(text).ok()) << text;
       } else if (text.find("error") != std::string_view::npos) {
         expect_refused(parse_move_answer(text, asked.at("number"), Pose::Identity()), Errc::unavailable, "");
       } else if (kind == "capture") {
-        EXPECT_TRUE(parse_capture_answer(text, asked.at("number"), 76800).ok()) << text;
+        EXPECT_TRUE(parse_capture_answer(text, asked.at("number"), 76800, Pose::Identity()).ok()) << text;
       } else {
-        EXPECT_TRUE(parse_move_answer(text, asked.at("number"), Pose::Identity()).ok()) << text;
+        EXPECT_TRUE(parse_move_answer(text, asked.at("number"), *pose_from_json(asked.at("T_world_camera"))).ok())
+            << text;
       }
     }
   }

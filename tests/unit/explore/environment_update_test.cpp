@@ -330,8 +330,8 @@ TEST(EnvironmentUpdateWithArm, ReturnsToItsStandByAndSeesMoreWhenItLooksOnItsWay
   config.voxel_size_m = kVoxelOfUpdate_m;
   const ArmModel fast = find_robot("comau").value().arm;
   const ArmModel slow = slowed(fast, kSpeedWhileFusing);
-  PlannedArm stopping = simulated_arm(fast, rays.scene(), config).value();
-  PlannedArm looking = simulated_arm(slow, rays.scene(), config).value();
+  PlannedArm stopping = planned_arm(fast, rays.scene(), config).value();
+  PlannedArm looking = planned_arm(slow, rays.scene(), config).value();
   const Configuration start = *looking.configuration();
   const ArmUpdate at_views = update_with_arm(FuseWhen::viewpoints, executor, stopping, rays);
   const ArmUpdate on_way = update_with_arm(FuseWhen::motion, executor, looking, rays);

@@ -18,9 +18,13 @@ TEST(SimulatedJoints, FollowATrajectoryAndStandAtItsEnd) {
   const Trajectory trajectory = parametrise(arm, {from, to});
   SimulatedJoints joints{from};
   std::vector<JointSample> samples;
-  const auto end = joints.execute(trajectory, [&](const JointSample& sample) { samples.push_back(sample); });
+  const auto end = joints.execute(trajectory, [&](const JointSample& sample) {
+    samples.push_back(sample);
+    return Advance::go_on;
+  });
   ASSERT_TRUE(end);
-  EXPECT_EQ(*end, trajectory.end());
+  EXPECT_EQ(end->q, trajectory.end());
+  EXPECT_FALSE(end->stopped);
   EXPECT_EQ(joints.position().value(), trajectory.end());
   ASSERT_GT(samples.size(), 5U);
   EXPECT_EQ(samples.front().q, from);
@@ -29,6 +33,14 @@ TEST(SimulatedJoints, FollowATrajectoryAndStandAtItsEnd) {
     EXPECT_GT(samples[i].t_s, samples[i - 1].t_s);
     EXPECT_LE(samples[i].t_s - samples[i - 1].t_s, SimulatedJoints::kSample_s + 1e-12);
   }
+  // The observer may stop them.
+  const Trajectory back = parametrise(arm, {to, from});
+  const auto stopped = joints.execute(
+      back, [&](const JointSample& sample) { return sample.t_s < 0.1 ? Advance::go_on : Advance::stop; });
+  ASSERT_TRUE(stopped);
+  EXPECT_TRUE(stopped->stopped);
+  EXPECT_EQ(stopped->q, back.at(0.1).q);
+  EXPECT_EQ(joints.position().value(), stopped->q);
 }
 
 }  // namespace

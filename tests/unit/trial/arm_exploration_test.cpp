@@ -41,7 +41,7 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
   SimulatedCamera camera = simulated_camera(rays, config).value();
   PlannedArmConfig arm;
   arm.planner.seed = seed;
-  PlannedArm robot = simulated_arm(find_robot("comau").value().arm, rays.scene(), config, arm).value();
+  PlannedArm robot = planned_arm(find_robot("comau").value().arm, rays.scene(), config, arm).value();
   const Executor executor = Executor::with_threads(threads);
   FunctionCamera sensor{config.camera,
                         [&](const Pose& pose) -> Result<Frame> { return camera.capture(pose, executor); }};

@@ -3,7 +3,6 @@
 
 #include <poll.h>
 #include <signal.h>
-#include <spawn.h>
 #include <sys/wait.h>
 
 #include <algorithm>
@@ -12,6 +11,7 @@
 #include <system_error>
 #include <thread>
 
+#include "saccade/devices/internal/no_sigpipe.hpp"
 #include "saccade/io/files/text_scan.hpp"
 
 namespace saccade {
@@ -19,72 +19,14 @@ namespace {
 
 constexpr std::chrono::milliseconds kCloseGrace{1000};
 constexpr std::chrono::milliseconds kTerminateGrace{500};
+constexpr std::chrono::milliseconds kHurriedGrace{150};  // in place of both, for a program that hangs
+constexpr std::chrono::milliseconds kCancelGrace{300};   // for the answer that is under way
+constexpr std::chrono::milliseconds kCancelSlice{20};
 constexpr std::chrono::milliseconds kExitStatusWait{500};  // between the end of the output and that of the process
 constexpr std::chrono::milliseconds kLastWordsWait{100};
 constexpr std::size_t kQuotedBytes{80};
 
 constexpr const char* kRule{"an answer is one line of JSON and the bytes it announces; messages belong on stderr"};
-
-Error system_error(const std::string& what, int code) {
-  return {Errc::io_failure, what + ": " + std::strerror(code), {}};
-}
-
-/// Keeps SIGPIPE from the thread while it writes into a pipe that nobody may read any more.
-class NoSigpipe {
- public:
-  NoSigpipe() {
-    sigset_t pending;
-    sigpending(&pending);
-    was_pending_ = sigismember(&pending, SIGPIPE) == 1;
-    sigemptyset(&sigpipe_);
-    sigaddset(&sigpipe_, SIGPIPE);
-    pthread_sigmask(SIG_BLOCK, &sigpipe_, &before_);
-  }
-  NoSigpipe(const NoSigpipe&) = delete;
-  NoSigpipe& operator=(const NoSigpipe&) = delete;
-  ~NoSigpipe() {
-    const timespec at_once{0, 0};
-    if (!was_pending_) {
-      while (sigtimedwait(&sigpipe_, nullptr, &at_once) < 0 && errno == EINTR) {
-      }
-    }
-    pthread_sigmask(SIG_SETMASK, &before_, nullptr);
-  }
-
- private:
-  sigset_t sigpipe_{};
-  sigset_t before_{};
-  bool was_pending_{false};
-};
-
-/// A child with the given standard streams, default signals and a process group of its own.
-Result<pid_t> spawn(const std::string& command, int in, int out, int err) {
-  posix_spawn_file_actions_t streams;
-  posix_spawn_file_actions_init(&streams);
-  posix_spawn_file_actions_adddup2(&streams, in, STDIN_FILENO);
-  posix_spawn_file_actions_adddup2(&streams, out, STDOUT_FILENO);
-  posix_spawn_file_actions_adddup2(&streams, err, STDERR_FILENO);
-  posix_spawnattr_t attributes;
-  posix_spawnattr_init(&attributes);
-  sigset_t signals;
-  sigfillset(&signals);
-  posix_spawnattr_setsigdefault(&attributes, &signals);
-  sigemptyset(&signals);
-  posix_spawnattr_setsigmask(&attributes, &signals);
-  posix_spawnattr_setpgroup(&attributes, 0);
-  posix_spawnattr_setflags(&attributes, POSIX_SPAWN_SETPGROUP | POSIX_SPAWN_SETSIGDEF | POSIX_SPAWN_SETSIGMASK);
-
-  std::string shell{"sh"};
-  std::string option{"-c"};
-  std::string text{"exec " + command};
-  const std::array<char*, 4> arguments{shell.data(), option.data(), text.data(), nullptr};
-  pid_t pid = -1;
-  const int code = ::posix_spawn(&pid, "/bin/sh", &streams, &attributes, arguments.data(), environ);
-  posix_spawn_file_actions_destroy(&streams);
-  posix_spawnattr_destroy(&attributes);
-  if (code != 0) return system_error("cannot start a process", code);
-  return pid;
-}
 
 /// How a child ended; nullopt while it runs. It stays a zombie, so that its number remains its own.
 std::optional<siginfo_t> end_of(pid_t pid) {
@@ -125,21 +67,31 @@ int Request::left_ms() const {
   return static_cast<int>(std::clamp<decltype(kLongest)>(left, 0, kLongest));
 }
 
-Result<std::unique_ptr<ExternalProcess>> ExternalProcess::start(std::string role, std::string command) {
-  const std::string who = role;
-  if (command.find_first_not_of(" \t\n") == std::string::npos) {
+Result<std::unique_ptr<ExternalProcess>> ExternalProcess::start(ProcessConfig config) {
+  const std::string who = config.role;
+  if (config.command.find_first_not_of(" \t\n") == std::string::npos) {
     return Error{Errc::invalid_argument, "a command is needed", who};
   }
   SACCADE_TRY(Pipe in, Pipe::create());
   SACCADE_TRY(Pipe out, Pipe::create());
   SACCADE_TRY(Pipe errors, Pipe::create());
   SACCADE_TRY(Pipe stop, Pipe::create());
-  SACCADE_TRY(const pid_t pid, spawn(command, in.read_end.get(), out.write_end.get(), errors.write_end.get()));
+  // The folder is the shell's $0, so that it needs no quotes.
+  const std::string line = (config.folder.empty() ? "exec " : "cd -- \"$0\" && exec ") + config.command;
+  const std::string folder = config.folder.empty() ? "sh" : config.folder.string();
+  SACCADE_TRY(const pid_t pid,
+              spawn_shell(line, folder, in.read_end.get(), out.write_end.get(), errors.write_end.get()));
   in.write_end.make_nonblocking();
   out.read_end.make_nonblocking();
   errors.write_end.reset();
+  auto watcher = ProcessWatcher::start(pid);
+  if (!watcher) {
+    ::kill(-pid, SIGKILL);
+    ::waitpid(pid, nullptr, 0);
+    return watcher.error();
+  }
   try {
-    return std::unique_ptr<ExternalProcess>{new ExternalProcess{std::move(role), std::move(command), pid,
+    return std::unique_ptr<ExternalProcess>{new ExternalProcess{std::move(config), pid, *std::move(watcher),
                                                                 std::move(in.write_end), std::move(out.read_end),
                                                                 std::move(errors), std::move(stop)}};
   } catch (const std::system_error& e) {
@@ -149,20 +101,20 @@ Result<std::unique_ptr<ExternalProcess>> ExternalProcess::start(std::string role
   }
 }
 
-ExternalProcess::ExternalProcess(std::string role, std::string command, pid_t pid, Descriptor to, Descriptor from,
-                                 Pipe errors, Pipe stop)
-    : role_{std::move(role)},
-      command_{std::move(command)},
+ExternalProcess::ExternalProcess(ProcessConfig config, pid_t pid, ProcessWatcher watcher, Descriptor to,
+                                 Descriptor from, Pipe errors, Pipe stop)
+    : config_{std::move(config)},
       pid_{pid},
+      watcher_{std::move(watcher)},
       to_{std::move(to)},
       from_{std::move(from)},
       errors_{std::move(errors.read_end), std::move(stop)} {}
 
 ExternalProcess::~ExternalProcess() {
   to_.reset();
-  if (!gone_within(kCloseGrace)) {
+  if (!gone_within(hangs_ ? kHurriedGrace : kCloseGrace)) {
     ::kill(-pid_, SIGTERM);
-    static_cast<void>(gone_within(kTerminateGrace));
+    static_cast<void>(gone_within(hangs_ ? kHurriedGrace : kTerminateGrace));
   }
   // Until it is cleared away, running or not, the number of its group cannot be anybody else's.
   const auto end = end_of(pid_);
@@ -180,12 +132,28 @@ bool ExternalProcess::gone_within(std::chrono::milliseconds longest) const {
   return true;
 }
 
-ExternalProcess::Arrival ExternalProcess::receive(int longest_ms) {
-  pollfd wait{from_.get(), POLLIN, 0};
-  const int ready = ::poll(&wait, 1, longest_ms);
-  if (ready == 0) return Arrival::late;
+bool ExternalProcess::wait(pollfd pipe, const Request& request) {
+  using std::chrono::milliseconds;
+  for (;;) {
+    if (!cancelled_at_ && config_.cancelled && config_.cancelled()) cancelled_at_ = std::chrono::steady_clock::now();
+    milliseconds left{request.left_ms()};
+    if (cancelled_at_) {
+      const auto grace = *cancelled_at_ + kCancelGrace - std::chrono::steady_clock::now();
+      left = std::clamp(std::chrono::ceil<milliseconds>(grace), milliseconds{0}, left);
+    }
+    const milliseconds slice = config_.cancelled ? std::min(left, kCancelSlice) : left;
+    if (::poll(&pipe, 1, static_cast<int>(slice.count())) != 0) return true;
+    if (slice == left) return false;
+  }
+}
+
+ExternalProcess::Arrival ExternalProcess::receive(const Request& request) {
+  return wait({from_.get(), POLLIN, 0}, request) ? receive_at_once() : Arrival::late;
+}
+
+ExternalProcess::Arrival ExternalProcess::receive_at_once() {
   std::array<char, std::size_t{1} << 16> chunk{};
-  const ssize_t got = ready < 0 ? -1 : ::read(from_.get(), chunk.data(), chunk.size());
+  const ssize_t got = ::read(from_.get(), chunk.data(), chunk.size());
   if (got < 0 && (errno == EINTR || errno == EAGAIN)) return Arrival::data;  // none, but time may be left
   if (got <= 0) return Arrival::end;
   received_.append(chunk.data(), static_cast<std::size_t>(got));
@@ -193,7 +161,7 @@ ExternalProcess::Arrival ExternalProcess::receive(int longest_ms) {
 }
 
 Status ExternalProcess::nothing_unasked(const Request& request) {
-  if (receive(0) == Arrival::end && received_.empty()) return ended("the answer to " + request.name());
+  if (receive_at_once() == Arrival::end && received_.empty()) return ended("the answer to " + request.name());
   if (received_.empty()) return {};
   return fail(Errc::corrupt_data, "it sent, before it was asked for " + request.name() + ", '" +
                                       readable(received_, kQuotedBytes) + "'; " + kRule);
@@ -201,7 +169,13 @@ Status ExternalProcess::nothing_unasked(const Request& request) {
 
 Status ExternalProcess::write_line(const Request& request, std::string_view line) {
   if (failure_) return *failure_;
+  cancelled_at_.reset();
   SACCADE_CHECK(nothing_unasked(request));
+  return interject(request, line);
+}
+
+Status ExternalProcess::interject(const Request& request, std::string_view line) {
+  if (failure_) return *failure_;
   const std::string text = std::string{line} + '\n';
   const NoSigpipe no_signal;
   for (std::size_t written = 0; written < text.size();) {
@@ -209,8 +183,7 @@ Status ExternalProcess::write_line(const Request& request, std::string_view line
     if (put >= 0) {
       written += static_cast<std::size_t>(put);
     } else if (errno == EAGAIN) {
-      pollfd wait{to_.get(), POLLOUT, 0};
-      if (::poll(&wait, 1, request.left_ms()) == 0) return late(request, "it did not read the request");
+      if (!wait({to_.get(), POLLOUT, 0}, request)) return late(request, "it did not read the request");
     } else if (errno != EINTR) {
       return ended("the answer to " + request.name(), "input");
     }
@@ -220,29 +193,45 @@ Status ExternalProcess::write_line(const Request& request, std::string_view line
 
 Result<std::string> ExternalProcess::read_line(const Request& request) {
   if (failure_) return *failure_;
-  const std::string answer = "the answer to " + request.name();
-  std::size_t searched = 0;
   for (;;) {
-    const std::size_t end = received_.find('\n', searched);
-    if (end <= kMaxLineBytes) {  // npos is greater
-      std::string line = received_.substr(0, end);
-      received_.erase(0, end + 1);
-      if (!line.empty() && line.back() == '\r') line.pop_back();
-      has_answered_ = true;
-      return line;
-    }
-    if (received_.size() > kMaxLineBytes) {
-      return fail(Errc::corrupt_data, answer + " has no end of line within " + std::to_string(kMaxLineBytes) +
-                                          " bytes; it begins '" + readable(received_, kQuotedBytes) + "'; " + kRule);
-    }
-    searched = received_.size();
-    const Arrival arrival = receive(request.left_ms());
+    SACCADE_TRY(std::optional<std::string> line, take_line(request));
+    if (line) return *std::move(line);
+    const Arrival arrival = receive(request);
     if (arrival == Arrival::late) return late(request, "there is no answer");
-    if (arrival == Arrival::end) {
-      if (received_.empty()) return ended(answer);
-      return ended("the end of " + answer + ", which begins '" + readable(received_, kQuotedBytes) + "'");
-    }
+    if (arrival == Arrival::end) return ended_before_line(request);
   }
+}
+
+Result<std::optional<std::string>> ExternalProcess::next_line(const Request& request,
+                                                              std::chrono::milliseconds longest) {
+  if (failure_) return *failure_;
+  SACCADE_TRY(std::optional<std::string> line, take_line(request));
+  if (line) return line;
+  pollfd pipe{from_.get(), POLLIN, 0};
+  if (::poll(&pipe, 1, static_cast<int>(longest.count())) == 0) return std::optional<std::string>{};
+  if (receive_at_once() == Arrival::end) return ended_before_line(request);
+  return take_line(request);
+}
+
+Result<std::optional<std::string>> ExternalProcess::take_line(const Request& request) {
+  const std::size_t end = received_.find('\n');
+  if (end <= kMaxLineBytes) {  // npos is greater
+    std::string line = received_.substr(0, end);
+    received_.erase(0, end + 1);
+    if (!line.empty() && line.back() == '\r') line.pop_back();
+    has_answered_ = true;
+    return std::optional{std::move(line)};
+  }
+  if (received_.size() <= kMaxLineBytes) return std::optional<std::string>{};
+  return fail(Errc::corrupt_data, "the answer to " + request.name() + " has no end of line within " +
+                                      std::to_string(kMaxLineBytes) + " bytes; it begins '" +
+                                      readable(received_, kQuotedBytes) + "'; " + kRule);
+}
+
+Error ExternalProcess::ended_before_line(const Request& request) {
+  const std::string answer = "the answer to " + request.name();
+  if (received_.empty()) return ended(answer);
+  return ended("the end of " + answer + ", which begins '" + readable(received_, kQuotedBytes) + "'");
 }
 
 Status ExternalProcess::read_bytes(const Request& request, std::span<std::byte> bytes) {
@@ -254,7 +243,7 @@ Status ExternalProcess::read_bytes(const Request& request, std::span<std::byte> 
     received_.erase(0, taken);
     done += taken;
     if (done == bytes.size()) return {};
-    const Arrival arrival = receive(request.left_ms());
+    const Arrival arrival = receive(request);
     const std::string share = std::to_string(done) + " of the " + std::to_string(bytes.size()) + " bytes";
     if (arrival == Arrival::late) return late(request, "only " + share + " of the answer came");
     if (arrival == Arrival::end) return ended("all of the answer to " + request.name() + ": " + share + " came");
@@ -262,6 +251,8 @@ Status ExternalProcess::read_bytes(const Request& request, std::span<std::byte> 
 }
 
 Error ExternalProcess::late(const Request& request, const std::string& what) {
+  hangs_ = true;
+  if (cancelled_at_) return fail(Errc::cancelled, request.name() + " was cancelled: " + what);
   const auto end = end_of(pid_);  // something that it has started may hold the pipes open
   std::ostringstream text;
   text << request.name() << " took longer than the " << request.limit_s() << " s allowed: " << what;
@@ -295,7 +286,7 @@ Error ExternalProcess::refused(const Request& request, const Error& error) {
 
 Error ExternalProcess::named(Errc code, std::string what) const {
   constexpr std::size_t kCommandBytes{120};
-  return {code, std::move(what), role_ + " '" + readable(command_, kCommandBytes) + "'"};
+  return {code, std::move(what), config_.role + " '" + readable(config_.command, kCommandBytes) + "'"};
 }
 
 Error ExternalProcess::fail(Errc code, const std::string& what) {

@@ -4,6 +4,7 @@
 #include <cmath>
 #include <cstring>
 #include <nlohmann/json.hpp>
+#include <sstream>
 
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/files/little_endian.hpp"
@@ -25,19 +26,6 @@ std::string moving_request(const char* request, std::size_t number, const Pose& 
       .dump();
 }
 
-/// The object in a line, unless it reports an error.
-Result<nlohmann::json> parse_answer(std::string_view line) {
-  auto answer = parse_json(line);
-  if (!answer) return bad("it is not JSON: '" + readable(line, kQuotedLineBytes) + "'; messages belong on stderr");
-  if (!answer->is_object()) return bad("it is no JSON object: '" + readable(line, kQuotedLineBytes) + "'");
-  if (const auto error = answer->find("error"); error != answer->end()) {
-    const auto* text = error->get_ptr<const std::string*>();
-    if (text == nullptr) return bad("error must be a text");
-    return Error{Errc::unavailable, readable(*text, kReasonBytes), {}};
-  }
-  return answer;
-}
-
 Status expect_count(const nlohmann::json& answer, const char* key, std::size_t expected, Errc otherwise) {
   const auto value = answer.find(key);
   if (value == answer.end()) return bad(std::string{"the key "} + key + " is missing");
@@ -52,11 +40,20 @@ Status expect_protocol(const nlohmann::json& answer) {
   return Error{Errc::unsupported, "it speaks another version of the protocol: " + same.error().message, {}};
 }
 
-Result<std::optional<Pose>> optional_pose(const nlohmann::json& answer) {
+/// Returns the pose in an answer, if there is one.
+/// @param T_world_camera where it should be
+Result<std::optional<Pose>> optional_pose(const nlohmann::json& answer, const Pose& T_world_camera) {
   const auto value = answer.find("T_world_camera");
   if (value == answer.end()) return std::optional<Pose>{};
   auto pose = pose_from_json(*value);
   if (!pose) return Error{pose.error().code, "T_world_camera: " + pose.error().message, {}};
+  const double off_m = (pose->translation() - T_world_camera.translation()).norm();
+  if (off_m > kMaxPoseError_m) {
+    std::ostringstream text;
+    text << "T_world_camera is " << off_m << " m from the pose that was asked for; at most " << kMaxPoseError_m
+         << " m can be right: check its units (metres) and its frame";
+    return bad(text.str());
+  }
   return std::optional<Pose>{*pose};
 }
 
@@ -82,10 +79,22 @@ Result<PinholeCamera> hello_camera(const nlohmann::json& answer, std::string_vie
 
 }  // namespace
 
-std::size_t ExternalCameraFormat::frame_bytes() const {
+Result<nlohmann::json> parse_answer(std::string_view line) {
+  auto answer = parse_json(line);
+  if (!answer) return bad("it is not JSON: '" + readable(line, kQuotedLineBytes) + "'; messages belong on stderr");
+  if (!answer->is_object()) return bad("it is no JSON object: '" + readable(line, kQuotedLineBytes) + "'");
+  if (const auto error = answer->find("error"); error != answer->end()) {
+    const auto* text = error->get_ptr<const std::string*>();
+    if (text == nullptr) return bad("error must be a text");
+    return Error{Errc::unavailable, readable(*text, kReasonBytes), {}};
+  }
+  return answer;
+}
+
+std::size_t ProgramCameraFormat::frame_bytes() const {
   const std::size_t pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  return pixels * ((depth == ExternalDepth::float32_m ? sizeof(float) : sizeof(std::uint16_t)) +
-                   (color == ExternalColor::rgb8 ? sizeof(Rgb8) : 0));
+  return pixels * ((depth == ProgramDepth::float32_m ? sizeof(float) : sizeof(std::uint16_t)) +
+                   (color == ProgramColor::rgb8 ? sizeof(Rgb8) : 0));
 }
 
 std::string hello_request(std::string_view role) {
@@ -100,13 +109,13 @@ std::string move_request(std::size_t number, const Pose& T_world_camera) {
   return moving_request("move", number, T_world_camera);
 }
 
-Result<ExternalCameraFormat> parse_camera_hello(std::string_view line) {
+Result<ProgramCameraFormat> parse_camera_hello(std::string_view line) {
   SACCADE_TRY(const nlohmann::json answer, parse_answer(line));
   SACCADE_CHECK(expect_protocol(answer));
-  ExternalCameraFormat format;
+  ProgramCameraFormat format;
   SACCADE_TRY(format.camera, hello_camera(answer, line));
-  SACCADE_TRY(format.depth, expect_one_of(answer, "depth", kExternalDepthNames));
-  SACCADE_TRY(format.color, expect_one_of(answer, "color", kExternalColorNames));
+  SACCADE_TRY(format.depth, expect_one_of(answer, "depth", kProgramDepthNames));
+  SACCADE_TRY(format.color, expect_one_of(answer, "color", kProgramColorNames));
   if (format.frame_bytes() > kMaxFrameBytes) {
     return bad("a frame of " + std::to_string(format.frame_bytes()) + " bytes is more than the " +
                std::to_string(kMaxFrameBytes) + " read here");
@@ -114,17 +123,19 @@ Result<ExternalCameraFormat> parse_camera_hello(std::string_view line) {
   return format;
 }
 
-Status parse_robot_hello(std::string_view line) {
+Result<Ready> parse_ready(std::string_view line) {
   SACCADE_TRY(const nlohmann::json answer, parse_answer(line));
-  return expect_protocol(answer);
+  SACCADE_CHECK(expect_protocol(answer));
+  return Ready{};
 }
 
-Result<CaptureAnswer> parse_capture_answer(std::string_view line, std::size_t number, std::size_t frame_bytes) {
+Result<CaptureAnswer> parse_capture_answer(std::string_view line, std::size_t number, std::size_t frame_bytes,
+                                           const Pose& T_world_camera) {
   SACCADE_TRY(const nlohmann::json answer, parse_answer(line));
   SACCADE_CHECK(expect_count(answer, "number", number, Errc::corrupt_data));
   SACCADE_CHECK(expect_count(answer, "bytes", frame_bytes, Errc::size_mismatch));
   CaptureAnswer capture;
-  SACCADE_TRY(capture.T_world_camera, optional_pose(answer));
+  SACCADE_TRY(capture.T_world_camera, optional_pose(answer, T_world_camera));
   if (const auto time = answer.find("time_s"); time != answer.end()) {
     if (!time->is_number()) return bad("time_s must be a number");
     capture.time_s = time->get<double>();
@@ -144,18 +155,18 @@ Result<MoveAnswer> parse_move_answer(std::string_view line, std::size_t number, 
     move.why = readable(*text, kReasonBytes);
   }
   if (!reached->get<bool>()) return move;
-  SACCADE_TRY(const std::optional<Pose> measured, optional_pose(answer));
+  SACCADE_TRY(const std::optional<Pose> measured, optional_pose(answer, T_world_camera));
   move.T_world_camera = measured.value_or(T_world_camera);
   return move;
 }
 
-Frame decode_frame(const ExternalCameraFormat& format, std::span<const std::byte> bytes) {
+Frame decode_frame(const ProgramCameraFormat& format, std::span<const std::byte> bytes) {
   SACCADE_EXPECTS(bytes.size() == format.frame_bytes());
   const int width = format.camera.width;
   const int height = format.camera.height;
   ByteReader reader{bytes};
   Frame frame;
-  if (format.depth == ExternalDepth::float32_m) {
+  if (format.depth == ProgramDepth::float32_m) {
     frame.depth = DepthImage{width, height};
     const auto samples = reader.take(frame.depth.size() * sizeof(float));
     std::memcpy(frame.depth.data(), samples.data(), samples.size());
@@ -166,7 +177,7 @@ Frame decode_frame(const ExternalCameraFormat& format, std::span<const std::byte
     frame.depth = decode_depth(samples, DepthEncoding{});
   }
   clip_to_range(format.camera, frame.depth);
-  if (format.color == ExternalColor::rgb8) {
+  if (format.color == ProgramColor::rgb8) {
     frame.color = ColorImage{width, height};
     std::memcpy(frame.color->data(), reader.take(reader.left()).data(), frame.color->size() * sizeof(Rgb8));
   }

@@ -8,9 +8,11 @@
 #include <string>
 #include <string_view>
 
+#include <nlohmann/json_fwd.hpp>
+
 #include "saccade/core/pose.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/devices/external_camera.hpp"
+#include "saccade/devices/programs.hpp"
 #include "saccade/sensor/camera.hpp"
 
 namespace saccade {
@@ -19,6 +21,9 @@ namespace saccade {
 constexpr int kProcessProtocol{1};
 /// More is taken for a mistake: 16384×16384 pixels are 1 GiB.
 constexpr std::size_t kMaxFrameBytes{std::size_t{1} << 28};
+
+/// The answer to hello of a program that has nothing to say of itself.
+struct Ready {};
 
 struct CaptureAnswer {
   std::optional<Pose> T_world_camera;  ///< where the camera knows it better than the robot
@@ -35,21 +40,22 @@ struct MoveAnswer {
 [[nodiscard]] std::string capture_request(std::size_t number, const Pose& T_world_camera);
 [[nodiscard]] std::string move_request(std::size_t number, const Pose& T_world_camera);
 
-/// Errors of all that follow: unavailable with the process' own words when it answers {"error": …}; corrupt_data for
-/// what is no JSON object, lacks a key, or holds nonsense.
-///
+/// The object in a line. Errors of this and of all that follow: unavailable with the process' own words when it answers
+/// {"error": …}; corrupt_data for what is no JSON object, lacks a key, or holds nonsense.
+[[nodiscard]] Result<nlohmann::json> parse_answer(std::string_view line);
 /// unsupported: another version of the protocol, a distorted camera; invalid_argument as PinholeCamera::validate().
-[[nodiscard]] Result<ExternalCameraFormat> parse_camera_hello(std::string_view line);
-[[nodiscard]] Status parse_robot_hello(std::string_view line);
-/// size_mismatch unless it announces frame_bytes.
+[[nodiscard]] Result<ProgramCameraFormat> parse_camera_hello(std::string_view line);
+[[nodiscard]] Result<Ready> parse_ready(std::string_view line);
+/// size_mismatch unless it announces frame_bytes. A pose farther than kMaxPoseError_m from the one given is an error.
 [[nodiscard]] Result<CaptureAnswer> parse_capture_answer(std::string_view line, std::size_t number,
-                                                         std::size_t frame_bytes);
-/// @param T_world_camera the pose that was asked for; where the camera is unless the answer says another.
+                                                         std::size_t frame_bytes, const Pose& T_world_camera);
+/// @param T_world_camera the pose that was asked for; where the camera is unless the answer says another, which is an
+///        error when it is farther than kMaxPoseError_m.
 [[nodiscard]] Result<MoveAnswer> parse_move_answer(std::string_view line, std::size_t number,
                                                    const Pose& T_world_camera);
 
 /// Depth and colour of a frame. Depths that are no number or out of the camera's range become 0. Expects frame_bytes()
 /// bytes. O(pixels).
-[[nodiscard]] Frame decode_frame(const ExternalCameraFormat& format, std::span<const std::byte> bytes);
+[[nodiscard]] Frame decode_frame(const ProgramCameraFormat& format, std::span<const std::byte> bytes);
 
 }  // namespace saccade

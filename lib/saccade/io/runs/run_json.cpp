@@ -50,6 +50,24 @@ void read_tilt(const json& value, Tilt& tilt) {
   if (found != value.end()) tilt = {found->at(0).get<double>(), found->at(1).get<double>()};
 }
 
+/// null where no frame was tracked.
+json tracking_to_json(const TrackedFrames& tracking) {
+  if (tracking == TrackedFrames{}) return nullptr;
+  return {{"tracked", tracking.tracked},
+          {"refused", tracking.refused},
+          {"correction_m", tracking.correction_m},
+          {"correction_rad", tracking.correction_rad},
+          {"why", tracking.why}};
+}
+
+void read_tracking(const json& value, TrackedFrames& tracking) {
+  const auto found = value.find("tracking");
+  if (found == value.end() || found->is_null()) return;
+  tracking = {found->at("tracked").get<std::size_t>(), found->at("refused").get<std::size_t>(),
+              found->at("correction_m").get<double>(), found->at("correction_rad").get<double>(),
+              found->at("why").get<std::string>()};
+}
+
 json attention_to_json(const std::optional<ViewAttention>& attention) {
   if (!attention) return nullptr;
   return {{"segments", attention->segments},
@@ -92,6 +110,7 @@ Result<ViewRecord> read_view(const json& value) {
   SACCADE_TRY(view.refused, refusals_from_json(value.value("refused", json::object())));
   view.frames = value.value("frames", std::size_t{0});
   view.frames_on_way = value.value("frames_on_way", std::size_t{0});
+  read_tracking(value, view.tracking);
   read_tilt(value, view.tilt);
   view.motion_s = value.value("motion_s", 0.0);
   view.retreat_s = value.value("retreat_s", 0.0);
@@ -135,6 +154,7 @@ json view_to_json(const ViewRecord& view, std::size_t index) {
           {"refused", refusals_to_json(view.refused)},
           {"frames", view.frames},
           {"frames_on_way", view.frames_on_way},
+          {"tracking", tracking_to_json(view.tracking)},
           {"tilt_rad", {view.tilt.least_rad, view.tilt.greatest_rad}},
           {"T_world_camera", pose_to_json(view.T_world_camera)},
           {"unknown_left", view.measures.unknown_left},

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/devices/external_camera.hpp"
+#include "saccade/devices/programs.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include <string>
 #include <vector>
 
-#include "saccade/devices/external_robot.hpp"
 #include "saccade/sensor/analytic_scene.hpp"
 #include "support/places.hpp"
 #include "support/temp_folder.hpp"
@@ -30,7 +29,7 @@ AnalyticScene ball_on_plane() {
 Pose above() { return look_at({0.5, -0.3, 0.4}, {0.0, 0.05, 0.15}); }
 
 /// Compares with the exact picture; pixels on an edge may fall to either side. Returns how many returns there were.
-int expect_truth(const ExternalCamera& camera, const Frame& frame, double tolerance_m) {
+int expect_truth(const ProgramCamera& camera, const Frame& frame, double tolerance_m) {
   const auto truth = render(ball_on_plane(), camera.intrinsics(), above());
   EXPECT_TRUE(truth.ok());
   int returns = 0;
@@ -48,8 +47,8 @@ int expect_truth(const ExternalCamera& camera, const Frame& frame, double tolera
   return returns;
 }
 
-TEST(ExternalCamera, ThePythonExampleSeesItsScene) {
-  auto camera = ExternalCamera::start({kCameraPy});
+TEST(ProgramCamera, ThePythonExampleSeesItsScene) {
+  auto camera = ProgramCamera::start({kCameraPy});
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
   EXPECT_EQ(camera->intrinsics(), (PinholeCamera{160, 120, 131.25, 131.25, 79.5, 59.5, 0.1, 3.0}));
   for (std::size_t i = 0; i < 2; ++i) {
@@ -66,10 +65,10 @@ TEST(ExternalCamera, ThePythonExampleSeesItsScene) {
   EXPECT_EQ(sky->depth(3, 4), -3.0F);  // free up to the camera's range
 }
 
-TEST(ExternalCamera, TheCppExampleSeesItsSceneInColor) {
+TEST(ProgramCamera, TheCppExampleSeesItsSceneInColor) {
   const std::filesystem::path example = test::example_program("external_camera");
   if (!std::filesystem::exists(example)) GTEST_SKIP() << "the examples are not built";
-  auto camera = ExternalCamera::start({example.string()});
+  auto camera = ProgramCamera::start({example.string()});
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
   for (int i = 0; i < 5; ++i) {
     const auto frame = camera->capture(above());
@@ -81,8 +80,8 @@ TEST(ExternalCamera, TheCppExampleSeesItsSceneInColor) {
   }
 }
 
-TEST(ExternalRobot, ThePythonExampleReachesItsBox) {
-  auto robot = ExternalRobot::start({kRobotPy});
+TEST(ProgramRobot, ThePythonExampleReachesItsBox) {
+  auto robot = ProgramRobot::start({kRobotPy});
   ASSERT_TRUE(robot.ok()) << robot.error().to_string();
   const auto reached = (*robot)->move_to(above());
   ASSERT_TRUE(reached.ok()) << reached.error().to_string();
@@ -121,50 +120,50 @@ void expect_one_line(const Error& error, Errc code, const std::string& words) {
   EXPECT_EQ(error.to_string().find_first_of("\r\n"), std::string::npos);
 }
 
-TEST(ExternalCamera, NonsenseInItsHelloIsNamed) {
+TEST(ProgramCamera, NonsenseInItsHelloIsNamed) {
   const Answers greeting{{"Welcome to CamSDK"}};
-  const auto chatty = ExternalCamera::start({greeting.command()});
+  const auto chatty = ProgramCamera::start({greeting.command()});
   ASSERT_FALSE(chatty.ok());
   expect_one_line(chatty.error(), Errc::corrupt_data,
                   "': the answer to hello is wrong: it is not JSON: 'Welcome to CamSDK'; messages belong on stderr");
   const Answers unplugged{{R"({"error": "no camera\nis plugged in"})"}};
-  const auto none = ExternalCamera::start({unplugged.command()});
+  const auto none = ProgramCamera::start({unplugged.command()});
   ASSERT_FALSE(none.ok());
   expect_one_line(none.error(), Errc::unavailable, "hello failed: no camera is plugged in");
 }
 
-TEST(ExternalCamera, AFrameOfMillimetres) {
+TEST(ProgramCamera, AFrameOfMillimetres) {
   // Samples 0, 1 mm (nearer than the camera sees), 256 mm, 1000 mm, 3001 mm (farther), 65535, 2 mm, 512 mm.
   using namespace std::string_literals;
   const std::string depth{"\0\0\x01\0\0\x01\xE8\x03\xB9\x0B\xFF\xFF\x02\0\0\x02"s};
   const std::string moved = R"({"number": 0, "bytes": 16, "time_s": 12.5, "T_world_camera": )"
-                            R"([[1,0,0,7],[0,1,0,8],[0,0,1,9],[0,0,0,1]]})";
+                            R"([[1,0,0,0.5],[0,1,0,-0.25],[0,0,1,0.5],[0,0,0,1]]})";
   const Answers program{{kHello, moved + "\n" + depth}};
-  auto camera = ExternalCamera::start({program.command()});
+  auto camera = ProgramCamera::start({program.command()});
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
   const auto frame = camera->capture(above());
   ASSERT_TRUE(frame.ok()) << frame.error().to_string();
   EXPECT_EQ(frame->depth, (DepthImage{4, 2, {0.0F, 0.0F, 0.256F, 1.0F, 0.0F, 0.0F, 0.0F, 0.512F}}));
-  EXPECT_TRUE(frame->T_world_camera->translation().isApprox(Eigen::Vector3d{7.0, 8.0, 9.0}));
+  EXPECT_TRUE(frame->T_world_camera->translation().isApprox(Eigen::Vector3d{0.5, -0.25, 0.5}));
   EXPECT_EQ(frame->time_s, 12.5);
   const auto more = camera->capture(above());  // an empty line follows the frame, which nobody asked for
   ASSERT_FALSE(more.ok());
   expect_one_line(more.error(), Errc::corrupt_data, "");
 }
 
-TEST(ExternalCamera, WrongSizesAreNamed) {
+TEST(ProgramCamera, WrongSizesAreNamed) {
   const Answers program{{kHello, R"({"number": 0, "bytes": 15})"}};
-  auto camera = ExternalCamera::start({program.command()});
+  auto camera = ProgramCamera::start({program.command()});
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
   const auto frame = camera->capture(above());
   ASSERT_FALSE(frame.ok());
   expect_one_line(frame.error(), Errc::size_mismatch, "the answer to frame 0 is wrong: bytes must be 16, not 15");
 }
 
-TEST(ExternalCamera, MayBeAskedAgainAfterItsOwnErrorOnly) {
+TEST(ProgramCamera, MayBeAskedAgainAfterItsOwnErrorOnly) {
   const std::string trouble = R"({"number": 0, "error": "too dark"})";
   const Answers program{{kHello, trouble, "{\"error\": \"too dark\"}", "rubbish", trouble}};
-  auto camera = ExternalCamera::start({program.command()});
+  auto camera = ProgramCamera::start({program.command()});
   ASSERT_TRUE(camera.ok()) << camera.error().to_string();
   for (int i = 0; i < 2; ++i) {
     const auto dark = camera->capture(above());
@@ -179,23 +178,23 @@ TEST(ExternalCamera, MayBeAskedAgainAfterItsOwnErrorOnly) {
   EXPECT_EQ(final.error().to_string(), rubbish.error().to_string());
 }
 
-TEST(ExternalCamera, RefusesTimeLimitsThatAreNone) {
-  EXPECT_FALSE(ExternalCamera::start({kCameraPy, 0.0, 1.0}).ok());
-  EXPECT_FALSE(ExternalCamera::start({kCameraPy, 1.0, -1.0}).ok());
-  EXPECT_FALSE(ExternalRobot::start({kRobotPy, 1.0, 0.0}).ok());
-  EXPECT_FALSE(ExternalRobot::start({""}).ok());
+TEST(ProgramCamera, RefusesTimeLimitsThatAreNone) {
+  EXPECT_FALSE(ProgramCamera::start({kCameraPy, {}, 0.0, 1.0, {}}).ok());
+  EXPECT_FALSE(ProgramCamera::start({kCameraPy, {}, 1.0, -1.0, {}}).ok());
+  EXPECT_FALSE(ProgramRobot::start({kRobotPy, {}, 1.0, 0.0, {}}).ok());
+  EXPECT_FALSE(ProgramRobot::start({""}).ok());
 }
 
-TEST(ExternalRobot, SaysWhatItsProgramSays) {
+TEST(ProgramRobot, SaysWhatItsProgramSays) {
   const std::string moved =
-      R"({"number": 0, "reached": true, "T_world_camera": [[1,0,0,7],[0,1,0,8],[0,0,1,9],[0,0,0,1]]})";
+      R"({"number": 0, "reached": true, "T_world_camera": [[1,0,0,0.5],[0,1,0,-0.25],[0,0,1,0.5],[0,0,0,1]]})";
   const Answers program{{R"({"saccade": 1, "name": "arm"})", moved, R"({"number": 1, "reached": false})",
                          R"({"error": "protective stop"})", R"({"number": 3, "reached": "yes"})"}};
-  auto robot = ExternalRobot::start({program.command()});
+  auto robot = ProgramRobot::start({program.command()});
   ASSERT_TRUE(robot.ok()) << robot.error().to_string();
   const auto elsewhere = (*robot)->move_to(above());
   ASSERT_TRUE(elsewhere.ok() && elsewhere->has_value());
-  EXPECT_TRUE((*elsewhere)->translation().isApprox(Eigen::Vector3d{7.0, 8.0, 9.0}));
+  EXPECT_TRUE((*elsewhere)->translation().isApprox(Eigen::Vector3d{0.5, -0.25, 0.5}));
   const auto unreached = (*robot)->move_to(above());
   ASSERT_TRUE(unreached.ok() && !unreached->has_value());
   const auto stopped = (*robot)->move_to(above());
@@ -206,12 +205,12 @@ TEST(ExternalRobot, SaysWhatItsProgramSays) {
   expect_one_line(wrong.error(), Errc::corrupt_data, "the answer to move 3 is wrong: reached must be true or false");
 }
 
-TEST(ExternalRobot, ADeadRobotIsNamed) {
-  const auto none = ExternalRobot::start({"/nowhere/robot"});
+TEST(ProgramRobot, ADeadRobotIsNamed) {
+  const auto none = ProgramRobot::start({"/nowhere/robot"});
   ASSERT_FALSE(none.ok());
   expect_one_line(none.error(), Errc::not_found, "robot '/nowhere/robot'");
   auto robot =
-      ExternalRobot::start({"sh -c 'read a; echo \"{\\\"saccade\\\": 1}\"; read b; echo emergency >&2; exit 9'"});
+      ProgramRobot::start({"sh -c 'read a; echo \"{\\\"saccade\\\": 1}\"; read b; echo emergency >&2; exit 9'"});
   ASSERT_TRUE(robot.ok()) << robot.error().to_string();
   const auto moved = (*robot)->move_to(above());
   ASSERT_FALSE(moved.ok());

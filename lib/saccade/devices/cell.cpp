@@ -1,0 +1,179 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "saccade/devices/cell.hpp"
+
+#include <Eigen/Geometry>
+#include <algorithm>
+
+#include "saccade/core/angle.hpp"
+#include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/yaml_map.hpp"
+
+namespace saccade {
+namespace {
+
+namespace fs = std::filesystem;
+
+bool yaml_flag(const YAML::Node& node) {
+  bool value = false;
+  if (!YAML::convert<bool>::decode(node, value)) yaml_problem(node, "expected true or false");
+  return value;
+}
+
+double yaml_positive(const YAML::Node& node) {
+  const double value = yaml_number(node);
+  if (!(value > 0.0)) yaml_problem(node, "expected a positive number");
+  return value;
+}
+
+std::optional<double> positive_in(YamlMap& map, const std::string& key) {
+  const YAML::Node node = map.find(key);
+  return node.IsDefined() ? std::optional{yaml_positive(node)} : std::nullopt;
+}
+
+std::string text_in(YamlMap& map, const std::string& key) {
+  const YAML::Node node = map.find(key);
+  return node.IsDefined() ? yaml_text(node) : std::string{};
+}
+
+/// A matrix of three or four rows.
+Pose read_matrix(const YAML::Node& node) {
+  if (!node.IsSequence() || (node.size() != 3 && node.size() != 4)) yaml_problem(node, "expected the rows of a pose");
+  Pose pose = Pose::Identity();
+  for (std::size_t row = 0; row < 3; ++row) {
+    const std::vector<double> values = yaml_numbers(node[row], 4);
+    for (std::size_t column = 0; column < 4; ++column) {
+      pose.matrix()(static_cast<Eigen::Index>(row), static_cast<Eigen::Index>(column)) = values[column];
+    }
+  }
+  if (!((pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3) ||
+      pose.linear().determinant() < 0.0) {
+    yaml_problem(node, "the first three columns are no rotation");
+  }
+  pose.linear() = Eigen::Quaterniond{pose.linear()}.normalized().toRotationMatrix();
+  return pose;
+}
+
+Pose read_base_at(const YAML::Node& node) {
+  const std::vector<double> n = yaml_numbers(node, 0);
+  if (n.size() != 3 && n.size() != 4) yaml_problem(node, "expected [x, y, z] or [x, y, z, degrees]");
+  const double turn_rad = n.size() == 4 ? to_rad(n[3]) : 0.0;
+  return Eigen::Translation3d{n[0], n[1], n[2]} * Eigen::AngleAxisd{turn_rad, Eigen::Vector3d::UnitZ()};
+}
+
+Box read_cell_box(const YAML::Node& node) {
+  YamlMap map{node, "a box"};
+  const Box box{yaml_point(map.need("min")), yaml_point(map.need("max"))};
+  map.finish();
+  if (!(box.min.array() < box.max.array()).all()) yaml_problem(node, "the box is empty: min must be below max");
+  return box;
+}
+
+std::vector<Box> read_boxes(const YAML::Node& node) {
+  std::vector<Box> boxes;
+  if (!node.IsDefined()) return boxes;
+  if (!node.IsSequence()) yaml_problem(node, "expected a list of boxes");
+  for (const YAML::Node& item : node) boxes.push_back(read_cell_box(item));
+  return boxes;
+}
+
+CellArm read_cell_arm(const YAML::Node& node, const fs::path& folder) {
+  YamlMap map{node, "an arm"};
+  CellArm arm;
+  const std::string urdf = text_in(map, "urdf");
+  arm.robot = urdf.empty() ? text_in(map, "robot") : (folder / urdf).string();
+  if (arm.robot.empty()) yaml_problem(node, "an arm needs the key urdf (a file), or robot (a built-in one)");
+  arm.base = text_in(map, "base");
+  arm.tip = text_in(map, "tip");
+  arm.camera_frame = text_in(map, "camera_frame");
+  if (const YAML::Node at = map.find("base_at"); at.IsDefined()) arm.T_world_base = read_base_at(at);
+  if (const YAML::Node mount = map.find("T_flange_camera"); mount.IsDefined()) {
+    arm.T_flange_camera = read_matrix(mount);
+  }
+  if (const YAML::Node packages = map.find("packages"); packages.IsDefined()) {
+    if (!packages.IsMap()) yaml_problem(packages, "expected NAME: FOLDER");
+    for (const auto& entry : packages) arm.packages[yaml_text(entry.first)] = folder / yaml_text(entry.second);
+  }
+  if (const YAML::Node drop = map.find("drop_beyond_tip"); drop.IsDefined()) arm.drop_beyond_tip = yaml_flag(drop);
+  if (const YAML::Node speed = map.find("speed"); speed.IsDefined()) {
+    arm.speed = yaml_positive(speed);
+    if (arm.speed > 1.0) yaml_problem(speed, "the speed is a share of the arm's own: at most 1");
+  }
+  map.finish();
+  return arm;
+}
+
+CellProgram read_program(YamlMap& map) {
+  CellProgram program;
+  const YAML::Node command = map.need("command");
+  program.command = yaml_text(command);
+  if (program.command.find_first_not_of(" \t") == std::string::npos) yaml_problem(command, "the command is empty");
+  program.timeout_s = positive_in(map, "timeout");
+  return program;
+}
+
+CellProgram program_under(YamlMap& cell, const std::string& key) {
+  const YAML::Node node = cell.find(key);
+  if (!node.IsDefined()) return {};
+  YamlMap map{node, key};
+  CellProgram program = read_program(map);
+  map.finish();
+  return program;
+}
+
+Cell read_cell_document(const YAML::Node& document, const fs::path& folder) {
+  YamlMap map{document, "a cell"};
+  Cell cell;
+  cell.folder = folder;
+  if (const YAML::Node arm = map.find("arm"); arm.IsDefined()) cell.arm = read_cell_arm(arm, folder);
+  if (const YAML::Node camera = map.find("camera"); camera.IsDefined()) {
+    YamlMap keys{camera, "a camera"};
+    cell.camera = read_program(keys);
+    cell.camera_clock_offset_s = keys.number("clock_offset", 0.0);
+    keys.finish();
+  }
+  if (const YAML::Node joints = map.find("joints"); joints.IsDefined()) {
+    YamlMap keys{joints, "joints"};
+    cell.joints = read_program(keys);
+    cell.watch = {positive_in(keys, "tolerance"), positive_in(keys, "lag"), positive_in(keys, "watchdog")};
+    keys.finish();
+    if (!cell.arm) yaml_problem(joints, "joints need an arm that plans: add the key arm, with its URDF");
+  }
+  cell.robot = program_under(map, "robot");
+  if (!cell.robot.command.empty() && cell.arm) {
+    yaml_problem(map.find("robot"), "a robot that plans for itself and an arm exclude each other");
+  }
+  cell.hand = program_under(map, "hand");
+  if (const YAML::Node tracking = map.find("tracking"); tracking.IsDefined()) {
+    cell.tracking = yaml_text(tracking);
+    if (cell.tracking != "forced" && cell.tracking != "hint" && cell.tracking != "icp") {
+      yaml_problem(tracking, "tracking is forced, hint or icp");
+    }
+  }
+  cell.fixtures = read_boxes(map.find("fixtures"));
+  cell.free = read_boxes(map.find("free"));
+  return cell;
+}
+
+}  // namespace
+
+Result<Cell> parse_cell(std::string_view yaml, const fs::path& folder) {
+  try {
+    return read_cell_document(YAML::Load(std::string{yaml}), folder);
+  } catch (const YamlProblem& problem) {
+    return problem.error;
+  } catch (const YAML::Exception& exception) {
+    return yaml_error(exception);
+  }
+}
+
+Result<Cell> read_cell(const fs::path& path) {
+  constexpr std::uintmax_t kMaxBytes{std::uintmax_t{16} << 20U};
+  SACCADE_TRY(const std::string text, read_text_file(path, kMaxBytes));
+  auto cell = parse_cell(text, path.parent_path());
+  if (cell) return cell;
+  Error error = cell.error();
+  error.context = path.string() + (error.context.empty() ? "" : ", " + error.context);
+  return error;
+}
+
+}  // namespace saccade

@@ -1,0 +1,114 @@
+#!/usr/bin/env python3
+# SPDX-License-Identifier: Apache-2.0
+"""Measures a simulated real cell: camera and joints are processes of their own, with delay, clocks of their own and faults.
+
+    scripts/evidence_cell.py compare OUT   coverage through the pipes beside the simulation in one process
+    scripts/evidence_cell.py faults OUT    each program killed, hung, slowed or lying at random instants
+
+Runs that are there already are not made again. Figures go to standard output."""
+import argparse
+import json
+import os
+import pathlib
+import random
+import statistics
+import subprocess
+import sys
+
+ROOT = pathlib.Path(__file__).resolve().parent.parent
+BUILD = ROOT / "build/release"
+ARM_FAULTS = ["hang", "die", "lie", "drift", "slow", "nonsense", "error"]
+CAMERA_FAULTS = ["hang", "die", "nonsense", "error"]
+# Views of the tabletop scenes, coarse enough that a run takes seconds.
+COMMON = ["--voxel-size", "0.01", "--no-pictures", "--quiet", "--frame-on-way", "0.3", "--radius", "0.6"]
+
+
+def write_cell(folder, scene, arm=(), camera=()):
+    """Adds devices to a built-in scene. Its objects are for the simulated camera alone; Saccade knows its fixtures."""
+    folder.mkdir(parents=True, exist_ok=True)
+    joints = [str(BUILD / "saccade-simulated-arm"), "--state", "state", "--log", "log", *arm]
+    eyes = [str(BUILD / "saccade-simulated-camera"), "--scene", scene, "--state", "state", "--width", "160", *camera]
+    devices = {"arm": {"robot": "comau_smart_six", "speed": 0.5},
+               "joints": {"command": " ".join(joints), "watchdog": 0.08, "timeout": 5},
+               "camera": {"command": " ".join(eyes), "timeout": 2}}
+    keys = "".join(f"{key}: {json.dumps(value)}\n" for key, value in devices.items())
+    (folder / "cell.yaml").write_text((ROOT / "scenes" / f"{scene}.yaml").read_text() + keys)
+    return folder / "cell.yaml"
+
+
+def explore(cell, out, views, *more):
+    command = [str(BUILD / "saccade"), "explore", str(cell), "--out", str(out), "--max-views", str(views), "--json", "-",
+               *COMMON, *more]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    return done.returncode, (json.loads(done.stdout)["result"] if done.stdout else None), done.stderr
+
+
+def faults(out, count, views):
+    rng = random.Random(1)
+    rows = []
+    for i in range(count):
+        of_arm = rng.random() < 0.6
+        kind = rng.choice(ARM_FAULTS if of_arm else CAMERA_FAULTS)
+        after = rng.uniform(0.2, 6.0) if of_arm else rng.randint(3, 40)
+        folder = out / f"fault-{i:03d}"
+        result = folder / "result.json"
+        if result.exists():
+            rows.append(json.loads(result.read_text()))
+            continue
+        fault = ["--fault", kind, "--after", f"{after:.2f}"]
+        rate = ["--rate", "2"]
+        cell = write_cell(folder, "tabletop-1", (*rate, *fault) if of_arm else rate, () if of_arm else fault)
+        (folder / "log").unlink(missing_ok=True)
+        status, _, error = explore(cell, folder / "run", views, "--force")
+        times = {}
+        for line in (folder / "log").read_text().splitlines() if (folder / "log").exists() else []:
+            at, what = line.split()
+            times.setdefault(what, float(at))
+        kept = (folder / "run/journal.json").exists() or status == 0
+        write_cell(folder, "tabletop-1", rate)
+        resumed = status == 0 or explore(cell, folder / "run", views, "--resume" if kept else "--force")[0] == 0
+        row = {"kind": kind, "of": "arm" if of_arm else "camera", "after": after, "status": status, "kept": kept,
+               "resumed": resumed, "error": error.strip(),
+               "stop_ms": 1e3 * (times["stop"] - times["fault"]) if {"stop", "fault"} <= times.keys() else None}
+        result.write_text(json.dumps(row))
+        rows.append(row)
+        print(f"{i + 1} of {count}: {row}", file=sys.stderr, flush=True)
+    print(f"{len(rows)} faults, {sum(r['kept'] for r in rows)} with what was seen kept, "
+          f"{sum(r['resumed'] for r in rows)} complete after --resume")
+    for who, kinds in (("arm", ARM_FAULTS), ("camera", CAMERA_FAULTS)):
+        for kind in kinds:
+            those = [r for r in rows if r["of"] == who and r["kind"] == kind]
+            stops = [r["stop_ms"] for r in those if r["stop_ms"] is not None]
+            told = f"told to stop after {statistics.median(stops):.0f} ms (at most {max(stops):.0f})" if stops else ""
+            print(f"{who:7}{kind:10}{len(those):4} runs, {sum(r['status'] != 0 for r in those):4} ended  {told}")
+
+
+def compare(out, views):
+    for scene in ("tabletop-1", "tabletop-2", "tabletop-3"):
+        folder = out / scene
+        cell = write_cell(folder, scene, ["--delay 0.02"], ["--delay 0.02", "--clock 0.035"])
+        status, _, error = explore(cell, folder / "run", views, "--tracking", "hint", "--force")
+        if status != 0:
+            print(f"{scene}: {error}")
+            continue
+        score = [str(BUILD / "saccade"), "score", "map", str(folder / "run/map.sacmap"), "--scene", scene, "--json", "-"]
+        print(scene, subprocess.run(score, capture_output=True, text=True, check=False).stdout[:300])
+
+
+def main():
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("what", choices=["compare", "faults"])
+    parser.add_argument("out", type=pathlib.Path)
+    parser.add_argument("--count", type=int, default=200)
+    parser.add_argument("--views", type=int, default=3)
+    arguments = parser.parse_args()
+    arguments.out.mkdir(parents=True, exist_ok=True)
+    os.environ["PATH"] = f"{BUILD}:{os.environ['PATH']}"
+    if arguments.what == "faults":
+        faults(arguments.out, arguments.count, arguments.views)
+    else:
+        compare(arguments.out, arguments.views)
+
+
+if __name__ == "__main__":
+    main()

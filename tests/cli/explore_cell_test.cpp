@@ -1,0 +1,158 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade explore with a cell: an arm that plans here and is moved by a program, and a camera behind another.
+#include <gtest/gtest.h>
+#include <signal.h>
+
+#include <fstream>
+#include <functional>
+#include <thread>
+
+#include "run_program.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/maps/sacmap.hpp"
+#include "support/places.hpp"
+
+namespace saccade::test {
+namespace {
+
+constexpr const char* kBench{R"(cell: bench
+workspace: {min: [-0.4, -0.4, -0.02], max: [0.4, 0.4, 0.3]}
+scan:
+  - {from: [0.0, -0.6, 0.5], look_at: [0, 0, 0.1]}
+fixtures: [{min: [-0.6, -0.4, -0.1], max: [0.6, 0.4, -0.03]}]
+arm: {robot: comau_smart_six}
+)"};
+
+class ExploreCell : public ::testing::Test {
+ protected:
+  /// Writes the cell with its programs.
+  void write(const std::string& camera, const std::string& joints, const std::string& more = "") const {
+    std::ofstream{cell()} << kBench << "camera: {command: \"" << camera << "\"}\njoints: {command: \"" << joints
+                          << "\", watchdog: 2}\n"
+                          << more;
+  }
+  static std::string python(const std::string& file) {
+    return "python3 -B '" + (source_folder() / file).string() + "'";
+  }
+  static std::string ball() { return python("examples/external_camera.py"); }
+  /// Eight times as fast as real ones. The folder is not read; it tells this test's programs from others.
+  [[nodiscard]] std::string joints() const {
+    return python("devices/joints.py") + " 8 '" + folder_.path().string() + "'";
+  }
+  [[nodiscard]] fs::path cell() const { return folder_ / "cell.yaml"; }
+  [[nodiscard]] fs::path run() const { return folder_ / "run"; }
+  [[nodiscard]] Arguments explore(const Arguments& more) const {
+    return Arguments{"explore", cell().string(), "--out", run().string(), "--voxel-size", "0.02", "--max-views",
+                     "2",       "--min-gain",    "1",     "--quiet",      "--no-pictures"} +
+           more;
+  }
+  TempFolder folder_;
+};
+
+TEST_F(ExploreCell, AnArmBehindAProgramPlansAndExplores) {
+  write(ball(), joints(), "tracking: hint\n");
+  const Outcome outcome = run_program(explore({"--json", "-"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json result = outcome.json().at("result");
+  EXPECT_EQ(result.at("robot"), "comau_smart_six");
+  ASSERT_EQ(result.at("views").size(), 2U);
+  EXPECT_TRUE(result.at("final").at("coverage").is_null());
+  for (const nlohmann::json& view : result.at("views")) {
+    EXPECT_GT(view.at("motion_s").get<double>(), 0.1);
+    EXPECT_GT(view.at("path_m").get<double>(), 0.01);
+    EXPECT_EQ(view.at("q").size(), 6U);
+    const nlohmann::json& tracking = view.at("tracking");
+    EXPECT_EQ(tracking.at("tracked").get<int>() + tracking.at("refused").get<int>(), view.at("frames").get<int>());
+    EXPECT_LT(tracking.at("correction_m").get<double>(), 0.02);  // the camera sees exactly what is there
+  }
+  EXPECT_LT(result.at("views")[1].at("unknown_left").get<int>(), result.at("initial").at("unknown_left").get<int>());
+
+  // From its map another run goes on, without a scan.
+  const Outcome more = run_program({"explore", cell().string(), "--out", (folder_ / "more").string(), "--voxel-size",
+                                    "0.02", "--max-views", "1", "--min-gain", "1", "--quiet", "--no-pictures", "--json",
+                                    "-", "--map", (run() / "map.sacmap").string()});
+  ASSERT_TRUE(more.status == 0 || more.status == 5) << more.err;
+  const nlohmann::json next = more.json().at("result");
+  EXPECT_EQ(next.at("initial").at("views"), 0);
+  EXPECT_LE(next.at("initial").at("unknown_left").get<int>(), result.at("final").at("unknown_left").get<int>());
+  expect_failure(run_program({"explore", cell().string(), "--out", (folder_ / "finer").string(), "--quiet", "--map",
+                              (run() / "map.sacmap").string()}),
+                 3, "explore", {"map.sacmap", "20.00 mm", "--voxel-size"});
+}
+
+TEST_F(ExploreCell, WhatIsWrongWithTheFileIsSaidWithItsPlace) {
+  std::ofstream{cell()} << kBench << "camera: {comand: x}\n";
+  expect_failure(run_program(explore({})), 3, "explore", {"cell.yaml", "line 7", "command"});
+}
+
+/// A camera that answers until a number of frames was asked for, and hangs then.
+std::string hanging_camera(const fs::path& script, int frames) {
+  std::ofstream{script} << "import json, sys, time\n"
+                           "hello = {'saccade': 1, 'width': 40, 'height': 30, 'fx': 40, 'fy': 40, 'cx': 19.5,\n"
+                           "         'cy': 14.5, 'min_range_m': 0.1, 'max_range_m': 3, 'depth': 'uint16_mm',\n"
+                           "         'color': 'none'}\n"
+                           "for line in sys.stdin:\n"
+                           "    r = json.loads(line)\n"
+                           "    if r['request'] == 'hello': out = json.dumps(hello).encode() + b'\\n'\n"
+                           "    elif r['number'] < "
+                        << frames
+                        << ": out = json.dumps({'number': r['number'], 'bytes': 2400}).encode() + b'\\n' +\\\n"
+                           "        (700).to_bytes(2, 'little') * 1200\n"
+                           "    else:\n"
+                           "        open('hanging', 'w').close()\n"
+                           "        time.sleep(1000)\n"
+                           "    sys.stdout.buffer.write(out)\n"
+                           "    sys.stdout.buffer.flush()\n";
+  return "python3 -B '" + script.string() + "'";
+}
+
+/// Whether any process runs with the text in its command line.
+bool runs(const std::string& text) {
+  for (const auto& entry : fs::directory_iterator{"/proc"}) {
+    const std::string name = entry.path().filename().string();
+    if (name.find_first_not_of("0123456789") != std::string::npos) continue;
+    std::ifstream file{entry.path() / "cmdline", std::ios::binary};
+    const std::string line{std::istreambuf_iterator<char>{file}, {}};
+    if (line.find(text) != std::string::npos && line.find("explore") == std::string::npos) return true;
+  }
+  return false;
+}
+
+bool comes_true(double longest_s, const std::function<bool()>& condition) {
+  const Stopwatch watch;
+  while (watch.elapsed_ms() < 1e3 * longest_s) {
+    if (condition()) return true;
+    std::this_thread::sleep_for(std::chrono::milliseconds{10});
+  }
+  return condition();
+}
+
+TEST_F(ExploreCell, CtrlCEndsARunWhoseCameraHangsWithinASecond) {
+  write(hanging_camera(folder_ / "camera.py", 7), joints());
+  RunningProgram running{explore({})};
+  ASSERT_TRUE(wait_for_file(folder_ / "hanging"));
+  const Stopwatch watch;
+  running.send(SIGINT);
+  const Outcome outcome = running.finish();
+  EXPECT_LT(watch.elapsed_ms(), 1000.0);
+  EXPECT_EQ(outcome.status, 130) << outcome.err;
+  EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
+  EXPECT_FALSE(runs(folder_.path().string()));
+  EXPECT_TRUE(fs::exists(run() / "journal.json"));
+}
+
+TEST_F(ExploreCell, NothingIsLeftOfItsProgramsWhenItIsKilled) {
+  for (const int signal : {SIGKILL, SIGHUP}) {
+    fs::remove(folder_ / "hanging");
+    write(hanging_camera(folder_ / "camera.py", 3), joints());
+    RunningProgram running{explore({"--force"})};
+    ASSERT_TRUE(wait_for_file(folder_ / "hanging"));
+    running.send(signal);
+    static_cast<void>(running.finish());
+    EXPECT_TRUE(comes_true(5.0, [&] { return !runs(folder_.path().string()); })) << signal;
+  }
+}
+
+}  // namespace
+}  // namespace saccade::test
