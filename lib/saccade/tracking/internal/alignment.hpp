@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Alignment: normal equations of the point-to-plane distances between measured points and a model, by projection; Level:
-// every n-th of the measured points. For ICP and for the calibration of a camera's mount.
+// Alignment: normal equations of the point-to-plane distances between measured points and a model, by projection;
+// Level: every n-th of the measured points. For ICP and for the calibration of a camera's mount.
 
 #include <Eigen/Core>
 #include <cstddef>
