@@ -5,138 +5,11 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
-#include <vector>
 
-#include "saccade/tracking/internal/icp_kernels.hpp"
+#include "saccade/tracking/internal/alignment.hpp"
 
 namespace saccade {
 namespace {
-
-using Matrix6d = Eigen::Matrix<double, 6, 6>;
-using Vector6d = Eigen::Matrix<double, 6, 1>;
-
-/// Sums of the normal equations Σ w JᵀJ x = −Σ w Jᵀ r.
-struct NormalEquations {
-  Matrix6d JtJ{Matrix6d::Zero()};
-  Vector6d Jtr{Vector6d::Zero()};
-  double squared_residuals{0.0};
-  std::size_t pairs{0};
-  std::size_t measured{0};
-
-  NormalEquations& operator+=(const NormalEquations& other) {
-    JtJ += other.JtJ;
-    Jtr += other.Jtr;
-    squared_residuals += other.squared_residuals;
-    pairs += other.pairs;
-    return *this;
-  }
-};
-
-/// Adds up the lanes of one chunk, in order.
-NormalEquations total(const PairSums& sums) {
-  const auto over_lanes = [](const std::array<float, kPairLanes>& lanes) {
-    double sum{0.0};
-    for (const float lane : lanes) sum += static_cast<double>(lane);
-    return sum;
-  };
-  NormalEquations equations;
-  std::size_t product{0};
-  for (int i = 0; i < 6; ++i) {
-    for (int j = i; j < 6; ++j) equations.JtJ(j, i) = over_lanes(sums.products[product++]);
-    equations.Jtr(i) = over_lanes(sums.products[product++]);
-  }
-  equations.squared_residuals = over_lanes(sums.squared_residuals);
-  equations.pairs = sums.pairs;
-  return equations;
-}
-
-LevelPoints all_points(const PointImage& image) {
-  return {image.z.data(), image.nx.data(), image.ny.data(), image.nz.data(), image.z.width(), image.z.height(), 1};
-}
-
-/// Every stride-th point of every stride-th row, side by side.
-class Level {
- public:
-  Level(const PointImage& image, int stride) : points_{all_points(image)} {
-    if (stride == 1) return;
-    points_.stride = stride;
-    points_.width = (image.z.width() + stride - 1) / stride;
-    points_.height = (image.z.height() + stride - 1) / stride;
-    points_.z = (z_ = every(image.z)).data();
-    points_.nx = (nx_ = every(image.nx)).data();
-    points_.ny = (ny_ = every(image.ny)).data();
-    points_.nz = (nz_ = every(image.nz)).data();
-  }
-  Level(const Level&) = delete;
-  Level& operator=(const Level&) = delete;
-
-  [[nodiscard]] const LevelPoints& points() const { return points_; }
-  [[nodiscard]] std::size_t measured() const {
-    const auto count = static_cast<std::ptrdiff_t>(points_.width) * points_.height;
-    return static_cast<std::size_t>(std::count_if(points_.z, points_.z + count, [](float z) { return z > 0.0F; }));
-  }
-
- private:
-  [[nodiscard]] Image<float> every(const Image<float>& from) const {
-    Image<float> to{points_.width, points_.height};
-    for (int v = 0; v < points_.height; ++v) {
-      const float* row = from.row(v * points_.stride);
-      float* out = to.row(v);
-      for (int u = 0; u < points_.width; ++u) out[u] = row[u * points_.stride];
-    }
-    return to;
-  }
-
-  LevelPoints points_;
-  Image<float> z_, nx_, ny_, nz_;
-};
-
-class Alignment {
- public:
-  Alignment(const PointImage& model, const PinholeCamera& camera, const IcpConfig& config, const Executor& executor)
-      : executor_{executor} {
-    task_.model = all_points(model);
-    task_.fx = static_cast<float>(camera.fx);
-    task_.fy = static_cast<float>(camera.fy);
-    task_.cx = static_cast<float>(camera.cx);
-    task_.cy = static_cast<float>(camera.cy);
-    task_.inverse_fx = static_cast<float>(1.0 / camera.fx);
-    task_.inverse_fy = static_cast<float>(1.0 / camera.fy);
-    task_.max_squared_distance_m2 = static_cast<float>(config.max_distance_m * config.max_distance_m);
-    task_.min_normal_cosine = static_cast<float>(std::cos(config.max_normal_angle_rad));
-  }
-
-  [[nodiscard]] NormalEquations linearize(const Pose& T_model_camera, const Level& level) const {
-    PairingTask task = task_;
-    task.measured = level.points();
-    Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>{task.R.data()} = T_model_camera.linear().cast<float>();
-    Eigen::Map<Eigen::Vector3f>{task.t.data()} = T_model_camera.translation().cast<float>();
-    const auto rows = static_cast<std::size_t>(task.measured.height);
-    constexpr std::size_t kRowsPerChunk{8};
-    std::vector<NormalEquations> chunks((rows + kRowsPerChunk - 1) / kRowsPerChunk);
-    executor_.parallel_for(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
-      PairSums sums;
-      linearize_rows(task, static_cast<int>(begin), static_cast<int>(end), sums);
-      chunks[begin / kRowsPerChunk] = total(sums);
-    });
-    NormalEquations equations;
-    for (const NormalEquations& chunk : chunks) equations += chunk;
-    return equations;
-  }
-
- private:
-  PairingTask task_;
-  const Executor& executor_;
-};
-
-/// Rotation vector and translation applied from the left.
-Pose exponential(const Vector6d& x) {
-  Pose T{Pose::Identity()};
-  const double angle = x.head<3>().norm();
-  if (angle > 0.0) T.linear() = Eigen::AngleAxisd{angle, x.head<3>() / angle}.toRotationMatrix();
-  T.translation() = x.tail<3>();
-  return T;
-}
 
 /// Smallest over largest eigenvalue, with rotations measured in arcs of a metre: 0 when a motion is not constrained.
 double constraint(const Matrix6d& JtJ) {
@@ -146,7 +19,7 @@ double constraint(const Matrix6d& JtJ) {
   return largest > 0.0 ? solver.eigenvalues()[0] / largest : 0.0;
 }
 
-/// Of the measured points that the model's camera sees where the model has a surface, the share at its depth.
+/// Share at the model's depth among the measured points that its camera sees where it has a surface.
 /// Measured on recorded sequences (7-Scenes kitchen, RealSense box, shelf): 0.87 and more where ICP found the pose,
 /// from frames up to 20 cm apart; 0.71 and less where it settled 6 to 37 cm beside it.
 double agreement(const LevelPoints& measured, const PointImage& model, const PinholeCamera& camera,
@@ -209,7 +82,7 @@ IcpResult align(const PointImage& measured, const PointImage& model, const Pinho
                 const Pose& T_model_camera_start, const Executor& executor, const IcpConfig& config) {
   SACCADE_EXPECTS(measured.z.width() == camera.width && measured.z.height() == camera.height);
   SACCADE_EXPECTS(model.z.width() == camera.width && model.z.height() == camera.height);
-  const Alignment alignment{model, camera, config, executor};
+  const Alignment alignment{model, camera, {config.max_distance_m, config.max_normal_angle_rad}};
   IcpResult result;
   result.T_model_camera = T_model_camera_start;
   NormalEquations sums;
@@ -219,7 +92,7 @@ IcpResult align(const PointImage& measured, const PointImage& model, const Pinho
     const double settled = config.converged_m * config.strides[stage];  // finer levels correct what is left
     bool converged{false};
     for (int i = 0; i < config.iterations[stage] && !converged; ++i) {
-      sums = alignment.linearize(result.T_model_camera, level);
+      sums = alignment.linearize(result.T_model_camera, level, executor);
       if (sums.pairs < 6) break;
       const Eigen::LDLT<Matrix6d> factorised{sums.JtJ.selfadjointView<Eigen::Lower>()};
       const Vector6d step = factorised.solve(-sums.Jtr);
@@ -229,7 +102,8 @@ IcpResult align(const PointImage& measured, const PointImage& model, const Pinho
       converged = step.norm() < settled;
     }
     if (!finest) continue;
-    if (!converged) sums = alignment.linearize(result.T_model_camera, level);  // else: the last step changed nothing
+    if (!converged)
+      sums = alignment.linearize(result.T_model_camera, level, executor);  // else: the last step changed nothing
     sums.measured = level.measured();
   }
   if (sums.measured > 0) result.inlier_share = static_cast<double>(sums.pairs) / static_cast<double>(sums.measured);

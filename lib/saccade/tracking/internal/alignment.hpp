@@ -1,0 +1,66 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Alignment: normal equations of the point-to-plane distances between measured points and a model, by projection;
+// Level: every n-th of the measured points. For ICP and for the calibration of a camera's mount.
+
+#include <Eigen/Core>
+#include <cstddef>
+
+#include "saccade/core/executor.hpp"
+#include "saccade/core/pose.hpp"
+#include "saccade/sensor/point_image.hpp"
+#include "saccade/tracking/internal/icp_kernels.hpp"
+
+namespace saccade {
+
+using Matrix6d = Eigen::Matrix<double, 6, 6>;
+using Vector6d = Eigen::Matrix<double, 6, 1>;
+
+/// Sums of the normal equations Σ w JᵀJ x = −Σ w Jᵀ r, x = (rotation vector, translation) from the left, with w in
+/// 1/mm².
+struct NormalEquations {
+  Matrix6d JtJ{Matrix6d::Zero()};  ///< its lower half alone
+  Vector6d Jtr{Vector6d::Zero()};
+  double squared_residuals{0.0};  ///< m², without weights
+  std::size_t pairs{0};
+  std::size_t measured{0};
+
+  NormalEquations& operator+=(const NormalEquations& other);
+};
+
+/// Every stride-th point of every stride-th row, side by side; with stride 1 the image's own, which must outlive it.
+class Level {
+ public:
+  Level(const PointImage& image, int stride);
+  Level(const Level&) = delete;
+  Level& operator=(const Level&) = delete;
+
+  [[nodiscard]] const LevelPoints& points() const { return points_; }
+  [[nodiscard]] std::size_t measured() const;
+
+ private:
+  LevelPoints points_;
+  Image<float> z_, nx_, ny_, nz_;
+};
+
+struct PairLimits {
+  double max_distance_m{0.10};
+  double max_normal_angle_rad{0.6};
+};
+
+/// Expects a model of the camera's size that outlives it.
+class Alignment {
+ public:
+  Alignment(const PointImage& model, const PinholeCamera& camera, const PairLimits& limits);
+  /// Sums run in fixed lanes and chunks, so that threads change no bit. O(points of the level).
+  [[nodiscard]] NormalEquations linearize(const Pose& T_model_camera, const Level& level,
+                                          const Executor& executor) const;
+
+ private:
+  PairingTask task_;
+};
+
+/// Rotation vector and translation applied from the left.
+[[nodiscard]] Pose exponential(const Vector6d& x);
+
+}  // namespace saccade
