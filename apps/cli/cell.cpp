@@ -230,8 +230,7 @@ void add_cell(CLI::App& program, const GlobalOptions& global, Action& action) {
   add_value(*check, "cell", options->scene, "CELL", "a cell's YAML file (docs/cell.md)")->required();
   add_value(*check, "--out", options->out, "DIR", "folder for a picture of a frame, with the arm in it");
   add_arm_options(*check, *options);
-  add_value(*check, "--process-timeout", options->process_timeout_s, "SECONDS",
-            "seconds after which a program that does not answer is given up");
+  add_device_options(*check, *options);
   check->callback([options, &global, &action] {
     check_device_options(*options);
     if (options->robot.empty()) options->robot = "free";

@@ -71,9 +71,9 @@ int run(int argc, char** argv, CLI::App& program, Planners planners) {
   program.fallthrough();
   program.footer(kFooter);
   add_global_options(program, global);
-  for (AddCommand* add :
-       {add_annotate, add_attend, add_cell, add_compare, add_explore, add_filter, add_fuse, add_nbv, add_info,
-        add_scene, add_reproduce, add_robot, add_score, add_segment, add_show, add_sample, add_surfels, add_update}) {
+  for (AddCommand* add : {add_annotate, add_attend, add_calibrate, add_cell, add_compare, add_explore, add_filter,
+                          add_fuse, add_nbv, add_info, add_scene, add_reproduce, add_robot, add_score, add_segment,
+                          add_show, add_sample, add_surfels, add_update}) {
     add(program, global, action);
   }
   refuse_empty_values(program);

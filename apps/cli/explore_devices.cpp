@@ -55,7 +55,7 @@ Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& exe
                      " goes by the objects that it knows; choose another one",
                  subject.scene.name};
   }
-  if (options.camera_command.empty() && has_objects) {
+  if (options.knows_truth() && has_objects) {
     SACCADE_TRY(subject.truth, Truth::build(*subject.rays, kTruthSpacing_m, executor));
   }
   return subject;

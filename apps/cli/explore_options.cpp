@@ -61,6 +61,9 @@ std::vector<Box> ExploreOptions::free_boxes() const {
 }
 
 void add_device_options(CLI::App& command, ExploreOptions& options) {
+  add_value(command, "--robot", options.robot, "ROBOT",
+            "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
+            "--camera-command");
   add_value(command, "--robot-command", options.robot_command, "COMMAND",
             "a program that moves a robot, which plans for itself (docs/processes.md)")
       ->excludes("--robot");
@@ -74,6 +77,9 @@ void add_device_options(CLI::App& command, ExploreOptions& options) {
                   "robot where ICP refuses; icp, ICP alone, and nothing where it refuses (default: forced)")
       ->transform(CLI::CheckedTransformer(std::map<std::string, TrackingMode>{
           {"forced", TrackingMode::forced}, {"hint", TrackingMode::hint}, {"icp", TrackingMode::icp}}));
+  command.add_flag(
+      "--truth", options.with_truth,
+      "with a camera's program: it sees the scene's objects, as in a simulated cell; coverage is measured");
   add_value(command, "--map", options.map, "FILE", "a saved map (.sacmap) to go on from, in place of an unknown one");
 }
 
@@ -94,9 +100,6 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
   add_run_options(command, options, min_gain_by_strategy());
   add_foresight_options(command, options);
 
-  add_value(command, "--robot", options.robot, "ROBOT",
-            "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
-            "--camera-command");
   add_arm_options(command, options);
   add_device_options(command, options);
   command.add_flag("--step", options.step, "ask before each move");

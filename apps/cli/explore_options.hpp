@@ -46,6 +46,9 @@ struct ExploreOptions : RunOptions {
   /// What each view was chosen from, and the map after it, for saccade show.
   [[nodiscard]] bool keeps_views() const { return write_pictures || show; }
   [[nodiscard]] bool has_arm() const { return robot_command.empty() && robot != "free"; }
+  bool with_truth{false};  ///< the scene's objects are what a program's camera sees
+  /// Whether the scene is what the camera sees.
+  [[nodiscard]] bool knows_truth() const { return camera_command.empty() || with_truth; }
   /// A real robot or arm, which is not where a simulated one would be.
   [[nodiscard]] bool moves_real() const { return !robot_command.empty() || !joints_command.empty(); }
   /// Boxes that are known to be free from the beginning.
@@ -58,7 +61,7 @@ void add_arm_options(CLI::App& command, ExploreOptions& options);
 /// After parsing: fills `arm`. Throws a usage error for what makes no sense.
 void check_arm_options(ExploreOptions& options, const GlobalOptions& global);
 
-/// Adds --camera-command, --robot-command, --process-timeout, --tracking and --map.
+/// Adds --robot, --camera-command, --robot-command, --process-timeout, --tracking and --map.
 void add_device_options(CLI::App& command, ExploreOptions& options);
 /// After parsing: takes the cell's file in, fills `run.exploration.tracking`, and throws a usage error for what makes
 /// no sense.

@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade calibrate: where the camera of a cell sits on the arm's flange, and how their clocks differ, without a board.
+#include <CLI/CLI.hpp>
+#include <iomanip>
+#include <iostream>
+#include <memory>
+#include <sstream>
+
+#include "add_value.hpp"
+#include "cell_options.hpp"
+#include "exit_status.hpp"
+#include "explore_devices.hpp"
+#include "interrupt.hpp"
+#include "json_output.hpp"
+#include "progress_bar.hpp"
+#include "saccade/arm/kinematics.hpp"
+#include "saccade/core/angle.hpp"
+#include "saccade/core/clock.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "saccade/tracking/hand_eye.hpp"
+#include "summary.hpp"
+
+namespace saccade::cli {
+namespace {
+
+using nlohmann::json;
+
+struct CalibrateOptions : ExploreOptions {
+  double turn_deg{15.0};  ///< of the views around each pose of the scan
+};
+
+/// Turned about its own axes, one after the other.
+std::vector<Pose> turned_about(const Pose& T_world_camera, double turn_rad) {
+  std::vector<Pose> poses{T_world_camera};
+  for (int k = 0; k < 3; ++k) {
+    const Eigen::Vector3d axis = Eigen::Vector3d::Unit(k);
+    for (const double sign : {1.0, -1.0}) poses.push_back(T_world_camera * Eigen::AngleAxisd{sign * turn_rad, axis});
+  }
+  return poses;
+}
+
+/// Moves the arm through views, and takes frames at rest and on the way.
+class ViewCollector {
+ public:
+  ViewCollector(ExploreDevices& devices, const ArmModel& arm, const Progress& progress)
+      : devices_{devices}, progress_{progress}, T_camera_flange_{arm.description().T_flange_camera.inverse()} {
+    input_.camera = devices.intrinsics();
+    input_.T_flange_camera_guess = arm.description().T_flange_camera;
+  }
+
+  /// Views at rest around a pose; those that cannot be reached are left out.
+  [[nodiscard]] Status look_around(const Pose& T_world_camera, double turn_rad) {
+    for (const Pose& pose : turned_about(T_world_camera, turn_rad)) {
+      SACCADE_TRY(const std::optional<Arrival> arrival, go_to(pose, {}));
+      if (!arrival) continue;
+      SACCADE_TRY(Frame frame, devices_.camera().capture(arrival->T_world_camera));
+      input_.still.push_back({std::move(frame.depth), arrival->T_world_camera * T_camera_flange_});
+      reached_.push_back(pose);
+      progress_.report("views at rest", input_.still.size(), 0);
+    }
+    return {};
+  }
+
+  /// Goes through the views again, and takes frames while it moves.
+  [[nodiscard]] Status move_through(std::size_t count) {
+    for (std::size_t i = 0; i < std::min(count, reached_.size()); ++i) {
+      progress_.report("views in motion", i, count);
+      Status taken;
+      const OnWay on_way = [&](const CameraSample& sample) {
+        taken = take_on_way(sample);
+        return taken.ok() && !progress_.cancelled() ? Advance::go_on : Advance::stop;
+      };
+      SACCADE_TRY([[maybe_unused]] const std::optional<Arrival> arrival, go_to(reached_[i], on_way));
+      SACCADE_CHECK(taken);
+    }
+    stand_at_ends();
+    return {};
+  }
+
+  [[nodiscard]] const HandEyeInput& input() const { return input_; }
+
+ private:
+  [[nodiscard]] Result<std::optional<Arrival>> go_to(const Pose& pose, const OnWay& on_way) {
+    if (progress_.cancelled()) return Error{Errc::cancelled, "interrupted", "calibrate"};
+    SACCADE_TRY(const PlannedMotion planned, devices_.robot().plan(std::span{&pose, 1}));
+    if (!planned.motion) return std::optional<Arrival>{};
+    SACCADE_TRY(const std::optional<Arrival> arrival, devices_.robot().execute(*planned.motion, on_way));
+    if (arrival && arrival->stopped) return Error{Errc::cancelled, "interrupted", "calibrate"};
+    return arrival;
+  }
+
+  [[nodiscard]] Status take_on_way(const CameraSample& sample) {
+    if (!sample.time_s) return {};
+    std::vector<FlangeSample>& flange = input_.flange;
+    if (!flange.empty() && *sample.time_s <= flange.back().time_s) return {};
+    flange.push_back({*sample.time_s, sample.T_world_camera * T_camera_flange_});
+    SACCADE_TRY(Frame frame, devices_.camera().capture(sample.T_world_camera));
+    input_.moving.push_back({std::move(frame.depth), frame.time_s});
+    return {};
+  }
+
+  /// The arm stood before the first sample and stands after the last one.
+  void stand_at_ends() {
+    constexpr double kStand_s{0.6};
+    std::vector<FlangeSample>& flange = input_.flange;
+    if (flange.empty()) return;
+    flange.insert(flange.begin(), {flange.front().time_s - kStand_s, flange.front().T_base_flange});
+    flange.push_back({flange.back().time_s + kStand_s, flange.back().T_base_flange});
+  }
+
+  ExploreDevices& devices_;
+  const Progress& progress_;
+  Pose T_camera_flange_;
+  HandEyeInput input_;
+  std::vector<Pose> reached_;
+};
+
+json agreement_json(const std::optional<ViewAgreement>& agreement) {
+  if (!agreement) return nullptr;
+  return {{"pairs", agreement->pairs},
+          {"agreeing", agreement->agreeing},
+          {"median_depth_m", agreement->median_depth_m},
+          {"median_plane_m", agreement->median_plane_m}};
+}
+
+json calibration_json(const HandEyeInput& input, const HandEyeResult& found) {
+  return {{"views_at_rest", input.still.size()},
+          {"views_in_motion", input.moving.size()},
+          {"T_flange_camera", found.T_flange_camera ? pose_to_json(*found.T_flange_camera) : json(nullptr)},
+          {"rotation_sigma_rad", found.rotation_sigma_rad},
+          {"translation_sigma_m", found.translation_sigma_m},
+          {"clock_offset_s", found.clock_offset_s ? json(*found.clock_offset_s) : json(nullptr)},
+          {"clock_sigma_s", found.clock_sigma_s},
+          {"why_no_clock", found.why_no_clock},
+          {"flange_rotation_sigma_rad", found.flange_rotation_sigma_rad},
+          {"flange_translation_sigma_m", found.flange_translation_sigma_m},
+          {"agreement_before", agreement_json(found.agreement_before)},
+          {"agreement_after", agreement_json(found.agreement_after)},
+          {"missing", found.missing}};
+}
+
+/// Lines for the cell's file.
+std::string yaml_of(const HandEyeResult& found) {
+  std::ostringstream text;
+  text << std::setprecision(10) << "arm:\n  T_flange_camera:\n";
+  for (Eigen::Index row = 0; row < 3; ++row) {
+    text << "    - [";
+    for (Eigen::Index column = 0; column < 4; ++column) {
+      text << (column > 0 ? ", " : "") << found.T_flange_camera->matrix()(row, column);
+    }
+    text << "]\n";
+  }
+  if (found.clock_offset_s) text << "camera:\n  clock_offset: " << *found.clock_offset_s << '\n';
+  return text.str();
+}
+
+void print_calibration(const HandEyeInput& input, const HandEyeResult& found) {
+  std::cout << std::left;
+  const auto line = [](const char* name, const std::string& text) {
+    std::cout << std::setw(10) << name << text << '\n';
+  };
+  line("views", std::to_string(input.still.size()) + " at rest, " + std::to_string(input.moving.size()) + " in motion");
+  if (found.T_flange_camera) {
+    const Pose moved = input.T_flange_camera_guess->inverse() * *found.T_flange_camera;
+    line("mount", fixed(1e3 * moved.translation().norm(), 1) + " mm and " +
+                      fixed(to_deg(Eigen::AngleAxisd{moved.linear()}.angle()), 2) + "° from where it was taken to be");
+    line("sure to", fixed(1e3 * found.translation_sigma_m, 2) + " mm, " + fixed(to_deg(found.rotation_sigma_rad), 3) +
+                        "° (one standard deviation)");
+  }
+  line("clock", found.clock_offset_s
+                    ? fixed(1e3 * *found.clock_offset_s, 1) + " ms to be added to the camera's times, ± " +
+                          fixed(1e3 * found.clock_sigma_s, 1) + " ms"
+                    : "not found: " + found.why_no_clock);
+  if (found.agreement_before && found.agreement_after) {
+    line("views lie", fixed(1e3 * found.agreement_before->median_depth_m, 2) + " mm apart before, " +
+                          fixed(1e3 * found.agreement_after->median_depth_m, 2) + " mm after (median)");
+  }
+  for (const std::string& missing : found.missing) line("missing", missing);
+  if (found.T_flange_camera) std::cout << "\nInto the cell's file:\n\n" << yaml_of(found);
+}
+
+Result<int> run_calibrate(const CalibrateOptions& options, const GlobalOptions& global) {
+  const Stopwatch stopwatch;
+  const Executor executor = global.executor();
+  ProgressBar bar{global.quiet};
+  Progress progress{[&bar](std::string_view stage, std::size_t done, std::size_t of) { bar.update(stage, done, of); }};
+  const CancelOnInterrupt cancel{progress};
+  SACCADE_CHECK(check_json_output(global));
+  if (options.cell_problem) return *options.cell_problem;
+  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options));
+  if (!arm) return Error{Errc::invalid_argument, "no arm carries the camera; add the key arm", options.scene};
+  SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
+  if (subject.scene.scan.empty()) {
+    return Error{Errc::invalid_argument, "there are no poses to look from; add some under the key scan", options.scene};
+  }
+  SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
+  ViewCollector views{devices, *arm, progress};
+  for (const Pose& pose : subject.scene.scan) SACCADE_CHECK(views.look_around(pose, to_rad(options.turn_deg)));
+  constexpr std::size_t kMotions{7};  // back through the views around the first pose
+  SACCADE_CHECK(views.move_through(kMotions));
+  SACCADE_TRY(const HandEyeResult found, calibrate_hand_eye(views.input(), executor, {}, &progress));
+  bar.finish();
+  if (!global.json_to_stdout()) print_calibration(views.input(), found);
+  SACCADE_CHECK(write_result("calibrate", global, executor, {{"total", stopwatch.elapsed_ms()}},
+                             calibration_json(views.input(), found)));
+  if (found.T_flange_camera) return static_cast<int>(ExitStatus::done);
+  print_error("calibrate", found.missing.empty() ? "the views do not determine the mount" : found.missing.front());
+  return static_cast<int>(ExitStatus::no_result);
+}
+
+}  // namespace
+
+void add_calibrate(CLI::App& program, const GlobalOptions& global, Action& action) {
+  CLI::App* command = program.add_subcommand(
+      "calibrate", "finds where the camera sits on the arm's flange, and how their clocks differ, without a board");
+  auto options = std::make_shared<CalibrateOptions>();
+  add_value(*command, "cell", options->scene, "CELL", "a cell's YAML file (docs/cell.md)")->required();
+  add_value(*command, "--turn", options->turn_deg, "DEGREES",
+            "turn of the views around each pose of the scan, about each axis of the camera")
+      ->check(CLI::Range(3.0, 45.0));
+  add_arm_options(*command, *options);
+  add_device_options(*command, *options);
+  command->callback([options, &global, &action] {
+    check_device_options(*options);
+    if (options->robot.empty()) options->robot = "free";
+    check_arm_options(*options, global);
+    options->arm.obstacles.unknown_is_obstacle = false;  // nothing is known yet, and the caller vouches for the space
+    action = [options, &global] { return run_calibrate(*options, global); };
+  });
+}
+
+}  // namespace saccade::cli
