@@ -19,8 +19,8 @@ const Configuration& nearest(const ArmModel& arm, const Configuration& from, con
   });
 }
 
-/// Keeps those of one pose that are the nearest in seconds: as many as an arm with six joints has at most without whole
-/// turns, four times over. A pose that leaves a value open has hundreds, samples of one continuum.
+/// Keeps the configurations of one pose that are the nearest in seconds. A pose that leaves a value open has hundreds,
+/// samples of a continuum, and a planner tries the straight motion to each.
 void keep_nearest(const ArmModel& arm, const Configuration& from, std::vector<Configuration>& of_pose) {
   constexpr std::size_t kMost{32};
   if (of_pose.size() <= kMost) return;

@@ -163,7 +163,7 @@ INSTANTIATE_TEST_SUITE_P(Arms, ClosedFormOfSeven,
 TEST(SevenJoints, WhatIterationSolvesTheClosedFormSolves) {
   struct Case {
     std::vector<test::DhRow> rows;
-    double share;  ///< of the poses, at least
+    double share;  ///< least share of the poses
   };
   for (const Case& each : {Case{test::panda_rows(), 0.99}, Case{test::iiwa_rows(), 0.999}}) {
     const ArmModel arm = test::with_camera(test::describe("arm", each.rows));

@@ -34,7 +34,7 @@ class ElbowTriangle {
   Eigen::Vector3d S_, axis1_, axis4_;
   Eigen::Vector3d elbow_S_, elbow_W_;  // from axis 4's point
   double A_{0.0}, B_{0.0}, C_{0.0};    // A cos q₄ + B sin q₄ = C − |W − S|²/2
-  double slack_{0.0};                  // of the right side, by rounding
+  double slack_{0.0};                  // rounding of the right side
   double shortest_m_{0.0};
 };
 

@@ -31,8 +31,7 @@ class HeldJoint {
  private:
   struct Sample {
     double value;
-    Pose T_back;  ///< from the pose to that which is asked of the others: before it for the first joint, behind for the
-                  ///< last
+    Pose T_back;  ///< undoes the joint's turn: multiplied to the pose from the left (first joint) or the right (last)
   };
   HeldJoint(const ArmModel& arm, int joint, SixAxes six, int samples);
   [[nodiscard]] Sample sample_at(double value) const;

@@ -44,9 +44,9 @@ class SphericalShoulder {
   bool exact_{true};
   JointAxes axes_;
   Eigen::Vector3d p_camera_W_;      // in the frame of the camera, always the same
-  Eigen::Matrix3d R_camera_world_;  // of the camera at q = 0
+  Eigen::Matrix3d R_camera_world_;  // rotation of the camera at q = 0
   ElbowTriangle elbow_;
-  double cos_56_{0.0};       // of the angle between axes 5 and 6
+  double cos_56_{0.0};       // cosine of the angle between axes 5 and 6
   Eigen::Vector3d across6_;  // unit, across axis 6
   ThreeTurns shoulder_;
 };

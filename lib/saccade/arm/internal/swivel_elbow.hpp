@@ -42,7 +42,7 @@ class SwivelElbow {
   bool exact_{true};
   JointAxes axes_;
   Eigen::Vector3d p_camera_W_;      // in the frame of the camera, always the same
-  Eigen::Matrix3d R_camera_world_;  // of the camera at q = 0
+  Eigen::Matrix3d R_camera_world_;  // rotation of the camera at q = 0
   ElbowTriangle elbow_;
   ThreeTurns shoulder_;
   ThreeTurns wrist_;
