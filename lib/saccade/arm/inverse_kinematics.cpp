@@ -65,6 +65,25 @@ IkRedundancy InverseKinematics::redundancy() const {
 
 bool InverseKinematics::refines() const { return solvers_->closed_form && !solvers_->closed_form->is_exact(); }
 
+void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference, Configuration near,
+                               std::vector<Configuration>& solutions) const {
+  if (!meets(camera_pose(*arm_, near), T_world_camera) && !refine(*arm_, T_world_camera, near)) return;
+  append_turns(*arm_, near, reference, max_turns_, solutions);
+}
+
+void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference,
+                               std::vector<Configuration>& solutions) const {
+  const auto& form = solvers_->closed_form;
+  if (!form) {
+    for (const Configuration& q : solvers_->numeric.solve(T_world_camera, reference)) solutions.push_back(q);
+    return;
+  }
+  for (std::size_t round = 0; round < form->rounds(); ++round) {
+    const ClosedForm::Solutions found = form->solve(T_world_camera, reference, round);
+    for (std::size_t i = 0; i < found.count; ++i) append(T_world_camera, reference, found.q[i], solutions);
+  }
+}
+
 bool InverseKinematics::any_of(const Pose& T_world_camera, const Configuration& reference,
                                const std::function<bool(const Configuration&)>& passes) const {
   SACCADE_EXPECTS(reference.size() == arm_->dof());
@@ -75,25 +94,14 @@ bool InverseKinematics::any_of(const Pose& T_world_camera, const Configuration& 
   }
   std::vector<Configuration> turns;
   for (std::size_t round = 0; round < form->rounds(); ++round) {
-    ClosedForm::Solutions found = form->solve(T_world_camera, reference, round);
+    const ClosedForm::Solutions found = form->solve(T_world_camera, reference, round);
     for (std::size_t i = 0; i < found.count; ++i) {
-      Configuration& q = found.q[i];
-      if (!meets(camera_pose(*arm_, q), T_world_camera) && !refine(*arm_, T_world_camera, q)) continue;
       turns.clear();
-      append_turns(*arm_, q, reference, max_turns_, turns);
+      append(T_world_camera, reference, found.q[i], turns);
       if (std::any_of(turns.begin(), turns.end(), std::cref(passes))) return true;
     }
   }
   return false;
-}
-
-void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference,
-                               std::vector<Configuration>& solutions) const {
-  const auto take = [&solutions](const Configuration& q) {
-    solutions.push_back(q);
-    return false;
-  };
-  static_cast<void>(any_of(T_world_camera, reference, std::cref(take)));
 }
 
 std::vector<Configuration> InverseKinematics::solve(const Pose& T_world_camera) const {

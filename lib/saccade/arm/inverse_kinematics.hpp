@@ -113,6 +113,9 @@ class InverseKinematics {
  private:
   struct Solvers;
   InverseKinematics(std::shared_ptr<const ArmModel> arm, int max_turns) : arm_{std::move(arm)}, max_turns_{max_turns} {}
+  /// Refined where it must be, in every turn that is asked for.
+  void append(const Pose& T_world_camera, const Configuration& reference, Configuration near,
+              std::vector<Configuration>& solutions) const;
   void append(const Pose& T_world_camera, const Configuration& reference, std::vector<Configuration>& solutions) const;
 
   std::shared_ptr<const ArmModel> arm_;
