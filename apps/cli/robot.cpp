@@ -66,6 +66,7 @@ json robot_json(const UrdfArm& read, const InverseKinematics& ik) {
               {"joints", std::move(joints)},
               {"links", std::move(links)},
               {"inverse_kinematics", to_string(ik.method())},
+              {"left_open", to_string(ik.redundancy())},
               {"refined", ik.refines()},
               {"reach_bound_m", reach_bound_m(arm)},
               {"notes", read.notes}};
@@ -104,10 +105,20 @@ std::string camera_text(const ArmModel& arm) {
          ") m from the flange " + arm.description().flange_name;
 }
 
+/// What a pose leaves open.
+std::string left_open_text(const InverseKinematics& ik) {
+  if (ik.redundancy() == IkRedundancy::swivel) return "the swivel of the elbow about the line from shoulder to wrist";
+  const bool first = ik.redundancy() == IkRedundancy::first_joint;
+  return "joint " + (first ? ik.arm().joints().front() : ik.arm().joints().back()).name;
+}
+
 std::string inverse_text(const InverseKinematics& ik) {
   std::string text{to_string(ik.method())};
   if (!ik.why_numeric().empty()) text += "; " + ik.why_numeric();
-  if (ik.refines()) text += "; refined, as the axes of the wrist or axes 2 and 3 are rounded off";
+  if (ik.redundancy() != IkRedundancy::none) {
+    text += "; a pose leaves one value open, which is sampled: " + left_open_text(ik);
+  }
+  if (ik.refines()) text += "; refined, as its axes meet, or are parallel, but for rounding";
   return text;
 }
 

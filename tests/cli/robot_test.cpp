@@ -20,6 +20,35 @@ TEST(RobotCommand, SaysWhatItUnderstood) {
   EXPECT_EQ(result.at("joints").size(), 6U);
   EXPECT_EQ(result.at("links").size(), 7U);
   EXPECT_EQ(result.at("inverse_kinematics"), "closed form");
+  EXPECT_EQ(result.at("left_open"), "none");
+}
+
+/// Seven joints whose axes point along z and y by turns, the last one `beside` metres from the one before.
+std::string seven_joints(const std::string& beside) {
+  std::string urdf = "<robot name=\"seven\"><link name=\"l0\"/>";
+  const std::string origins[]{"0 0 0.3", "0 0 0", "0 0 0", "0 0 0.4", "0 0 0", "0 0 0.4", beside + " 0 0"};
+  for (int i = 0; i < 7; ++i) {
+    const std::string n = std::to_string(i + 1);
+    urdf += "<link name=\"l" + n + "\"/><joint name=\"j" + n + "\" type=\"revolute\"><parent link=\"l" +
+            std::to_string(i) + "\"/><child link=\"l" + n + "\"/><origin xyz=\"" +
+            origins[static_cast<std::size_t>(i)] + "\"/><axis xyz=\"" + (i % 2 == 0 ? "0 0 1" : "0 1 0") +
+            "\"/><limit lower=\"-2.5\" upper=\"2.5\" velocity=\"1\" effort=\"1\"/></joint>";
+  }
+  return urdf + "</robot>";
+}
+
+TEST(RobotCommand, SaysWhatAPoseLeavesOpen) {
+  const TempFolder folder;
+  const auto left_open = [&folder](const std::string& beside, const std::string& text) {
+    const std::string file = folder.write("arm.urdf", seven_joints(beside)).string();
+    const Outcome people = run_program({"robot", "check", file});
+    EXPECT_NE(people.out.find("closed form; a pose leaves one value open, which is sampled: " + text),
+              std::string::npos)
+        << people.out;
+    return run_program({"robot", "check", file, "--json", "-"}).json().at("result").at("left_open");
+  };
+  EXPECT_EQ(left_open("0", "the swivel of the elbow"), "swivel");
+  EXPECT_EQ(left_open("0.09", "joint j7"), "last joint");
 }
 
 TEST(RobotCommand, SaysWhatIsWrong) {

@@ -83,6 +83,7 @@ TEST(Defaults, OfTheMapAreDocumented) {
 TEST(Defaults, OfArmsAreDocumented) {
   const IkConfig ik;
   expect_documented("IkConfig::max_turns", {static_cast<double>(ik.max_turns)});
+  expect_documented("IkConfig::redundancy_samples", {static_cast<double>(ik.redundancy_samples)});
   expect_documented("NumericIkConfig::restarts", {static_cast<double>(ik.numeric.restarts)});
   expect_documented("NumericIkConfig::max_solutions", {static_cast<double>(ik.numeric.max_solutions)});
   expect_documented("NumericIkConfig::iterations", {static_cast<double>(ik.numeric.iterations)});

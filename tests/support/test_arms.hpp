@@ -99,6 +99,70 @@ inline std::vector<DhRow> oblique_rows() {
           {1, 0, 0.55, 0, -60 * kDegree},  {1, 0.7, 0, 0, 75 * kDegree}, {1, 0, 0.1, 0, 0}};
 }
 
+/// The Franka Panda with its limits: seven joints, offsets at elbow and wrist.
+inline std::vector<DhRow> panda_rows() {
+  return {{1, 0, 0.333, 0, -kRight, -2.8973, 2.8973},
+          {1, 0, 0, 0, kRight, -1.7628, 1.7628},
+          {1, 0, 0.316, 0.0825, kRight, -2.8973, 2.8973},
+          {1, 0, 0, -0.0825, -kRight, -3.0718, -0.0698},
+          {1, 0, 0.384, 0, kRight, -2.8973, 2.8973},
+          {1, 0, 0, 0.088, kRight, -0.0175, 3.7525},
+          {1, 0, 0.107, 0, 0, -2.8973, 2.8973}};
+}
+
+/// Such an arm whose axes enclose other angles than right ones, and whose axis 5 passes beside axis 4.
+inline std::vector<DhRow> oblique_panda_rows() {
+  constexpr double kDegree{std::numbers::pi / 180.0};
+  return {{1, 0.2, 0.3, 0, -75 * kDegree},
+          {-1, 0, 0, 0, 80 * kDegree},
+          {1, 0.4, 0.35, 0.08, 70 * kDegree},
+          {1, 0, 0.05, -0.06, -80 * kDegree},
+          {1, 0.1, 0.4, 0, 75 * kDegree},
+          {-1, 0, 0, 0.09, 60 * kDegree},
+          {1, 0, 0.1, 0, 0}};
+}
+
+/// The KUKA iiwa 14 with its limits: a spherical shoulder and a spherical wrist.
+inline std::vector<DhRow> iiwa_rows() {
+  return {{1, 0, 0.36, 0, -kRight, -2.967, 2.967}, {1, 0, 0, 0, kRight, -2.094, 2.094},
+          {1, 0, 0.42, 0, kRight, -2.967, 2.967},  {1, 0, 0, 0, -kRight, -2.094, 2.094},
+          {1, 0, 0.40, 0, -kRight, -2.967, 2.967}, {1, 0, 0, 0, kRight, -2.094, 2.094},
+          {1, 0, 0.126, 0, 0, -3.054, 3.054}};
+}
+
+/// Such an arm with an offset at its elbow, and whose axes enclose other angles than right ones.
+inline std::vector<DhRow> oblique_iiwa_rows() {
+  constexpr double kDegree{std::numbers::pi / 180.0};
+  return {{1, 0.2, 0.3, 0, -75 * kDegree},
+          {-1, 0, 0, 0, 80 * kDegree},
+          {1, 0.4, 0.4, 0.05, 70 * kDegree},
+          {1, 0, 0.02, -0.04, -80 * kDegree},
+          {1, 0.1, 0.4, 0, 75 * kDegree},
+          {-1, 0, 0, 0, -60 * kDegree},
+          {1, 0, 0.1, 0, 0}};
+}
+
+/// Six joints with a spherical shoulder, the last two of which meet.
+inline std::vector<DhRow> spherical_shoulder_rows() {
+  std::vector<DhRow> rows = oblique_panda_rows();
+  rows.pop_back();
+  return rows;
+}
+
+/// Puts one more joint under an arm, which turns or slides along its axis.
+inline ArmDescription on_joint(ArmDescription arm, JointKind kind, const Eigen::Vector3d& axis, double lower,
+                               double upper) {
+  ArmJoint joint;
+  joint.name = "joint_0";
+  joint.kind = kind;
+  joint.axis_joint = axis;
+  joint.T_parent_joint = Pose{Eigen::Translation3d{0.1, 0.2, 0.05}};
+  joint.limits = {lower, upper, 1.0, 5.0};
+  arm.joints.insert(arm.joints.begin(), joint);
+  arm.links.insert(arm.links.begin(), {"ground", {}});
+  return arm;
+}
+
 /// A camera beside the flange, and a base somewhere in the world.
 inline ArmModel with_camera(ArmDescription description) {
   description.T_world_base =

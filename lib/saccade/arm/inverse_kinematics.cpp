@@ -1,14 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/arm/inverse_kinematics.hpp"
 
+#include <algorithm>
 #include <optional>
 #include <utility>
-#include <variant>
 
+#include "saccade/arm/internal/closed_form.hpp"
 #include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/internal/numeric_ik.hpp"
-#include "saccade/arm/internal/parallel_axes.hpp"
-#include "saccade/arm/internal/spherical_wrist.hpp"
 #include "saccade/arm/kinematics.hpp"
 
 namespace saccade {
@@ -32,27 +31,26 @@ Configuration IkTable::solution(std::size_t pose, std::size_t i) const {
 }
 
 struct InverseKinematics::Solvers {
-  std::optional<std::variant<SphericalWrist, ParallelAxes>> closed_form;
+  std::optional<ClosedForm> closed_form;
   NumericIk numeric;
 };
 
 Result<InverseKinematics> InverseKinematics::create(ArmModel arm, const IkConfig& config) {
   if (config.max_turns < 1) return Error{Errc::invalid_argument, "max_turns must be one at least", ""};
+  if (config.redundancy_samples < 1)
+    return Error{Errc::invalid_argument, "redundancy_samples must be one at least", ""};
   const auto shared = std::make_shared<const ArmModel>(std::move(arm));
   SACCADE_TRY(NumericIk numeric, NumericIk::create(shared, config.numeric));
   InverseKinematics ik{shared, config.max_turns};
   Solvers solvers{std::nullopt, std::move(numeric)};
   if (config.method != IkMethod::numeric) {
-    auto wrist = SphericalWrist::find(*shared);
-    auto parallel = ParallelAxes::find(*shared);
-    if (wrist) {
-      solvers.closed_form = *std::move(wrist);
-    } else if (parallel) {
-      solvers.closed_form = *std::move(parallel);
+    auto closed_form = ClosedForm::find(*shared, config.redundancy_samples);
+    if (closed_form) {
+      solvers.closed_form = *std::move(closed_form);
     } else if (config.method == IkMethod::closed_form) {
-      return wrist.error();
+      return closed_form.error();
     } else {
-      ik.why_numeric_ = wrist.error().message;
+      ik.why_numeric_ = closed_form.error().message;
     }
   }
   ik.solvers_ = std::make_shared<const Solvers>(std::move(solvers));
@@ -61,24 +59,49 @@ Result<InverseKinematics> InverseKinematics::create(ArmModel arm, const IkConfig
 
 IkMethod InverseKinematics::method() const { return solvers_->closed_form ? IkMethod::closed_form : IkMethod::numeric; }
 
-bool InverseKinematics::refines() const {
-  const auto& form = solvers_->closed_form;
-  return form && !std::visit([](const auto& solver) { return solver.is_exact(); }, *form);
+IkRedundancy InverseKinematics::redundancy() const {
+  return solvers_->closed_form ? solvers_->closed_form->redundancy() : IkRedundancy::none;
+}
+
+bool InverseKinematics::refines() const { return solvers_->closed_form && !solvers_->closed_form->is_exact(); }
+
+void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference, Configuration near,
+                               std::vector<Configuration>& solutions) const {
+  if (!meets(camera_pose(*arm_, near), T_world_camera) && !refine(*arm_, T_world_camera, near)) return;
+  append_turns(*arm_, near, reference, max_turns_, solutions);
 }
 
 void InverseKinematics::append(const Pose& T_world_camera, const Configuration& reference,
                                std::vector<Configuration>& solutions) const {
-  if (!solvers_->closed_form) {
+  const auto& form = solvers_->closed_form;
+  if (!form) {
     for (const Configuration& q : solvers_->numeric.solve(T_world_camera, reference)) solutions.push_back(q);
     return;
   }
-  const ClosedFormSolutions found =
-      std::visit([&](const auto& solver) { return solver.solve(T_world_camera, reference); }, *solvers_->closed_form);
-  for (std::size_t i = 0; i < found.count; ++i) {
-    Configuration q = found.q[i];
-    if (!meets(camera_pose(*arm_, q), T_world_camera) && !refine(*arm_, T_world_camera, q)) continue;
-    append_turns(*arm_, q, reference, max_turns_, solutions);
+  for (std::size_t round = 0; round < form->rounds(); ++round) {
+    const ClosedForm::Solutions found = form->solve(T_world_camera, reference, round);
+    for (std::size_t i = 0; i < found.count; ++i) append(T_world_camera, reference, found.q[i], solutions);
   }
+}
+
+bool InverseKinematics::any_of(const Pose& T_world_camera, const Configuration& reference,
+                               const std::function<bool(const Configuration&)>& passes) const {
+  SACCADE_EXPECTS(reference.size() == arm_->dof());
+  const auto& form = solvers_->closed_form;
+  if (!form) {
+    const std::vector<Configuration> found = solvers_->numeric.solve(T_world_camera, reference);
+    return std::any_of(found.begin(), found.end(), std::cref(passes));
+  }
+  std::vector<Configuration> turns;
+  for (std::size_t round = 0; round < form->rounds(); ++round) {
+    const ClosedForm::Solutions found = form->solve(T_world_camera, reference, round);
+    for (std::size_t i = 0; i < found.count; ++i) {
+      turns.clear();
+      append(T_world_camera, reference, found.q[i], turns);
+      if (std::any_of(turns.begin(), turns.end(), std::cref(passes))) return true;
+    }
+  }
+  return false;
 }
 
 std::vector<Configuration> InverseKinematics::solve(const Pose& T_world_camera) const {

@@ -4,6 +4,7 @@
 
 #include <cstddef>
 #include <cstdint>
+#include <functional>
 #include <memory>
 #include <span>
 #include <string>
@@ -17,12 +18,27 @@ namespace saccade {
 
 enum class IkMethod {
   automatic,    ///< closed form where it applies, else numeric
-  closed_form,  ///< SphericalWrist, ParallelAxes
+  closed_form,  ///< SixAxes, SwivelElbow, HeldJoint
   numeric,      ///< NumericIk
 };
 inline constexpr auto kIkMethodNames = make_names<IkMethod>(
     {{IkMethod::automatic, "automatic"}, {IkMethod::closed_form, "closed form"}, {IkMethod::numeric, "numeric"}});
 [[nodiscard]] constexpr std::string_view to_string(IkMethod method) { return kIkMethodNames.of(method); }
+
+/// What a pose leaves open in closed form, and what is therefore given values (IkConfig::redundancy_samples).
+enum class IkRedundancy {
+  none,         ///< six joints
+  last_joint,   ///< its angle: HeldJoint
+  first_joint,  ///< its angle or way: HeldJoint
+  swivel,       ///< the elbow's turn about the line from shoulder to wrist: SwivelElbow
+};
+inline constexpr auto kIkRedundancyNames = make_names<IkRedundancy>({{IkRedundancy::none, "none"},
+                                                                     {IkRedundancy::last_joint, "last joint"},
+                                                                     {IkRedundancy::first_joint, "first joint"},
+                                                                     {IkRedundancy::swivel, "swivel"}});
+[[nodiscard]] constexpr std::string_view to_string(IkRedundancy redundancy) {
+  return kIkRedundancyNames.of(redundancy);
+}
 
 /// What a solution may miss its pose by: metres, and radians.
 constexpr double kIkTolerance{1e-9};
@@ -43,6 +59,9 @@ struct IkConfig {
   /// Closed form: a joint whose limits hold several whole turns of an angle is given in so many of them at most, those
   /// nearest to the reference. Two hold every turn of a joint with less than ±2π; a wrist of ±47 rad alone has fifteen.
   int max_turns{2};
+  /// Closed form of seven joints: values of what a pose leaves open (InverseKinematics::redundancy), spread evenly over
+  /// the joint's limits or one turn. They come after the reference's own.
+  int redundancy_samples{24};
   NumericIkConfig numeric;
 };
 
@@ -69,24 +88,34 @@ class InverseKinematics {
   [[nodiscard]] const ArmModel& arm() const { return *arm_; }
   /// closed_form or numeric.
   [[nodiscard]] IkMethod method() const;
+  /// What a pose leaves open in closed form.
+  [[nodiscard]] IkRedundancy redundancy() const;
   /// Whether the closed form is refined, because the arm's axes only nearly meet or are parallel, as after rounding.
   [[nodiscard]] bool refines() const;
   /// Why there is no closed form; empty where there is one or none was looked for.
   [[nodiscard]] const std::string& why_numeric() const { return why_numeric_; }
 
-  /// All solutions within the limits (closed form), or those that were found (numeric), each within kIkTolerance of the
-  /// pose by forward kinematics. The reference settles what a pose leaves open: singular joints, whole turns, the
-  /// numeric start; it is the arm's middle where it is left out. No solution is a valid answer.
+  /// All solutions within the limits (closed form; of seven joints: those with one of the sampled values),
+  /// or those that were found (numeric), each within kIkTolerance of the pose by forward kinematics. The reference
+  /// settles what a pose leaves open: singular joints, whole turns, the first of the sampled values, the numeric
+  /// start; it is the arm's middle where it is left out. No solution is a valid answer.
   [[nodiscard]] std::vector<Configuration> solve(const Pose& T_world_camera) const;
   [[nodiscard]] std::vector<Configuration> solve(const Pose& T_world_camera, const Configuration& reference) const;
 
-  /// The same for many poses. The thread count never changes a bit of the result.
+  /// Whether some solution passes. They are tried in the order of solve(), and no more are looked for than it takes.
+  [[nodiscard]] bool any_of(const Pose& T_world_camera, const Configuration& reference,
+                            const std::function<bool(const Configuration&)>& passes) const;
+
+  /// solve() for many poses. The thread count never changes a bit of the result.
   [[nodiscard]] IkTable solve_all(std::span<const Pose> T_world_camera, const Configuration& reference,
                                   const Executor& executor) const;
 
  private:
   struct Solvers;
   InverseKinematics(std::shared_ptr<const ArmModel> arm, int max_turns) : arm_{std::move(arm)}, max_turns_{max_turns} {}
+  /// Refined where it must be, in every turn that is asked for.
+  void append(const Pose& T_world_camera, const Configuration& reference, Configuration near,
+              std::vector<Configuration>& solutions) const;
   void append(const Pose& T_world_camera, const Configuration& reference, std::vector<Configuration>& solutions) const;
 
   std::shared_ptr<const ArmModel> arm_;

@@ -2,6 +2,7 @@
 #include "saccade/arm/planned_arm.hpp"
 
 #include <algorithm>
+#include <utility>
 
 #include "saccade/arm/arm_silhouette.hpp"
 #include "saccade/arm/internal/driven_way.hpp"
@@ -16,6 +17,19 @@ const Configuration& nearest(const ArmModel& arm, const Configuration& from, con
   return *std::min_element(to.begin(), to.end(), [&](const Configuration& a, const Configuration& b) {
     return rest_to_rest_s(arm, from, a) < rest_to_rest_s(arm, from, b);
   });
+}
+
+/// Keeps the configurations of one pose that are the nearest in seconds. A pose that leaves a value open has hundreds,
+/// samples of a continuum, and a planner tries the straight motion to each.
+void keep_nearest(const ArmModel& arm, const Configuration& from, std::vector<Configuration>& of_pose) {
+  constexpr std::size_t kMost{32};
+  if (of_pose.size() <= kMost) return;
+  std::vector<std::pair<double, std::size_t>> times_s;
+  for (std::size_t i = 0; i < of_pose.size(); ++i) times_s.emplace_back(rest_to_rest_s(arm, from, of_pose[i]), i);
+  std::sort(times_s.begin(), times_s.end());
+  std::vector<Configuration> kept;
+  for (std::size_t i = 0; i < kMost; ++i) kept.push_back(of_pose[times_s[i].second]);
+  of_pose = std::move(kept);
 }
 
 /// The configuration that config asks for; touching is not looked at.
@@ -189,6 +203,7 @@ Result<PlannedMotion> PlannedArm::plan_among(std::span<const Pose> T_world_camer
     PoseGoals at_pose = reachability_.goals(T_world_camera[i], from, obstacles);
     // Of several poses, the reason of the one that came farthest.
     if (at_pose.refusal && (!refusal || *at_pose.refusal > *refusal)) refusal = at_pose.refusal;
+    if (reachability_.ik().redundancy() != IkRedundancy::none) keep_nearest(arm(), from, at_pose.free);
     pose_of.insert(pose_of.end(), at_pose.free.size(), i);
     std::move(at_pose.free.begin(), at_pose.free.end(), std::back_inserter(goals));
   }

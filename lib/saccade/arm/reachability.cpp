@@ -2,6 +2,7 @@
 #include "saccade/arm/reachability.hpp"
 
 #include <algorithm>
+#include <functional>
 
 namespace saccade {
 namespace {
@@ -15,6 +16,11 @@ Result<ArmModel> without_limits(const ArmModel& arm) {
   return ArmModel::create(std::move(description));
 }
 
+/// Whether the contact is one of every configuration that has the camera at the same pose: there the last link stands.
+bool is_of_pose(const ArmModel& arm, const Contact& contact) {
+  return contact.link == arm.dof() && !contact.other_link;
+}
+
 }  // namespace
 
 Result<Reachability> Reachability::create(const ArmCollision& collision, const IkConfig& config) {
@@ -25,7 +31,8 @@ Result<Reachability> Reachability::create(const ArmCollision& collision, const I
 }
 
 Refusal Reachability::why_none(const Pose& T_world_camera) const {
-  return boundless_.solve(T_world_camera).empty() ? Refusal::no_ik : Refusal::outside_limits;
+  const bool any = boundless_.any_of(T_world_camera, boundless_.arm().middle(), [](const auto&) { return true; });
+  return any ? Refusal::outside_limits : Refusal::no_ik;
 }
 
 PoseGoals Reachability::goals(const Pose& T_world_camera, const Configuration& reference,
@@ -44,12 +51,17 @@ std::vector<std::optional<Refusal>> Reachability::test(std::span<const Pose> T_w
   std::vector<std::optional<Refusal>> refusals(T_world_camera.size());
   executor.parallel_for(T_world_camera.size(), kGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
-      const std::vector<Configuration> solutions = ik_.solve(T_world_camera[i], reference);
-      const bool any_free = std::any_of(solutions.begin(), solutions.end(), [&](const Configuration& q) {
-        return !collision_.contact(q, obstacles).has_value();
-      });
-      if (any_free) continue;
-      refusals[i] = solutions.empty() ? why_none(T_world_camera[i]) : Refusal::goal_in_collision;
+      bool any = false;
+      bool free = false;
+      const auto settles = [&](const Configuration& q) {
+        any = true;
+        const std::optional<Contact> contact = collision_.contact(q, obstacles);
+        free = !contact;
+        return free || is_of_pose(arm(), *contact);
+      };
+      static_cast<void>(ik_.any_of(T_world_camera[i], reference, std::cref(settles)));
+      if (free) continue;
+      refusals[i] = any ? Refusal::goal_in_collision : why_none(T_world_camera[i]);
     }
   });
   return refusals;

@@ -112,7 +112,7 @@ TEST_P(ClosedForm, HandlesStraightWristsAndStretchedArms) {
 
 INSTANTIATE_TEST_SUITE_P(Arms, ClosedForm,
                          testing::Values(test::comau_rows(), test::offset_rows(), test::oblique_rows(), test::ur_rows(),
-                                         test::oblique_parallel_rows()));
+                                         test::oblique_parallel_rows(), test::spherical_shoulder_rows()));
 
 TEST(InverseKinematics, KeepsTheReferencesTurnWhereTheWristIsStraight) {
   const InverseKinematics ik = ik_of(test::with_camera(describe("comau", test::comau_rows())));

@@ -74,8 +74,21 @@ TEST(Reachability, SaysWhyThereIsNone) {
   EXPECT_GT(outside, 3);
 }
 
-TEST(Reachability, ManyPosesAreAnsweredAsOneByOne) {
-  const ArmModel model = armed();
+/// An arm with seven joints that has a ball around its hand and one around its elbow.
+ArmModel armed_with_seven(const std::vector<test::DhRow>& rows) {
+  ArmDescription description = test::describe("seven", rows);
+  description.links.back().bodies.push_back({"hand", Pose::Identity(), SphereBody{0.08}});
+  description.links[4].bodies.push_back({"elbow", Pose::Identity(), SphereBody{0.1}});
+  description.joints[0].limits.lower = -1.0;
+  description.joints[0].limits.upper = 1.0;
+  description.joints[2].limits = description.joints[0].limits;
+  return test::with_camera(description);
+}
+
+class ManyPoses : public testing::TestWithParam<ArmModel> {};
+
+TEST_P(ManyPoses, AreAnsweredAsOneByOne) {
+  const ArmModel model = GetParam();
   const Reachability reachability = Reachability::create(ArmCollision::create(model).value()).value();
   const Eigen::Vector3d hand = camera_pose(model, model.middle()).translation();
   const ObstacleMap obstacles = test::only({Box{hand - Eigen::Vector3d{0.6, 0.6, 0.2}, hand}});
@@ -101,6 +114,10 @@ TEST(Reachability, ManyPosesAreAnsweredAsOneByOne) {
   EXPECT_EQ(reachability.test(poses, model.middle(), obstacles, Executor::with_threads(3)), refusals);
   EXPECT_TRUE(reachability.test({}, model.middle(), obstacles, Executor{}).empty());
 }
+
+INSTANTIATE_TEST_SUITE_P(Reachability, ManyPoses,
+                         testing::Values(armed(), armed_with_seven(test::panda_rows()),
+                                         armed_with_seven(test::iiwa_rows())));
 
 TEST(Reachability, ArmsWithOtherJointsAreSolvedNumerically) {
   const ArmModel rail = test::with_camera(test::plane_arm({JointKind::prismatic, JointKind::revolute}).description());

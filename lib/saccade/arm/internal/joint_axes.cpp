@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <cmath>
 #include <numbers>
+#include <utility>
 
 #include <Eigen/Geometry>
 
@@ -23,8 +24,12 @@ double square_of(double x) { return x * x; }
 
 }  // namespace
 
-Result<JointAxes> JointAxes::of(const ArmModel& arm, const ArmPoses& zero) {
-  if (arm.dof() != 6) return no_closed_form(arm, "it has " + std::to_string(arm.dof()) + " joints, not six");
+Result<JointAxes> JointAxes::of(const ArmModel& arm, const ArmPoses& zero, int joints) {
+  SACCADE_EXPECTS(joints == 6 || joints == 7);
+  if (arm.dof() != joints) {
+    return no_closed_form(arm,
+                          "it has " + std::to_string(arm.dof()) + " joints, not " + (joints == 6 ? "six" : "seven"));
+  }
   JointAxes axes;
   for (int i = 0; i < arm.dof(); ++i) {
     const auto k = static_cast<std::size_t>(i);
@@ -59,6 +64,8 @@ Vector3d turned(const Vector3d& axis, double angle_rad, const Vector3d& r) {
   const double c = std::cos(angle_rad);
   return c * r + s * axis.cross(r) + (1.0 - c) * axis.dot(r) * axis;
 }
+
+double distance_to_line(const Vector3d& p, const Vector3d& q, const Vector3d& axis) { return axis.cross(p - q).norm(); }
 
 Meeting meeting_of(const Vector3d& p, const Vector3d& a, const Vector3d& q, const Vector3d& b) {
   const double ab = a.dot(b);
@@ -97,6 +104,19 @@ AnglePair angles_across(double alpha_rad, double beta_rad, double theta_rad) {
   found.rad[found.count++] = half;
   if (half > kFallTogether && half < pi - kFallTogether) found.rad[found.count++] = -half;
   return found;
+}
+
+std::vector<double> spread_over(double lower, double upper, int count) {
+  constexpr double kGoldenRatio{0.61803398874989485};  // its multiples, without their whole parts, keep apart
+  std::vector<std::pair<double, double>> keyed;
+  for (int i = 0; i < count; ++i) {
+    const double multiple = kGoldenRatio * (i + 1);
+    keyed.emplace_back(multiple - std::floor(multiple), lower + (upper - lower) * (i + 0.5) / count);
+  }
+  std::sort(keyed.begin(), keyed.end());
+  std::vector<double> values;
+  for (const auto& [key, value] : keyed) values.push_back(value);
+  return values;
 }
 
 TwoLinks::TwoLinks(const Vector2d& upper, const Vector2d& fore)

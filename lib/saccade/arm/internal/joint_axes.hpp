@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// JointAxes: where the axes of an arm with six joints that turn lie at q = 0; the angles that closed forms need.
+// JointAxes: where the axes of an arm with six or seven joints that turn lie at q = 0; the angles that closed forms
+// need.
 
 #include <Eigen/Core>
 #include <array>
 #include <cstddef>
 #include <string>
+#include <vector>
 
 #include "saccade/arm/arm_model.hpp"
 #include "saccade/arm/kinematics.hpp"
@@ -13,24 +15,28 @@
 namespace saccade {
 
 /// The solutions of one pose: at most two shoulders, two elbows and two wrists.
-struct ClosedFormSolutions {
-  std::array<Eigen::Matrix<double, 6, 1>, 8> q;  ///< rad; the first `count` are set
+template <int joints>
+struct FormSolutions {
+  std::array<Eigen::Matrix<double, joints, 1>, 8> q;  ///< rad; the first `count` are set
   std::size_t count{0};
 };
+using ClosedFormSolutions = FormSolutions<6>;
+using SevenSolutions = FormSolutions<7>;
 
 /// World frame, with q = 0.
 struct JointAxes {
+  static constexpr std::size_t kMost{7};
   static constexpr double kTolerance{1e-4};  ///< axes of a rounded description meet or are parallel within this
   static constexpr double kExact{1e-12};     ///< axes that meet or are parallel to the last digits
   static constexpr double kOblique{1e-3};    ///< axes that must not be parallel differ by more, rad
 
-  std::array<Eigen::Vector3d, 6> axis;   ///< unit
-  std::array<Eigen::Vector3d, 6> point;  ///< on each axis
-  std::array<double, 6> lower{};         ///< limits, rad
-  std::array<double, 6> upper{};
+  std::array<Eigen::Vector3d, kMost> axis;   ///< unit
+  std::array<Eigen::Vector3d, kMost> point;  ///< on each axis
+  std::array<double, kMost> lower{};         ///< limits, rad
+  std::array<double, kMost> upper{};
 
-  /// @param zero the arm's poses with q = 0. unsupported for other joints than six that turn.
-  [[nodiscard]] static Result<JointAxes> of(const ArmModel& arm, const ArmPoses& zero);
+  /// @param zero the arm's poses with q = 0. unsupported for other joints than six, or seven, that turn.
+  [[nodiscard]] static Result<JointAxes> of(const ArmModel& arm, const ArmPoses& zero, int joints = 6);
 
   [[nodiscard]] bool are_parallel(std::size_t i, std::size_t k) const { return off_parallel(i, k) < kOblique; }
   /// The sine of the angle between two axes.
@@ -52,6 +58,9 @@ struct JointAxes {
 [[nodiscard]] double angle_about(const Eigen::Vector3d& axis, const Eigen::Vector3d& a, const Eigen::Vector3d& b);
 /// r turned about a unit axis, without a matrix.
 [[nodiscard]] Eigen::Vector3d turned(const Eigen::Vector3d& axis, double angle_rad, const Eigen::Vector3d& r);
+
+/// How far p lies from the line along a unit axis through q.
+[[nodiscard]] double distance_to_line(const Eigen::Vector3d& p, const Eigen::Vector3d& q, const Eigen::Vector3d& axis);
 
 /// Point nearest to two lines that are not parallel (the middle of their shortest connection), and how far apart they
 /// are.
@@ -75,6 +84,9 @@ struct AnglePair {
 /// are the angles between a and b and between b and c. The angle across a side of a spherical triangle: sin²(x/2) =
 /// sin((θ + α − β)/2) sin((θ − α + β)/2) / (sin α sin β).
 [[nodiscard]] AnglePair angles_across(double alpha_rad, double beta_rad, double theta_rad);
+
+/// Middles of `count` equal parts of a range, in an order in which the first few are spread already.
+[[nodiscard]] std::vector<double> spread_over(double lower, double upper, int count);
 
 /// Two links that turn in a plane: the first from the origin, the second from the first one's end.
 class TwoLinks {

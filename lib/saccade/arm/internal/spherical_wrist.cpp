@@ -2,11 +2,8 @@
 #include "saccade/arm/internal/spherical_wrist.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <numbers>
 #include <string>
 
-#include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/kinematics.hpp"
 
 namespace saccade {
@@ -14,12 +11,8 @@ namespace {
 
 using Eigen::Vector2d;
 using Eigen::Vector3d;
-using std::numbers::pi;
 
-constexpr double kSingular{1e-10};  // below this angle a direction is none
-constexpr double kSlack{1e-12};     // how far beyond the reach a pose may lie by rounding, relative
-
-double distance_to_line(const Vector3d& p, const Vector3d& q, const Vector3d& axis) { return axis.cross(p - q).norm(); }
+constexpr double kSlack{1e-12};  // how far beyond the reach a pose may lie by rounding, relative
 
 }  // namespace
 
@@ -59,10 +52,7 @@ Result<SphericalWrist> SphericalWrist::find(const ArmModel& arm) {
     return no_closed_form(arm, "its upper arm or its forearm has no length");
   ik.links_ = TwoLinks{upper, fore};
   ik.sign3_ = axes.sign(1, 2);
-  ik.alpha_ = angle_between(a[3], a[4]);
-  ik.beta_ = angle_between(a[4], a[5]);
-  ik.phi5_ = angle_about(a[4], a[5], a[3]);
-  ik.across6_ = a[5].unitOrthogonal();
+  ik.wrist_ = ThreeTurns{axes, 3};
   return ik;
 }
 
@@ -99,39 +89,9 @@ void SphericalWrist::solve_elbow(const Shoulder& shoulder, const Configuration& 
 
 void SphericalWrist::solve_wrist(const Shoulder& shoulder, double q2, double q3, const Configuration& reference,
                                  ClosedFormSolutions& found) const {
-  // R₄ R₅ R₆ = G, which leads axis 6 to u. The angle θ between axis 4 and u is a side of the three axes' triangle.
-  const Eigen::Matrix3d G = rotation_about(axes_.axis[1], -(q2 + sign3_ * q3)) * shoulder.R_1_tip;
-  const Vector3d u = G * axes_.axis[5];
-  const double theta = angle_between(axes_.axis[3], u);
-  const AnglePair bends = angles_across(alpha_, beta_, theta);
-  for (std::size_t i = 0; i < bends.count; ++i) {
-    const double bend = bends.rad[i];
-    Eigen::Matrix<double, 6, 1> q;
-    q << shoulder.q1, q2, q3, 0.0, wrapped(phi5_ + bend), 0.0;
-    if (!axes_.allow(4, q[4])) continue;
-    const Vector3d before = turned(axes_.axis[4], q[4], axes_.axis[5]);
-    const bool in_line = theta < kSingular || theta > pi - kSingular;
-    q[3] = in_line ? reference[3] : angle_about(axes_.axis[3], before, u);
-    if (!axes_.allow(3, q[3])) continue;
-    const Vector3d across = turned(axes_.axis[4], -q[4], turned(axes_.axis[3], -q[3], G * across6_));
-    q[5] = angle_about(axes_.axis[5], across6_, across);
-    if (in_line) give_way(theta < 1.0 ? 1.0 : -1.0, q);
-    if (axes_.allow(3, q[3]) && axes_.allow(5, q[5])) found.q[found.count++] = q;
-  }
-}
-
-/// With axes 4 and 6 in one line only q4 + sign · q6 counts: where q6 breaks its limits, q4 takes what is missing.
-void SphericalWrist::give_way(double sign, Eigen::Matrix<double, 6, 1>& q) const {
-  if (axes_.allow(5, q[5])) return;
-  const double to_lower = wrapped(axes_.lower[5] - q[5]);
-  const double to_upper = wrapped(axes_.upper[5] - q[5]);
-  const bool lower_first = std::fabs(to_lower) <= std::fabs(to_upper);
-  for (const double change : {lower_first ? to_lower : to_upper, lower_first ? to_upper : to_lower}) {
-    if (!axes_.allow(3, q[3] - sign * change)) continue;
-    q[3] -= sign * change;
-    q[5] += change;
-    return;
-  }
+  const ThreeTurns::Solutions turns =
+      wrist_.solve(rotation_about(axes_.axis[1], -(q2 + sign3_ * q3)) * shoulder.R_1_tip, reference[3]);
+  for (std::size_t i = 0; i < turns.count; ++i) found.q[found.count++] << shoulder.q1, q2, q3, turns.q[i];
 }
 
 }  // namespace saccade

@@ -3,9 +3,9 @@
 // SphericalWrist: closed-form inverse kinematics of six joints that turn, the last three about axes through one point.
 
 #include <Eigen/Core>
-#include <array>
 
 #include "saccade/arm/internal/joint_axes.hpp"
+#include "saccade/arm/internal/three_turns.hpp"
 
 namespace saccade {
 
@@ -18,7 +18,7 @@ namespace saccade {
 /// so the first three are found from its position and the last three from what is left of the rotation (Pieper 1968):
 ///  - q₁: the wrist's centre, turned back about axis 1, has the distance along a₂ that it has at q = 0;
 ///  - q₃: the law of cosines in the plane across a₂; q₂: the direction in that plane;
-///  - q₅: the law of cosines on the sphere for the angle between a₄ and a₆; then q₄ and q₆.
+///  - q₄, q₅ and q₆: ThreeTurns.
 /// Angles come from half-angle formulas and atan2, which keep their digits where acos loses half of them.
 ///
 /// Singular poses: where a joint's angle is free (q₁: wrist's centre on axis 1; q₂: on axis 2; q₄ and q₆: their axes in
@@ -42,18 +42,16 @@ class SphericalWrist {
   void solve_elbow(const Shoulder& shoulder, const Configuration& reference, ClosedFormSolutions& found) const;
   void solve_wrist(const Shoulder& shoulder, double q2, double q3, const Configuration& reference,
                    ClosedFormSolutions& found) const;
-  void give_way(double sign, Eigen::Matrix<double, 6, 1>& q) const;
 
   bool exact_{true};
   JointAxes axes_;
-  Eigen::Vector3d p_camera_wrist_;             // the wrist's centre in the camera's frame, always the same
-  Eigen::Matrix3d R_camera_world_;             // of the camera at q = 0
-  double wrist_along_a2_{0.0};                 // of the wrist's centre from axis 1's point at q = 0
-  Eigen::Vector3d u_, v_;                      // plane across axis 2
-  TwoLinks links_;                             // axis 2 to axis 3, axis 3 to the wrist's centre at q = 0, in that plane
-  double sign3_{1.0};                          // axis 3 = sign · axis 2
-  double alpha_{0.0}, beta_{0.0}, phi5_{0.0};  // angles between axes 4 and 5, 5 and 6; q5 where 4, 5, 6 lie in a plane
-  Eigen::Vector3d across6_;                    // unit, across axis 6
+  Eigen::Vector3d p_camera_wrist_;  // the wrist's centre in the camera's frame, always the same
+  Eigen::Matrix3d R_camera_world_;  // of the camera at q = 0
+  double wrist_along_a2_{0.0};      // of the wrist's centre from axis 1's point at q = 0
+  Eigen::Vector3d u_, v_;           // plane across axis 2
+  TwoLinks links_;                  // axis 2 to axis 3, axis 3 to the wrist's centre at q = 0, in that plane
+  double sign3_{1.0};               // axis 3 = sign · axis 2
+  ThreeTurns wrist_;
 };
 
 }  // namespace saccade
