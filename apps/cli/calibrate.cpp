@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade calibrate: where the camera of a cell sits on the arm's flange, and how their clocks differ, without a board.
 #include <CLI/CLI.hpp>
+#include <algorithm>
 #include <iomanip>
 #include <iostream>
 #include <memory>
@@ -16,6 +17,7 @@
 #include "saccade/arm/kinematics.hpp"
 #include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/core/statistics.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/tracking/hand_eye.hpp"
 #include "summary.hpp"
@@ -26,7 +28,8 @@ namespace {
 using nlohmann::json;
 
 struct CalibrateOptions : ExploreOptions {
-  double turn_deg{15.0};  ///< of the views around each pose of the scan
+  double turn_deg{15.0};    ///< of the views around each pose of the scan
+  double max_depth_m{2.0};  ///< farther depth is left out
 };
 
 /// Turned about its own axes, one after the other.
@@ -42,8 +45,11 @@ std::vector<Pose> turned_about(const Pose& T_world_camera, double turn_rad) {
 /// Moves the arm through views, and takes frames at rest and on the way.
 class ViewCollector {
  public:
-  ViewCollector(ExploreDevices& devices, const ArmModel& arm, const Progress& progress)
-      : devices_{devices}, progress_{progress}, T_camera_flange_{arm.description().T_flange_camera.inverse()} {
+  ViewCollector(ExploreDevices& devices, const ArmModel& arm, double max_depth_m, const Progress& progress)
+      : devices_{devices},
+        progress_{progress},
+        max_depth_m_{max_depth_m},
+        T_camera_flange_{arm.description().T_flange_camera.inverse()} {
     input_.camera = devices.intrinsics();
     input_.T_flange_camera_guess = arm.description().T_flange_camera;
   }
@@ -53,7 +59,7 @@ class ViewCollector {
     for (const Pose& pose : turned_about(T_world_camera, turn_rad)) {
       SACCADE_TRY(const std::optional<Arrival> arrival, go_to(pose, {}));
       if (!arrival) continue;
-      SACCADE_TRY(Frame frame, devices_.camera().capture(arrival->T_world_camera));
+      SACCADE_TRY(Frame frame, capture(arrival->T_world_camera));
       input_.still.push_back({std::move(frame.depth), arrival->T_world_camera * T_camera_flange_});
       reached_.push_back(pose);
       progress_.report("views at rest", input_.still.size(), 0);
@@ -89,12 +95,21 @@ class ViewCollector {
     return arrival;
   }
 
+  /// Far depth is too noisy to be tracked.
+  [[nodiscard]] Result<Frame> capture(const Pose& T_world_camera) {
+    SACCADE_TRY(Frame frame, devices_.camera().capture(T_world_camera));
+    const std::span<float> pixels{frame.depth.data(), frame.depth.size()};
+    std::replace_if(
+        pixels.begin(), pixels.end(), [this](float depth) { return static_cast<double>(depth) > max_depth_m_; }, 0.0F);
+    return frame;
+  }
+
   [[nodiscard]] Status take_on_way(const CameraSample& sample) {
     if (!sample.time_s) return {};
     std::vector<FlangeSample>& flange = input_.flange;
     if (!flange.empty() && *sample.time_s <= flange.back().time_s) return {};
     flange.push_back({*sample.time_s, sample.T_world_camera * T_camera_flange_});
-    SACCADE_TRY(Frame frame, devices_.camera().capture(sample.T_world_camera));
+    SACCADE_TRY(Frame frame, capture(sample.T_world_camera));
     input_.moving.push_back({std::move(frame.depth), frame.time_s});
     return {};
   }
@@ -110,10 +125,26 @@ class ViewCollector {
 
   ExploreDevices& devices_;
   const Progress& progress_;
+  double max_depth_m_;
   Pose T_camera_flange_;
   HandEyeInput input_;
   std::vector<Pose> reached_;
 };
+
+/// Voxels no smaller than what a pixel sees at the median depth: finer ones would be left with holes.
+HandEyeConfig config_for(const HandEyeInput& input) {
+  constexpr double kPixels{2.0};
+  std::vector<double> depths_m;
+  for (const StillView& view : input.still) {
+    for (const float depth : view.depth.pixels()) {
+      if (depth > 0.0F) depths_m.push_back(static_cast<double>(depth));
+    }
+  }
+  HandEyeConfig config;
+  if (depths_m.empty()) return config;
+  config.tracking_voxel_m = std::max(config.tracking_voxel_m, kPixels * median(depths_m) / input.camera.fx);
+  return config;
+}
 
 json agreement_json(const std::optional<ViewAgreement>& agreement) {
   if (!agreement) return nullptr;
@@ -126,6 +157,8 @@ json agreement_json(const std::optional<ViewAgreement>& agreement) {
 json calibration_json(const HandEyeInput& input, const HandEyeResult& found) {
   return {{"views_at_rest", input.still.size()},
           {"views_in_motion", input.moving.size()},
+          {"tracked_at_rest", found.still_tracked},
+          {"tracked_in_motion", found.moving_tracked},
           {"T_flange_camera", found.T_flange_camera ? pose_to_json(*found.T_flange_camera) : json(nullptr)},
           {"rotation_sigma_rad", found.rotation_sigma_rad},
           {"translation_sigma_m", found.translation_sigma_m},
@@ -194,11 +227,12 @@ Result<int> run_calibrate(const CalibrateOptions& options, const GlobalOptions& 
     return Error{Errc::invalid_argument, "there are no poses to look from; add some under the key scan", options.scene};
   }
   SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
-  ViewCollector views{devices, *arm, progress};
+  ViewCollector views{devices, *arm, options.max_depth_m, progress};
   for (const Pose& pose : subject.scene.scan) SACCADE_CHECK(views.look_around(pose, to_rad(options.turn_deg)));
   constexpr std::size_t kMotions{7};  // back through the views around the first pose
   SACCADE_CHECK(views.move_through(kMotions));
-  SACCADE_TRY(const HandEyeResult found, calibrate_hand_eye(views.input(), executor, {}, &progress));
+  SACCADE_TRY(const HandEyeResult found,
+              calibrate_hand_eye(views.input(), executor, config_for(views.input()), &progress));
   bar.finish();
   if (!global.json_to_stdout()) print_calibration(views.input(), found);
   SACCADE_CHECK(write_result("calibrate", global, executor, {{"total", stopwatch.elapsed_ms()}},
@@ -218,6 +252,9 @@ void add_calibrate(CLI::App& program, const GlobalOptions& global, Action& actio
   add_value(*command, "--turn", options->turn_deg, "DEGREES",
             "turn of the views around each pose of the scan, about each axis of the camera")
       ->check(CLI::Range(3.0, 45.0));
+  add_value(*command, "--max-depth", options->max_depth_m, "METRES",
+            "depth beyond this is left out: it is too noisy to be tracked")
+      ->check(CLI::PositiveNumber);
   add_arm_options(*command, *options);
   add_device_options(*command, *options);
   command->callback([options, &global, &action] {

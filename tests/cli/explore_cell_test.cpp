@@ -8,6 +8,8 @@
 #include <thread>
 
 #include "run_program.hpp"
+#include "saccade/arm/urdf.hpp"
+#include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
@@ -79,6 +81,58 @@ TEST_F(ExploreCell, AnArmBehindAProgramPlansAndExplores) {
   expect_failure(run_program({"explore", cell().string(), "--out", (folder_ / "finer").string(), "--quiet", "--map",
                               (run() / "map.sacmap").string()}),
                  3, "explore", {"map.sacmap", "20.00 mm", "--voxel-size"});
+}
+
+/// Programs of a simulated cell: the camera sits 8 mm and 2° off from where the description has it.
+class SimulatedCell : public ExploreCell {
+ protected:
+  void write_simulated() const {
+    const fs::path bin = fs::path{saccade_program()}.parent_path();
+    const std::string scene = text_of(source_folder() / "scenes/tabletop-1.yaml");
+    std::ofstream{cell()} << scene << "arm: {robot: comau_smart_six}\n"
+                          << "joints: {command: \"'" << (bin / "saccade-simulated-arm").string()
+                          << "' --state state --delay 0.02 --rate 4\", watchdog: 2}\n"
+                          << "camera: {command: \"'" << (bin / "saccade-simulated-camera").string()
+                          << "' --scene tabletop-1 --state state --width 160 --clock -0.035"
+                          << " --mount 0.005,-0.004,0.0045,1.2,-1.2,1\"}\n";
+  }
+};
+
+TEST_F(SimulatedCell, ACheckSaysWhatEachDeviceDelivers) {
+  write_simulated();
+  const Outcome outcome = run_program({"cell", "check", cell().string(), "--out", (folder_ / "check").string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* words : {"arm      comau_smart_six, 6 joints", "joints   stand at", "scan     2 of 2 poses",
+                            "camera   160 × 120 pixels", "mount    "}) {
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << words << '\n' << outcome.out;
+  }
+  EXPECT_TRUE(fs::exists(folder_ / "check/camera.png"));
+  write("/nowhere/camera", joints());
+  const Outcome broken = run_program({"cell", "check", cell().string(), "--json", "-"});
+  EXPECT_EQ(broken.status, 5);
+  const nlohmann::json result = broken.json().at("result");
+  ASSERT_EQ(result.at("problems").size(), 1U) << broken.out;
+  EXPECT_NE(result.at("problems")[0].get<std::string>().find("/nowhere/camera"), std::string::npos);
+  EXPECT_EQ(result.at("q").size(), 6U);
+}
+
+TEST_F(SimulatedCell, CalibrationFindsWhereTheCameraSits) {
+  write_simulated();
+  const Outcome outcome = run_program({"calibrate", cell().string(), "--quiet", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json result = outcome.json().at("result");
+  const Pose found = pose_from_json(result.at("T_flange_camera")).value();
+  Pose off = Pose::Identity();
+  off.translation() << 0.005, -0.004, 0.0045;
+  off.linear() = (Eigen::AngleAxisd{to_rad(1.0), Eigen::Vector3d::UnitZ()} *
+                  Eigen::AngleAxisd{to_rad(-1.2), Eigen::Vector3d::UnitY()} *
+                  Eigen::AngleAxisd{to_rad(1.2), Eigen::Vector3d::UnitX()})
+                     .toRotationMatrix();
+  const Pose miss = (find_robot("comau").value().arm.description().T_flange_camera * off).inverse() * found;
+  EXPECT_LT(miss.translation().norm(), 0.0015);
+  EXPECT_LT(to_deg(Eigen::AngleAxisd{miss.linear()}.angle()), 0.2);
+  EXPECT_LT(result.at("agreement_after").at("median_depth_m").get<double>(),
+            result.at("agreement_before").at("median_depth_m").get<double>());
 }
 
 TEST_F(ExploreCell, WhatIsWrongWithTheFileIsSaidWithItsPlace) {

@@ -105,10 +105,12 @@ class HandEyeCalibration {
       SACCADE_CHECK(report(stage, k, count));
       Frame frame;
       frame.depth = depth_of(k);
-      Pose hint{Pose::Identity()};
-      if (!track.frames.empty()) hint = track.T_world_camera.back() * moved(track.frames.back(), k);
-      SACCADE_TRY(const FrameReport done,
-                  reconstruction.process(frame, input_.camera, TrackingMode::hint, hint, executor_));
+      const Pose last = track.frames.empty() ? Pose{Pose::Identity()} : track.T_world_camera.back();
+      const Pose hint = track.frames.empty() ? last : last * moved(track.frames.back(), k);
+      SACCADE_TRY(FrameReport done, reconstruction.process(frame, input_.camera, TrackingMode::hint, hint, executor_));
+      if (done.status != FrameReport::Status::fused && hint.matrix() != last.matrix()) {
+        SACCADE_TRY(done, reconstruction.process(frame, input_.camera, TrackingMode::hint, last, executor_));
+      }
       if (done.status != FrameReport::Status::fused) continue;
       track.frames.push_back(k);
       track.T_world_camera.push_back(done.T_world_camera);
@@ -142,10 +144,19 @@ class HandEyeCalibration {
       result_.why_no_clock = "frames taken in motion carry no time";
       return {};
     }
-    SACCADE_TRY(const Track found,
-                track(
-                    "tracking the motion", input_.moving.size(), [&](std::size_t k) { return input_.moving[k].depth; },
-                    [](std::size_t, std::size_t) { return Pose{Pose::Identity()}; }));
+    // The clocks are not known to agree yet; a motion a little early or late is still a better start than none.
+    const auto moved = [&](std::size_t last, std::size_t k) {
+      const double from_s = *input_.moving[last].time_s;
+      const double to_s = *input_.moving[k].time_s;
+      if (!input_.T_flange_camera_guess || !record_.covers(from_s) || !record_.covers(to_s)) {
+        return Pose{Pose::Identity()};
+      }
+      const Pose& X = *input_.T_flange_camera_guess;
+      return Pose{X.inverse() * record_.at(from_s).inverse() * record_.at(to_s) * X};
+    };
+    SACCADE_TRY(const Track found, track(
+                                       "tracking the motion", input_.moving.size(),
+                                       [&](std::size_t k) { return input_.moving[k].depth; }, moved));
     result_.moving_tracked = found.frames.size();
     std::vector<TimedPose> timed;
     for (std::size_t i = 0; i < found.frames.size(); ++i) {

@@ -5,6 +5,7 @@
 #include <filesystem>
 
 #include "saccade/arm/urdf.hpp"
+#include "saccade/devices/internal/joint_messages.hpp"
 #include "saccade/devices/internal/process_messages.hpp"
 #include "saccade/io/clouds/internal/kitti_io.hpp"
 #include "saccade/io/clouds/pcd_io.hpp"
@@ -92,11 +93,13 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
                         [](const std::string& content, const std::string& name) {
                           const std::string line = content.substr(0, content.find('\n'));
                           if (name.starts_with("camera")) return parse_camera_hello(line).ok();
-                          if (name == "capture") return parse_capture_answer(line, 0, 16).ok();
+                          if (name == "capture") return parse_capture_answer(line, 0, 16, Pose::Identity()).ok();
+                          if (name == "joint") return parse_joint_answer(line, 6).ok();
+                          if (name == "sample") return parse_sample_answer(line, 0).ok();
                           const auto move = parse_move_answer(line, 0, Pose::Identity());
                           return name == "error" ? move.error().code == Errc::unavailable : move.ok();
                         }),
-            6U);
+            8U);
 }
 
 }  // namespace
