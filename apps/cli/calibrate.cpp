@@ -28,7 +28,7 @@ namespace {
 using nlohmann::json;
 
 struct CalibrateOptions : ExploreOptions {
-  double turn_deg{15.0};    ///< of the views around each pose of the scan
+  double turn_deg{15.0};    ///< turn between the views around each pose of the scan
   double max_depth_m{2.0};  ///< farther depth is left out
 };
 
