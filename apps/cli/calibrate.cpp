@@ -77,7 +77,7 @@ class ViewCollector {
         return taken.ok() && !progress_.cancelled() ? Advance::go_on : Advance::stop;
       };
       SACCADE_TRY([[maybe_unused]] const std::optional<Arrival> arrival, go_to(reached_[i], on_way));
-      SACCADE_CHECK(taken);
+      if (!taken.ok()) return taken.error();
     }
     stand_at_ends();
     return {};

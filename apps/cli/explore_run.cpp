@@ -25,20 +25,22 @@ namespace {
 
 using nlohmann::json;
 
+constexpr const char* kProgram{"a program"};  ///< its command may be mended before a run goes on
+
 /// All that decides how a run goes on.
 json settings_of(const ExploreOptions& options, const ExploreCase& subject, const PinholeCamera& camera) {
   const SimulatedRunConfig& run = options.run;
   json settings{{"scene", subject.scene.name},
                 {"scene_hash", subject.rays ? scene_hash(*subject.rays) : ""},
                 {"strategy", run.strategy.name},
-                {"robot", options.robot_command.empty() ? options.robot : options.robot_command},
+                {"robot", options.robot_command.empty() ? options.robot.c_str() : kProgram},
                 {"fixtures", options.fixtures},
                 {"free", options.free},
                 {"obstacle_cell_m", options.arm.obstacles.cell_size_m},
                 {"unknown_is_obstacle", options.arm.obstacles.unknown_is_obstacle},
                 {"planner", options.arm.planner.planner},
-                {"joints", options.joints_command.empty() ? "simulated" : options.joints_command},
-                {"camera", options.camera_command.empty() ? "simulated" : options.camera_command},
+                {"joints", options.joints_command.empty() ? "simulated" : kProgram},
+                {"camera", options.camera_command.empty() ? "simulated" : kProgram},
                 {"intrinsics", camera_to_json(camera)},
                 {"sensor", to_string(run.sensor)},
                 {"noise", run.noise},

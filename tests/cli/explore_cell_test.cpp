@@ -194,6 +194,11 @@ TEST_F(ExploreCell, CtrlCEndsARunWhoseCameraHangsWithinASecond) {
   EXPECT_NE(outcome.err.find("--resume"), std::string::npos) << outcome.err;
   EXPECT_FALSE(runs(folder_.path().string()));
   EXPECT_TRUE(fs::exists(run() / "journal.json"));
+  // With a camera that works, the run goes on.
+  write(hanging_camera(folder_ / "camera.py", 100), joints());
+  const Outcome resumed = run_program(explore({"--resume", "--json", "-"}));
+  ASSERT_EQ(resumed.status, 0) << resumed.err;
+  EXPECT_GE(resumed.json().at("result").at("views").size(), 1U);
 }
 
 TEST_F(ExploreCell, NothingIsLeftOfItsProgramsWhenItIsKilled) {
