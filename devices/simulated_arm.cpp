@@ -45,8 +45,8 @@ struct Motion {
       const double from_speed = step_s * a.at("dq")[k].get<double>();
       const double to_speed = step_s * b.at("dq")[k].get<double>();
       const double d = to - from;
-      q.push_back(from + u * (from_speed + u * (3.0 * d - 2.0 * from_speed - to_speed +
-                                                u * (from_speed + to_speed - 2.0 * d))));
+      q.push_back(from + u * (from_speed +
+                              u * (3.0 * d - 2.0 * from_speed - to_speed + u * (from_speed + to_speed - 2.0 * d))));
     }
     return q;
   }

@@ -2,12 +2,16 @@
 // A simulated depth camera in the hand of a simulated arm, which sees a scene from where the arm truly is.
 //
 //   saccade-simulated-camera --scene SCENE [--robot ROBOT] [--state FILE] [--mount X,Y,Z,RX,RY,RZ] [--delay S]
-//                            [--clock S] [--width PIXELS] [--seed N] [--noise 0|1] [--fault none|hang|die|nonsense|error]
-//                            [--after FRAMES]
+//                            [--clock S] [--width PIXELS] [--seed N] [--noise 0|1] [--fault
+//                            none|hang|die|nonsense|error]
+//                            [--after FRAMES] [--log FILE] [--then SCENE --when FILE]
 //
 // Without --state it sees from where it is asked to be. --mount is how far off the camera truly sits on the flange:
 // metres, and degrees about its x, y and z axes. A frame comes --delay seconds after it was taken; --clock is added to
-// its time stamps. The fault shows when --after frames were taken.
+// its time stamps. The fault shows when --after frames were taken; --log gets a line with its time. As soon as there is
+// a file FILE, the scene of --then takes the place of the first one.
+#include <filesystem>
+#include <fstream>
 #include <thread>
 
 #include "arm_state.hpp"
@@ -51,8 +55,11 @@ class CameraInHand {
         delay_s_{options.number("--delay", 0.0)},
         clock_s_{options.number("--clock", 0.0)},
         fault_{options.text("--fault", "none")},
+        log_{options.text("--log")},
         after_{static_cast<std::size_t>(options.number("--after", 0.0))},
-        camera_{value_of(camera_of(options))} {
+        camera_{value_of(camera_of(options, options.text("--scene")))},
+        when_{options.text("--when")} {
+    if (!when_.empty()) changed_ = value_of(camera_of(options, options.text("--then")));
     const std::string state = options.text("--state");
     if (state.empty()) return;
     arm_ = value_of(find_robot(options.text("--robot", "comau"))).arm;
@@ -65,15 +72,18 @@ class CameraInHand {
       const auto request = input.next(std::chrono::milliseconds{200});
       if (!request) continue;
       const std::string kind = request->at("request");
-      if (kind == "hello") say(hello());
-      else if (kind == "capture") capture(*request);
-      else say({{"error", "unknown request " + kind}});
+      if (kind == "hello")
+        say(hello());
+      else if (kind == "capture")
+        capture(*request);
+      else
+        say({{"error", "unknown request " + kind}});
     }
   }
 
  private:
-  [[nodiscard]] static Result<SimulatedCamera> camera_of(const devices::Options& options) {
-    SACCADE_TRY(Scene scene, find_scene(options.text("--scene")));
+  [[nodiscard]] static Result<SimulatedCamera> camera_of(const devices::Options& options, const std::string& name) {
+    SACCADE_TRY(Scene scene, find_scene(name));
     SACCADE_TRY(RayScene rays, RayScene::build(scene));
     SimulatedCameraConfig config;
     config.camera = config.camera.scaled_to_width(static_cast<int>(options.number("--width", 640.0)));
@@ -84,11 +94,16 @@ class CameraInHand {
 
   [[nodiscard]] json hello() const {
     const PinholeCamera& c = camera_.camera();
-    return {{"saccade", 1},           {"width", c.width},
-            {"height", c.height},     {"fx", c.fx},
-            {"fy", c.fy},             {"cx", c.cx},
-            {"cy", c.cy},             {"min_range_m", c.min_range_m},
-            {"max_range_m", c.max_range_m}, {"depth", "float32_m"},
+    return {{"saccade", 1},
+            {"width", c.width},
+            {"height", c.height},
+            {"fx", c.fx},
+            {"fy", c.fy},
+            {"cx", c.cx},
+            {"cy", c.cy},
+            {"min_range_m", c.min_range_m},
+            {"max_range_m", c.max_range_m},
+            {"depth", "float32_m"},
             {"color", "none"}};
   }
 
@@ -102,12 +117,17 @@ class CameraInHand {
 
   void capture(const json& request) {
     if (fault_ != "none" && taken_ >= after_) {
+      if (!log_.empty()) std::ofstream{log_, std::ios::app} << std::to_string(now_s()) << " fault\n";
       if (fault_ == "hang") std::this_thread::sleep_for(std::chrono::hours{1});
       if (fault_ == "die") ::_exit(9);
       if (fault_ == "nonsense") return say("a fine frame");
       if (fault_ == "error") return say({{"error", "the cable is loose"}});
     }
     ++taken_;
+    if (changed_ && std::filesystem::exists(when_)) {
+      camera_ = *std::move(changed_);
+      changed_.reset();
+    }
     const double taken_s = now_s();
     const DepthImage depth = camera_.capture(true_pose(request)).depth;
     const double left_s = taken_s + delay_s_ - now_s();
@@ -120,8 +140,11 @@ class CameraInHand {
   Pose mount_error_;
   double delay_s_, clock_s_;
   std::string fault_;
+  std::string log_;
   std::size_t after_;
   SimulatedCamera camera_;
+  std::string when_;
+  std::optional<SimulatedCamera> changed_;
   std::optional<ArmModel> arm_;
   std::optional<devices::ArmState> state_;
   std::size_t taken_{0};

@@ -27,7 +27,8 @@ def write_cell(folder, scene, arm=(), camera=()):
     """Adds devices to a built-in scene. Its objects are for the simulated camera alone; Saccade knows its fixtures."""
     folder.mkdir(parents=True, exist_ok=True)
     joints = [str(BUILD / "saccade-simulated-arm"), "--state", "state", "--log", "log", *arm]
-    eyes = [str(BUILD / "saccade-simulated-camera"), "--scene", scene, "--state", "state", "--width", "160", *camera]
+    eyes = [str(BUILD / "saccade-simulated-camera"), "--scene", scene, "--state", "state", "--width", "160",
+            "--log", "log", *camera]
     devices = {"arm": {"robot": "comau_smart_six", "speed": 0.5},
                "joints": {"command": " ".join(joints), "watchdog": 0.08, "timeout": 5},
                "camera": {"command": " ".join(eyes), "timeout": 2}}

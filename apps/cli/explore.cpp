@@ -232,7 +232,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   }
   print_error("explore", "stopped after " + std::to_string(run->record().views.size()) +
                              " views; what they gave is in " + options.out.string() +
-                             (!run->scanned() ? "" : "; to go on, add --resume"));
+                             (has_journal(out.path()) ? "; to go on, add --resume" : ""));
   return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
 }
 

@@ -20,7 +20,7 @@ constexpr std::string_view kSchema{"saccade-exploration/1"};
 
 bool is_checkpoint(const std::string& name) { return name.starts_with("checkpoint-") && name.ends_with(".sacmap"); }
 
-/// Of the text of all entries but the checksum itself, so that one that was changed is not taken for a sound one.
+/// Returns a checksum of all entries but the checksum itself, so that a journal that was changed is found out.
 std::uint64_t checksum_of(json document) {
   document.erase("crc32");
   const std::string text = document.dump(-1, ' ', false, json::error_handler_t::replace);
@@ -52,8 +52,10 @@ Result<ExploreJournal> journal_from(const json& document) {
   ExploreJournal journal;
   journal.settings = document.at("settings");
   journal.scanned = !document.at("initial").is_null();
-  if (journal.scanned) {
-    SACCADE_TRY(journal.run.scan, scan_from_json(document.at("initial")));
+  // A scan under way has a key of its own, which journals of old do not have.
+  const json& scan = journal.scanned ? document.at("initial") : document.value("scanning", json(nullptr));
+  if (!scan.is_null()) {
+    SACCADE_TRY(journal.run.scan, scan_from_json(scan));
   }
   SACCADE_TRY(journal.run.views, views_from_json(document.at("views")));
   SACCADE_TRY(journal.q, configuration_from_json(document.value("arm", json(nullptr))));
@@ -73,7 +75,8 @@ std::size_t ExploreJournal::frames() const {
 
 Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, const Executor& executor,
                             const std::string& keep_as) const {
-  const std::string checkpoint = "checkpoint-" + std::to_string(run.views.size()) + ".sacmap";
+  const std::size_t number = scanned ? run.views.size() : run.scan.attempted;
+  const std::string checkpoint = (scanned ? "checkpoint-" : "checkpoint-scan-") + std::to_string(number) + ".sacmap";
   SACCADE_CHECK(save_map(map, folder / checkpoint, executor));
   if (!keep_as.empty()) SACCADE_CHECK(name_too(folder / checkpoint, folder / keep_as));
   json document{{"schema", kSchema},
@@ -81,6 +84,7 @@ Status ExploreJournal::save(const fs::path& folder, const TsdfSnapshot& map, con
                 {"map", checkpoint},
                 {"frames", frames()},
                 {"initial", scanned ? scan_to_json(run.scan) : json(nullptr)},
+                {"scanning", scanned ? json(nullptr) : scan_to_json(run.scan)},
                 {"views", views_to_json(run.views)},
                 {"arm", configuration_to_json(q)}};
   document["crc32"] = checksum_of(document);

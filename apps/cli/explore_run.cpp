@@ -139,7 +139,13 @@ Status ExploreRun::resume(SavedExploration saved) {
 Status ExploreRun::run(const std::function<void()>& recorded) {
   recorded_ = recorded;
   const Status ended = run_to_end();
-  if (ended.ok() || ended.error().code != Errc::cancelled) return ended;
+  if (ended.ok()) return ended;
+  if (ended.error().code != Errc::cancelled) {
+    // A device failed: what it has shown since the last view is kept, too.
+    const bool has_programs = options_.moves_real() || !options_.camera_command.empty();
+    if (has_programs && has_journal(out_.path())) static_cast<void>(save_journal());
+    return ended;
+  }
   journal_.run.stopped_because = StopReason::cancelled;  // a program that hung when the user interrupted
   return {};
 }
@@ -152,9 +158,12 @@ Status ExploreRun::run_to_end() {
                     options_.run.exploration};
   if (!journal_.scanned) {
     progress_.update("initial scan", 0, 0);
-    for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
+    if (journal_.run.scan.attempted == 0) {
+      for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
+    }
     const std::vector<Pose>& poses = subject_.scene.scan;  // a map that was given makes them unnecessary
-    SACCADE_TRY(const ScanRecord scan, explorer.scan(options_.map.empty() ? poses : std::vector<Pose>{}));
+    SACCADE_TRY(const ScanRecord scan,
+                explorer.scan(options_.map.empty() ? poses : std::vector<Pose>{}, journal_.run.scan));
     if (!scan.complete) {
       journal_.run.stopped_because = StopReason::cancelled;
       return {};
@@ -195,6 +204,11 @@ Measures ExploreRun::measure_now() const {
   return measures;
 }
 
+Status ExploreRun::scanning(const ScanRecord& scan, const TsdfSnapshot& /*map*/) {
+  journal_.run.scan = scan;
+  return save_journal();
+}
+
 Status ExploreRun::scanned(ScanRecord& scan, const TsdfSnapshot& map) {
   if (truth_meter_) SACCADE_CHECK(truth_meter_->scanned(scan, map));
   if (!truth_meter_) scan.measures = measure_now();
@@ -228,7 +242,8 @@ Status ExploreRun::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<c
 
 Status ExploreRun::save_journal() {
   journal_.q = devices_.robot().configuration();
-  const std::string kept = options_.keeps_views() ? view_file(journal_.run.views.size(), ".sacmap") : "";
+  const std::string kept =
+      options_.keeps_views() && journal_.scanned ? view_file(journal_.run.views.size(), ".sacmap") : "";
   SACCADE_CHECK(journal_.save(out_.path(), map(), executor_, kept));
   if (recorded_) recorded_();
   return {};

@@ -36,6 +36,7 @@ class ExploreRun final : private Recorder {
              const Executor& executor, ProgressBar& progress, TsdfMap map);
   [[nodiscard]] Status run_to_end();
   [[nodiscard]] Approval ask(const RankedView& view);
+  [[nodiscard]] Status scanning(const ScanRecord& scan, const TsdfSnapshot& map) override;
   [[nodiscard]] Status scanned(ScanRecord& scan, const TsdfSnapshot& map) override;
   [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) override;
   [[nodiscard]] Status save_journal();

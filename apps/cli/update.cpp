@@ -17,6 +17,7 @@
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/map/mesh.hpp"
+#include "update_cell.hpp"
 #include "update_report.hpp"
 
 namespace saccade::cli {
@@ -93,7 +94,9 @@ void add_update(CLI::App& program, const GlobalOptions& global, Action& action) 
   add_update_options(*command, *options);
   command->callback([options, &global, &action] {
     check_update_options(*options, global);
-    action = [options, &global] { return run_update_command(*options, global); };
+    action = [options, &global] {
+      return options->cell_file.empty() ? run_update_command(*options, global) : run_cell_update(*options, global);
+    };
   });
 }
 

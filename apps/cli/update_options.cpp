@@ -18,20 +18,38 @@ void add_hand_options(CLI::App& command, UpdateOptions& options) {
             "radius of what is forgotten around each action of the hand, metres");
 }
 
+/// A cell, or a simulated scene with a simulated camera.
+void check_subject(UpdateOptions& options) {
+  if (options.cell_file.empty() == options.scene.empty()) usage_error("CELL", "is needed, or --scene: one of them");
+  if (options.cell_file.empty()) {
+    if (!options.camera_command.empty()) usage_error("--camera-command", "is for a cell");
+    if (options.moves_real()) usage_error("--joints-command, --robot-command", "are for a cell");
+    if (!options.hand_command.empty()) usage_error("--hand-command", "is for a cell");
+    if (!options.map.empty()) usage_error("--map", "is for a cell");
+    if (options.robot.empty()) options.robot = "comau";
+    options.run.exploration.tracking = options.tracking.value_or(TrackingMode::forced);
+    return;
+  }
+  options.scene = options.cell_file;
+  check_device_options(options);
+  if (options.hand_command.empty()) options.hand_command = options.cell.hand.command;
+  if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";
+}
+
 }  // namespace
 
 UpdateOptions::UpdateOptions() {
   run.strategy = builtin_planners().find("sphere").value();
   run.exploration.max_views = kUpdateMaxViews;
   run.planner.min_gain = kUpdateMinGain;
-  robot = "comau";
   method = &attend_methods().front();
 }
 
 void add_update_options(CLI::App& command, UpdateOptions& options) {
+  add_value(command, "cell", options.cell_file, "CELL",
+            "a cell's YAML file (docs/cell.md): its hand's tasks are waited for; without it, the task is simulated");
   add_value(command, "--scene", options.scene, "SCENE",
-            "the scene after the task: bottle, jug, another built-in one or a YAML file")
-      ->required();
+            "the scene after a simulated task: bottle, jug, another built-in one or a YAML file");
   add_value(command, "--before", options.before, "SCENE", "the scene before the task (default: SCENE-before)");
   add_value(command, "--out", options.out, "DIR", "folder for the results (default: update-SCENE)");
   add_hand_options(command, options);
@@ -39,14 +57,16 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
              "when the camera's frames are fused: at viewpoints alone (the thesis' KFOVP), or also in motion, which is "
              "slower then (KFOM)");
   add_run_options(command, options, fixed(kUpdateMinGain, 0));
-  add_value(command, "--robot", options.robot, "ROBOT",
-            "what carries the camera: comau, a URDF file, or free, which flies");
+  add_device_options(command, options);
+  add_value(command, "--hand-command", options.hand_command, "COMMAND",
+            "with CELL: a program that tracks the hand (docs/processes.md)");
   add_arm_options(command, options);
   command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
 
 void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
+  check_subject(options);
   check_run_options(options);
   if (options.min_gain) options.run.planner.min_gain = *options.min_gain;
   require_ok(options.run.planner.validate(), "--min-gain");
@@ -59,10 +79,11 @@ void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
     options.run.exploration.frame_on_way_s = kFrameOnWay_s;
     options.run.exploration.way_counts = false;  // views are those of the thesis, whenever frames are fused
   }
+  if (options.out.empty()) options.out = "update-" + std::filesystem::path{options.scene}.stem().string();
+  if (!options.cell_file.empty()) return;
   const bool is_file = std::filesystem::path{options.scene}.has_extension();
   if (options.before.empty() && is_file) usage_error("--before", "is needed where --scene is a file");
   if (options.before.empty()) options.before = options.scene + "-before";
-  if (options.out.empty()) options.out = "update-" + std::filesystem::path{options.scene}.stem().string();
 }
 
 }  // namespace saccade::cli

@@ -13,6 +13,8 @@ namespace saccade::cli {
 struct UpdateOptions : ExploreOptions {
   UpdateOptions();
 
+  std::string cell_file;                ///< a real cell; empty: a simulated scene
+  std::string hand_command;             ///< program that tracks the hand of a cell
   std::string before;                   ///< scene before the task; empty: SCENE-before
   std::string trajectory{"simulated"};  ///< a file, or "simulated"
   std::optional<HandFormat> format;

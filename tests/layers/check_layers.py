@@ -194,7 +194,7 @@ def check(root):
             elif path.name == "CMakeLists.txt":
                 violations += check_room_cmake(name, room, text)
         violations += check_links_match(root, room, texts)
-    for path in files_below(root, ["lib", "apps", "tests", "examples", "bench", "scripts", "cmake", "web"]):
+    for path in files_below(root, ["lib", "apps", "devices", "tests", "examples", "bench", "scripts", "cmake", "web"]):
         if path.suffix in NEED_SPDX or path.name == "CMakeLists.txt":
             checked += 1
             violations += check_text(str(path.relative_to(root)), path, path.read_text())

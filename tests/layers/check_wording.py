@@ -15,7 +15,7 @@ import prose
 import rooms
 
 COUNTS = "tests/layers/wording.json"
-FOLDERS = ["lib", "apps", "tests", "bench", "examples", "scripts", "cmake", "web", "docs"]
+FOLDERS = ["lib", "apps", "devices", "tests", "bench", "examples", "scripts", "cmake", "web", "docs"]
 PAGES = ["README.md", "CONTRIBUTING.md"]  # the changelog says what was, and is not rewritten
 OWN = {"tests/layers/check_wording.py", "tests/layers/check_wording_test.py"}  # these name what they look for
 MIN_FILES = 5

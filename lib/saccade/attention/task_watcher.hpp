@@ -2,8 +2,14 @@
 #pragma once
 // TaskWatcher: waits for the tasks of a user's hand, and finds the regions that each may have changed. Thesis §2.2.4.
 
+#include <atomic>
+#include <condition_variable>
+#include <deque>
 #include <functional>
+#include <memory>
+#include <mutex>
 #include <optional>
+#include <thread>
 #include <vector>
 
 #include "saccade/attention/hand_recorder.hpp"
@@ -23,31 +29,51 @@ struct UserTask {
 /// Finds the actions of a task: GMM-AS, ZVC, dips.
 using DetectActions = std::function<Result<std::vector<HandAction>>(const HandTrajectory& trajectory)>;
 
-/// One caller at a time.
+/// Listens to the tracker from a thread of its own, so that a hand that comes while the robot works is noticed. One
+/// caller at a time, but for hand_inside().
 class TaskWatcher {
  public:
-  /// @param hand      outlives the watcher
   /// @param radius_m  of the ball around each action
+  /// @param on_enter  called from the listening thread when the hand enters the workspace; may be empty
   /// invalid_argument as HandRecorderConfig::validate(), and for a radius that is not positive.
-  [[nodiscard]] static Result<TaskWatcher> create(HandTracker& hand, const HandRecorderConfig& recorder,
-                                                  DetectActions detect, double radius_m = 0.2);
+  [[nodiscard]] static Result<std::unique_ptr<TaskWatcher>> create(std::unique_ptr<HandTracker> hand,
+                                                                   const HandRecorderConfig& recorder,
+                                                                   DetectActions detect, double radius_m = 0.2,
+                                                                   std::function<void()> on_enter = {});
+  TaskWatcher(const TaskWatcher&) = delete;
+  TaskWatcher& operator=(const TaskWatcher&) = delete;
+  /// Waits until the tracker's next sample, or its failing to give one.
+  ~TaskWatcher();
 
-  /// Takes samples until a task has ended. A task without an action has no regions.
-  /// @param progress asked after each sample; nullptr: never cancelled
+  /// Waits for the next task that has ended. A task without an action has no regions.
+  /// @param progress asked every 20 ms; nullptr: never cancelled
   /// @return nullopt: the tracker has no more samples, or the caller cancelled. Errors: those of tracker and detector.
   [[nodiscard]] Result<std::optional<UserTask>> next_task(const Progress* progress = nullptr);
 
- private:
-  TaskWatcher(HandTracker& hand, HandRecorder recorder, DetectActions detect, double radius_m)
-      : hand_{&hand}, recorder_{std::move(recorder)}, detect_{std::move(detect)}, radius_m_{radius_m} {}
-  /// The task that ends with the next sample, or with the last one; nullopt: none has ended.
-  [[nodiscard]] Result<std::optional<HandTrajectory>> take_sample();
+  /// Whether a task is under way: nothing that is seen meanwhile is worth fusing.
+  [[nodiscard]] bool hand_inside() const { return inside_.load(); }
 
-  HandTracker* hand_;
-  HandRecorder recorder_;
+ private:
+  TaskWatcher(std::unique_ptr<HandTracker> hand, HandRecorder recorder, DetectActions detect, double radius_m,
+              std::function<void()> on_enter);
+  void listen();
+  void keep(std::optional<HandTrajectory> task);
+  [[nodiscard]] Result<std::optional<HandTrajectory>> next_trajectory(const Progress* progress);
+
+  std::unique_ptr<HandTracker> hand_;
+  HandRecorder recorder_;  ///< used by the listening thread alone
   DetectActions detect_;
   double radius_m_;
+  std::function<void()> on_enter_;
+  std::atomic<bool> inside_{false};
+  std::atomic<bool> stops_{false};
+
+  std::mutex mutex_;
+  std::condition_variable changed_;
+  std::deque<HandTrajectory> ended_;
+  std::optional<Error> problem_;
   bool at_end_{false};
+  std::thread listener_;  // last: it uses all others
 };
 
 }  // namespace saccade

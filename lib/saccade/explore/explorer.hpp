@@ -62,6 +62,7 @@ struct ExplorerParts {
   const Stopping* stopping{nullptr};  ///< besides ExplorerConfig::max_views
   Approve approve{};                  ///< asked before each move to a view or a pose of the scan; empty: go
   const Progress* progress{nullptr};
+  std::function<bool()> suspended{};  ///< asked before each frame; true: none is taken. Empty: all are
 };
 
 /// Return to the stand-by pose.
@@ -79,7 +80,8 @@ class Explorer {
   /// The initial scan: moves to each pose that can be reached, looks, and fuses. What the robot sweeps on its way
   /// through them is set free before (Robot::swept_by): the caller vouches for it. Errors:
   /// those of robot, camera, map and recorder.
-  [[nodiscard]] Result<ScanRecord> scan(std::span<const Pose> T_world_camera);
+  /// @param scan  what an earlier, interrupted call did; the map is as it left it
+  [[nodiscard]] Result<ScanRecord> scan(std::span<const Pose> T_world_camera, ScanRecord scan = {});
 
   /// Algorithm 1, lines 4–17, and the exploration of chapter 3: they differ in the planner's attention source. A pose
   /// is attempted once per region; the planner is asked anew after each view, and also when no view of a ranking could
@@ -103,6 +105,7 @@ class Explorer {
 
   [[nodiscard]] PlanningScene scene(PhaseTimes& times) const;
   [[nodiscard]] std::optional<StopReason> stopped(const RunRecord& run) const;
+  [[nodiscard]] bool suspended() const { return parts_.suspended && parts_.suspended(); }
   [[nodiscard]] bool cancelled() const { return parts_.progress != nullptr && parts_.progress->cancelled(); }
   /// Ranks and tries until the robot stands at a view or no view is left.
   [[nodiscard]] Result<Outcome> go_to_next(ViewPlanner& planner, RunRecord& run, ViewRecord& view);

@@ -93,7 +93,7 @@ Result<std::optional<Arrival>> Explorer::move(const Motion& motion, ViewRecord& 
   TimedFrame waiting{config_.camera_clock_offset_s};  // a frame with a time, until the robot has told where it was then
   const auto take = [&](const CameraSample& sample) -> Result<bool> {
     if (const auto at = waiting.reached(sample)) return fuse_on_way(waiting.take(), *at, motion, view);
-    if (config_.frame_on_way_s <= 0.0 || sample.t_s < next_s || waiting.holds()) return false;
+    if (config_.frame_on_way_s <= 0.0 || sample.t_s < next_s || waiting.holds() || suspended()) return false;
     next_s = std::max(next_s + config_.frame_on_way_s, sample.t_s);
     SACCADE_TRY(Frame frame, parts_.camera.capture(sample.T_world_camera));
     CameraSample at = sample;
@@ -132,6 +132,7 @@ Status Explorer::look(ViewRecord& view) {
       if (!arrival) continue;
       if (arrival->stopped) break;  // the caller cancelled
       motion_s += arrival->motion_s;
+      if (suspended()) continue;
       SACCADE_TRY(Frame frame, parts_.camera.capture(arrival->T_world_camera));
       const Pose at = frame.T_world_camera.value_or(arrival->T_world_camera);
       SACCADE_TRY(const bool fused, fuse(std::move(frame), at, true, view.tracking));
@@ -147,10 +148,11 @@ void Explorer::check_promise(ViewRecord& view) const {
   view.gain_observed = view.gain_predicted * promise_.kept(parts_.map.content().grid);
 }
 
-Result<ScanRecord> Explorer::scan(std::span<const Pose> T_world_camera) {
+Result<ScanRecord> Explorer::scan(std::span<const Pose> T_world_camera, ScanRecord scan) {
   SACCADE_CHECK(config_.validate());
+  const std::size_t first = std::min(scan.attempted, T_world_camera.size());
   std::vector<Pose> way;
-  for (const Pose& pose : T_world_camera) {
+  for (const Pose& pose : T_world_camera.subspan(first)) {
     way.push_back(pose);
     for (const double end_rad : {-oscillation_rad(config_), oscillation_rad(config_)}) {
       for (const double tilt_rad : tilts_towards(end_rad)) way.push_back(tilted(pose, tilt_rad));
@@ -159,13 +161,16 @@ Result<ScanRecord> Explorer::scan(std::span<const Pose> T_world_camera) {
   SACCADE_CHECK(parts_.robot.follow(parts_.map.content(), parts_.executor));
   SACCADE_TRY(const std::vector<Box> swept, parts_.robot.swept_by(way));
   for (const Box& box : swept) SACCADE_CHECK(parts_.map.free(box));
-  ScanRecord scan;
-  for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
+  scan.complete = true;
+  for (std::size_t i = first; i < T_world_camera.size(); ++i) {
     if (parts_.progress != nullptr) parts_.progress->report("initial scan", i, T_world_camera.size());
     SACCADE_TRY(const Outcome outcome, scan_from(T_world_camera[i], scan));
-    if (outcome != Outcome::cancelled) continue;
-    scan.complete = false;
-    return scan;
+    if (outcome == Outcome::cancelled) {
+      scan.complete = false;
+      return scan;
+    }
+    scan.attempted = i + 1;
+    if (parts_.recorder != nullptr) SACCADE_CHECK(parts_.recorder->scanning(scan, parts_.map.content()));
   }
   if (parts_.recorder != nullptr) SACCADE_CHECK(parts_.recorder->scanned(scan, parts_.map.content()));
   return scan;

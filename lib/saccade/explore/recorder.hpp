@@ -15,6 +15,8 @@ namespace saccade {
 class Recorder {
  public:
   virtual ~Recorder() = default;
+  /// Called after each pose of the initial scan.
+  [[nodiscard]] virtual Status scanning(const ScanRecord& /*scan*/, const TsdfSnapshot& /*map*/) { return {}; }
   /// Called after the initial scan; may add measures to the record.
   [[nodiscard]] virtual Status scanned(ScanRecord& /*scan*/, const TsdfSnapshot& /*map*/) { return {}; }
   /// Called after each view, before it joins the record; may add measures to it.
@@ -31,6 +33,10 @@ class Recorder {
 class Recorders final : public Recorder {
  public:
   Recorders(std::initializer_list<Recorder*> recorders) : recorders_{recorders} {}
+  [[nodiscard]] Status scanning(const ScanRecord& scan, const TsdfSnapshot& map) override {
+    for (Recorder* recorder : recorders_) SACCADE_CHECK(recorder->scanning(scan, map));
+    return {};
+  }
   [[nodiscard]] Status scanned(ScanRecord& scan, const TsdfSnapshot& map) override {
     for (Recorder* recorder : recorders_) SACCADE_CHECK(recorder->scanned(scan, map));
     return {};

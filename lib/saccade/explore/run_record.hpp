@@ -46,7 +46,8 @@ struct RegionResult {
 
 /// The initial scan.
 struct ScanRecord {
-  bool complete{true};  ///< false: cancelled
+  bool complete{true};       ///< false: cancelled
+  std::size_t attempted{0};  ///< poses that are done with, in their order
   std::size_t views{0};
   std::size_t frames{0};    ///< fused
   RefusalCounts refused{};  ///< poses that were passed over

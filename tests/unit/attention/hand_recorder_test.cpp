@@ -129,6 +129,19 @@ TEST(HandRecorder, BrushingTheBorderIsNoTaskAndLongTasksAreCut) {
   EXPECT_EQ(stream.tasks[2].size(), 20U);
 }
 
+TEST(HandRecorder, ATaskEndsSoonAfterTheHandIsNotSeenAnyMore) {
+  HandRecorder recorder = unit_box_recorder();
+  HandStream stream{recorder};
+  stream.stay(0.5, 1.0);
+  stream.stay(std::nan(""), 0.45);  // a glove that hides its marker for a moment
+  EXPECT_TRUE(stream.tasks.empty());
+  stream.stay(0.5, 0.5);
+  stream.stay(std::nan(""), 0.6);
+  ASSERT_EQ(stream.tasks.size(), 1U);
+  EXPECT_EQ(stream.tasks[0].size(), 150U);
+  EXPECT_TRUE(recorder.under_way().empty());
+}
+
 TEST(HandRecorder, BadConfigurationsAreRefused) {
   HandRecorderConfig config;
   EXPECT_FALSE(HandRecorder::create(config));  // no workspace

@@ -35,12 +35,17 @@ HandTrajectory visits(int count, bool seen_outside) {
   return samples;
 }
 
+std::unique_ptr<HandTracker> recorded(HandTrajectory samples) {
+  return std::make_unique<RecordedHand>(std::move(samples));
+}
+
 TEST(TaskWatcher, EachVisitOfTheHandIsATask) {
   for (const bool seen_outside : {true, false}) {
-    RecordedHand hand{visits(3, seen_outside)};
-    TaskWatcher watcher = TaskWatcher::create(hand, unit_box(), middle_of).value();
+    std::atomic<int> entered{0};
+    const auto watcher =
+        TaskWatcher::create(recorded(visits(3, seen_outside)), unit_box(), middle_of, 0.2, [&] { ++entered; }).value();
     for (int visit = 0; visit < 3; ++visit) {
-      const auto task = watcher.next_task();
+      const auto task = watcher->next_task();
       ASSERT_TRUE(task.ok() && *task) << visit;
       EXPECT_GE((*task)->trajectory.size(), 95U);
       ASSERT_EQ((*task)->regions.size(), 1U);
@@ -48,52 +53,55 @@ TEST(TaskWatcher, EachVisitOfTheHandIsATask) {
       EXPECT_LT((ball.center - Eigen::Vector3d{0.5, 0.2 + 0.2 * visit, 0.5}).norm(), 0.03);
       EXPECT_EQ(ball.radius_m, 0.2);
     }
-    EXPECT_FALSE(watcher.next_task().value());
-    EXPECT_FALSE(watcher.next_task().value());
+    EXPECT_FALSE(watcher->next_task().value());
+    EXPECT_FALSE(watcher->next_task().value());
+    EXPECT_FALSE(watcher->hand_inside());
+    EXPECT_EQ(entered, 3);
   }
 }
 
-TEST(TaskWatcher, ATaskEndsSoonAfterTheHandIsNotSeenAnyMore) {
-  HandTrajectory samples = visits(1, false);
-  RecordedHand hand{samples};
-  int taken = 0;
-  class Counting final : public HandTracker {
-   public:
-    Counting(HandTracker& hand, int& taken) : hand_{hand}, taken_{taken} {}
-    [[nodiscard]] Result<std::optional<HandSample>> next() override {
-      ++taken_;
-      return hand_.next();
-    }
+/// A hand that comes into the box and stays there.
+class StayingHand final : public HandTracker {
+ public:
+  [[nodiscard]] Result<std::optional<HandSample>> next() override {
+    std::this_thread::sleep_for(std::chrono::milliseconds{1});
+    return std::optional{HandSample{time_s_ += 0.01, {0.5, 0.5, 0.5}, std::nullopt}};
+  }
 
-   private:
-    HandTracker& hand_;
-    int& taken_;
-  } counting{hand, taken};
-  TaskWatcher watcher = TaskWatcher::create(counting, unit_box(), middle_of).value();
-  ASSERT_TRUE(watcher.next_task().value());
-  EXPECT_LT(taken, 260);  // it was last seen in sample 201, and half a second may pass
+ private:
+  double time_s_{0.0};
+};
+
+TEST(TaskWatcher, TellsThatTheHandIsInsideWhileTheCallerDoesSomethingElse) {
+  std::atomic<bool> entered{false};
+  const auto watcher =
+      TaskWatcher::create(std::make_unique<StayingHand>(), unit_box(), middle_of, 0.2, [&] { entered = true; }).value();
+  for (int i = 0; i < 5000 && !entered; ++i) std::this_thread::sleep_for(std::chrono::milliseconds{1});
+  EXPECT_TRUE(entered);
+  EXPECT_TRUE(watcher->hand_inside());
+  Progress cancelled;
+  cancelled.request_cancel();
+  EXPECT_FALSE(watcher->next_task(&cancelled).value());
 }
 
-TEST(TaskWatcher, ErrorsAndCancellationEndTheWaiting) {
+TEST(TaskWatcher, ErrorsOfTrackerAndDetectorArePassedOn) {
   class Broken final : public HandTracker {
    public:
     [[nodiscard]] Result<std::optional<HandSample>> next() override {
       return Error{Errc::unavailable, "the tracker is unplugged", "hand"};
     }
-  } broken;
-  TaskWatcher watcher = TaskWatcher::create(broken, unit_box(), middle_of).value();
-  EXPECT_EQ(watcher.next_task().error().message, "the tracker is unplugged");
-  Progress cancelled;
-  cancelled.request_cancel();
-  EXPECT_FALSE(watcher.next_task(&cancelled).value());
-  RecordedHand hand{visits(1, true)};
-  TaskWatcher failing =
-      TaskWatcher::create(hand, unit_box(), [](const HandTrajectory&) -> Result<std::vector<HandAction>> {
-        return Error{Errc::invalid_argument, "too short", "detector"};
-      }).value();
-  EXPECT_EQ(failing.next_task().error().message, "too short");
-  EXPECT_FALSE(TaskWatcher::create(hand, unit_box(), middle_of, 0.0).ok());
-  EXPECT_FALSE(TaskWatcher::create(hand, HandRecorderConfig{}, middle_of).ok());
+  };
+  const auto broken = TaskWatcher::create(std::make_unique<Broken>(), unit_box(), middle_of).value();
+  EXPECT_EQ(broken->next_task().error().message, "the tracker is unplugged");
+  EXPECT_EQ(broken->next_task().error().message, "the tracker is unplugged");
+  const auto failing = TaskWatcher::create(recorded(visits(1, true)), unit_box(),
+                                           [](const HandTrajectory&) -> Result<std::vector<HandAction>> {
+                                             return Error{Errc::invalid_argument, "too short", "detector"};
+                                           })
+                           .value();
+  EXPECT_EQ(failing->next_task().error().message, "too short");
+  EXPECT_FALSE(TaskWatcher::create(recorded({}), unit_box(), middle_of, 0.0).ok());
+  EXPECT_FALSE(TaskWatcher::create(recorded({}), HandRecorderConfig{}, middle_of).ok());
 }
 
 }  // namespace

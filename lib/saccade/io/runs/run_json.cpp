@@ -197,6 +197,7 @@ json scan_to_json(const ScanRecord& scan) {
   return {{"coverage", to_json(scan.measures.coverage)},
           {"unknown_left", scan.measures.unknown_left},
           {"views", scan.views},
+          {"attempted", scan.attempted},
           {"refused", refusals_to_json(scan.refused)}};
 }
 
@@ -206,6 +207,7 @@ Result<ScanRecord> scan_from_json(const json& value) {
     scan.measures.coverage = optional_in<double>(value, "coverage");
     scan.measures.unknown_left = value.at("unknown_left").get<std::size_t>();
     scan.views = value.value("views", std::size_t{0});
+    scan.attempted = value.value("attempted", scan.views);
     SACCADE_TRY(scan.refused, refusals_from_json(value.value("refused", json::object())));
     return scan;
   } catch (const json::exception& e) {

@@ -1,0 +1,90 @@
+// SPDX-License-Identifier: Apache-2.0
+// saccade update with a cell whose camera, joints and hand are programs of their own.
+#include <gtest/gtest.h>
+
+#include <fstream>
+
+#include "run_program.hpp"
+#include "saccade/io/files/json_io.hpp"
+#include "support/places.hpp"
+
+namespace saccade::test {
+namespace {
+
+using nlohmann::json;
+
+/// A table on which a hand puts a bottle down.
+class UpdateCell : public ::testing::Test {
+ protected:
+  UpdateCell() {
+    // How the hand moves, from the simulation of the task.
+    const Outcome simulated =
+        run_program({"update", "--scene", "bottle", "--out", (folder_ / "simulated").string(), "--robot", "free",
+                     "--max-views", "0", "--image-size", "80,60", "--voxel-size", "0.02", "--no-pictures", "--quiet"});
+    EXPECT_TRUE(fs::exists(folder_ / "simulated/hand.csv")) << simulated.err;
+    // A tracker that plays it at once, once; the bottle is there when the hand has left.
+    std::ofstream{folder_ / "hand.py"} << "import csv, json, sys\n"
+                                          "rows = iter(list(csv.reader(open('simulated/hand.csv')))[1:])\n"
+                                          "for line in sys.stdin:\n"
+                                          "    r = json.loads(line)\n"
+                                          "    if r['request'] == 'hello': print('{\"saccade\": 1}', flush=True)\n"
+                                          "    else:\n"
+                                          "        row = next(rows, None)\n"
+                                          "        if row is None: open('put-down', 'w').close()\n"
+                                          "        said = {'end': True} if row is None else {'time_s': float(row[0]),\n"
+                                          "            'position': [float(x) for x in row[1:4]]}\n"
+                                          "        print(json.dumps({'number': r['number'], **said}), flush=True)\n";
+  }
+  [[nodiscard]] fs::path cell() const { return folder_ / "cell.yaml"; }
+  void write(const std::string& hand) const {
+    const fs::path bin = fs::path{saccade_program()}.parent_path();
+    std::ofstream{cell()} << text_of(source_folder() / "scenes/bottle-before.yaml") << "arm: {robot: comau_smart_six}\n"
+                          << "joints: {command: \"'" << (bin / "saccade-simulated-arm").string()
+                          << "' --state state --rate 8\", watchdog: 2}\n"
+                          << "camera: {command: \"'" << (bin / "saccade-simulated-camera").string()
+                          << "' --scene bottle-before --then bottle --when put-down --state state --width 160\"}\n"
+                          << hand;
+  }
+  [[nodiscard]] Arguments update(const Arguments& more) const {
+    return Arguments{"update",  cell().string(), "--out", (folder_ / "run").string(), "--voxel-size", "0.01",
+                     "--quiet", "--json",        "-"} +
+           more;
+  }
+  TempFolder folder_;
+};
+
+TEST_F(UpdateCell, TheRobotLooksAgainWhereTheHandHasPutSomethingDown) {
+  write("hand: {command: python3 -B hand.py}\n");
+  const Outcome outcome = run_program(update({}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json result = outcome.json().at("result");
+  ASSERT_EQ(result.at("tasks").size(), 1U);
+  const json& task = result.at("tasks")[0];
+  EXPECT_GT(task.at("samples").get<int>(), 50);
+  EXPECT_EQ(task.at("stopped_because"), "regions_done");
+  EXPECT_TRUE(task.at("at_stand_by").get<bool>());
+  ASSERT_GE(task.at("regions").size(), 1U);
+  EXPECT_EQ(task.at("regions").size(), task.at("actions").size());
+  for (const json& region : task.at("regions")) {
+    EXPECT_EQ(region.at("end"), "done");
+    EXPECT_LT(region.at("unknown_left").get<double>(), 0.4 * region.at("unknown_after_task").get<double>());
+  }
+  EXPECT_GE(task.at("views").size(), 1U);
+  for (const char* file : {"map.sacmap", "mesh.ply", "update.json", "task-1.csv"}) {
+    EXPECT_TRUE(fs::exists(folder_ / "run" / file)) << file;
+  }
+}
+
+TEST_F(UpdateCell, ARecordingStandsInForTheTracker) {
+  write("");
+  const Arguments recorded{"--trajectory", (folder_ / "simulated/hand.csv").string(), "--max-views", "1"};
+  const Outcome outcome = run_program(update(recorded));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json().at("result").at("tasks").size(), 1U);
+  expect_failure(run_program({"update", cell().string(), "--out", (folder_ / "none").string(), "--quiet"}), 3, "update",
+                 {"nothing tracks the hand", "--hand-command"});
+  expect_failure(run_program({"update", cell().string(), "--scene", "bottle", "--quiet"}), 2, "update", {"--scene"});
+}
+
+}  // namespace
+}  // namespace saccade::test
