@@ -32,7 +32,7 @@ using nlohmann::json;
 Result<std::unique_ptr<HandTracker>> open_hand(const UpdateOptions& options) {
   if (!options.simulates_hand()) {
     SACCADE_TRY(HandRecording recording, read_hand_trajectory(options.trajectory, options.format));
-    return std::unique_ptr<HandTracker>{std::make_unique<RecordedHand>(std::move(recording.trajectory))};
+    return std::unique_ptr<HandTracker>{std::make_unique<saccade::RecordedHand>(std::move(recording.trajectory))};
   }
   if (options.hand_command.empty()) {
     return Error{Errc::invalid_argument,
@@ -223,7 +223,7 @@ Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& g
   const Status written = update.write(total.elapsed_ms());  // whatever happened, what was seen is kept
   bar.finish();
   if (!ended.ok() && !stopped) return ended.error();
-  SACCADE_CHECK(written);
+  if (!written.ok()) return written.error();
   SACCADE_CHECK(write_result("update", global, executor, {{"total", total.elapsed_ms()}}, update.result()));
   if (!global.json_to_stdout()) {
     std::cout << "tasks     " << update.tasks() << "\nresults   " << options.out.string() << '\n';
