@@ -224,14 +224,11 @@ Status PlannedArm::check_start(const Motion& motion) const {
 Result<std::optional<Arrival>> PlannedArm::execute(const Motion& motion, const OnWay& on_way) {
   SACCADE_CHECK(check_start(motion));
   JointPath driven{q_};
-  JointObserver observer;
-  if (on_way) {
-    observer = [&](const JointSample& sample) {
-      q_ = sample.q;
-      driven.push_back(q_);
-      return on_way({sample.t_s, T_world_camera(), sample.time_s});
-    };
-  }
+  const JointObserver observer = [&](const JointSample& sample) {
+    q_ = sample.q;
+    driven.push_back(q_);
+    return on_way ? on_way({sample.t_s, T_world_camera(), sample.time_s}) : Advance::go_on;
+  };
   SACCADE_TRY(const JointArrival arrival, joints_->execute(motion.trajectory, observer));
   q_ = arrival.q;
   driven.push_back(q_);
