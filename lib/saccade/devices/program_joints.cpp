@@ -21,6 +21,18 @@ constexpr double kStopTimeout_s{0.5};  ///< from the word to the arm's standing 
 
 Error nonsense(std::string what) { return {Errc::corrupt_data, std::move(what), {}}; }
 
+/// corrupt_data for positions outside the limits by more than the tolerance.
+Status check_limits(const ProgramJointsConfig& config, const Configuration& q) {
+  for (Eigen::Index i = 0; i < q.size(); ++i) {
+    if (q[i] >= config.lower[i] - config.tolerance && q[i] <= config.upper[i] + config.tolerance) continue;
+    std::ostringstream text;
+    text << config.names[static_cast<std::size_t>(i)] << " stands at " << q[i] << ", outside its limits "
+         << config.lower[i] << " and " << config.upper[i] << "; radians and metres are meant";
+    return nonsense(text.str());
+  }
+  return {};
+}
+
 }  // namespace
 
 Status ProgramJointsConfig::validate() const {
@@ -139,7 +151,11 @@ class ProgramJoints::Drive {
       if (!line) continue;
       const auto answer = parse_joint_answer(*line, config_.lower.size());
       if (!answer) return process().refused(request, answer.error());
-      if (answer->number == number && answer->done) return JointArrival{answer->q, true};
+      if (answer->number != number || !answer->done) continue;
+      if (const Status within = check_limits(config_, answer->q); !within.ok()) {
+        return process().refused(request, within.error());
+      }
+      return JointArrival{answer->q.cwiseMax(config_.lower).cwiseMin(config_.upper), true};
     }
   }
 
@@ -186,13 +202,8 @@ Result<Configuration> ProgramJoints::position() {
   if (!answer) return process_->refused(request, answer.error());
   if (answer->number != number)
     return process_->refused(request, nonsense("its number is not " + std::to_string(number)));
-  const double slack = config_.tolerance;
-  for (Eigen::Index i = 0; i < answer->q.size(); ++i) {
-    if (answer->q[i] >= config_.lower[i] - slack && answer->q[i] <= config_.upper[i] + slack) continue;
-    std::ostringstream text;
-    text << config_.names[static_cast<std::size_t>(i)] << " stands at " << answer->q[i] << ", outside its limits "
-         << config_.lower[i] << " and " << config_.upper[i] << "; radians and metres are meant";
-    return process_->refused(request, nonsense(text.str()));
+  if (const Status within = check_limits(config_, answer->q); !within.ok()) {
+    return process_->refused(request, within.error());
   }
   return answer->q.cwiseMax(config_.lower).cwiseMin(config_.upper).eval();
 }
