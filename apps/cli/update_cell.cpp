@@ -134,8 +134,10 @@ class CellUpdate {
     for (const HandAction& action : task.actions) actions.push_back(action_json(action));
     record["actions"] = std::move(actions);
     if (!problem_.empty()) record["problem"] = problem_;
-    if (!regions.empty()) SACCADE_CHECK(look_at(regions, record));
+    const Status looked = regions.empty() ? Status{} : look_at(regions, record);
+    if (!looked.ok()) record["problem"] = looked.error().to_string();
     tasks_.push_back(std::move(record));
+    if (!looked.ok()) return looked.error();
     return write(0.0);
   }
 
