@@ -35,19 +35,32 @@ class FolderSource final : public RgbdFolderSource {
 
   [[nodiscard]] Result<std::optional<Frame>> next() override {
     if (position_ == frames_.size()) return std::optional<Frame>{};
-    const std::size_t position = position_++;
+    SACCADE_TRY(Frame frame, at(position_++));
+    return std::optional{std::move(frame)};
+  }
+
+  [[nodiscard]] Result<Frame> at(std::size_t position) const override {
+    SACCADE_EXPECTS(position < frames_.size());
     auto frame = read(frames_[position]);
-    if (!frame) {
-      Error error = frame.error();
-      const std::string name = "frame " + frames_[position].name;
-      error.context = error.context.empty() ? name : name + ", " + error.context;
-      return error;
-    }
+    if (!frame) return of_frame(frame.error(), position);
     frame->index = first_ + position * every_nth_;
-    return std::optional{std::move(*frame)};
+    return frame;
+  }
+
+  [[nodiscard]] Result<Pose> pose_at(std::size_t position) const override {
+    SACCADE_EXPECTS(position < frames_.size());
+    auto pose = read_pose(frames_[position]);
+    if (!pose) return of_frame(pose.error(), position);
+    return pose;
   }
 
  private:
+  [[nodiscard]] Error of_frame(Error error, std::size_t position) const {
+    const std::string name = "frame " + frames_[position].name;
+    error.context = error.context.empty() ? name : name + ", " + error.context;
+    return error;
+  }
+
   [[nodiscard]] Result<Frame> read(const RgbdFrameFiles& files) const {
     Frame frame;
     frame.name = files.name;

@@ -72,6 +72,10 @@ struct RgbdFolderInfo {
 class RgbdFolderSource : public CameraSource {
  public:
   [[nodiscard]] virtual const RgbdFolderInfo& info() const = 0;
+  /// One of the size() frames, as next() reads it, but without moving on.
+  [[nodiscard]] virtual Result<Frame> at(std::size_t position) const = 0;
+  /// Its pose, without reading its images. not_found: it has none; corrupt_data: it cannot be read.
+  [[nodiscard]] virtual Result<Pose> pose_at(std::size_t position) const = 0;
 };
 
 /// Looks the folder through and reads the first image's size; images are read by next(). Errors say what is missing

@@ -57,6 +57,30 @@ std::vector<std::string> outcomes(const fs::path& folder, const RgbdFolderConfig
   return outcomes(**source);
 }
 
+TEST(RgbdFolder, GivesAnyFrameAndItsPoseWithoutMovingOn) {
+  const TempFolder folder;
+  write_seven_scenes(folder);
+  folder.write("frame-000002.pose.txt", "1 0 0 0.5\n0 1 0 0\n0 0 1 0\n0 0 0 1\n");
+  RgbdFolderConfig config;
+  config.first = 1;
+  auto source = open_rgbd_folder(folder.path(), config);
+  ASSERT_TRUE(source) << source.error().to_string();
+  ASSERT_EQ((*source)->size(), 2U);
+  const auto last = (*source)->at(1);
+  ASSERT_TRUE(last) << last.error().to_string();
+  EXPECT_EQ(last->index, 2U);
+  EXPECT_EQ(last->depth(0, 0), 3.0F);
+  EXPECT_EQ((*source)->pose_at(1).value().translation().x(), 0.5);
+  EXPECT_EQ(outcomes(**source), (std::vector<std::string>{"2.0", "3.0"}));  // from the first one on
+  truncate_file(folder / "frame-000002.depth.png");
+  EXPECT_TRUE((*source)->pose_at(1));  // its images are not read
+  EXPECT_FALSE((*source)->at(1));
+  fs::remove(folder / "frame-000001.pose.txt");
+  const auto gone = (*source)->pose_at(0);
+  ASSERT_FALSE(gone);
+  EXPECT_NE(gone.error().to_string().find("frame-000001"), std::string::npos) << gone.error().to_string();
+}
+
 TEST(RgbdFolder, ReadsSevenScenes) {
   const TempFolder folder;
   write_seven_scenes(folder);
