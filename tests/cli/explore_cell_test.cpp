@@ -37,7 +37,7 @@ class ExploreCell : public ::testing::Test {
   static std::string python(const std::string& file) {
     return "python3 -B '" + (source_folder() / file).string() + "'";
   }
-  static std::string ball() { return python("examples/external_camera.py"); }
+  static std::string ball() { return python("devices/camera.py"); }
   /// Eight times as fast as real ones. The folder is not read; it tells this test's programs from others.
   [[nodiscard]] std::string joints() const {
     return python("devices/joints.py") + " 8 '" + folder_.path().string() + "'";

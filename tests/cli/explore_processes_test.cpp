@@ -22,6 +22,8 @@ std::string example(const std::string& name) {
   return "python3 '" + (source_folder() / "examples" / name).string() + "'";
 }
 
+std::string camera_py() { return "python3 '" + (source_folder() / "devices/camera.py").string() + "'"; }
+
 class ExploreProcesses : public ::testing::Test {
  protected:
   ExploreProcesses() { std::ofstream{cell()} << kCell; }
@@ -36,8 +38,8 @@ class ExploreProcesses : public ::testing::Test {
 };
 
 TEST_F(ExploreProcesses, ACameraAndARobotThatAreProgramsBuildAMap) {
-  const Outcome outcome = explore({"--camera-command", example("external_camera.py"), "--robot-command",
-                                   example("external_robot.py"), "--radius", "0.6", "--json", "-"});
+  const Outcome outcome = explore({"--camera-command", camera_py(), "--robot-command", example("external_robot.py"),
+                                   "--radius", "0.6", "--json", "-"});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = outcome.json().at("result");
   EXPECT_EQ(result.at("robot"), "external");

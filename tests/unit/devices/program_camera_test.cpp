@@ -14,9 +14,9 @@
 namespace saccade {
 namespace {
 
-const std::string kExamples{(test::source_folder() / "examples/").string()};
-const std::string kCameraPy{"/usr/bin/python3 -B '" + kExamples + "external_camera.py'"};
-const std::string kRobotPy{"/usr/bin/python3 -B '" + kExamples + "external_robot.py'"};
+const std::string kCameraPy{"/usr/bin/python3 -B '" + (test::source_folder() / "devices/camera.py").string() + "'"};
+const std::string kRobotPy{"/usr/bin/python3 -B '" + (test::source_folder() / "examples/external_robot.py").string() +
+                           "'"};
 
 /// What the examples see.
 AnalyticScene ball_on_plane() {
