@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a device's program says and hears: LineInput, say; Options of its command line.
+// What a device's program says and hears: LineInput, say, keep_output_for_answers; Options of its command line.
 
+#include <fcntl.h>
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <chrono>
 #include <cstddef>
@@ -13,7 +15,9 @@
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <span>
+#include <stdexcept>
 #include <string>
+#include <vector>
 
 namespace saccade::devices {
 
@@ -45,26 +49,69 @@ class LineInput {
   bool ended_{false};
 };
 
-inline void say(const nlohmann::json& message, std::span<const char> bytes = {}) {
-  std::cout << message.dump() << '\n';
-  std::cout.write(bytes.data(), static_cast<std::streamsize>(bytes.size()));
-  std::cout.flush();
+/// Where answers go.
+inline int& answer_output() {
+  static int descriptor{STDOUT_FILENO};
+  return descriptor;
 }
 
-/// "--name value" pairs.
+/// Sends what libraries print to standard output to standard error from now on; answers alone still go to the former.
+inline void keep_output_for_answers() {
+  answer_output() = ::fcntl(STDOUT_FILENO, F_DUPFD_CLOEXEC, STDERR_FILENO + 1);
+  ::dup2(STDERR_FILENO, STDOUT_FILENO);
+}
+
+inline void say(const nlohmann::json& message, std::span<const char> bytes = {}) {
+  const std::string line = message.dump() + '\n';
+  for (std::span<const char> rest : {std::span<const char>{line}, bytes}) {
+    while (!rest.empty()) {
+      const ssize_t written = ::write(answer_output(), rest.data(), rest.size());
+      if (written < 0) throw std::runtime_error{"Saccade does not listen any more"};
+      rest = rest.subspan(static_cast<std::size_t>(written));
+    }
+  }
+}
+
+/// "--name value" pairs, switches ("--name" alone) and at most one argument without a name.
 class Options {
  public:
-  Options(int argc, char** argv) {
-    for (int i = 1; i + 1 < argc; i += 2) values_[argv[i]] = argv[i + 1];
-    if (argc % 2 == 0) values_["?"] = argv[argc - 1];
+  Options(int argc, char** argv, const std::vector<std::string>& switches = {}) {
+    for (int i = 1; i < argc; ++i) {
+      const std::string name{argv[i]};
+      if (!name.starts_with("--")) {
+        if (!values_.emplace("", name).second) throw std::runtime_error{"one argument too many: " + name};
+      } else if (std::find(switches.begin(), switches.end(), name) != switches.end()) {
+        values_.emplace(name, "yes");
+      } else if (i + 1 < argc) {
+        values_[name] = argv[++i];
+      } else {
+        throw std::runtime_error{name + " has no value"};
+      }
+    }
   }
+  /// Throws for an option that is not among these. The argument without a name is called "".
+  void only(const std::vector<std::string>& known) const {
+    for (const auto& [name, value] : values_) {
+      if (std::find(known.begin(), known.end(), name) != known.end()) continue;
+      throw std::runtime_error{name.empty() ? "one argument too many: " + value : "unknown option " + name};
+    }
+  }
+  [[nodiscard]] bool has(const std::string& name) const { return values_.contains(name); }
   [[nodiscard]] std::string text(const std::string& name, const std::string& otherwise = "") const {
     const auto found = values_.find(name);
     return found == values_.end() ? otherwise : found->second;
   }
   [[nodiscard]] double number(const std::string& name, double otherwise) const {
     const std::string value = text(name);
-    return value.empty() ? otherwise : std::stod(value);
+    if (value.empty()) return otherwise;
+    std::size_t used = 0;
+    try {
+      const double number = std::stod(value, &used);
+      if (used == value.size()) return number;
+    } catch (const std::exception&) {
+      used = 0;  // said below
+    }
+    throw std::runtime_error{name + " must be a number, not '" + value + "'"};
   }
   /// Comma-separated.
   [[nodiscard]] std::vector<double> numbers(const std::string& name) const {
