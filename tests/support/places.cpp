@@ -13,6 +13,8 @@ std::string tiny_cell_file() { return SACCADE_SOURCE_DIR "/tests/support/tiny_ce
 
 const char* saccade_program() { return SACCADE_BINARY_DIR "/saccade"; }
 
+fs::path device_program(const std::string& name) { return fs::path{SACCADE_BINARY_DIR} / ("saccade-" + name); }
+
 fs::path example_program(const std::string& name) {
   return fs::path{SACCADE_BINARY_DIR "/examples"} / ("example_" + name);
 }

@@ -21,6 +21,9 @@ namespace saccade::test {
 /// The command line as it was built with the tests.
 [[nodiscard]] const char* saccade_program();
 
+/// saccade-NAME, a program of a device; it may be missing.
+[[nodiscard]] std::filesystem::path device_program(const std::string& name);
+
 /// A program that was built from examples/NAME.cpp; it may be missing.
 [[nodiscard]] std::filesystem::path example_program(const std::string& name);
 

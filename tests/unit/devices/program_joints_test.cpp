@@ -39,6 +39,10 @@ std::string joints_py(const std::string& rate) {
   return "/usr/bin/python3 -B '" + (test::source_folder() / "devices/joints.py").string() + "' " + rate;
 }
 
+std::string joints_cpp(const std::string& rate) {
+  return "'" + test::device_program("joints-example").string() + "' " + rate;
+}
+
 Trajectory turn(const Configuration& from, double angle_rad) {
   Configuration to = from;
   to[0] += angle_rad;
@@ -76,8 +80,8 @@ class BadJoints {
   test::TempFolder folder_;
 };
 
-TEST(ProgramJoints, TheExampleFollowsATrajectory) {
-  auto joints = ProgramJoints::start(joints_config(joints_py("4")));
+void expect_to_follow(const std::string& command) {
+  auto joints = ProgramJoints::start(joints_config(command));
   ASSERT_TRUE(joints.ok()) << joints.error().to_string();
   const Configuration from = (*joints)->position().value();
   EXPECT_LT((from - comau().middle()).norm(), 1e-12);
@@ -99,9 +103,14 @@ TEST(ProgramJoints, TheExampleFollowsATrajectory) {
   }
 }
 
-TEST(ProgramJoints, AnObserverOrACallerStopsThemOnTheWay) {
+TEST(ProgramJoints, TheExamplesFollowATrajectory) {
+  expect_to_follow(joints_py("4"));
+  if (std::filesystem::exists(test::device_program("joints-example"))) expect_to_follow(joints_cpp("4"));
+}
+
+void expect_to_stop(const std::string& command) {
   bool cancelled = false;
-  ProgramJointsConfig config = joints_config(joints_py("1"));
+  ProgramJointsConfig config = joints_config(command);
   config.program.cancelled = [&] { return cancelled; };
   auto joints = ProgramJoints::start(config);
   ASSERT_TRUE(joints.ok()) << joints.error().to_string();
@@ -123,6 +132,11 @@ TEST(ProgramJoints, AnObserverOrACallerStopsThemOnTheWay) {
   EXPECT_TRUE(again->stopped);
   cancelled = false;
   EXPECT_TRUE((*joints)->execute(turn(again->q, 0.01)).ok());
+}
+
+TEST(ProgramJoints, AnObserverOrACallerStopsThemOnTheWay) {
+  expect_to_stop(joints_py("1"));
+  if (std::filesystem::exists(test::device_program("joints-example"))) expect_to_stop(joints_cpp("1"));
 }
 
 TEST(ProgramJoints, WhateverIsWrongOnTheWayStopsTheArm) {
