@@ -151,6 +151,9 @@ TEST(ArmChain, KnowsFlangesByTheirNames) {
   expect_tip(six + fixed_to("a_link6", "a_ee_link") + fixed_to("a_link6", "a_tool0"), "a_tool0", 6);
   expect_tip(six + fixed_to("a_link6", "ee_link") + fixed_to("a_link6", "bracket"), "ee_link", 6);
   expect_tip(six + fixed_to("a_link6", "flange") + fixed_to("flange", "bracket"), "flange", 6);
+  expect_tip(joints("a", "base", 5) + piece("last", "revolute", "a_link5", "flange", kTurn) + fixed_to("flange", "eye"),
+             "flange", 6);
+  expect_tip(joints("a", "base", 8) + fixed_to("a_link8", "plate"), "plate", 8);
   expect_tip(six + fixed_to("a_link6", "mytool0") + fixed_to("a_link6", "bracket"), "a_link6", 6);
   expect_tip(six + fixed_to("a_link3", "tool0"), "a_link6", 6);  // it is fixed to another link
   expect_tip(six + fixed_to("a_link6", "b_tcp") + fixed_to("a_link6", "c_tcp"), "a_link6", 6);

@@ -167,14 +167,15 @@ class ChainFinder {
       std::optional<std::string> flange;
       std::size_t least{0};
       bool alone{true};
-      for (auto link = body.links.begin() + 1; link != body.links.end(); ++link) {
-        if (!ends_with_word(*link, word)) continue;
-        const std::size_t depth = tree_.path(body.links.front(), *link)->size();
+      for (const std::string& link : body.links) {
+        if (!ends_with_word(link, word)) continue;
+        const std::size_t depth = tree_.path(body.links.front(), link)->size();
+        if (depth == 0 && word.starts_with("link")) continue;  // joint 8 moves it: that is no flange
         if (flange && depth >= least) {
           alone = alone && depth > least;
           continue;
         }
-        flange = *link;
+        flange = link;
         least = depth;
         alone = true;
       }
