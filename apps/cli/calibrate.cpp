@@ -220,7 +220,7 @@ Result<int> run_calibrate(const CalibrateOptions& options, const GlobalOptions& 
   const CancelOnInterrupt cancel{progress};
   SACCADE_CHECK(check_json_output(global));
   if (options.cell_problem) return *options.cell_problem;
-  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options));
+  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options, &bar));
   if (!arm) return Error{Errc::invalid_argument, "no arm carries the camera; add the key arm", options.scene};
   SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
   if (subject.scene.scan.empty()) {

@@ -60,13 +60,15 @@ class CellCheck {
 
   void check_arm() {
     if (!options_.has_arm()) return say("arm", options_.robot_command.empty() ? "none" : "plans for itself");
-    auto arm = read_arm(options_);
-    if (!arm) return wrong("arm", arm.error());
-    arm_ = *std::move(arm);
+    auto read = read_described_arm(options_);
+    if (!read) return wrong("arm", read.error());
+    arm_ = std::move((*read)->arm);
     const auto ik = InverseKinematics::create(*arm_);
     found_["arm"] = arm_->name();
     say("arm", arm_->name() + ", " + std::to_string(arm_->dof()) + " joints, inverse kinematics " +
                    (ik ? std::string{to_string(ik->method())} : ik.error().to_string()));
+    for (const std::string& choice : (*read)->choices) say("", choice);
+    found_["arm_choices"] = (*read)->choices;
   }
 
   void check_joints() {

@@ -81,6 +81,7 @@ Result<int> run_compare(const CompareOptions& options, const GlobalOptions& glob
   SACCADE_TRY(const Campaign campaign, Campaign::open(out / kCampaignFile));
 
   ProgressBar progress{global.quiet};
+  for (const std::string& choice : comparison.arm_choices()) progress.note("arm: " + choice);
   SACCADE_TRY(const std::size_t now, run_missing(comparison, campaign, executor.threads(), progress));
   SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(campaign));
   const std::size_t done = runs.size();

@@ -111,6 +111,7 @@ Result<Comparison> Comparison::create(const CompareOptions& options) {
   if (options.robot != "free") {
     SACCADE_TRY(UrdfArm read, find_robot(options.robot, options.arm_reading.urdf));
     comparison.arm_hash_ = arm_hash(read.arm);
+    comparison.arm_choices_ = std::move(read.choices);
     comparison.arm_ = std::make_shared<const ArmModel>(std::move(read.arm));
   }
   return comparison;

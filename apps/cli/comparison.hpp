@@ -42,6 +42,8 @@ class Comparison {
   [[nodiscard]] std::size_t budget() const { return static_cast<std::size_t>(options_.run.run.exploration.max_views); }
   /// "free", or the arm's name.
   [[nodiscard]] std::string robot_name() const { return arm_ ? arm_->name() : "free"; }
+  /// What had to be chosen when the arm was read.
+  [[nodiscard]] const std::vector<std::string>& arm_choices() const { return arm_choices_; }
   /// All runs in their order. campaign: nullptr for one that is not there yet.
   [[nodiscard]] Result<std::vector<PlannedRun>> plan(const Campaign* campaign) const;
   /// One of them as things are now.
@@ -62,6 +64,7 @@ class Comparison {
   std::vector<ComparedScene> scenes_;
   std::shared_ptr<const ArmModel> arm_;  ///< null: the camera flies
   std::string arm_hash_;
+  std::vector<std::string> arm_choices_;
 };
 
 }  // namespace saccade::cli

@@ -188,7 +188,7 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   SACCADE_CHECK(check_json_output(global));
   if (options.cell_problem) return *options.cell_problem;
   SACCADE_CHECK(check_journal(options));
-  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options));  // before anything is written
+  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options, &progress));  // before anything is written
   SACCADE_TRY(const RunFolder out,
               RunFolder::open(options.out, {}, options.resume ? "journal.json" : "run.json", options.force));
   SACCADE_CHECK(make_room(options, out));

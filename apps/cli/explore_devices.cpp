@@ -4,7 +4,7 @@
 #include <algorithm>
 
 #include "cell_options.hpp"
-#include "saccade/arm/urdf.hpp"
+#include "robot_options.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "summary.hpp"
@@ -36,10 +36,18 @@ Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const E
 
 }  // namespace
 
-Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options) {
-  if (!options.has_arm()) return std::optional<ArmModel>{};
+Result<std::optional<UrdfArm>> read_described_arm(const ExploreOptions& options) {
+  if (!options.has_arm()) return std::optional<UrdfArm>{};
   SACCADE_TRY(UrdfArm read, find_robot(options.robot, options.arm_reading.urdf));
-  return std::optional{options.speed ? slowed(read.arm, *options.speed) : std::move(read.arm)};
+  if (options.speed) read.arm = slowed(read.arm, *options.speed);
+  return std::optional{std::move(read)};
+}
+
+Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options, ProgressBar* bar) {
+  SACCADE_TRY(std::optional<UrdfArm> read, read_described_arm(options));
+  if (!read) return std::optional<ArmModel>{};
+  if (bar != nullptr) show_choices(*read, *bar);
+  return std::optional{std::move(read->arm)};
 }
 
 Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& executor) {

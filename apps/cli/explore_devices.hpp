@@ -6,6 +6,8 @@
 #include <optional>
 
 #include "explore_options.hpp"
+#include "progress_bar.hpp"
+#include "saccade/arm/urdf.hpp"
 #include "saccade/devices/programs.hpp"
 #include "saccade/trial/carried_camera.hpp"
 
@@ -18,8 +20,11 @@ struct ExploreCase {
   std::optional<Truth> truth;    ///< for a simulated camera
 };
 
-/// The arm that the options name; none where something else carries the camera. Errors: those of find_robot.
-[[nodiscard]] Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options);
+/// Reads the arm that the options name, with its speeds as they say; none where something else carries the camera.
+/// Errors: those of find_robot.
+[[nodiscard]] Result<std::optional<UrdfArm>> read_described_arm(const ExploreOptions& options);
+/// Returns the arm alone. `bar` shows what had to be chosen; it may be nullptr.
+[[nodiscard]] Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options, ProgressBar* bar);
 /// The built-in scene or file.
 [[nodiscard]] Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& executor);
 

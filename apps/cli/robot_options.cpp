@@ -39,9 +39,11 @@ void add_reading_options(CLI::App& command, ArmOptions& options) {
                "--base-at", [&options](const std::string& text) { options.urdf.T_world_base = parse_base(text); },
                "where the arm's first link (--base) stands, turned about z by DEGREES (default: as the URDF says)")
            ->type_name("X,Y,Z[,DEGREES]"));
-  note(add_value(command, "--tip", options.urdf.tip, "LINK", "flange; default: the end of the longest chain"));
+  note(add_value(command, "--tip", options.urdf.tip, "LINK",
+                 "flange; default: the link behind the camera's last joint, else the end of the longest chain"));
   note(add_value(command, "--camera-frame", options.urdf.camera, "LINK",
-                 "the camera's optical frame; default: camera_optical_frame if there is one, else the tip"));
+                 "the camera's optical frame; default: camera_optical_frame, else a link at the flange that ends in "
+                 "optical_frame, else the tip"));
   note(
       add_value(command, "--package", options.packages, "NAME=FOLDER", "where package://NAME/… lies; may be repeated"));
   command.add_flag("--drop-beyond-tip", options.drop_beyond_tip, "leave out what is fixed behind the tip");
@@ -62,6 +64,10 @@ void check_arm_options(ArmOptions& options) {
 void require_no_reading(const ArmOptions& options) {
   const std::string given = options.given.empty() && options.drop_beyond_tip ? "--drop-beyond-tip" : options.given;
   if (!given.empty()) usage_error(given, "is for an arm, and none carries the camera");
+}
+
+void show_choices(const UrdfArm& read, ProgressBar& bar) {
+  for (const std::string& choice : read.choices) bar.note("arm: " + choice);
 }
 
 }  // namespace saccade::cli

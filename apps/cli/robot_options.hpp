@@ -6,6 +6,7 @@
 #include <string>
 #include <vector>
 
+#include "progress_bar.hpp"
 #include "saccade/arm/urdf.hpp"
 
 namespace CLI {
@@ -35,5 +36,7 @@ CLI::Option* add_arm_options(CLI::App& command, ArmOptions& options);
 void check_arm_options(ArmOptions& options);
 /// Throws a usage error where one of the options was given although no arm carries the camera.
 void require_no_reading(const ArmOptions& options);
+/// Shows what had to be chosen, as neither the description nor an option says it.
+void show_choices(const UrdfArm& read, ProgressBar& bar);
 
 }  // namespace saccade::cli

@@ -122,6 +122,7 @@ Result<int> run_reach(const ReachOptions& options, const GlobalOptions& global) 
   timings_ms["prepare"] = stopwatch.lap_ms();
 
   ProgressBar bar{global.quiet};
+  show_choices(task.robot, bar);
   if (task.ik.method() == IkMethod::numeric) {
     bar.note("no closed form for this arm: its inverse kinematics iterates, which takes milliseconds a pose");
   }

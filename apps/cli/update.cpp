@@ -56,7 +56,7 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   SACCADE_CHECK(check_json_output(global));
   SACCADE_TRY(const UpdateCase subject, open_update_case(options));
   SACCADE_TRY(const WatchedTask task, watch_task(options, subject));
-  SACCADE_TRY(ExploreDevices devices, open_update_devices(options, subject, executor));
+  SACCADE_TRY(ExploreDevices devices, open_update_devices(options, subject, executor, &bar));
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));
   SACCADE_CHECK(remove_update_pictures(out));
 

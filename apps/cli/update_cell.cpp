@@ -211,7 +211,7 @@ Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& g
   ProgressBar bar{global.quiet};
   SACCADE_CHECK(check_json_output(global));
   if (options.cell_problem) return *options.cell_problem;
-  SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options));
+  SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options, &bar));
   if (arm && options.fuse_when == FuseWhen::motion) arm = slowed(*arm, kSpeedWhileFusing);
   SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));

@@ -69,8 +69,8 @@ Result<WatchedTask> watch_task(const UpdateOptions& options, const UpdateCase& s
 }
 
 Result<ExploreDevices> open_update_devices(const UpdateOptions& options, const UpdateCase& subject,
-                                           const Executor& executor) {
-  SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options));
+                                           const Executor& executor, ProgressBar* bar) {
+  SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options, bar));
   if (arm && options.fuse_when == FuseWhen::motion) arm = slowed(*arm, kSpeedWhileFusing);
   return ExploreDevices::open(options, subject.before, arm, executor);
 }

@@ -56,8 +56,8 @@ struct UpdateFigures {
                                                const Executor& executor, const Progress& progress,
                                                Recorder* pictures = nullptr);
 
-/// The devices of the case, as they are before the task.
+/// Opens the devices of the case, as they are before the task. `bar` shows what had to be chosen.
 [[nodiscard]] Result<ExploreDevices> open_update_devices(const UpdateOptions& options, const UpdateCase& subject,
-                                                         const Executor& executor);
+                                                         const Executor& executor, ProgressBar* bar = nullptr);
 
 }  // namespace saccade::cli

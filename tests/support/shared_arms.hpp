@@ -25,19 +25,24 @@ inline std::string replaced(std::string text, const std::string& what, const std
   return text;
 }
 
-/// The Comau of the thesis. Its meshes are convex hulls in a folder of their own; `exact` makes its 1.57 and 1.57079
-/// the right angles that they stand for.
-inline Result<UrdfArm> shared_comau(bool exact, UrdfConfig config = {}) {
-  const std::filesystem::path folder = shared_robots() / "comau_smart_six" / "data" / "urdf";
-  std::string urdf = text_of_file(folder / "comau_nolimits_nobase_chull.urdf");
+inline std::filesystem::path shared_comau_folder() { return shared_robots() / "comau_smart_six" / "data" / "urdf"; }
+
+/// The Comau of the thesis, its meshes named where they are: convex hulls in a folder of their own.
+inline std::string shared_comau_urdf() {
+  std::string urdf = text_of_file(shared_comau_folder() / "comau_nolimits_nobase_chull.urdf");
   urdf = replaced(urdf, "meshes/stl/", "meshes/stl/convex_hull/");
-  urdf = replaced(urdf, "meshes/dae/axes_6.dae", "meshes/stl/convex_hull/axes_6.stl");
+  return replaced(urdf, "meshes/dae/axes_6.dae", "meshes/stl/convex_hull/axes_6.stl");
+}
+
+/// Its arm up to the flange; `exact` makes its 1.57 and 1.57079 the right angles that they stand for.
+inline Result<UrdfArm> shared_comau(bool exact, UrdfConfig config = {}) {
+  std::string urdf = shared_comau_urdf();
   if (exact) {
     urdf = replaced(urdf, "rpy=\"0 -1.57 0\"", "rpy=\"0 -1.5707963267948966 0\"");
     urdf = replaced(urdf, "rpy=\"0 1.57079 0\"", "rpy=\"0 1.5707963267948966 0\"");
   }
   if (config.tip.empty()) config.tip = "axes_6";
-  return parse_urdf(urdf, folder, config);
+  return parse_urdf(urdf, shared_comau_folder(), config);
 }
 
 inline Result<UrdfArm> shared_panda() {

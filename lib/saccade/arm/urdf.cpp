@@ -2,13 +2,13 @@
 #include "saccade/arm/urdf.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <limits>
 #include <optional>
 #include <set>
 #include <utility>
 
+#include "saccade/arm/internal/arm_chain.hpp"
 #include "saccade/arm/internal/urdf_document.hpp"
+#include "saccade/arm/internal/urdf_tree.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
@@ -18,82 +18,12 @@ namespace {
 
 namespace fs = std::filesystem;
 using JointPtr = urdf::JointSharedPtr;
-using LinkPtr = urdf::LinkConstSharedPtr;
 
 Error wrong(Errc code, const std::string& what, const std::string& where) { return {code, what, where}; }
 
 Eigen::Vector3d to_eigen(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
 constexpr std::size_t kMessageBytes{1000};
-
-bool moves(const urdf::Joint& joint) { return joint.type != urdf::Joint::FIXED; }
-
-/// The tree, and what can be asked of it.
-class Tree {
- public:
-  explicit Tree(const urdf::ModelInterface& model) : model_{model} {
-    for (const auto& [name, joint] : model.joints_) {
-      above_[joint->child_link_name] = joint;
-      below_[joint->parent_link_name].push_back(joint);
-    }
-  }
-
-  [[nodiscard]] bool has(const std::string& link) const { return model_.links_.count(link) > 0; }
-  [[nodiscard]] std::string root() const { return model_.root_link_->name; }
-  [[nodiscard]] LinkPtr link(const std::string& name) const { return model_.links_.at(name); }
-  [[nodiscard]] const std::vector<JointPtr>& below(const std::string& link) const {
-    static const std::vector<JointPtr> none;
-    const auto found = below_.find(link);
-    return found == below_.end() ? none : found->second;
-  }
-
-  /// Joints from base to link, base first; nullopt where link is not below base.
-  [[nodiscard]] std::optional<std::vector<JointPtr>> path(const std::string& base, const std::string& link) const {
-    std::vector<JointPtr> joints;
-    for (std::string at = link; at != base; at = joints.back()->parent_link_name) {
-      const auto joint = above_.find(at);
-      if (joint == above_.end()) return std::nullopt;
-      joints.push_back(joint->second);
-    }
-    std::reverse(joints.begin(), joints.end());
-    return joints;
-  }
-
-  /// The link behind the last joint that moves on the way to `link`; base where none does.
-  [[nodiscard]] std::string last_moving(const std::string& base, const std::string& link) const {
-    std::string last = base;
-    for (const JointPtr& joint : path(base, link).value_or(std::vector<JointPtr>{})) {
-      if (moves(*joint)) last = joint->child_link_name;
-    }
-    return last;
-  }
-
-  /// End of the chain with the most moving joints. Several ends behind the same last joint: the link behind it.
-  [[nodiscard]] Result<std::string> longest(const std::string& base) const {
-    std::ptrdiff_t most{0};
-    std::vector<std::string> ends;
-    for (const auto& [name, link] : model_.links_) {
-      const auto joints = path(base, name);
-      if (!joints || !below(name).empty()) continue;
-      const auto count = std::count_if(joints->begin(), joints->end(), [](const JointPtr& j) { return moves(*j); });
-      if (count < most) continue;
-      if (count > most) ends.clear();
-      most = count;
-      ends.push_back(name);
-    }
-    if (most == 0) return wrong(Errc::corrupt_data, "no joint moves behind " + base, "");
-    if (ends.size() == 1) return ends.front();
-    std::set<std::string> last;
-    for (const std::string& end : ends) last.insert(last_moving(base, end));
-    if (last.size() == 1) return *last.begin();
-    return wrong(Errc::invalid_argument, "several chains are equally long; name a tip: " + joined(ends), "");
-  }
-
- private:
-  const urdf::ModelInterface& model_;
-  std::map<std::string, JointPtr> above_;
-  std::map<std::string, std::vector<JointPtr>> below_;
-};
 
 /// Makes the description, walking down the tree.
 class ArmBuilder {
@@ -102,22 +32,24 @@ class ArmBuilder {
       : document_{document}, tree_{*document.model}, folder_{folder}, config_{config} {}
 
   Result<UrdfArm> build() {
-    SACCADE_CHECK(choose_chain());
+    SACCADE_TRY(chain_, find_arm_chain(tree_, config_));
+    notes_ = chain_.choices;
+    for (const JointPtr& joint : chain_.joints) on_chain_.insert(joint->name);
     arm_.name = document_.model->name_;
-    arm_.links.push_back({base_, {}});
-    for (const JointPtr& joint : chain_) {
-      if (moves(*joint)) {
+    arm_.links.push_back({chain_.base, {}});
+    for (const JointPtr& joint : chain_.joints) {
+      if (drives(*joint)) {
         SACCADE_CHECK(add_joint(*joint));
       }
     }
     if (arm_.joints.empty())
-      return wrong(Errc::invalid_argument, "no joint moves between " + base_ + " and " + tip_, "");
-    SACCADE_CHECK(walk(base_, 0, Pose::Identity(), true));
+      return wrong(Errc::invalid_argument, "no joint moves between " + chain_.base + " and " + chain_.tip, "");
+    SACCADE_CHECK(walk(chain_.base, 0, Pose::Identity(), true));
     SACCADE_CHECK(place_mounts());
     auto arm = ArmModel::create(std::move(arm_));
     // Limits and axes came from the file.
     if (!arm) return Error{Errc::corrupt_data, arm.error().message, arm.error().context};
-    return UrdfArm{*std::move(arm), std::move(notes_)};
+    return UrdfArm{*std::move(arm), std::move(notes_), std::move(chain_.choices)};
   }
 
  private:
@@ -127,35 +59,9 @@ class ArmBuilder {
     bool rigid;  ///< no joint stands still between
   };
 
-  [[nodiscard]] Status known(const std::string& link, const char* what) const {
-    if (tree_.has(link)) return {};
-    return wrong(Errc::invalid_argument, std::string{"there is no such link to be the "} + what, link);
-  }
-
-  Status choose_chain() {
-    base_ = config_.base.empty() ? tree_.root() : config_.base;
-    SACCADE_CHECK(known(base_, "base"));
-    camera_ = config_.camera;
-    if (camera_.empty() && tree_.has(std::string{kCameraFrame})) camera_ = kCameraFrame;
-    if (!camera_.empty()) {
-      SACCADE_CHECK(known(camera_, "camera's frame"));
-    }
-    tip_ = config_.tip;
-    if (tip_.empty() && !camera_.empty()) tip_ = tree_.last_moving(base_, camera_);
-    if (tip_.empty()) {
-      SACCADE_TRY(tip_, tree_.longest(base_));
-    }
-    SACCADE_CHECK(known(tip_, "tip"));
-    if (camera_.empty()) {
-      camera_ = tip_;
-      if (!config_.T_flange_camera)
-        notes_.push_back("no camera is mounted: its frame is taken to be that of " + tip_ + ", z forward");
-    }
-    auto chain = tree_.path(base_, tip_);
-    if (!chain) return wrong(Errc::invalid_argument, "does not come behind the base " + base_, "link " + tip_);
-    chain_ = *std::move(chain);
-    for (const JointPtr& joint : chain_) on_chain_.insert(joint->name);
-    return {};
+  /// Whether a joint of the chain is one of the arm's. A gripper's that follows another stands still with that one.
+  [[nodiscard]] bool drives(const urdf::Joint& joint) const {
+    return moves(joint) && (joint.mimic == nullptr || chain_.gripper.count(joint.name) == 0);
   }
 
   Status add_joint(const urdf::Joint& joint) {
@@ -169,7 +75,9 @@ class ArmBuilder {
       default: return wrong(Errc::unsupported, "only revolute, continuous and prismatic joints are handled", where);
     }
     if (joint.mimic != nullptr)
-      return wrong(Errc::unsupported, "follows joint " + joint.mimic->joint_name + "; such joints are not handled",
+      return wrong(Errc::unsupported,
+                   "follows joint " + joint.mimic->joint_name +
+                       ", as in a parallel linkage; that is handled behind the arm and beside it, not on its chain",
                    where);
     made.axis_joint = to_eigen(joint.axis);
     if (joint.limits != nullptr) {
@@ -198,12 +106,13 @@ class ArmBuilder {
       SACCADE_TRY(const Pose T_parent_joint, pose_of(joint->parent_to_joint_origin_transform, "joint " + joint->name));
       const Pose T_link_joint = T_link_frame * T_parent_joint;
       const bool chain = on_chain_.count(joint->name) > 0;
-      if (chain && moves(*joint)) {
+      if (chain && drives(*joint)) {
         arm_.joints[link].T_parent_joint = T_link_joint;
         SACCADE_CHECK(walk(joint->child_link_name, link + 1, Pose::Identity(), true));
-      } else if (chain || name != tip_ || config_.keep_beyond_tip || leads_to_camera(*joint)) {
-        SACCADE_TRY(const Pose T_joint_child, standing_still(*joint));
-        SACCADE_CHECK(walk(joint->child_link_name, link, T_link_joint * T_joint_child, rigid && !moves(*joint)));
+      } else if (chain || name != chain_.tip || config_.keep_beyond_tip || leads_to_camera(*joint)) {
+        const Pose T_joint_child = standing_still(*joint);
+        SACCADE_CHECK(
+            walk(joint->child_link_name, link, T_link_joint * T_joint_child, chain || (rigid && !moves(*joint))));
       } else {
         notes_.push_back("link " + joint->child_link_name + " and what is behind it are left out, beyond the tip");
       }
@@ -212,17 +121,15 @@ class ArmBuilder {
   }
 
   [[nodiscard]] bool leads_to_camera(const urdf::Joint& joint) const {
-    return tree_.path(joint.child_link_name, camera_).has_value();
+    return tree_.path(joint.child_link_name, chain_.camera).has_value();
   }
 
-  /// A joint that is not on the chain, at 0 or at the limit next to it.
-  Result<Pose> standing_still(const urdf::Joint& joint) {
+  /// A joint that the arm does not move.
+  Pose standing_still(const urdf::Joint& joint) {
     Pose T = Pose::Identity();
     if (!moves(joint)) return T;
-    double q{0.0};
-    if (joint.limits != nullptr && joint.type != urdf::Joint::CONTINUOUS && joint.limits->lower <= joint.limits->upper)
-      q = std::clamp(0.0, joint.limits->lower, joint.limits->upper);
-    notes_.push_back("joint " + joint.name + " is not on the chain: it stands still at " + short_number(q));
+    const double q = tree_.standing_value(joint);
+    notes_.push_back("joint " + joint.name + why_still(joint) + ": it stands still at " + short_number(q));
     const Eigen::Vector3d axis = to_eigen(joint.axis);
     if (!axis.allFinite() || axis.norm() == 0.0 || joint.type == urdf::Joint::PLANAR ||
         joint.type == urdf::Joint::FLOATING)
@@ -233,6 +140,14 @@ class ArmBuilder {
       T.linear() = Eigen::AngleAxisd{q, axis.normalized()}.toRotationMatrix();
     }
     return T;
+  }
+
+  [[nodiscard]] std::string why_still(const urdf::Joint& joint) const {
+    if (joint.mimic == nullptr) return " is not on the chain";
+    const std::string follows = " follows joint " + joint.mimic->joint_name;
+    const urdf::JointConstSharedPtr master = tree_.master(joint);
+    if (master == nullptr) return follows + ", which leads nowhere";
+    return on_chain_.count(master->name) > 0 ? follows + ", but is not moved with it here" : follows;
   }
 
   Status add_bodies(const urdf::Link& link, std::size_t at, const Pose& T_link_frame) {
@@ -287,13 +202,14 @@ class ArmBuilder {
   }
 
   Status place_mounts() {
-    const Place& flange = places_.at(tip_);
-    const auto camera = places_.find(camera_);
+    const Place& flange = places_.at(chain_.tip);
+    const auto camera = places_.find(chain_.camera);
     if (camera == places_.end() || camera->second.link != arm_.joints.size() || !camera->second.rigid)
-      return wrong(Errc::invalid_argument, "the camera's frame is not fixed to the tip " + tip_, "link " + camera_);
-    arm_.flange_name = tip_;
+      return wrong(Errc::invalid_argument, "the camera's frame is not fixed to the tip " + chain_.tip,
+                   "link " + chain_.camera);
+    arm_.flange_name = chain_.tip;
     arm_.T_link_flange = flange.T_link_frame;
-    arm_.camera_name = camera_;
+    arm_.camera_name = chain_.camera;
     if (config_.T_world_base) arm_.T_world_base = *config_.T_world_base;
     arm_.T_flange_camera =
         config_.T_flange_camera.value_or(flange.T_link_frame.inverse() * camera->second.T_link_frame);
@@ -313,11 +229,10 @@ class ArmBuilder {
   }
 
   const UrdfDocument& document_;
-  Tree tree_;
+  UrdfTree tree_;
   fs::path folder_;
   const UrdfConfig& config_;
-  std::string base_, tip_, camera_;
-  std::vector<JointPtr> chain_;
+  ArmChain chain_;
   std::set<std::string> on_chain_;
   std::map<std::string, Place> places_;
   int without_acceleration_{0};

@@ -17,9 +17,10 @@ namespace saccade {
 constexpr std::string_view kCameraFrame{"camera_optical_frame"};
 
 struct UrdfConfig {
-  std::string base;    ///< link that the chain begins with; empty: the root
-  std::string tip;     ///< flange; empty: the link behind the camera's last joint, else the end of the longest chain
-  std::string camera;  ///< optical frame, fixed to the flange; empty: kCameraFrame if there is one, else the flange
+  std::string base;  ///< link that the chain begins with; empty: the root
+  std::string tip;   ///< flange; empty: the link behind the camera's last joint, else the end of the longest chain
+  std::string
+      camera;  ///< optical frame, fixed to the flange; empty: kCameraFrame, else one that ends so, else the flange
   /// Folders of packages by name, for package://NAME/…; other names are looked for at the URDF and the folders above.
   std::map<std::string, std::filesystem::path> packages;
   double default_speed{1.0};           ///< of continuous joints without one, rad/s
@@ -32,15 +33,18 @@ struct UrdfConfig {
 
 struct UrdfArm {
   ArmModel arm;
-  std::vector<std::string> notes;  ///< what was assumed or left out, a sentence each
+  std::vector<std::string> notes;      ///< what was assumed or left out, a sentence each
+  std::vector<std::string> choices{};  ///< the first of these: tip or camera, where neither file nor config names it
 };
 
 /// Reads a serial arm. Fixed joints are folded into the links; bodies of branches belong to the link that they hang on,
-/// where joints that are not on the chain stand still at 0, or at the limit next to it. Meshes are taken relative to
+/// where joints that are not on the chain stand still: at 0, or at the limit next to it, or where the joint that they
+/// follow puts them. What is chosen where the configuration leaves it open: docs/robots.md. Meshes are relative to
 /// `folder`. The attribute `acceleration` (or `drake:acceleration`) of <limit> is read, as URDF itself has none.
 /// corrupt_data for what is no URDF or no tree, and for limits or axes that make no sense; not_found for meshes and
-/// packages; invalid_argument for links that are not there and a T_world_base that is not rigid; unsupported for mimic,
-/// planar and floating joints on the chain. One line that names the joint or link.
+/// packages; invalid_argument for links that are not there, for several tips or cameras that are as likely, and for a
+/// T_world_base that is not rigid; unsupported for mimic, planar and floating joints on the chain. One line that names
+/// the joint or link.
 [[nodiscard]] Result<UrdfArm> parse_urdf(const std::string& urdf, const std::filesystem::path& folder = {},
                                          const UrdfConfig& config = {});
 /// The same from a file.
