@@ -3,10 +3,11 @@
 //
 //   saccade-simulated-arm [--state FILE] [--start Q,Q,...] [--delay S] [--jitter RAD] [--clock S] [--rate R] [--seed N]
 //                         [--fault none|hang|die|lie|drift|slow|nonsense|error] [--after S] [--log FILE]
+//                         [--scene SCENE --robot ROBOT]
 //
 // --state is where a simulated camera reads the true positions; --rate is how much faster than real time it moves;
-// --clock is added to its time stamps; the fault shows when it has been moving for --after seconds; --log gets a line
-// with the time when the arm is told to stop.
+// --clock is added to its time stamps; the fault shows when it has been moving for --after seconds; --log gets lines
+// with the times when the arm is told to follow a motion and to stop, and of contacts with what truly stands in SCENE.
 #include <algorithm>
 #include <cmath>
 #include <fstream>
@@ -15,6 +16,9 @@
 
 #include "arm_state.hpp"
 #include "protocol.hpp"
+#include "saccade/arm/urdf.hpp"
+#include "saccade/scene/scene_yaml.hpp"
+#include "saccade/trial/metrics.hpp"
 
 namespace {
 
@@ -52,6 +56,25 @@ struct Motion {
   }
 };
 
+/// The arm among what truly stands around it.
+struct TrueScene {
+  saccade::ArmCollision arm;
+  saccade::Solids solids;
+
+  static saccade::Result<TrueScene> open(const std::string& scene_name, const std::string& robot) {
+    SACCADE_TRY(const saccade::UrdfArm read, saccade::find_robot(robot));
+    SACCADE_TRY(saccade::ArmCollision arm, saccade::ArmCollision::create(read.arm));
+    SACCADE_TRY(const saccade::Scene scene, saccade::find_scene(scene_name));
+    SACCADE_TRY(const saccade::RayScene rays, saccade::RayScene::build(scene));
+    const auto any = [](const saccade::SceneObject& /*object*/) { return true; };
+    SACCADE_TRY(saccade::Solids solids, saccade::Solids::build(rays, any));
+    return TrueScene{std::move(arm), std::move(solids)};
+  }
+  [[nodiscard]] bool touched_at(const std::vector<double>& q) const {
+    return touches(arm, solids, Eigen::Map<const Eigen::VectorXd>{q.data(), static_cast<Eigen::Index>(q.size())});
+  }
+};
+
 class SimulatedArm {
  public:
   explicit SimulatedArm(const Options& options)
@@ -66,6 +89,11 @@ class SimulatedArm {
         random_{static_cast<unsigned>(options.number("--seed", 1.0))} {
     const std::string state = options.text("--state");
     if (!state.empty()) state_.emplace(state);
+    if (const std::string scene = options.text("--scene"); !scene.empty()) {
+      auto opened = TrueScene::open(scene, options.text("--robot", "comau"));
+      if (!opened) throw std::runtime_error{opened.error().to_string()};
+      scene_.emplace(*std::move(opened));
+    }
     publish();
   }
 
@@ -91,10 +119,11 @@ class SimulatedArm {
     } else if (kind == "joints") {
       say({{"number", request.at("number")}, {"q", measured()}, {"time_s", now_s() + clock_s_}});
     } else if (kind == "follow") {
+      note("follow");
       motion_ = Motion{request.at("number"), request.at("points"), now_s()};
       told_s_ = 0.0;
     } else if (kind == "stop") {
-      if (!log_.empty()) std::ofstream{log_, std::ios::app} << std::to_string(now_s()) << " stop\n";
+      note("stop");
       motion_.reset();
       say({{"number", request.at("number")}, {"q", measured()}});
     } else {
@@ -132,7 +161,7 @@ class SimulatedArm {
   void note_fault() {
     if (fault_noted_) return;
     fault_noted_ = true;
-    if (!log_.empty()) std::ofstream{log_, std::ios::app} << std::to_string(now_s()) << " fault\n";
+    note("fault");
   }
 
   /// Positions as encoders have them.
@@ -146,7 +175,15 @@ class SimulatedArm {
   }
 
   void publish() {
-    if (state_ && !q_.empty()) state_->write(q_);
+    if (q_.empty()) return;
+    if (state_) state_->write(q_);
+    const bool touches = scene_ && q_ != looked_at_ && scene_->touched_at(q_);
+    looked_at_ = q_;
+    if (touches) note("contact");
+  }
+
+  void note(const char* what) const {
+    if (!log_.empty()) std::ofstream{log_, std::ios::app} << std::to_string(now_s()) << ' ' << what << '\n';
   }
 
   double delay_s_, jitter_, clock_s_, rate_;
@@ -156,6 +193,8 @@ class SimulatedArm {
   std::vector<double> q_;
   std::mt19937 random_;
   std::optional<ArmState> state_;
+  std::optional<TrueScene> scene_;
+  std::vector<double> looked_at_;  ///< for contacts
   LineInput input_;
   std::optional<Motion> motion_;
   double moved_s_{0.0};

@@ -125,11 +125,20 @@ void print_measures(const RunRecord& run, bool scanned, const Measures& final) {
 void print_summary(const ExploreOptions& options, const ExploreRun& explored, const Measures& final) {
   const RunRecord& run = explored.record();
   std::cout << std::fixed << std::setprecision(1);
+  if (options.dry_run) {
+    std::cout << "dry run   nothing has moved; only what the scene's file says is taken to be there\n"
+              << "scan      " << run.scan.views << " of " << run.scan.attempted << " poses can be taken\n";
+    if (!run.views.empty()) {
+      const Eigen::Vector3d p = run.views[0].T_world_camera.translation();
+      std::cout << "view      from (" << fixed(p.x(), 3) << ", " << fixed(p.y(), 3) << ", " << fixed(p.z(), 3)
+                << ") m, after " << fixed(run.views[0].motion_s, 1) << " s of motion\n";
+    }
+  }
   if (run.scan.refused.total() > 0) {
     std::cout << "scan      " << run.scan.views << " taken, passed over: " << in_words(run.scan.refused) << '\n';
   }
-  print_views(run.views);
-  print_measures(run, explored.scanned(), final);
+  if (!options.dry_run) print_views(run.views);
+  if (!options.dry_run) print_measures(run, explored.scanned(), final);
   const std::string refused = refused_in(run.views);
   if (!refused.empty()) std::cout << "refused   " << refused << '\n';
   const std::string tilts = tilts_text(run.views, options.run.exploration);
@@ -155,6 +164,7 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"camera", camera_to_json(devices.intrinsics())},
           {"voxel_size_m", options.run.voxel_size_m},
           {"truth_spacing_m", subject.truth ? json(subject.truth->spacing_m()) : json(nullptr)},
+          {"dry_run", options.dry_run},
           {"interrupted", run.stopped_because == StopReason::cancelled},
           {"initial", explored.scanned() ? scan_to_json(run.scan) : json(nullptr)},
           {"views", views_to_json(run.views)},

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "cell_options.hpp"
+#include "rehearsal.hpp"
 #include "robot_options.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/scene/scene_yaml.hpp"
@@ -16,6 +17,7 @@ bool same_box(const Box& a, const Box& b) { return a.min == b.min && a.max == b.
 
 Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const ExploreCase& subject,
                                           const std::optional<ArmModel>& arm) {
+  if (!options.robot_command.empty() && options.dry_run) return std::unique_ptr<Robot>{std::make_unique<FreeRobot>()};
   if (!options.robot_command.empty()) {
     SACCADE_TRY(std::unique_ptr<ProgramRobot> robot,
                 ProgramRobot::start(program_config(options, options.robot_command, options.cell.robot)));
@@ -26,12 +28,22 @@ Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const E
     if (!options.joints_command.empty()) {
       SACCADE_TRY(joints, ProgramJoints::start(joints_config(options, *arm)));
     }
+    if (joints && options.dry_run) {  // the program is asked where they stand, and ends
+      SACCADE_TRY(Configuration standing, joints->position());
+      joints = std::make_shared<SimulatedJoints>(std::move(standing));
+    }
     SACCADE_TRY(PlannedArm robot, planned_arm(*arm, subject.scene, options.run, options.arm, std::move(joints)));
     return std::unique_ptr<Robot>{std::make_unique<PlannedArm>(std::move(robot))};
   }
   if (!subject.rays) return std::unique_ptr<Robot>{std::make_unique<FreeRobot>()};
   SACCADE_TRY(FreeRobot robot, flying_camera(*subject.rays));
   return std::unique_ptr<Robot>{std::make_unique<FreeRobot>(std::move(robot))};
+}
+
+/// Where an arm holds its camera; nullopt for other robots.
+std::optional<Pose> standing_pose(const Robot& robot) {
+  const auto* arm = dynamic_cast<const PlannedArm*>(&robot);
+  return arm != nullptr ? std::optional{arm->T_world_camera()} : std::nullopt;
 }
 
 }  // namespace
@@ -95,9 +107,23 @@ Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const
   }
   SACCADE_TRY(ProgramCamera started,
               ProgramCamera::start(program_config(options, options.camera_command, options.cell.camera)));
-  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::make_unique<ProgramCamera>(std::move(started)),
-                                                           std::move(robot), own, executor));
+  std::unique_ptr<Camera> camera = std::make_unique<ProgramCamera>(std::move(started));
+  if (options.dry_run) {
+    SACCADE_TRY(camera,
+                rehearsal_camera(std::move(camera), subject.scene, options.cell.fixtures, standing_pose(*robot)));
+  }
+  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::move(camera), std::move(robot), own, executor));
   return ExploreDevices{std::move(carried)};
+}
+
+Result<bool> ExploreDevices::look_from_where_it_stands(TsdfMap& map, const Executor& executor) {
+  const std::optional<Pose> T_world_camera = standing_pose(robot());
+  if (!T_world_camera) return false;
+  SACCADE_TRY(const Frame frame, camera_.capture(*T_world_camera));
+  SACCADE_TRY([[maybe_unused]] const FusionStats fused,
+              map.integrate(intrinsics(), frame.depth, frame.T_world_camera.value_or(*T_world_camera), executor,
+                            frame.color ? &*frame.color : nullptr));
+  return true;
 }
 
 Status ExploreDevices::change_scene(const RayScene& scene, const SimulatedRunConfig& config) {

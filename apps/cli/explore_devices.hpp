@@ -9,6 +9,7 @@
 #include "progress_bar.hpp"
 #include "saccade/arm/urdf.hpp"
 #include "saccade/devices/programs.hpp"
+#include "saccade/map/tsdf_map.hpp"
 #include "saccade/trial/carried_camera.hpp"
 
 namespace saccade::cli {
@@ -48,6 +49,9 @@ class ExploreDevices {
   /// What a simulated camera sees from now on; the fixtures that an arm keeps clear of stay. Errors: those of
   /// simulated_camera.
   [[nodiscard]] Status change_scene(const RayScene& scene, const SimulatedRunConfig& config);
+  /// For a dry run: fuses what an arm's camera sees without moving. false: where the camera is, is not known. Errors:
+  /// those of the camera.
+  [[nodiscard]] Result<bool> look_from_where_it_stands(TsdfMap& map, const Executor& executor);
   /// The arm, if it is one that we move ourselves.
   [[nodiscard]] const ArmModel* arm() const { return camera_.arm(); }
   /// A simulated camera goes on as if it had taken `frames` frames.

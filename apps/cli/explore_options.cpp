@@ -2,6 +2,7 @@
 #include "explore_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <algorithm>
 
 #include "add_value.hpp"
 #include "cell_options.hpp"
@@ -83,11 +84,23 @@ void add_device_options(CLI::App& command, ExploreOptions& options) {
   add_value(command, "--map", options.map, "FILE", "a saved map (.sacmap) to go on from, in place of an unknown one");
 }
 
+void add_dry_run_option(CLI::App& command, ExploreOptions& options) {
+  command.add_flag("--dry-run", options.dry_run,
+                   "plan and draw the scan and the first view after it, from where the robot stands, and move nothing");
+}
+
 void check_device_options(ExploreOptions& options) {
   require_positive(options.process_timeout_s, "--process-timeout");
   take_cell(options);
   options.run.exploration.camera_clock_offset_s = options.cell.camera_clock_offset_s;
   options.run.exploration.tracking = options.tracking.value_or(TrackingMode::forced);
+}
+
+void limit_dry_run(ExploreOptions& options) {
+  if (!options.dry_run) return;
+  options.run.exploration.max_views = std::min(options.run.exploration.max_views, 1);
+  options.run.exploration.tracking = TrackingMode::forced;
+  options.run.exploration.frame_on_way_s = 0.0;
 }
 
 void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners) {
@@ -102,6 +115,7 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
 
   add_arm_options(command, options);
   add_device_options(command, options);
+  add_dry_run_option(command, options);
   command.add_flag("--step", options.step, "ask before each move");
   command.add_flag("--resume", options.resume, "go on with the interrupted run in RUN");
   command.add_flag("--no-pictures{false}", options.write_pictures,
@@ -116,7 +130,9 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   if (!options.show && !options.serve.given.empty()) usage_error(options.serve.given, "is for --show");
   check_device_options(options);
   check_run_options(options);
-  const auto strategy = global.planners.find(options.strategy);
+  // No surface is expected of an empty bench: what is unknown is looked at instead.
+  const bool rehearses = options.dry_run && options.map.empty() && options.strategy == surface_planner().name;
+  const auto strategy = global.planners.find(rehearses ? "sphere" : options.strategy);
   require_ok(strategy.ok() ? Status{} : Status{strategy.error()}, "--strategy");
   choose_strategy(options, *strategy);
   if (strategy->needs_truth && !options.camera_command.empty()) {
@@ -129,6 +145,9 @@ void check_explore_options(ExploreOptions& options, const GlobalOptions& global)
   if (options.robot.empty()) options.robot = options.camera_command.empty() ? "comau" : "free";
   check_foresight(options, options.robot);
   check_arm_options(options, global);
+  if (options.dry_run && (options.resume || options.step))
+    usage_error("--dry-run", "moves nothing: it goes with neither --resume nor --step");
+  limit_dry_run(options);
 }
 
 }  // namespace saccade::cli

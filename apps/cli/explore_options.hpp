@@ -33,6 +33,7 @@ struct ExploreOptions : RunOptions {
   std::string robot_command;               ///< a program that moves a robot; empty: robot
   std::string camera_command;              ///< a program that has a camera; empty: a simulated one
   double process_timeout_s{60.0};
+  bool dry_run{false};  ///< plans and draws, and moves nothing
   bool step{false};
   bool resume{false};
   bool write_pictures{true};
@@ -66,6 +67,10 @@ void add_device_options(CLI::App& command, ExploreOptions& options);
 /// After parsing: takes the cell's file in, fills `run.exploration.tracking`, and throws a usage error for what makes
 /// no sense.
 void check_device_options(ExploreOptions& options);
+/// Adds --dry-run.
+void add_dry_run_option(CLI::App& command, ExploreOptions& options);
+/// Once all else is checked: a dry run plans the first view alone.
+void limit_dry_run(ExploreOptions& options);
 
 /// Adds the options to the command.
 void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners);

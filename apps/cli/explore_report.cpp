@@ -166,7 +166,7 @@ Status write_report(const RunFolder& out, const RunRecord& run, const Measures& 
   const json& result = document.at("result");
   RunReport report;
   report.scene = result.at("scene").get<std::string>();
-  report.title = "Exploration of " + report.scene;
+  report.title = (options.dry_run ? "Dry run, in which nothing moves, of " : "Exploration of ") + report.scene;
   report.strategy = result.at("strategy").get<std::string>();
   report.robot = result.at("robot").get<std::string>();
   report.draws_robot = options.has_arm();

@@ -161,6 +161,9 @@ Status ExploreRun::run_to_end() {
     if (journal_.run.scan.attempted == 0) {
       for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
     }
+    if (options_.dry_run) {
+      SACCADE_TRY([[maybe_unused]] const bool seen, devices_.look_from_where_it_stands(map_, executor_));
+    }
     const std::vector<Pose>& poses = subject_.scene.scan;  // a map that was given makes them unnecessary
     SACCADE_TRY(const ScanRecord scan,
                 explorer.scan(options_.map.empty() ? poses : std::vector<Pose>{}, journal_.run.scan));

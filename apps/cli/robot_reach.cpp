@@ -16,6 +16,7 @@
 #include "robot_reach_output.hpp"
 #include "saccade/core/angle.hpp"
 #include "saccade/core/clock.hpp"
+#include "saccade/devices/cell.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 
@@ -68,6 +69,12 @@ Result<ReachTask> make_task(const ReachOptions& options) {
   SACCADE_TRY(UrdfArm robot, find_robot(options.arm.robot, options.arm.urdf));
   SACCADE_TRY(const Scene scene, find_scene(options.scene));
   SACCADE_TRY(std::vector<FixtureBox> fixtures, fixture_boxes(scene));
+  if (std::filesystem::is_regular_file(options.scene)) {
+    SACCADE_TRY(const Cell cell, read_cell(options.scene));
+    for (const Box& box : cell.fixtures) {
+      fixtures.push_back({"fixture " + std::to_string(fixtures.size() + 1), box, true});  // one may be the table
+    }
+  }
   SACCADE_TRY(InverseKinematics ik, InverseKinematics::create(robot.arm, ik_config()));
   const bool numeric = ik.method() == IkMethod::numeric;
   ReachMapConfig config;

@@ -60,7 +60,7 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));
   SACCADE_CHECK(remove_update_pictures(out));
 
-  UpdatePictures pictures{options, subject, task, devices, out, executor};
+  UpdatePictures pictures{options, subject.after.scene.workspace, task, devices, out, executor};
   SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress,
                                                       options.write_pictures ? &pictures : nullptr));
   SACCADE_CHECK(write_maps(out, figures, task, executor));

@@ -14,6 +14,10 @@ namespace saccade::cli {
                                                  const WatchedTask& task, const UpdateFigures& figures,
                                                  const ExploreDevices& devices, const Executor& executor,
                                                  const Progress& progress);
+/// One region as far as the robot itself knows of it: without coverage.
+[[nodiscard]] nlohmann::json region_json(const WatchedTask& task, const UpdateFigures& figures, std::size_t region);
+/// Whether and how the robot came back to its stand-by.
+[[nodiscard]] nlohmann::json return_json(const StandByResult& back);
 void print_update(const UpdateOptions& options, const WatchedTask& task, const nlohmann::json& result);
 
 }  // namespace saccade::cli

@@ -6,7 +6,6 @@
 #include <memory>
 #include <utility>
 
-#include "attend.hpp"
 #include "cell_options.hpp"
 #include "exit_status.hpp"
 #include "explore_devices.hpp"
@@ -22,6 +21,8 @@
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/mesh.hpp"
 #include "summary.hpp"
+#include "update_cell_report.hpp"
+#include "update_report.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -61,8 +62,11 @@ class CellUpdate {
   [[nodiscard]] Status scan() {
     Progress progress = shown();
     const CancelOnInterrupt guard{progress};
-    Explorer explorer = explorer_with(progress);
+    Explorer explorer = explorer_with(progress, nullptr);
     for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
+    if (options_.dry_run) {
+      SACCADE_TRY([[maybe_unused]] const bool seen, devices_.look_from_where_it_stands(map_, executor_));
+    }
     const std::vector<Pose>& poses = subject_.scene.scan;
     SACCADE_TRY(scan_, explorer.scan(options_.map.empty() ? poses : std::vector<Pose>{}));
     if (!scan_.complete) return {};
@@ -77,9 +81,15 @@ class CellUpdate {
     recorder.workspace = subject_.scene.workspace;
     const AttendDetector detector = options_.method->make(false);
     const DetectActions detect = [&](const HandTrajectory& trajectory) -> Result<std::vector<HandAction>> {
+      const Stopwatch stopwatch;
       auto findings = detector(trajectory);
       problem_ = findings ? "" : findings.error().to_string();  // of one task; the next one may be better
-      return findings ? std::move(findings->actions) : std::vector<HandAction>{};
+      task_ = WatchedTask{trajectory,
+                          check_samples(trajectory),
+                          findings ? std::move(*findings) : AttentionFindings{},
+                          {},
+                          stopwatch.elapsed_ms()};
+      return task_.findings.actions;
     };
     SACCADE_TRY(watcher_, TaskWatcher::create(std::move(hand), recorder, detect, options_.region_radius_m, [this] {
                   if (Progress* looking = looking_.load()) looking->request_cancel();
@@ -88,26 +98,32 @@ class CellUpdate {
       bar_.update("waiting for the hand", tasks_.size(), 0);
       Progress waiting;
       const CancelOnInterrupt guard{waiting};
-      SACCADE_TRY(std::optional<UserTask> task, watcher_->next_task(&waiting));
-      if (!task) return {};
-      SACCADE_CHECK(look_again(*task));
+      SACCADE_TRY(const std::optional<UserTask> ended, watcher_->next_task(&waiting));
+      if (!ended) return {};
+      task_.regions = std::exchange(left_, {});
+      regions_left_before_ = task_.regions.size();
+      task_.regions.insert(task_.regions.end(), ended->regions.begin(), ended->regions.end());
+      SACCADE_CHECK(look_again());
     }
   }
 
   [[nodiscard]] std::size_t tasks() const { return tasks_.size(); }
   [[nodiscard]] bool scanned() const { return scan_.complete; }
   [[nodiscard]] json result() const {
-    return {{"cell", subject_.scene.name},
-            {"out", options_.out.string()},
-            {"method", options_.method->name},
-            {"initial", scan_to_json(scan_)},
-            {"tasks", tasks_}};
+    return {{"cell", subject_.scene.name}, {"out", options_.out.string()},   {"method", options_.method->name},
+            {"dry_run", options_.dry_run}, {"initial", scan_to_json(scan_)}, {"tasks", tasks_}};
+  }
+  [[nodiscard]] json document(double total_ms) const {
+    return json_envelope("update", global_, executor_, {{"total", total_ms}}, result());
   }
   [[nodiscard]] Status write(double total_ms) {
-    SACCADE_CHECK(save_map(map_.content(), out_ / "map.sacmap", executor_));
-    SACCADE_CHECK(write_mesh(out_ / "mesh.ply", extract_mesh(map_.content(), executor_)));
-    return write_json(out_ / "update.json",
-                      json_envelope("update", global_, executor_, {{"total", total_ms}}, result()));
+    const TsdfSnapshot& map = map_.content();
+    SACCADE_CHECK(save_map(map, out_ / "map.sacmap", executor_));
+    SACCADE_CHECK(write_mesh(out_ / "mesh.ply", extract_mesh(map, executor_)));
+    const json written = document(total_ms);
+    SACCADE_CHECK(write_json(out_ / "update.json", written));
+    if (!options_.write_pictures) return {};
+    return write_cell_page(options_, map, subject_.scene.workspace, devices_, out_, written, executor_);
   }
 
  private:
@@ -115,75 +131,87 @@ class CellUpdate {
     return Progress{[this](std::string_view stage, std::size_t done, std::size_t of) { bar_.update(stage, done, of); }};
   }
 
-  [[nodiscard]] Explorer explorer_with(const Progress& progress) {
+  [[nodiscard]] Explorer explorer_with(const Progress& progress, Recorder* recorder) {
     ExplorerParts parts{map_, devices_.camera(), devices_.robot(), executor_};
+    parts.recorder = recorder;
     parts.progress = &progress;
     parts.suspended = [this] { return watcher_ != nullptr && watcher_->hand_inside(); };
     return Explorer{std::move(parts), options_.run.exploration};
   }
 
   /// Algorithm 1 for the regions of a task, and those that an earlier one has left.
-  [[nodiscard]] Status look_again(const UserTask& task) {
-    std::vector<RegionOfInterest> regions = std::exchange(left_, {});
-    const std::size_t old = regions.size();
-    regions.insert(regions.end(), task.regions.begin(), task.regions.end());
-    const std::string name = "task-" + std::to_string(tasks_.size() + 1);
-    SACCADE_CHECK(write_hand_csv(out_ / (name + ".csv"), task.trajectory));
-    json record{{"samples", task.trajectory.size()}, {"regions_left_before", old}};
-    json actions = json::array();
-    for (const HandAction& action : task.actions) actions.push_back(action_json(action));
-    record["actions"] = std::move(actions);
+  [[nodiscard]] Status look_again() {
+    SACCADE_TRY(const RunFolder folder,
+                RunFolder::open(out_ / task_folder(tasks_.size() + 1), {}, "report.html", true));
+    SACCADE_CHECK(write_hand_csv(folder / "hand.csv", task_.trajectory));
+    UpdateFigures figures;
+    figures.scan = scan_;
+    figures.stand_by = devices_.robot().configuration();
+    figures.before = figures.forgotten = figures.after = map_.snapshot();
+    std::string end{"nothing_to_do"};
+    const Status looked = task_.regions.empty() ? Status{} : look_at(folder, figures, end);
+    figures.after = map_.snapshot();
+    figures.at_end = devices_.robot().configuration();
+    json record = task_record(options_, task_, figures, subject_.scene.workspace, end);
+    record["regions_left_before"] = regions_left_before_;
     if (!problem_.empty()) record["problem"] = problem_;
-    const Status looked = regions.empty() ? Status{} : look_at(regions, record);
     if (!looked.ok()) record["problem"] = looked.error().to_string();
-    tasks_.push_back(std::move(record));
-    if (!looked.ok()) return looked.error();
-    return write(0.0);
+    tasks_.push_back(record);
+    if (looked.ok()) SACCADE_CHECK(write(0.0));
+    if (options_.write_pictures) SACCADE_CHECK(draw(folder, figures, record));
+    return looked;
   }
 
-  [[nodiscard]] Status look_at(const std::vector<RegionOfInterest>& regions, json& record) {
+  [[nodiscard]] Status draw(const RunFolder& folder, const UpdateFigures& figures, const json& record) const {
+    const UpdatePictures pictures{options_, subject_.scene.workspace, task_, devices_, folder, executor_};
+    SACCADE_CHECK(pictures.draw_maps(figures));
+    return write_task_page(options_, task_, figures, folder, devices_, document(0.0), record);
+  }
+
+  [[nodiscard]] Status look_at(const RunFolder& folder, UpdateFigures& figures, std::string& end) {
     Progress progress = shown();
     const CancelOnInterrupt guard{progress};
     looking_ = &progress;
     if (watcher_->hand_inside()) progress.request_cancel();
-    const Status looked = look_until(regions, progress, record);
+    const Status looked = look_until(progress, folder, figures, end);
     looking_ = nullptr;
     return looked;
   }
 
-  [[nodiscard]] Status look_until(const std::vector<RegionOfInterest>& regions, const Progress& progress,
-                                  json& record) {
-    Explorer explorer = explorer_with(progress);
-    SACCADE_CHECK(explorer.forget(regions));
-    const UnknownOfRegions forgotten = count_unknown(map_.content(), regions);
-    RegionsInTurn in_turn{regions};
+  [[nodiscard]] Status look_until(const Progress& progress, const RunFolder& folder, UpdateFigures& figures,
+                                  std::string& end) {
+    UpdateMeter meter{subject_.scene.workspace};
+    RegionMeter of_regions{task_.regions};
+    UpdatePictures pictures{options_, subject_.scene.workspace, task_, devices_, folder, executor_};
+    Recorder silent;
+    Recorders recorders{&meter, &of_regions, options_.write_pictures ? &pictures : &silent};
+    Explorer explorer = explorer_with(progress, &recorders);
+    const Stopwatch stopwatch;
+    SACCADE_CHECK(explorer.forget(task_.regions));
+    figures.forgetting_ms = stopwatch.elapsed_ms();
+    figures.forgotten = map_.snapshot();
+    figures.unknown_after_task = count_unknown(figures.forgotten, task_.regions);
+    SACCADE_CHECK(pictures.scanned(scan_, figures.forgotten));
+    RegionsInTurn in_turn{task_.regions};
     const std::vector<Region> whole{subject_.scene.workspace};
     ViewPlanner planner = make_planner(options_.run, devices_.intrinsics(), whole).with(in_turn);
-    SACCADE_TRY(RunRecord run, explorer.explore(planner));
-    run.regions.resize(regions.size());
-    const bool again = run.stopped_because == StopReason::cancelled && !interrupted();
-    for (std::size_t i = 0; again && i < regions.size(); ++i) {
-      if (run.regions[i].status != RegionStatus::done) left_.push_back(regions[i]);
+    Result<RunRecord> run = explorer.explore(planner);
+    figures.unknown_after_view = of_regions.unknown();
+    if (!run) {
+      figures.run.views = meter.views();
+      end = "device_failed";
+      return run.error();
     }
-    StandByResult back;
-    if (run.stopped_because != StopReason::cancelled) {
-      SACCADE_TRY(back, explorer.return_to_stand_by());
+    figures.run = std::move(*run);
+    figures.run.regions.resize(task_.regions.size());
+    const bool cancelled = figures.run.stopped_because == StopReason::cancelled;
+    const bool hand_came = cancelled && !interrupted();
+    for (std::size_t i = 0; hand_came && i < task_.regions.size(); ++i) {
+      if (figures.run.regions[i].status != RegionStatus::done) left_.push_back(task_.regions[i]);
     }
-    record["views"] = views_to_json(run.views);
-    record["stopped_because"] = again ? "hand_came" : std::string{to_string(run.stopped_because)};
-    record["at_stand_by"] = back.at_stand_by;
-    const UnknownOfRegions unknown = count_unknown(map_.content(), regions);
-    json list = json::array();
-    for (std::size_t i = 0; i < regions.size(); ++i) {
-      const auto& ball = std::get<Sphere>(regions[i].bounds);
-      list.push_back({{"center_m", point_json(ball.center)},
-                      {"radius_m", ball.radius_m},
-                      {"why", regions[i].why},
-                      {"end", to_string(run.regions[i].status)},
-                      {"unknown_after_task", forgotten[i]},
-                      {"unknown_left", unknown[i]}});
-    }
-    record["regions"] = std::move(list);
+    end = hand_came ? "hand_came" : std::string{to_string(figures.run.stopped_because)};
+    if (cancelled) return {};
+    SACCADE_TRY(figures.back, explorer.return_to_stand_by());
     return {};
   }
 
@@ -198,6 +226,8 @@ class CellUpdate {
   ScanRecord scan_;
   std::vector<json> tasks_;
   std::vector<RegionOfInterest> left_;
+  WatchedTask task_;  ///< the task that is handled
+  std::size_t regions_left_before_{0};
   std::string problem_;                      ///< why the detector found no actions in the last task
   std::atomic<Progress*> looking_{nullptr};  ///< what a hand that comes interrupts
   std::unique_ptr<TaskWatcher> watcher_;     // last: its thread uses looking_
@@ -215,6 +245,7 @@ Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& g
   if (arm && options.fuse_when == FuseWhen::motion) arm = slowed(*arm, kSpeedWhileFusing);
   SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));
+  SACCADE_CHECK(remove_task_folders(out));
   SACCADE_TRY(std::unique_ptr<HandTracker> hand, open_hand(options));
   SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
   SACCADE_TRY(TsdfMap map, map_to_begin_with(options, subject.scene, executor));
@@ -228,7 +259,9 @@ Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& g
   if (!written.ok()) return written.error();
   SACCADE_CHECK(write_result("update", global, executor, {{"total", total.elapsed_ms()}}, update.result()));
   if (!global.json_to_stdout()) {
-    std::cout << "tasks     " << update.tasks() << "\nresults   " << options.out.string() << '\n';
+    if (options.dry_run) std::cout << "dry run   nothing has moved\n";
+    std::cout << "tasks     " << update.tasks() << "\nresults   "
+              << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
   }
   if (stopped) return interrupt_status();
   if (update.tasks() > 0) return static_cast<int>(ExitStatus::done);

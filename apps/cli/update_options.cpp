@@ -61,6 +61,7 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
   add_value(command, "--hand-command", options.hand_command, "COMMAND",
             "with CELL: a program that tracks the hand (docs/processes.md)");
   add_arm_options(command, options);
+  add_dry_run_option(command, options);
   command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
@@ -80,7 +81,9 @@ void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
     options.run.exploration.way_counts = false;  // views are those of the thesis, whenever frames are fused
   }
   if (options.out.empty()) options.out = "update-" + std::filesystem::path{options.scene}.stem().string();
+  limit_dry_run(options);
   if (!options.cell_file.empty()) return;
+  if (options.dry_run) usage_error("--dry-run", "is for a CELL: a simulated task moves nothing that is real");
   const bool is_file = std::filesystem::path{options.scene}.has_extension();
   if (options.before.empty() && is_file) usage_error("--before", "is needed where --scene is a file");
   if (options.before.empty()) options.before = options.scene + "-before";

@@ -31,12 +31,6 @@ json task_json(const UpdateOptions& options, const WatchedTask& task) {
           {"actions", std::move(actions)},    {"true_places_m", std::move(places)}};
 }
 
-json return_json(const StandByResult& back) {
-  return {{"at_stand_by", back.at_stand_by},
-          {"refused", back.refusal ? json(to_string(*back.refusal)) : json(nullptr)},
-          {"motion_s", back.motion_s}};
-}
-
 /// Unknown voxels of one region: after the task, and after each view.
 json unknown_json(const UpdateFigures& update, std::size_t region) {
   json counts = json::array();
@@ -61,25 +55,6 @@ Result<json> coverage_json(const UpdateCase& subject, const UpdateFigures& figur
     coverage = measure_coverage(surface, mesh, figures.after.config.voxel_size_m, executor);
   }
   return json{{"objects", optional_json(coverage.objects)}, {"surfaces", optional_json(coverage.surfaces)}};
-}
-
-json region_json(const WatchedTask& task, const UpdateFigures& figures, std::size_t i) {
-  const RegionOfInterest& region = task.regions[i];
-  const auto& sphere = std::get<Sphere>(region.bounds);
-  const auto& outcomes = figures.run.regions;
-  const RegionResult outcome = i < outcomes.size() ? outcomes[i] : RegionResult{};
-  const auto& views = figures.run.views;
-  const auto taken =
-      std::count_if(views.begin(), views.end(), [i](const ViewRecord& view) { return view.region == i; });
-  return {{"center_m", point_json(sphere.center)},
-          {"radius_m", sphere.radius_m},
-          {"saliency", region.saliency},
-          {"why", region.why},
-          {"end", end_of(figures, i)},
-          {"views", taken},
-          {"gain_left", outcome.gain_left},
-          {"refused", refusals_to_json(outcome.refused)},
-          {"unknown", unknown_json(figures, i)}};
 }
 
 json shape_json(const ObjectShape& shape) {
@@ -147,6 +122,31 @@ std::string arm_text(const json& result) {
 }
 
 }  // namespace
+
+json return_json(const StandByResult& back) {
+  return {{"at_stand_by", back.at_stand_by},
+          {"refused", back.refusal ? json(to_string(*back.refusal)) : json(nullptr)},
+          {"motion_s", back.motion_s}};
+}
+
+json region_json(const WatchedTask& task, const UpdateFigures& figures, std::size_t i) {
+  const RegionOfInterest& region = task.regions[i];
+  const auto& sphere = std::get<Sphere>(region.bounds);
+  const auto& outcomes = figures.run.regions;
+  const RegionResult outcome = i < outcomes.size() ? outcomes[i] : RegionResult{};
+  const auto& views = figures.run.views;
+  const auto taken =
+      std::count_if(views.begin(), views.end(), [i](const ViewRecord& view) { return view.region == i; });
+  return {{"center_m", point_json(sphere.center)},
+          {"radius_m", sphere.radius_m},
+          {"saliency", region.saliency},
+          {"why", region.why},
+          {"end", end_of(figures, i)},
+          {"views", taken},
+          {"gain_left", outcome.gain_left},
+          {"refused", refusals_to_json(outcome.refused)},
+          {"unknown", unknown_json(figures, i)}};
+}
 
 Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
                          const UpdateFigures& figures, const ExploreDevices& devices, const Executor& executor,

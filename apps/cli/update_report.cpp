@@ -32,9 +32,9 @@ ReportRegion report_region(const json& region, std::size_t number) {
   shown.radius_m = region.at("radius_m").get<double>();
   shown.end = in_words(region.at("end").get<std::string>());
   shown.unknown = region.at("unknown").get<std::vector<std::size_t>>();
-  const json& coverage = region.at("coverage");
-  if (!coverage.at("objects").is_null()) shown.coverage_objects = coverage.at("objects").get<double>();
-  if (!coverage.at("surfaces").is_null()) shown.coverage_surfaces = coverage.at("surfaces").get<double>();
+  const json coverage = region.value("coverage", json::object());  // a real cell has no truth
+  if (!coverage.value("objects", json{}).is_null()) shown.coverage_objects = coverage.at("objects").get<double>();
+  if (!coverage.value("surfaces", json{}).is_null()) shown.coverage_surfaces = coverage.at("surfaces").get<double>();
   return shown;
 }
 
@@ -48,16 +48,6 @@ ReportObject report_object(const json& object) {
     shown.measures.push_back(std::move(measure));
   }
   return shown;
-}
-
-/// None where it was not drawn.
-std::vector<ReportPicture> picture_of(const RunFolder& out, const char* name, const char* caption, const char* alt,
-                                      const char* kind) {
-  constexpr std::uintmax_t kMaxBytes{std::uintmax_t{64} << 20U};
-  const auto bytes = read_text_file(out / name, kMaxBytes);
-  if (!bytes) return {};
-  const auto* first = reinterpret_cast<const std::byte*>(bytes->data());
-  return {{{first, first + bytes->size()}, caption, alt, kind}};
 }
 
 void add(std::vector<ReportPicture>& pictures, std::vector<ReportPicture> more) {
@@ -85,6 +75,15 @@ void fill_head(UpdateReport& report, const UpdateOptions& options, const json& d
 
 }  // namespace
 
+std::vector<ReportPicture> picture_of(const RunFolder& out, const char* name, const char* caption, const char* alt,
+                                      const char* kind) {
+  constexpr std::uintmax_t kMaxBytes{std::uintmax_t{64} << 20U};
+  const auto bytes = read_text_file(out / name, kMaxBytes);
+  if (!bytes) return {};
+  const auto* first = reinterpret_cast<const std::byte*>(bytes->data());
+  return {{{first, first + bytes->size()}, caption, alt, kind}};
+}
+
 Status UpdatePictures::scanned(ScanRecord& /*scan*/, const TsdfSnapshot& map) {
   before_ = map;
   return {};
@@ -93,8 +92,8 @@ Status UpdatePictures::scanned(ScanRecord& /*scan*/, const TsdfSnapshot& map) {
 Status UpdatePictures::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) {
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), view.q, view.path);
   SACCADE_CHECK(draw_view(out_,
-                          {T_world_earlier_.size() + 1, before_, map, view, T_world_earlier_, frames,
-                           subject_.after.scene.workspace, devices_.intrinsics(), robot ? &*robot : nullptr},
+                          {T_world_earlier_.size() + 1, before_, map, view, T_world_earlier_, frames, workspace_,
+                           devices_.intrinsics(), robot ? &*robot : nullptr},
                           executor_));
   before_ = map;
   T_world_earlier_.push_back(view.T_world_camera);
@@ -102,21 +101,20 @@ Status UpdatePictures::viewed(ViewRecord& view, const TsdfSnapshot& map, std::sp
 }
 
 Status UpdatePictures::draw_maps(const UpdateFigures& figures) const {
-  const Box& workspace = subject_.after.scene.workspace;
   std::vector<Region> regions;
   for (const RegionOfInterest& region : task_.regions) regions.push_back(region.bounds);
-  const TaskScene task{workspace, task_.trajectory, task_.findings, regions};
+  const TaskScene task{workspace_, task_.trajectory, task_.findings, regions};
   const std::optional<RobotDrawing> robot = drawing_of(devices_.arm(), figures.stand_by, {});
   const std::optional<RobotDrawing> robot_at_end = drawing_of(devices_.arm(), figures.at_end, {});
   TaskPictureConfig config;
   config.region_radius_m = options_.region_radius_m;
   MapPictureConfig map;
   config.robot = map.robot = robot ? &*robot : nullptr;
-  SACCADE_CHECK(write_png(out_ / "before.png", map_picture(figures.before, workspace, executor_, map)));
+  SACCADE_CHECK(write_png(out_ / "before.png", map_picture(figures.before, workspace_, executor_, map)));
   SACCADE_CHECK(write_png(out_ / "hand.png", task_picture(figures.before, task, executor_, config)));
   SACCADE_CHECK(write_png(out_ / "regions.png", forgotten_picture(figures.forgotten, task, executor_, config)));
   map.robot = robot_at_end ? &*robot_at_end : nullptr;
-  return write_png(out_ / "after.png", map_picture(figures.after, workspace, executor_, map));
+  return write_png(out_ / "after.png", map_picture(figures.after, workspace_, executor_, map));
 }
 
 Status remove_update_pictures(const RunFolder& out) {
@@ -128,17 +126,9 @@ Status remove_update_pictures(const RunFolder& out) {
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
 }
 
-Status write_update_report(const UpdateOptions& options, const WatchedTask& task, const UpdateFigures& figures,
-                           const RunFolder& out, const json& document) {
-  const json& result = document.at("result");
-  UpdateReport report;
-  fill_head(report, options, document);
-  const json& scan = result.at("scan");
-  report.before.measures.unknown_left = scan.at("unknown_left").get<std::size_t>();
-  report.before.facts.emplace_back("views", std::to_string(figures.scan.views));
-  if (const std::string refused = in_words(figures.scan.refused); !refused.empty()) {
-    report.before.facts.emplace_back("poses passed over", refused);
-  }
+Status write_task_report(const UpdateReport& about, const WatchedTask& task, const UpdateFigures& figures,
+                         const RunFolder& out, const json& record) {
+  UpdateReport report = about;
   report.before.pictures =
       picture_of(out, "before.png", "The map before the task, unknown in black", "The map from outside", "map");
   report.task_pictures = picture_of(out, "hand.png", "The hand's way, and where it acted",
@@ -147,11 +137,11 @@ Status write_update_report(const UpdateOptions& options, const WatchedTask& task
                                        "The map with the regions of interest unknown", "regions"));
   report.task_facts = {{"hand", task.report.to_string()}, {"detector", fixed(task.ms, 2) + " ms"}};
   report.speed_svg = speed_plot(task.findings, "Speed of the hand");
-  for (const json& region : result.at("regions")) {
+  for (const json& region : record.at("regions")) {
     report.regions.push_back(report_region(region, report.regions.size() + 1));
   }
   report.once_ms = {{"forgetting", figures.forgetting_ms}};
-  report.unknown_after_task = result.at("unknown_after_task").get<std::size_t>();
+  report.unknown_after_task = record.at("unknown_after_task").get<std::size_t>();
   for (const ViewRecord& view : figures.run.views) {
     ShownView shown = shown_view(out, view, report.views.size() + 1);
     shown.region = view.region + 1;
@@ -161,13 +151,26 @@ Status write_update_report(const UpdateOptions& options, const WatchedTask& task
   report.after_pictures = picture_of(out, "after.png", "The map after the update", "The map from outside", "map");
   report.final.unknown_left =
       report.views.empty() ? report.unknown_after_task : report.views.back().record.measures.unknown_left;
+  return write_file_atomically(out / "report.html", update_report_html(report));
+}
+
+Status write_update_report(const UpdateOptions& options, const WatchedTask& task, const UpdateFigures& figures,
+                           const RunFolder& out, const json& document) {
+  const json& result = document.at("result");
+  UpdateReport report;
+  fill_head(report, options, document);
+  report.before.measures.unknown_left = result.at("scan").at("unknown_left").get<std::size_t>();
+  report.before.facts.emplace_back("views", std::to_string(figures.scan.views));
+  if (const std::string refused = in_words(figures.scan.refused); !refused.empty()) {
+    report.before.facts.emplace_back("poses passed over", refused);
+  }
   for (const json& object : result.at("objects")) report.objects.push_back(report_object(object));
   report.links = {{"mesh.ply", "the surface, with colours"},
                   {"before.sacmap", "the map before the task"},
                   {"map.sacmap", "the map after the update, for saccade nbv"},
                   {"hand.csv", "the hand's trajectory, for saccade attend"},
                   {"update.json", "all figures, for programs"}};
-  return write_file_atomically(out / "report.html", update_report_html(report));
+  return write_task_report(report, task, figures, out, result);
 }
 
 }  // namespace saccade::cli

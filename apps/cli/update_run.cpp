@@ -108,20 +108,14 @@ Status update_regions(const WatchedTask& task, const RegionMeter& meter, TsdfMap
   return {};
 }
 
-/// Counts the unknown voxels of the workspace after each view.
-class UnknownMeter final : public Recorder {
- public:
-  explicit UnknownMeter(const Box& workspace) : workspace_{workspace} {}
-  [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> /*frames*/) override {
-    view.measures.unknown_left = count_unknown(map, workspace_);
-    return {};
-  }
-
- private:
-  Box workspace_;
-};
-
 }  // namespace
+
+Status UpdateMeter::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> /*frames*/) {
+  view.measures.unknown_left = count_unknown(map, workspace_);
+  views_.push_back(view);
+  views_.back().choice.reset();  // it is large
+  return {};
+}
 
 Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase& subject, const WatchedTask& task,
                                  ExploreDevices& devices, const Executor& executor, const Progress& progress,
@@ -130,7 +124,7 @@ Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase&
   map_config.workspace = subject.before.scene.workspace;
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
   Recorder silent;
-  UnknownMeter unknown{subject.after.scene.workspace};
+  UpdateMeter unknown{subject.after.scene.workspace};
   RegionMeter of_regions{task.regions};
   Recorders recorders{&unknown, &of_regions, pictures != nullptr ? pictures : &silent};
   Explorer explorer{{map, devices.camera(), devices.robot(), executor, &recorders, nullptr, {}, &progress},

@@ -49,6 +49,18 @@ struct UpdateFigures {
   std::size_t contacts{0};  ///< with what was really there
 };
 
+/// Counts the unknown voxels of the workspace after each view, and keeps the views so far.
+class UpdateMeter final : public Recorder {
+ public:
+  explicit UpdateMeter(const Box& workspace) : workspace_{workspace} {}
+  [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) override;
+  [[nodiscard]] const std::vector<ViewRecord>& views() const { return views_; }
+
+ private:
+  Box workspace_;
+  std::vector<ViewRecord> views_;
+};
+
 /// Scans the scene before the task, returns to stand-by, lets the user change the scene, and runs Algorithm 1.
 /// @param pictures  told of the views after the task, and before that of the map as it is then; may be nullptr
 [[nodiscard]] Result<UpdateFigures> run_update(const UpdateOptions& options, const UpdateCase& subject,

@@ -91,7 +91,7 @@ class SimulatedCell : public ExploreCell {
     const std::string scene = text_of(source_folder() / "scenes/tabletop-1.yaml");
     std::ofstream{cell()} << scene << "arm: {robot: comau_smart_six}\n"
                           << "joints: {command: \"'" << (bin / "saccade-simulated-arm").string()
-                          << "' --state state --delay 0.02 --rate 4\", watchdog: 2}\n"
+                          << "' --state state --delay 0.02 --rate 4 --log log\", watchdog: 2}\n"
                           << "camera: {command: \"'" << (bin / "saccade-simulated-camera").string()
                           << "' --scene tabletop-1 --state state --width 160 --clock -0.035"
                           << " --mount 0.005,-0.004,0.0045,1.2,-1.2,1\"}\n";
@@ -114,6 +114,24 @@ TEST_F(SimulatedCell, ACheckSaysWhatEachDeviceDelivers) {
   ASSERT_EQ(result.at("problems").size(), 1U) << broken.out;
   EXPECT_NE(result.at("problems")[0].get<std::string>().find("/nowhere/camera"), std::string::npos);
   EXPECT_EQ(result.at("q").size(), 6U);
+}
+
+TEST_F(SimulatedCell, ADryRunPlansAndDrawsAndMovesNothing) {
+  write_simulated();
+  const Outcome outcome = run_program(
+      {"explore", cell().string(), "--dry-run", "--out", run().string(), "--voxel-size", "0.02", "--quiet"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  for (const char* words : {"dry run   nothing has moved", "scan      2 of 2 poses can be taken", "view      from ("}) {
+    EXPECT_NE(outcome.out.find(words), std::string::npos) << words << '\n' << outcome.out;
+  }
+  const nlohmann::json result = nlohmann::json::parse(text_of(run() / "run.json")).at("result");
+  EXPECT_TRUE(result.at("dry_run").get<bool>());
+  EXPECT_EQ(result.at("views").size(), 1U);
+  EXPECT_GT(result.at("views")[0].at("motion_s").get<double>(), 0.0);
+  EXPECT_NE(text_of(run() / "report.html").find("Dry run"), std::string::npos);
+  EXPECT_EQ(text_of(folder_ / "log").find("follow"), std::string::npos);
+  expect_failure(run_program({"explore", cell().string(), "--dry-run", "--step", "--out", run().string()}), 2,
+                 "explore", {"--dry-run"});
 }
 
 TEST_F(SimulatedCell, CalibrationFindsWhereTheCameraSits) {

@@ -40,7 +40,7 @@ class UpdateCell : public ::testing::Test {
     const fs::path bin = fs::path{saccade_program()}.parent_path();
     std::ofstream{cell()} << text_of(source_folder() / "scenes/bottle-before.yaml") << "arm: {robot: comau_smart_six}\n"
                           << "joints: {command: \"'" << (bin / "saccade-simulated-arm").string()
-                          << "' --state state --rate 8\", watchdog: 2}\n"
+                          << "' --state state --rate 8 --log log\", watchdog: 2}\n"
                           << "camera: {command: \"'" << (bin / "saccade-simulated-camera").string()
                           << "' --scene bottle-before --then bottle --when put-down --state state --width 160\"}\n"
                           << hand;
@@ -50,6 +50,8 @@ class UpdateCell : public ::testing::Test {
                      "--quiet", "--json",        "-"} +
            more;
   }
+  /// Whether the arm was ever told to move.
+  [[nodiscard]] bool moved() const { return text_of(folder_ / "log").find("follow") != std::string::npos; }
   TempFolder folder_;
 };
 
@@ -60,18 +62,28 @@ TEST_F(UpdateCell, TheRobotLooksAgainWhereTheHandHasPutSomethingDown) {
   const json result = outcome.json().at("result");
   ASSERT_EQ(result.at("tasks").size(), 1U);
   const json& task = result.at("tasks")[0];
-  EXPECT_GT(task.at("samples").get<int>(), 50);
+  EXPECT_GT(task.at("samples").at("total").get<int>(), 50);
   EXPECT_EQ(task.at("stopped_because"), "regions_done");
-  EXPECT_TRUE(task.at("at_stand_by").get<bool>());
+  EXPECT_TRUE(task.at("back").at("at_stand_by").get<bool>());
   ASSERT_GE(task.at("regions").size(), 1U);
   EXPECT_EQ(task.at("regions").size(), task.at("actions").size());
   for (const json& region : task.at("regions")) {
     EXPECT_EQ(region.at("end"), "done");
-    EXPECT_LT(region.at("unknown_left").get<double>(), 0.4 * region.at("unknown_after_task").get<double>());
+    const json& unknown = region.at("unknown");  // after the task, then after each view
+    ASSERT_EQ(unknown.size(), task.at("views").size() + 1);
+    EXPECT_LT(unknown.back().get<double>(), 0.4 * unknown.front().get<double>());
   }
   EXPECT_GE(task.at("views").size(), 1U);
-  for (const char* file : {"map.sacmap", "mesh.ply", "update.json", "task-1.csv"}) {
+  for (const char* file : {"map.sacmap", "mesh.ply", "update.json", "map.png", "task-1/hand.csv", "task-1/hand.png",
+                           "task-1/regions.png", "task-1/view-01-map.png"}) {
     EXPECT_TRUE(fs::exists(folder_ / "run" / file)) << file;
+  }
+  const std::string page = text_of(folder_ / "run/report.html");
+  EXPECT_NE(page.find("href=\"task-1/report.html\""), std::string::npos);
+  EXPECT_NE(page.find("The hand came 1 time"), std::string::npos);
+  const std::string of_task = text_of(folder_ / "run/task-1/report.html");
+  for (const char* part : {"Task 1 of bottle-before", "The hand's way", "Speed of the hand", "id=\"view-1\""}) {
+    EXPECT_NE(of_task.find(part), std::string::npos) << part;
   }
 }
 
@@ -84,6 +96,19 @@ TEST_F(UpdateCell, ARecordingStandsInForTheTracker) {
   expect_failure(run_program({"update", cell().string(), "--out", (folder_ / "none").string(), "--quiet"}), 3, "update",
                  {"nothing tracks the hand", "--hand-command"});
   expect_failure(run_program({"update", cell().string(), "--scene", "bottle", "--quiet"}), 2, "update", {"--scene"});
+}
+
+TEST_F(UpdateCell, ADryRunPlansForTheTaskAndMovesNothing) {
+  write("hand: {command: python3 -B hand.py}\n");
+  const Outcome outcome = run_program(update({"--dry-run"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const json result = outcome.json().at("result");
+  EXPECT_TRUE(result.at("dry_run").get<bool>());
+  ASSERT_EQ(result.at("tasks").size(), 1U);
+  EXPECT_EQ(result.at("tasks")[0].at("views").size(), 1U);  // planned
+  EXPECT_TRUE(fs::exists(folder_ / "run/task-1/view-01-map.png"));
+  EXPECT_FALSE(moved());
+  expect_failure(run_program({"update", "--scene", "bottle", "--dry-run", "--quiet"}), 2, "update", {"--dry-run"});
 }
 
 }  // namespace

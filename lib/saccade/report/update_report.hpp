@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // UpdateReport and update_report_html: a user's task and how the map was brought up to date after it, as one HTML page,
-// and its pictures. How to read it: docs/report.md.
+// and its pictures; CellReport and cell_report_html: the tasks of a cell. How to read them: docs/report.md.
 
 #include <array>
 #include <cstddef>
@@ -118,5 +118,34 @@ struct UpdateReport {
 
 /// The page: UTF-8, well-formed as XML but for its doctype, nothing in it from elsewhere. O(bytes of the pictures).
 [[nodiscard]] std::string update_report_html(const UpdateReport& report);
+
+/// One task of a real cell, which has a page of its own.
+struct CellTask {
+  std::size_t number{1};
+  std::string page;        ///< relative, for example "task-1/report.html"
+  double duration_s{0.0};  ///< from the hand's entering the workspace to its leaving
+  std::size_t actions{0};
+  std::size_t regions{0};  ///< with those that an earlier task has left
+  std::size_t complete{0};
+  std::size_t views{0};
+  std::size_t unknown_after_task{0};  ///< voxels in the regions
+  std::size_t unknown_at_end{0};
+  std::string end;  ///< in words
+};
+
+/// What happened in a cell so far.
+struct CellReport {
+  std::string title;
+  std::string version;                                        ///< the program's
+  std::vector<std::pair<std::string, std::string>> settings;  ///< one line below the title
+  std::vector<std::pair<std::string, std::string>> facts;
+  std::vector<CellTask> tasks;
+  std::vector<ReportPicture> pictures;  ///< the map as it is now
+  std::size_t unknown_left{0};          ///< voxels of the workspace
+  std::vector<ReportLink> links;
+};
+
+/// The page that leads to those of the tasks; otherwise as update_report_html.
+[[nodiscard]] std::string cell_report_html(const CellReport& report);
 
 }  // namespace saccade

@@ -185,8 +185,10 @@ struct ShapeErrors {
 };
 [[nodiscard]] ShapeErrors summarize(std::span<const ObjectShape> errors);
 
-/// Instants of the motions, one every step_s, at which a link cuts into a solid. The links are taken as their balls of
-/// ArmCollision, the finest of them 5 mm smaller, as they may exceed the links by that.
+/// Whether a link of the arm cuts into a solid. The links are taken as their balls of ArmCollision, the finest of them
+/// 5 mm smaller, as they may exceed the links by that.
+[[nodiscard]] bool touches(const ArmCollision& collision, const Solids& solids, const Configuration& q);
+/// Instants of the motions, one every step_s, at which a link touches a solid.
 /// O(instants · balls near something · log triangles)
 [[nodiscard]] std::size_t count_contacts(const ArmCollision& collision, const Solids& solids,
                                          std::span<const Trajectory> motions, const Executor& executor,

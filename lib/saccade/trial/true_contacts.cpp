@@ -13,6 +13,8 @@ namespace {
 
 constexpr double kBelieved_m{0.005};
 
+}  // namespace
+
 bool touches(const ArmCollision& collision, const Solids& solids, const Configuration& q) {
   const ArmPoses poses = forward_kinematics(collision.arm(), q);
   return !collision.clear(poses, [&](const Eigen::Vector3d& center, double cover_radius_m, bool finest) {
@@ -20,8 +22,6 @@ bool touches(const ArmCollision& collision, const Solids& solids, const Configur
     return radius_m <= 0.0 || (solids.distance_m(center, 2.0 * radius_m) >= radius_m && !solids.contain(center));
   });
 }
-
-}  // namespace
 
 std::size_t count_contacts(const ArmCollision& collision, const Solids& solids, std::span<const Trajectory> motions,
                            const Executor& executor, double step_s) {
