@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "update_cell.hpp"
 
+#include <algorithm>
 #include <atomic>
 #include <iostream>
 #include <memory>
@@ -260,12 +261,17 @@ Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& g
   SACCADE_CHECK(write_result("update", global, executor, {{"total", total.elapsed_ms()}}, update.result()));
   if (!global.json_to_stdout()) {
     if (options.dry_run) std::cout << "dry run   nothing has moved\n";
-    std::cout << "tasks     " << update.tasks() << "\nresults   "
-              << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
+    print_tasks(update.result().at("tasks"));
+    std::cout << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
   }
   if (stopped) return interrupt_status();
-  if (update.tasks() > 0) return static_cast<int>(ExitStatus::done);
-  print_error("update", "the hand never came into the workspace; nothing was updated");
+  const json tasks = update.result().at("tasks");
+  const auto has = [&tasks](const char* what) {
+    return std::any_of(tasks.begin(), tasks.end(), [what](const json& task) { return !task.at(what).empty(); });
+  };
+  if (has("views") || (!tasks.empty() && !has("regions"))) return static_cast<int>(ExitStatus::done);
+  print_error("update", tasks.empty() ? "the hand never came into the workspace; nothing was updated"
+                                      : "not one view of a region could be taken; does the arm stand in its own way?");
   return static_cast<int>(ExitStatus::no_result);
 }
 

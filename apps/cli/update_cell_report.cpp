@@ -2,6 +2,7 @@
 #include "update_cell_report.hpp"
 
 #include <algorithm>
+#include <iostream>
 
 #include "attend.hpp"
 #include "explore_report.hpp"
@@ -107,6 +108,22 @@ json task_record(const UpdateOptions& options, const WatchedTask& task, const Up
           {"stopped_because", end}};
 }
 
+void print_tasks(const json& records) {
+  const Summary summary{std::cout};
+  if (records.empty()) summary.line("tasks", "none");
+  std::size_t number = 0;
+  for (const json& record : records) {
+    const CellTask task = cell_task(record, ++number);
+    std::string text = std::to_string(task.actions) + (task.actions == 1 ? " action, " : " actions, ") +
+                       std::to_string(task.complete) + " of " + std::to_string(task.regions) + " regions complete, " +
+                       std::to_string(task.views) + (task.views == 1 ? " view; " : " views; ") + task.end;
+    RefusalCounts refused;
+    for (const json& region : record.at("regions")) refused.add(refusals_from_json(region.at("refused")).value());
+    if (refused.total() > 0) text += "; refused " + in_words(refused);
+    summary.line("task " + std::to_string(number), text);
+  }
+}
+
 Status write_task_page(const UpdateOptions& options, const WatchedTask& task, const UpdateFigures& figures,
                        const RunFolder& folder, const ExploreDevices& devices, const json& document,
                        const json& record) {
@@ -119,6 +136,7 @@ Status write_task_page(const UpdateOptions& options, const WatchedTask& task, co
   report.fuse_when = fused_when(options);
   report.robot = options.robot;
   report.draws_robot = options.has_arm();
+  report.seed = document.at("seed").get<std::uint64_t>();
   report.threads = document.at("threads").get<std::size_t>();
   report.version = document.at("version").get<std::string>();
   report.facts = facts_of(options, devices);

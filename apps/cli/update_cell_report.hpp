@@ -20,6 +20,9 @@ namespace saccade::cli {
 [[nodiscard]] nlohmann::json task_record(const UpdateOptions& options, const WatchedTask& task,
                                          const UpdateFigures& figures, const Box& workspace, std::string_view end);
 
+/// A line for each task, from their records.
+void print_tasks(const nlohmann::json& records);
+
 /// A task's report.html, from its pictures and its record, the last one in the document. io_failure.
 [[nodiscard]] Status write_task_page(const UpdateOptions& options, const WatchedTask& task,
                                      const UpdateFigures& figures, const RunFolder& folder,

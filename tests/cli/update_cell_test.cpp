@@ -82,7 +82,7 @@ TEST_F(UpdateCell, TheRobotLooksAgainWhereTheHandHasPutSomethingDown) {
   EXPECT_NE(page.find("href=\"task-1/report.html\""), std::string::npos);
   EXPECT_NE(page.find("The hand came 1 time"), std::string::npos);
   const std::string of_task = text_of(folder_ / "run/task-1/report.html");
-  for (const char* part : {"Task 1 of bottle-before", "The hand's way", "Speed of the hand", "id=\"view-1\""}) {
+  for (const char* part : {"Task 1 of bottle-before", "and where it acted", "Speed of the hand", "id=\"view-1\""}) {
     EXPECT_NE(of_task.find(part), std::string::npos) << part;
   }
 }

@@ -27,7 +27,7 @@ struct MotionFigures {
   std::size_t detours{0};  ///< not straight in joint space
   std::size_t samples{0};  ///< that the program reported
   std::size_t beyond_limits{0};
-  std::size_t contacts{0};    ///< by FCL, at samples and every 4 ms of the plans
+  std::size_t contacts{0};    ///< by FCL, at samples and every 10 ms of the plans
   double farthest_off{0.0};   ///< distance of a sample from the plan, rad
   double fastest_share{0.0};  ///< share of the speed limit, between two samples
   double hardest_share{0.0};  ///< share of the acceleration limit, between the points that are sent
@@ -126,7 +126,7 @@ class ManyMotions {
   /// The points 20 ms apart that a program is sent, and the plan between them.
   void check_points(const Trajectory& planned) {
     constexpr double kPoint_s{0.02};
-    constexpr double kFine_s{0.004};
+    constexpr double kFine_s{0.01};
     Configuration speed_before = Configuration::Zero(arm_.dof());
     for (double t_s = kPoint_s; t_s < planned.duration_s(); t_s += kPoint_s) {
       const Configuration speed = planned.at(t_s).speed;
@@ -189,7 +189,7 @@ ArmModel builtin(const char* name) { return find_robot(name).value().arm; }
 constexpr std::size_t kMany{1000};
 constexpr double kQuick{10.0};  ///< times real time
 
-TEST(JointMotions, AProgramMovesAnArmAsPlanned) { expect_motions(builtin("ur_like"), 8, kQuick); }
+TEST(JointMotions, AProgramMovesAnArmAsPlanned) { expect_motions(builtin("ur_like"), 3, kQuick); }
 
 TEST(JointMotionsEvidence, BuiltInArm) { expect_motions(builtin("comau"), kMany, kQuick); }
 TEST(JointMotionsEvidence, UrLike) { expect_motions(builtin("ur_like"), kMany, kQuick); }
