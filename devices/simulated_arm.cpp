@@ -3,7 +3,8 @@
 //
 //   saccade-simulated-arm [--state FILE] [--start Q,Q,...] [--delay S] [--jitter RAD] [--clock S] [--rate R] [--seed N]
 //                         [--fault none|hang|die|lie|drift|slow|nonsense|error] [--after S] [--log FILE]
-//                         [--scene SCENE --robot ROBOT]
+//                         [--scene SCENE [--robot ROBOT] [--base LINK] [--base-at X,Y,Z[,DEGREES]] [--tip LINK]
+//                         [--camera-frame LINK] [--package NAME=FOLDER]]
 //
 // --state is where a simulated camera reads the true positions; --rate is how much faster than real time it moves;
 // --clock is added to its time stamps; the fault shows when it has been moving for --after seconds; --log gets lines
@@ -14,9 +15,9 @@
 #include <random>
 #include <thread>
 
+#include "arm_reading.hpp"
 #include "arm_state.hpp"
 #include "protocol.hpp"
-#include "saccade/arm/urdf.hpp"
 #include "saccade/scene/scene_yaml.hpp"
 #include "saccade/trial/metrics.hpp"
 
@@ -61,8 +62,9 @@ struct TrueScene {
   saccade::ArmCollision arm;
   saccade::Solids solids;
 
-  static saccade::Result<TrueScene> open(const std::string& scene_name, const std::string& robot) {
-    SACCADE_TRY(const saccade::UrdfArm read, saccade::find_robot(robot));
+  static saccade::Result<TrueScene> open(const std::string& scene_name, const Options& options) {
+    SACCADE_TRY(const saccade::UrdfArm read,
+                saccade::find_robot(options.text("--robot", "comau"), reading_of(options)));
     SACCADE_TRY(saccade::ArmCollision arm, saccade::ArmCollision::create(read.arm));
     SACCADE_TRY(const saccade::Scene scene, saccade::find_scene(scene_name));
     SACCADE_TRY(const saccade::RayScene rays, saccade::RayScene::build(scene));
@@ -90,7 +92,7 @@ class SimulatedArm {
     const std::string state = options.text("--state");
     if (!state.empty()) state_.emplace(state);
     if (const std::string scene = options.text("--scene"); !scene.empty()) {
-      auto opened = TrueScene::open(scene, options.text("--robot", "comau"));
+      auto opened = TrueScene::open(scene, options);
       if (!opened) throw std::runtime_error{opened.error().to_string()};
       scene_.emplace(*std::move(opened));
     }

@@ -2,15 +2,13 @@
 // A simulated depth camera in the hand of a simulated arm, which sees a scene from where the arm truly is.
 //
 //   saccade-simulated-camera --scene SCENE [--robot ROBOT] [--base LINK] [--base-at X,Y,Z[,DEGREES]] [--tip LINK]
-//                            [--camera-frame LINK] [--package NAME=FOLDER]
-//                            [--state FILE] [--mount X,Y,Z,RX,RY,RZ] [--delay S]
-//                            [--clock S] [--width PIXELS] [--seed N] [--noise 0|1] [--fault
-//                            none|hang|die|nonsense|error]
-//                            [--after FRAMES] [--log FILE] [--then SCENE --when FILE]
+//                            [--camera-frame LINK] [--package NAME=FOLDER] [--state FILE] [--mount X,Y,Z,RX,RY,RZ]
+//                            [--delay S] [--clock S] [--width PIXELS] [--seed N] [--noise 0|1]
+//                            [--fault none|hang|die|nonsense|error] [--after FRAMES] [--log FILE]
+//                            [--then SCENE --when FILE]
 //
 // Options that saccade has too read the arm's description as there. Without --state it sees from where it is asked to
-// be.
-// --mount is how far off the camera truly sits on the flange: metres, and degrees about its x, y and z axes. A frame
+// be. --mount is how far off the camera truly sits on the flange: metres, and degrees about its x, y and z axes. A frame
 // comes --delay seconds after it was taken; --clock is added to its time stamps. The fault shows when --after frames
 // were taken; --log gets a line with its time. As soon as there is a file FILE, the scene of --then takes the place of
 // the first one.
@@ -19,6 +17,7 @@
 #include <fstream>
 #include <thread>
 
+#include "arm_reading.hpp"
 #include "arm_state.hpp"
 #include "protocol.hpp"
 #include "saccade/arm/kinematics.hpp"
@@ -53,22 +52,6 @@ Pose mount_error(const std::vector<double>& values) {
   return error;
 }
 
-UrdfConfig reading_of(const devices::Options& options) {
-  UrdfConfig config;
-  config.base = options.text("--base");
-  config.tip = options.text("--tip");
-  config.camera = options.text("--camera-frame");
-  if (const std::string package = options.text("--package"); !package.empty()) {
-    const std::size_t equals = std::min(package.find('='), package.size() - 1);
-    config.packages[package.substr(0, equals)] = package.substr(equals + 1);
-  }
-  if (const std::vector<double> at = options.numbers("--base-at"); at.size() >= 3) {
-    config.T_world_base = Eigen::Translation3d{at[0], at[1], at[2]} *
-                          Eigen::AngleAxisd{to_rad(at.size() > 3 ? at[3] : 0.0), Eigen::Vector3d::UnitZ()};
-  }
-  return config;
-}
-
 class CameraInHand {
  public:
   explicit CameraInHand(const devices::Options& options)
@@ -83,7 +66,7 @@ class CameraInHand {
     if (!when_.empty()) changed_ = value_of(camera_of(options, options.text("--then")));
     const std::string state = options.text("--state");
     if (state.empty()) return;
-    arm_ = value_of(find_robot(options.text("--robot", "comau"), reading_of(options))).arm;
+    arm_ = value_of(find_robot(options.text("--robot", "comau"), devices::reading_of(options))).arm;
     state_.emplace(state);
   }
 

@@ -16,7 +16,10 @@ import statistics
 import subprocess
 import sys
 
-import numpy as np
+try:
+    import numpy as np
+except ModuleNotFoundError:
+    np = None  # needed by `update` alone (Debian: python3-numpy)
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 BUILD = ROOT / "build/release"
@@ -209,12 +212,15 @@ def compare(out, views):
 
 
 def main():
+    global BUILD
     parser = argparse.ArgumentParser(description=__doc__)
     parser.add_argument("what", choices=["compare", "faults", "update"])
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--count", type=int, help="faults (200) or tasks (10)")
     parser.add_argument("--views", type=int, default=5)
+    parser.add_argument("--build", type=pathlib.Path, default=BUILD, help="folder of the programs")
     arguments = parser.parse_args()
+    BUILD = arguments.build.resolve()
     arguments.out.mkdir(parents=True, exist_ok=True)
     os.environ["PATH"] = f"{BUILD}:{os.environ['PATH']}"
     if arguments.what == "faults":

@@ -235,6 +235,12 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
   if (reason != StopReason::cancelled) {
     SACCADE_CHECK(remove_journal(out.path()));
     if (show) show->finish();
+    const ScanRecord& scan = run->record().scan;
+    if (run->record().views.empty() && scan.attempted > 0 && scan.views == 0) {
+      print_error("explore", "not one pose of the scan could be taken (" + in_words(scan.refused) +
+                                 "); give the scene or the cell poses that the robot reaches, under scan");
+      return static_cast<int>(ExitStatus::no_result);
+    }
     if (!run->record().views.empty() || reason != StopReason::no_candidate) return static_cast<int>(ExitStatus::done);
     print_error("explore", "not one view could be taken (" + in_words(run->record().refused_at_end) +
                                "); does the robot stand where it should?");
