@@ -149,6 +149,11 @@ fi
 echo "Motions of the arm beside FCL: ten seeds, all built-in scenes"
 step motion_planning env SACCADE_PLANNING_SEEDS=10 build/release/tests/parity '--gtest_filter=MotionPlanning*'
 
+echo "A simulated cell whose devices are processes of their own"
+for what in compare faults update; do
+  step "cell_$what" /usr/bin/python3 scripts/evidence_cell.py "$what" "$out/cell_$what"
+done
+
 echo "Annotation: simulated annotators on labelled clouds"
 clouds="$data/mosd_labelled/learn"
 if [[ -d $clouds ]]; then

@@ -2,6 +2,7 @@
 #include "update_cell.hpp"
 
 #include <algorithm>
+#include <array>
 #include <atomic>
 #include <iostream>
 #include <memory>
@@ -58,7 +59,8 @@ class CellUpdate {
         devices_{devices},
         out_{out},
         bar_{bar},
-        map_{std::move(map)} {}
+        map_{std::move(map)},
+        has_scan_{!options.map.empty()} {}
 
   [[nodiscard]] Status scan() {
     Progress progress = shown();
@@ -69,8 +71,10 @@ class CellUpdate {
       SACCADE_TRY([[maybe_unused]] const bool seen, devices_.look_from_where_it_stands(map_, executor_));
     }
     const std::vector<Pose>& poses = subject_.scene.scan;
-    SACCADE_TRY(scan_, explorer.scan(options_.map.empty() ? poses : std::vector<Pose>{}));
+    SACCADE_TRY(scan_, explorer.scan(has_scan_ ? std::vector<Pose>{} : poses));
     if (!scan_.complete) return {};
+    has_scan_ = true;
+    scan_.measures.unknown_left = count_unknown(map_.content(), subject_.scene.workspace);
     SACCADE_TRY([[maybe_unused]] const StandByResult back, explorer.return_to_stand_by());
     return {};
   }
@@ -95,24 +99,45 @@ class CellUpdate {
     SACCADE_TRY(watcher_, TaskWatcher::create(std::move(hand), recorder, detect, options_.region_radius_m, [this] {
                   if (Progress* looking = looking_.load()) looking->request_cancel();
                 }));
+    if (!left_.empty()) SACCADE_CHECK(look_again({}));  // of the run that was interrupted
     for (;;) {
       bar_.update("waiting for the hand", tasks_.size(), 0);
       Progress waiting;
       const CancelOnInterrupt guard{waiting};
       SACCADE_TRY(const std::optional<UserTask> ended, watcher_->next_task(&waiting));
       if (!ended) return {};
-      task_.regions = std::exchange(left_, {});
-      regions_left_before_ = task_.regions.size();
-      task_.regions.insert(task_.regions.end(), ended->regions.begin(), ended->regions.end());
-      SACCADE_CHECK(look_again());
+      SACCADE_CHECK(look_again(ended->regions));
     }
   }
 
+  /// Goes on after the tasks of an earlier run; regions that its last one left are looked at first. corrupt_data.
+  [[nodiscard]] Status resume(const json& document) {
+    try {
+      has_scan_ = document.at("result").at("scanned").get<bool>();
+      for (const json& task : document.at("result").at("tasks")) tasks_.push_back(task);
+      if (tasks_.empty()) return {};
+      for (const json& region : tasks_.back().at("regions")) {
+        const json& end = region.at("end");
+        if (end != to_string(RegionStatus::not_begun) && end != to_string(RegionStatus::interrupted)) continue;
+        const auto center = region.at("center_m").get<std::array<double, 3>>();
+        RegionOfInterest left;
+        left.bounds = Sphere{{center[0], center[1], center[2]}, region.at("radius_m").get<double>()};
+        left.saliency = region.at("saliency").get<double>();
+        left.why = region.at("why").get<std::string>();
+        left_.push_back(std::move(left));
+      }
+    } catch (const json::exception& e) {
+      return Error{Errc::corrupt_data, e.what(), (out_ / "update.json").string()};
+    }
+    return {};
+  }
+
   [[nodiscard]] std::size_t tasks() const { return tasks_.size(); }
-  [[nodiscard]] bool scanned() const { return scan_.complete; }
+  [[nodiscard]] bool scanned() const { return has_scan_; }
   [[nodiscard]] json result() const {
     return {{"cell", subject_.scene.name}, {"out", options_.out.string()},   {"method", options_.method->name},
-            {"dry_run", options_.dry_run}, {"initial", scan_to_json(scan_)}, {"tasks", tasks_}};
+            {"dry_run", options_.dry_run}, {"scanned", has_scan_},
+            {"initial", scan_to_json(scan_)}, {"tasks", tasks_}};
   }
   [[nodiscard]] json document(double total_ms) const {
     return json_envelope("update", global_, executor_, {{"total", total_ms}}, result());
@@ -141,7 +166,10 @@ class CellUpdate {
   }
 
   /// Algorithm 1 for the regions of a task, and those that an earlier one has left.
-  [[nodiscard]] Status look_again() {
+  [[nodiscard]] Status look_again(const std::vector<RegionOfInterest>& regions) {
+    task_.regions = std::exchange(left_, {});
+    regions_left_before_ = task_.regions.size();
+    task_.regions.insert(task_.regions.end(), regions.begin(), regions.end());
     SACCADE_TRY(const RunFolder folder,
                 RunFolder::open(out_ / task_folder(tasks_.size() + 1), {}, "report.html", true));
     SACCADE_CHECK(write_hand_csv(folder / "hand.csv", task_.trajectory));
@@ -224,6 +252,7 @@ class CellUpdate {
   const RunFolder& out_;
   ProgressBar& bar_;
   TsdfMap map_;
+  bool has_scan_;  ///< the map knows what the scan would show
   ScanRecord scan_;
   std::vector<json> tasks_;
   std::vector<RegionOfInterest> left_;
@@ -236,7 +265,8 @@ class CellUpdate {
 
 }  // namespace
 
-Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& global) {
+Result<int> run_cell_update(const UpdateOptions& given, const GlobalOptions& global) {
+  UpdateOptions options = given;
   const Stopwatch total;
   const Executor executor = global.executor();
   ProgressBar bar{global.quiet};
@@ -246,18 +276,28 @@ Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& g
   if (arm && options.fuse_when == FuseWhen::motion) arm = slowed(*arm, kSpeedWhileFusing);
   SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
   SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));
-  SACCADE_CHECK(remove_task_folders(out));
+  std::optional<json> before;
+  if (options.resume) {
+    SACCADE_TRY(before, read_json(out / "update.json"));
+    options.map = out / "map.sacmap";
+  }
+  if (!options.resume) SACCADE_CHECK(remove_task_folders(out));
   SACCADE_TRY(std::unique_ptr<HandTracker> hand, open_hand(options));
   SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
   SACCADE_TRY(TsdfMap map, map_to_begin_with(options, subject.scene, executor));
   CellUpdate update{options, global, subject, devices, out, bar, std::move(map)};
+  if (before) SACCADE_CHECK(update.resume(*before));
   Status ended = update.scan();
   if (ended.ok() && update.scanned()) ended = update.watch(std::move(hand));
   const bool stopped = interrupted() || (!ended.ok() && ended.error().code == Errc::cancelled);
   const Status written = update.write(total.elapsed_ms());  // whatever happened, what was seen is kept
   bar.finish();
-  if (!ended.ok() && !stopped) return ended.error();
-  if (!written.ok()) return written.error();
+  if (!written.ok()) return ended.ok() || stopped ? written.error() : ended.error();
+  if (!ended.ok() && !stopped) {
+    Error error = ended.error();
+    error.message += "; what was seen until then is kept, add --resume to go on";
+    return error;
+  }
   SACCADE_CHECK(write_result("update", global, executor, {{"total", total.elapsed_ms()}}, update.result()));
   if (!global.json_to_stdout()) {
     if (options.dry_run) std::cout << "dry run   nothing has moved\n";

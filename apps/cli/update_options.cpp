@@ -62,6 +62,9 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
             "with CELL: a program that tracks the hand (docs/processes.md)");
   add_arm_options(command, options);
   add_dry_run_option(command, options);
+  command.add_flag("--resume", options.resume,
+                   "with CELL: go on with the interrupted updates in the folder: with their map and tasks, and first with "
+                   "the regions that were left");
   command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
@@ -82,8 +85,11 @@ void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
   }
   if (options.out.empty()) options.out = "update-" + std::filesystem::path{options.scene}.stem().string();
   limit_dry_run(options);
+  if (options.resume && (options.force || options.dry_run || !options.map.empty()))
+    usage_error("--resume", "goes on with what is in the folder: it goes with none of --force, --dry-run and --map");
   if (!options.cell_file.empty()) return;
   if (options.dry_run) usage_error("--dry-run", "is for a CELL: a simulated task moves nothing that is real");
+  if (options.resume) usage_error("--resume", "is for a CELL");
   const bool is_file = std::filesystem::path{options.scene}.has_extension();
   if (options.before.empty() && is_file) usage_error("--before", "is needed where --scene is a file");
   if (options.before.empty()) options.before = options.scene + "-before";

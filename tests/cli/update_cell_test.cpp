@@ -98,6 +98,36 @@ TEST_F(UpdateCell, ARecordingStandsInForTheTracker) {
   expect_failure(run_program({"update", cell().string(), "--scene", "bottle", "--quiet"}), 2, "update", {"--scene"});
 }
 
+TEST_F(UpdateCell, RegionsThatAFailureLeftAreLookedAtWhenTheRunGoesOn) {
+  write("hand: {command: python3 -B hand.py}\n");
+  const std::string cell_as_it_works = text_of(cell());
+  std::string broken = cell_as_it_works;
+  const std::string width = "--width 160";  // the scan has 40 frames; the first view of the task is taken
+  broken.replace(broken.find(width), width.size(), width + " --fault error --after 47");
+  std::ofstream{cell()} << broken;
+  const Outcome failed = run_program(update({}));
+  expect_failure(failed, 4, "update", {"the cable is loose", "is kept, add --resume"});
+  const json before = json::parse(text_of(folder_ / "run/update.json")).at("result");
+  ASSERT_EQ(before.at("tasks").size(), 1U);
+  EXPECT_EQ(before.at("tasks")[0].at("stopped_because"), "device_failed");
+  EXPECT_EQ(before.at("tasks")[0].at("views").size(), 1U);
+  // The devices work again, and the hand does not come back.
+  std::ofstream{cell()} << cell_as_it_works;
+  std::ofstream{folder_ / "hand.py"} << "import sys\n"
+                                        "for said in ('{\"saccade\": 1}', '{\"number\": 0, \"end\": true}'):\n"
+                                        "    sys.stdin.readline()\n"
+                                        "    print(said, flush=True)\n";
+  const Outcome outcome = run_program(update({"--resume"}));
+  ASSERT_TRUE(outcome.status == 0) << outcome.err;
+  const json result = outcome.json().at("result");
+  ASSERT_EQ(result.at("tasks").size(), 2U);
+  const json& after = result.at("tasks")[1];
+  EXPECT_EQ(after.at("regions_left_before"), before.at("tasks")[0].at("regions").size());
+  EXPECT_EQ(after.at("stopped_because"), "regions_done");
+  EXPECT_GE(after.at("views").size(), 1U);
+  expect_failure(run_program({"update", "--scene", "bottle", "--resume", "--quiet"}), 2, "update", {"--resume"});
+}
+
 TEST_F(UpdateCell, ADryRunPlansForTheTaskAndMovesNothing) {
   write("hand: {command: python3 -B hand.py}\n");
   const Outcome outcome = run_program(update({"--dry-run"}));
