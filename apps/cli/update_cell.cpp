@@ -99,7 +99,7 @@ class CellUpdate {
     SACCADE_TRY(watcher_, TaskWatcher::create(std::move(hand), recorder, detect, options_.region_radius_m, [this] {
                   if (Progress* looking = looking_.load()) looking->request_cancel();
                 }));
-    if (!left_.empty()) SACCADE_CHECK(look_again({}));  // of the run that was interrupted
+    if (!left_.empty()) SACCADE_CHECK(look_again({}));  // left by the interrupted run
     for (;;) {
       bar_.update("waiting for the hand", tasks_.size(), 0);
       Progress waiting;
