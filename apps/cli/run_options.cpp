@@ -34,9 +34,11 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
   command.add_flag(
       "--as-printed", options.run.as_printed,
       "attention, standard, sphere: as in the thesis; of segments the most salient alone, and every promise "
-      "is believed, whatever earlier views have shown");
-  add_value(command, "--gain-width", options.run.gain_width_px, "PIXELS",
-            "pixels across of the virtual sensor that views are chosen with")
+      "is believed, whatever earlier views have shown; update: also hands by GMM-AS, a virtual sensor of all pixels, "
+      "and gains of views that the robot cannot take");
+  add_value(command, "--gain-width", options.gain_width_px, "PIXELS",
+            "pixels across of the virtual sensor that views are chosen with (default: " +
+                std::to_string(options.run.gain_width_px) + "; update --as-printed: the camera's)")
       ->check(CLI::Range(1, 100000));
   add_value(command, "--radius", options.distances, "METRES[,METRES...]",
             "distances of views from what they look at, metres: radii of the view sphere, and of contour views");
@@ -75,6 +77,7 @@ void check_run_options(RunOptions& options) {
   options.run.sphere.radii_m = parse_distances(options.distances);
   options.run.contour_views.distances_m = options.run.sphere.radii_m;
   options.run.camera = options.camera.camera(options.run.camera);
+  options.run.gain_width_px = options.gain_width_px.value_or(options.run.gain_width_px);
   require_ok(options.run.planner.validate(), "--rivals");
   if (!(options.run.least_share >= 0.0 && options.run.least_share <= 1.0)) {
     usage_error("--least-share", "is a share: within 0 and 1");

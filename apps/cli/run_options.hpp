@@ -16,7 +16,8 @@ struct RunOptions {
 
   // As they were given, before they are checked together.
   std::string distances{"0.8"};
-  std::optional<double> min_gain;  ///< nullopt: what goes with the strategy
+  std::optional<double> min_gain;    ///< nullopt: what goes with the strategy
+  std::optional<int> gain_width_px;  ///< nullopt: what `run` has
   CameraOptions camera;
 };
 

@@ -64,9 +64,12 @@ CellTask cell_task(const json& record, std::size_t number) {
 
 /// Facts of the run that every page has.
 std::vector<std::pair<std::string, std::string>> facts_of(const UpdateOptions& options, const ExploreDevices& devices) {
-  return {{"voxel size", millimetres(options.run.voxel_size_m)},
-          {"camera", camera_text(camera_to_json(devices.intrinsics()))},
-          {"poses of frames", std::string{to_string(options.run.exploration.tracking)}}};
+  std::vector<std::pair<std::string, std::string>> facts{
+      {"voxel size", millimetres(options.run.voxel_size_m)},
+      {"camera", camera_text(camera_to_json(devices.intrinsics()))},
+      {"poses of frames", std::string{to_string(options.run.exploration.tracking)}}};
+  if (options.run.as_printed) facts.emplace_back("views", "chosen as the thesis prints it");
+  return facts;
 }
 
 }  // namespace

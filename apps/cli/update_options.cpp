@@ -14,8 +14,20 @@ void add_hand_options(CLI::App& command, UpdateOptions& options) {
             "how the hand moved in the task: a file (docs/formats.md), in the scene's frame, or simulated");
   add_hand_format_option(command, options.format);
   add_method_option(command, options.method);
+  options.method = nullptr;  // unless it is named: check_update_options chooses
   add_value(command, "--region-radius", options.region_radius_m, "METRES",
             "radius of what is forgotten around each action of the hand, metres");
+}
+
+/// What --as-printed has in the place of ours, unless it was named: GMM-AS, by the values that give the thesis' own
+/// tables, and a virtual sensor with all pixels of the camera. IncTh stays the same share of its rays.
+void follow_the_thesis(UpdateOptions& options) {
+  if (options.method == nullptr) options.method = find_attend_method("gmm-as");
+  const int usual_px = options.run.gain_width_px;
+  if (options.gain_width_px) return;
+  options.run.gain_width_px = options.run.camera.width;
+  const double scale = static_cast<double>(options.run.gain_width_px) / usual_px;
+  options.run.planner.min_gain *= scale * scale;
 }
 
 /// A cell, or a simulated scene with a simulated camera.
@@ -42,7 +54,6 @@ UpdateOptions::UpdateOptions() {
   run.strategy = builtin_planners().find("sphere").value();
   run.exploration.max_views = kUpdateMaxViews;
   run.planner.min_gain = kUpdateMinGain;
-  method = &attend_methods().front();
 }
 
 void add_update_options(CLI::App& command, UpdateOptions& options) {
@@ -72,6 +83,8 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
 void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
   check_subject(options);
   check_run_options(options);
+  if (options.run.as_printed) follow_the_thesis(options);
+  if (options.method == nullptr) options.method = &attend_methods().front();
   if (options.min_gain) options.run.planner.min_gain = *options.min_gain;
   require_ok(options.run.planner.validate(), "--min-gain");
   check_arm_options(options, global);

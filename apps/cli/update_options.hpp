@@ -18,7 +18,7 @@ struct UpdateOptions : ExploreOptions {
   std::string before;                   ///< scene before the task; empty: SCENE-before
   std::string trajectory{"simulated"};  ///< a file, or "simulated"
   std::optional<HandFormat> format;
-  const AttendMethod* method{nullptr};
+  const AttendMethod* method{nullptr};  ///< nullptr before the check: ours, or the thesis' with --as-printed
   double region_radius_m{0.2};
   FuseWhen fuse_when{FuseWhen::viewpoints};
 

@@ -70,6 +70,7 @@ void fill_head(UpdateReport& report, const UpdateOptions& options, const json& d
   report.facts = {{"voxel size", millimetres(options.run.voxel_size_m)},
                   {"camera", camera_text(result.at("camera"))},
                   {"back end", document.at("backend").get<std::string>()}};
+  if (options.run.as_printed) report.facts.emplace_back("views", "chosen as the thesis prints it");
   report.min_gain = options.run.planner.min_gain;
 }
 

@@ -45,9 +45,44 @@ TEST(ReproduceEvidence, UpdatesStandBesideTheThesis) {
     EXPECT_GT(row.at("robot_s").get<double>(), 1.0);
     EXPECT_LT(row.at("nbv_s").get<double>(), row.at("thesis").at("nbv_s").get<double>());
     EXPECT_GT(row.at("regions").get<int>(), row.at("experiment").get<int>() - 1);
+    EXPECT_EQ(row.at("method"), "ours");
+    EXPECT_LT(row.at("evaluated").get<double>(), 960.0) << "those that the arm can take";
+    EXPECT_EQ(row.at("min_gain"), 50.0);
   }
+  EXPECT_EQ(table.at("as_printed"), false);
   EXPECT_EQ(table.at("rows").at(3).at("thesis").at("views"), 3);
   EXPECT_NE(table.at("notes").dump().find("80 pixels wide"), std::string::npos);
+}
+
+TEST(Reproduce, SaysWhereAsPrintedChangesNothing) {
+  const Outcome outcome =
+      run_program({"reproduce", "2.1", "4.7", "--as-printed", "--frames", "3", "--quiet", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json tables = outcome.json().at("result").at("tables");
+  expect_in(tables.at(0).at("notes").dump(), {"--as-printed: ", "eq. 2.1 to 2.3", "refuse a frame, as it did 0 times"});
+  expect_in(tables.at(1).at("notes").dump(), {"--as-printed changes nothing here"});
+}
+
+/// One of these updates is in update_test.
+TEST(ReproduceEvidence, UpdatesAreDoneAsPrintedWhenTheyAreToBe) {
+  if (kSanitized) GTEST_SKIP() << "four updates take long under sanitizers; update_test runs one";
+  const Outcome outcome =
+      run_program({"reproduce", "2.8", "--as-printed", "--image-width", "80", "--quiet", "--json", "-"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json tables = outcome.json().at("result").at("tables");
+  EXPECT_EQ(tables.at(0).at("as_printed"), true);
+  ASSERT_EQ(tables.at(0).at("rows").size(), 4U);
+  for (const nlohmann::json& row : tables.at(0).at("rows")) {
+    EXPECT_EQ(row.at("method"), "gmm-as");
+    EXPECT_EQ(row.at("evaluated"), 960.0) << "whatever the arm can take";
+    EXPECT_EQ(row.at("gain_width_px"), 80);
+    EXPECT_EQ(row.at("min_gain"), 12.5) << "50 of 160 x 120 rays";
+    EXPECT_GT(row.at("views").get<int>(), 0);
+    EXPECT_GT(row.at("coverage").get<double>(), 0.5);
+  }
+  const std::string notes = tables.at(0).at("notes").dump();
+  expect_in(notes, {"every promise is believed", "eq. 2.13", "IncTh"});
+  expect_in(tables.at(0).at("caption").get<std::string>(), {"as printed"});
 }
 
 TEST(Reproduce, FiltersOfDepthStandBesideTheThesis) {

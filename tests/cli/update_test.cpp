@@ -116,6 +116,32 @@ TEST(UpdateCommand, FusesOnItsWayWhenItIsTold) {
   EXPECT_GT(on_way.at("phases_s").at("robot").get<double>(), at_views.at("phases_s").at("robot").get<double>());
 }
 
+TEST(UpdateCommand, IsAsPrintedWhenItIsTold) {
+  const TempFolder folder;
+  const Arguments few = Arguments{"--scene", "bottle", "--no-pictures", "--as-printed", "--max-views", "1"} + kSmallest;
+  const auto evaluated = [](const json& result) { return result.at("views").at(0).at("evaluated").get<int>(); };
+  const json printed = result_of(run_program(update(folder / "a", few)));
+  EXPECT_EQ(printed.at("as_printed"), true);
+  EXPECT_EQ(printed.at("task").at("method"), "gmm-as");
+  EXPECT_EQ(printed.at("gain_width_px"), 80) << "every pixel of the camera";
+  EXPECT_EQ(printed.at("min_gain"), 12.5) << "as large a share of the rays as 50 of 160 x 120";
+  EXPECT_EQ(evaluated(printed), 960) << "whatever the arm can take";
+  const Arguments named{"--method", "ours", "--gain-width", "40", "--min-gain", "9"};
+  const json chosen = result_of(run_program(update(folder / "b", few + named)));
+  EXPECT_EQ(chosen.at("task").at("method"), "ours");
+  EXPECT_EQ(chosen.at("gain_width_px"), 40);
+  EXPECT_EQ(chosen.at("min_gain"), 9.0);
+  EXPECT_EQ(evaluated(chosen), 960);
+  Arguments ours = few;
+  std::erase(ours, "--as-printed");
+  const json usual = result_of(run_program(update(folder / "c", ours)));
+  EXPECT_EQ(usual.at("as_printed"), false);
+  EXPECT_EQ(usual.at("task").at("method"), "ours");
+  EXPECT_EQ(usual.at("min_gain"), 50.0);
+  EXPECT_LT(evaluated(usual), 960);
+  EXPECT_NE(usual.at("views").at(0).at("gain"), printed.at("views").at(0).at("gain"));
+}
+
 void write_hand(const fs::path& path, const Eigen::Vector3d& place, int samples_there) {
   std::ofstream file{path};
   file << "time,x,y,z\n";

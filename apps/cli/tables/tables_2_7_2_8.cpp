@@ -44,6 +44,11 @@ struct OurExperiment {
   double clear_s{0.0};      ///< per region
   double nbv_s{0.0};        ///< per evaluation
   double movement_s{0.0};   ///< per view
+  double evaluated{0.0};    ///< candidates per evaluation
+  // What it was done with.
+  std::string method;  ///< detector of actions
+  int gain_width_px{0};
+  double min_gain{0.0};
 };
 
 const char* thesis_name(FuseWhen when) { return when == FuseWhen::viewpoints ? "KFOVP" : "KFOM"; }
@@ -74,6 +79,7 @@ UpdateOptions options_of(const ThesisExperiment& experiment, const ReproduceOpti
   UpdateOptions options;
   options.scene = experiment.scene;
   options.fuse_when = experiment.fuse_when;
+  options.run.as_printed = reproduce.as_printed;
   if (reproduce.image_width_px > 0)
     options.camera.image_size = {reproduce.image_width_px, reproduce.image_width_px * 3 / 4};
   GlobalOptions global;
@@ -96,6 +102,10 @@ Result<OurExperiment> carry_out(const ThesisExperiment& experiment, const Reprod
   ours.coverage = least_coverage(result.at("regions"));
   ours.regions = result.at("regions").size();
   ours.views = result.at("views").size();
+  ours.method = options.method->name;
+  ours.gain_width_px = options.run.gain_width_px;
+  ours.min_gain = options.run.planner.min_gain;
+  ours.computing_s = 1e-3 * task.ms;
   const json& phases = result.at("phases_s");
   ours.robot_s = phases.at("robot").get<double>();
   for (const auto& [phase, s] : phases.items()) {
@@ -106,6 +116,7 @@ Result<OurExperiment> carry_out(const ThesisExperiment& experiment, const Reprod
   const auto of = [&](const char* phase) { return phases.value(phase, 0.0); };
   ours.nbv_s = (of("candidates") + of("reachability") + of("evaluation")) / views;
   ours.movement_s = ours.robot_s / (views + 1.0);  // the way back is one more
+  for (const json& view : result.at("views")) ours.evaluated += view.at("evaluated").get<double>() / views;
   return ours;
 }
 
@@ -120,7 +131,7 @@ Result<std::vector<OurExperiment>> carry_out_all(const ReproduceOptions& options
   return all;
 }
 
-json figures_of(const std::vector<OurExperiment>& all) {
+json figures_of(const std::vector<OurExperiment>& all, bool as_printed) {
   json rows = json::array();
   for (std::size_t i = 0; i < all.size(); ++i) {
     const ThesisExperiment& thesis = kExperiments.at(i);
@@ -144,12 +155,39 @@ json figures_of(const std::vector<OurExperiment>& all) {
                     {"computing_s", ours.computing_s},
                     {"clear_s", ours.clear_s},
                     {"nbv_s", ours.nbv_s},
-                    {"movement_s", ours.movement_s}});
+                    {"movement_s", ours.movement_s},
+                    {"evaluated", ours.evaluated},
+                    {"method", ours.method},
+                    {"gain_width_px", ours.gain_width_px},
+                    {"min_gain", ours.min_gain}});
   }
-  return {{"rows", std::move(rows)}};
+  return {{"as_printed", as_printed}, {"rows", std::move(rows)}};
 }
 
-void add_common_notes(const ReproduceOptions& options, ReproducedTable& table) {
+/// What of ours took part, or with --as-printed what of the thesis took its place, and what of the thesis did not.
+std::vector<std::string> setting_notes(const ReproduceOptions& options, const OurExperiment& ours) {
+  const std::string rays = std::to_string(ours.gain_width_px) + " rays across and IncTh " +
+                           fixed(ours.min_gain, ours.min_gain < 20.0 ? 1 : 0);
+  if (!options.as_printed) {
+    return {
+        "Ours, not the thesis': hands by the dip detector, promises of views are believed only where they are "
+        "credible, and gains of views that the arm can take alone, with " +
+        rays + ". --as-printed does what the thesis prints; docs/update.md says what differs then."};
+  }
+  return {
+      "As printed (--as-printed): hands by GMM-AS, every promise is believed, and all 960 views are evaluated "
+      "before the arm is asked, with " +
+          rays + " (the thesis does not print IncTh: here it is the same share of all rays as without --as-printed).",
+      "Not as printed: GMM-AS has the formula and POITh that give the thesis' own tables, since by eq. 2.13 and 2.5 "
+      "it finds other places than those where the hand acted; after a view the best of the new ranking is next, "
+      "where the letter of Algorithm 1 would go on with the number of the last; free space is counted to W_th "
+      "(decision 1)."};
+}
+
+std::string here_name(const ReproduceOptions& options) { return options.as_printed ? "here, as printed" : "here"; }
+
+void add_common_notes(const ReproduceOptions& options, const OurExperiment& ours, ReproducedTable& table) {
+  for (std::string& note : setting_notes(options, ours)) table.notes.push_back(std::move(note));
   table.notes.emplace_back(
       "Here the scenes, the hand, the arm and the camera with its noise are simulated (`saccade update --scene "
       "bottle|jug`); the thesis' were real. The objects, the table and the room are of our making, so figures compare "
@@ -167,7 +205,7 @@ Result<ReproducedTable> reproduce_table_2_7(const ReproduceOptions& options, con
                                             const Progress& progress) {
   SACCADE_TRY(const std::vector<OurExperiment> all, carry_out_all(options, executor, progress));
   ReproducedTable table;
-  table.caption = "Table 2.7: error, completeness, views and time of updates; thesis / here";
+  table.caption = "Table 2.7: error, completeness, views and time of updates; thesis / " + here_name(options);
   table.columns = {"experiment", "frames fused", "mean abs. error (m)", "completeness", "views", "time (s)"};
   for (std::size_t i = 0; i < all.size(); ++i) {
     const ThesisExperiment& thesis = kExperiments.at(i);
@@ -187,8 +225,8 @@ Result<ReproducedTable> reproduce_table_2_7(const ReproduceOptions& options, con
       "In the second experiment the thesis had three regions, two of them almost the same; here there are as many as "
       "the detector found: " +
           std::to_string(all.back().regions) + "."};
-  add_common_notes(options, table);
-  table.figures = figures_of(all);
+  add_common_notes(options, all.front(), table);
+  table.figures = figures_of(all, options.as_printed);
   return table;
 }
 
@@ -196,7 +234,8 @@ Result<ReproducedTable> reproduce_table_2_8(const ReproduceOptions& options, con
                                             const Progress& progress) {
   SACCADE_TRY(const std::vector<OurExperiment> all, carry_out_all(options, executor, progress));
   ReproducedTable table;
-  table.caption = "Table 2.8: seconds of the most relevant phases, mean of each experiment; thesis / here";
+  table.caption =
+      "Table 2.8: seconds of the most relevant phases, mean of each experiment; thesis / " + here_name(options);
   table.columns = {"phase"};
   for (const ThesisExperiment& thesis : kExperiments) {
     table.columns.push_back(std::string{thesis.scene} + ", " + thesis_name(thesis.fuse_when));
@@ -212,13 +251,12 @@ Result<ReproducedTable> reproduce_table_2_8(const ReproduceOptions& options, con
   add("next best view", &ThesisExperiment::nbv_s, &OurExperiment::nbv_s, 4);
   add("robot movement", &ThesisExperiment::movement_s, &OurExperiment::movement_s, 2);
   table.notes = {
-      "Next best view: here candidates, reachability and gains of one choice; only poses within the arm's reach are "
-      "evaluated, with a virtual sensor of 160 × 120 rays, all of the image. How long 640 × 480 rays take is Table "
-      "2.9.",
+      "Next best view: here candidates, reachability and gains of one choice, of " + fixed(all.front().evaluated, 0) +
+          " poses in the first experiment. How long each ray of every pose takes, also for others, is Table 2.9.",
       "Robot movement: here the mean of the ways to the views, their oscillation included, and of the way back. In "
       "motion the arm has a quarter of its speed."};
-  add_common_notes(options, table);
-  table.figures = figures_of(all);
+  add_common_notes(options, all.front(), table);
+  table.figures = figures_of(all, options.as_printed);
   return table;
 }
 

@@ -113,8 +113,9 @@ Planners builtin_planners() {
                 }});
   planners.add(
       {"sphere", "best gain on the view sphere around each region", 200.0, true, false, [](const PlannerSetup& setup) {
-         return PlannerParts{regions_in_turn(setup), std::make_shared<SphereViews>(setup.sphere), rays(setup),
-                             with_tries(setup, kAllViews)};
+         ViewPlannerConfig planner = with_tries(setup, kAllViews);
+         planner.asks_robot_first = !setup.as_printed;
+         return PlannerParts{regions_in_turn(setup), std::make_shared<SphereViews>(setup.sphere), rays(setup), planner};
        }});
   planners.add({"random", "poses of sphere in random order", 200.0, true, false, make_random});
   planners.add(

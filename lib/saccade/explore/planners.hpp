@@ -25,8 +25,8 @@ struct PlannerSetup {
   /// The strategy `surface` weighs what it expects by the saliency of its segment; false: all surface counts alike.
   bool weigh_by_saliency{false};
   double least_share{SurfaceGainConfig{}.least_share};
-  /// Algorithm 4 to the letter: attention heeds the most salient segment alone, scraps are like any other, and gains of
-  /// rays are believed whatever earlier views have shown.
+  /// Algorithms 1 and 4 to the letter: attention heeds the most salient segment alone, scraps are like any other, gains
+  /// of rays are believed whatever earlier views have shown, and sphere evaluates what the robot cannot take, too.
   bool as_printed{false};
   /// The explorer weighs more than gains (Foresight, ExplorerConfig::good_enough): it is offered many places to choose
   /// from.

@@ -53,7 +53,7 @@ Result<Ranking> ViewPlanner::rank(const PlanningScene& scene) {
       SACCADE_TRY(found, context.measure(Phase::candidates, [&] {  // 1, 2, 8, 9
         return parts_.generator->views(context, region);
       }));
-      refused = scene.remove_unreachable(found.T_world_camera);
+      if (config.asks_robot_first) refused = scene.remove_unreachable(found.T_world_camera);
       SACCADE_TRY(ranked, context.measure(Phase::gain, [&] {  // 10, 11
         return parts_.gain->best(context, region, found.T_world_camera, parts_.config.tries);
       }));

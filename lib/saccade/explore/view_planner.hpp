@@ -20,6 +20,9 @@ struct ViewPlannerConfig {
   double rival_share{0.5};
   std::size_t tries{16};  ///< views of a region that are ranked at a time; more once these were tried
   std::size_t views_per_region{std::numeric_limits<std::size_t>::max()};  ///< after which a region is left
+  /// Views that the robot cannot take are left out before gains are evaluated. false: they are evaluated, too, and
+  /// skipped once they are tried (Algorithm 1, lines 5 to 10).
+  bool asks_robot_first{true};
 
   [[nodiscard]] Status validate() const;
 };

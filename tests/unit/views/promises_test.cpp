@@ -157,6 +157,33 @@ TEST(Promises, InAWorkspaceTooLargeToLookThroughAreBelieved) {
   EXPECT_FALSE(best->promise) << "nothing can be checked";
 }
 
+/// Those of the whole workspace are the reference: there no ray is passed over.
+TEST(Promises, OfASmallRegionAreThoseOfAllThatLieInIt) {
+  const Choice choice{test::half_seen_box()};
+  const std::array<Region, 3> regions{Sphere{{-0.03, 0.01, 0.05}, 0.04}, Box{{-0.05, -0.05, 0.0}, {0.0, 0.05, 0.1}},
+                                      Cylinder{{0.0, 0.0, 0.0}, {-0.05, 0.0, 0.08}, 0.03}};
+  const auto promised = [&](const Region& bounds, const Pose& pose) {
+    RegionOfInterest region;
+    region.bounds = bounds;
+    RayGain gain{{.sensor = kSensor}, Trust::blind};
+    std::vector<Index3> voxels;
+    const Promise promise = gain.best(choice.context(), region, std::span{&pose, 1}, 1).value().promise(pose);
+    for (const PromisedVoxel& voxel : promise.voxels) voxels.push_back(voxel.voxel);
+    return voxels;
+  };
+  std::size_t compared = 0;
+  for (const Pose& pose : poses_around()) {
+    const std::vector<Index3> all = promised(*choice.map.config.workspace, pose);
+    for (const Region& region : regions) {
+      std::vector<Index3> inside = all;
+      std::erase_if(inside, [&](const Index3& voxel) { return !contains(region, voxel_center(voxel, 0.01)); });
+      EXPECT_EQ(promised(region, pose), inside);
+      compared += inside.size();
+    }
+  }
+  EXPECT_GT(compared, 1000U);
+}
+
 TEST(Promises, AddUpToTheGain) {
   const Choice choice{test::half_seen_box()};
   const std::vector<Pose> poses = poses_around();

@@ -32,7 +32,32 @@ struct Ray {
     const double share = -begin_m / rise_m;
     return share >= 0.0 && share <= 1.0 ? std::optional{share} : std::nullopt;
   }
+  /// The share of the ray at which it leaves a closed box for good, if it passes through it.
+  [[nodiscard]] std::optional<double> leaves(const Box& box) const {
+    double enter{0.0};
+    double leave{1.0};
+    for (Eigen::Index axis = 0; axis < 3; ++axis) {
+      const double step_m = to_m[axis] - from_m[axis];
+      if (step_m == 0.0) {
+        if (from_m[axis] < box.min[axis] || from_m[axis] > box.max[axis]) return std::nullopt;
+        continue;
+      }
+      const double a = (box.min[axis] - from_m[axis]) / step_m;
+      const double b = (box.max[axis] - from_m[axis]) / step_m;
+      enter = std::max(enter, std::min(a, b));
+      leave = std::min(leave, std::max(a, b));
+    }
+    return enter <= leave ? std::optional{leave} : std::nullopt;
+  }
 };
+
+/// All voxels with their centre in the region, and half a voxel more, which is above any rounding.
+Box grown_bounds(const Region& region, double voxel_size_m) {
+  Box box = bounds(region);
+  box.min.array() -= voxel_size_m;
+  box.max.array() += voxel_size_m;
+  return box;
+}
 
 }  // namespace
 
@@ -41,6 +66,7 @@ struct CredibleRays::Scene {
   std::vector<Support> supports;
   bool holds_surface{false};  ///< some voxel is occupied
   Region region;
+  Box around_region;
   UnknownOutside outside;
   PinholeCamera sensor;
   Trust trust{Trust::credible};
@@ -52,6 +78,7 @@ struct CredibleRays::Scene {
       : volume{std::move(states)},
         supports{find_supports(context.map, volume, kMinSupport_m2, context.executor)},
         region{bounds},
+        around_region{grown_bounds(bounds, volume.voxel_size_m())},
         outside{unknown_outside},
         sensor{looks},
         credit{context.checked, looks, volume, 1.5 * volume.voxel_size_m()} {
@@ -109,10 +136,12 @@ struct CredibleRays::Scene {
   /// The unknown voxel that the ray promises; nullopt: none.
   [[nodiscard]] std::optional<Met> promised(const Ray& ray) const {
     const double nearest = sensor.min_range_m / sensor.max_range_m;
+    const std::optional<double> past_region = ray.leaves(around_region);
+    if (!past_region) return std::nullopt;  // most rays, of a region as small as that of a hand
     std::optional<Met> met;
     walk_line(volume, ray.from_m, ray.to_m, [&](std::size_t voxel, double share) {
       const VoxelState state = volume[voxel];
-      if (state == VoxelState::empty) return false;
+      if (state == VoxelState::empty) return !met && share > *past_region;
       if (state == VoxelState::occupied) {
         if (met) met->returns = true;
         return true;
