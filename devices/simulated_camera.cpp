@@ -8,10 +8,10 @@
 //                            [--then SCENE --when FILE]
 //
 // Options that saccade has too read the arm's description as there. Without --state it sees from where it is asked to
-// be. --mount is how far off the camera truly sits on the flange: metres, and degrees about its x, y and z axes. A frame
-// comes --delay seconds after it was taken; --clock is added to its time stamps. The fault shows when --after frames
-// were taken; --log gets a line with its time. As soon as there is a file FILE, the scene of --then takes the place of
-// the first one.
+// be. --mount is how far off the camera truly sits on the flange: metres, and degrees about its x, y and z axes. A
+// frame comes --delay seconds after it was taken; --clock is added to its time stamps. The fault shows when --after
+// frames were taken; --log gets a line with its time. As soon as there is a file FILE, the scene of --then takes the
+// place of the first one.
 #include <algorithm>
 #include <filesystem>
 #include <fstream>

@@ -135,9 +135,13 @@ class CellUpdate {
   [[nodiscard]] std::size_t tasks() const { return tasks_.size(); }
   [[nodiscard]] bool scanned() const { return has_scan_; }
   [[nodiscard]] json result() const {
-    return {{"cell", subject_.scene.name}, {"out", options_.out.string()},   {"method", options_.method->name},
-            {"dry_run", options_.dry_run}, {"scanned", has_scan_},
-            {"initial", scan_to_json(scan_)}, {"tasks", tasks_}};
+    return {{"cell", subject_.scene.name},
+            {"out", options_.out.string()},
+            {"method", options_.method->name},
+            {"dry_run", options_.dry_run},
+            {"scanned", has_scan_},
+            {"initial", scan_to_json(scan_)},
+            {"tasks", tasks_}};
   }
   [[nodiscard]] json document(double total_ms) const {
     return json_envelope("update", global_, executor_, {{"total", total_ms}}, result());

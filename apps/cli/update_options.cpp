@@ -73,9 +73,10 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
             "with CELL: a program that tracks the hand (docs/processes.md)");
   add_arm_options(command, options);
   add_dry_run_option(command, options);
-  command.add_flag("--resume", options.resume,
-                   "with CELL: go on with the interrupted updates in the folder: with their map and tasks, and first with "
-                   "the regions that were left");
+  command.add_flag(
+      "--resume", options.resume,
+      "with CELL: go on with the interrupted updates in the folder: with their map and tasks, and first with "
+      "the regions that were left");
   command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
