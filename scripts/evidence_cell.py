@@ -63,7 +63,7 @@ def explore(cell, out, views, *more):
     return done.returncode, (json.loads(done.stdout)["result"] if done.stdout else None), done.stderr
 
 
-def faults(out, count, views):
+def faults(out, count, views, shard):
     rng = random.Random(1)
     rows = []
     for i in range(count):
@@ -74,6 +74,7 @@ def faults(out, count, views):
         result = folder / "result.json"
         if result.exists():
             rows.append(json.loads(result.read_text()))
+        if result.exists() or i % shard[1] != shard[0]:
             continue
         fault = ["--fault", kind, "--after", f"{after:.2f}"]
         rate = ["--rate", "2"]
@@ -218,13 +219,14 @@ def main():
     parser.add_argument("out", type=pathlib.Path)
     parser.add_argument("--count", type=int, help="faults (200) or tasks (10)")
     parser.add_argument("--views", type=int, default=5)
+    parser.add_argument("--shard", default="0/1", help="I/N: make those faults alone whose number leaves I when divided by N")
     parser.add_argument("--build", type=pathlib.Path, default=BUILD, help="folder of the programs")
     arguments = parser.parse_args()
     BUILD = arguments.build.resolve()
     arguments.out.mkdir(parents=True, exist_ok=True)
     os.environ["PATH"] = f"{BUILD}:{os.environ['PATH']}"
     if arguments.what == "faults":
-        faults(arguments.out, arguments.count or 200, arguments.views)
+        faults(arguments.out, arguments.count or 200, arguments.views, [int(n) for n in arguments.shard.split("/")])
     elif arguments.what == "update":
         update(arguments.out, arguments.count or 10)
     else:

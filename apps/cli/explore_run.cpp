@@ -143,7 +143,7 @@ Status ExploreRun::run(const std::function<void()>& recorded) {
   if (ended.error().code != Errc::cancelled) {
     // A device failed: what it has shown since the last view is kept, too.
     const bool has_programs = options_.moves_real() || !options_.camera_command.empty();
-    if (has_programs && has_journal(out_.path())) static_cast<void>(save_journal());
+    if (has_programs && !options_.dry_run) static_cast<void>(save_journal());
     return ended;
   }
   journal_.run.stopped_because = StopReason::cancelled;  // a program that hung when the user interrupted

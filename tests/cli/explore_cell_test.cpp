@@ -134,6 +134,23 @@ TEST_F(SimulatedCell, ADryRunPlansAndDrawsAndMovesNothing) {
                  "explore", {"--dry-run"});
 }
 
+TEST_F(SimulatedCell, WhatWasSeenBeforeAnEarlyFailureIsKept) {
+  write_simulated();
+  const std::string works = text_of(cell());
+  std::string broken = works;
+  const std::string width = "--width 160";
+  broken.replace(broken.find(width), width.size(), width + " --fault error --after 3");  // of the first pose's five
+  std::ofstream{cell()} << broken;
+  const Arguments explore{"explore",       cell().string(), "--out",       run().string(),
+                          "--voxel-size",  "0.02",          "--max-views", "0",
+                          "--no-pictures", "--quiet",       "--json",      "-"};
+  expect_failure(run_program(explore), 4, "explore", {"the cable is loose", "is kept, add --resume"});
+  std::ofstream{cell()} << works;
+  const Outcome outcome = run_program(explore + Arguments{"--resume"});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(outcome.json().at("result").at("initial").at("views"), 2);
+}
+
 TEST_F(SimulatedCell, CalibrationFindsWhereTheCameraSits) {
   write_simulated();
   const Outcome outcome = run_program({"calibrate", cell().string(), "--quiet", "--json", "-"});

@@ -93,11 +93,14 @@ TEST_F(ExploreProcesses, ACameraThatFailsIsOneLineAndWhatWasSeenIsKept) {
 }
 
 TEST_F(ExploreProcesses, ARobotAloneMovesTheSimulatedCamera) {
-  const Outcome outcome = run_program({"explore", "clutter:5", "--out", run().string(), "--image-size", "128,96",
-                                       "--voxel-size", "0.02", "--max-views", "1", "--min-gain", "5", "--no-pictures",
-                                       "--quiet", "--json", "-", "--robot-command", example("external_robot.py")});
+  const Outcome outcome = run_program({"explore", tiny_cell_file(), "--out", run().string(), "--image-size", "96,72",
+                                       "--voxel-size", "0.015", "--max-views", "1", "--no-pictures", "--quiet",
+                                       "--json", "-", "--robot-command", example("external_robot.py")});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  EXPECT_TRUE(outcome.json().at("result").at("final").at("coverage").is_number());
+  const nlohmann::json result = outcome.json().at("result");
+  EXPECT_GT(result.at("initial").at("views"), 0);
+  EXPECT_EQ(result.at("views").size(), 1U);
+  EXPECT_GT(result.at("final").at("coverage"), result.at("initial").at("coverage"));
 }
 
 }  // namespace

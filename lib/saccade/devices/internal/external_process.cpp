@@ -23,7 +23,7 @@ constexpr std::chrono::milliseconds kHurriedGrace{150};  // in place of both, fo
 constexpr std::chrono::milliseconds kCancelGrace{300};   // for the answer that is under way
 constexpr std::chrono::milliseconds kCancelSlice{20};
 constexpr std::chrono::milliseconds kExitStatusWait{500};  // between the end of the output and that of the process
-constexpr std::chrono::milliseconds kLastWordsWait{100};
+constexpr std::chrono::milliseconds kLastWordsWait{30};    // an arm may be moving while a camera's are waited for
 constexpr std::size_t kQuotedBytes{80};
 
 constexpr const char* kRule{"an answer is one line of JSON and the bytes it announces; messages belong on stderr"};
