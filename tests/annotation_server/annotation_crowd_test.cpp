@@ -76,7 +76,7 @@ TEST_F(AnnotationCrowdTest, AGoodPageAmong63HostileOnes) {
   constexpr int kActions{5};
   constexpr int kAnswers{kOthers};                                       ///< to the others, before the good page acts
   constexpr double kMostWork_ms{test::kSanitized ? 60'000.0 : 5'000.0};  // of the program's processor time, or
-  constexpr double kMostBrushes{16.0};                                   // of so many such brushes on a slow machine
+  constexpr double kMostBrushes{24.0};  // on a slow machine as many such brushes, of 63 that wait
   constexpr double kMost_ms{60'000.0};
   ServedAnnotation served{{"annotate", (folder_ / "many.bin").string(), "--no-browser"}};
   ASSERT_TRUE(served.is_served()) << served.program().err();
