@@ -114,7 +114,10 @@ class CellUpdate {
   [[nodiscard]] Status resume(const json& document) {
     try {
       has_scan_ = document.at("result").at("scanned").get<bool>();
-      for (const json& task : document.at("result").at("tasks")) tasks_.push_back(task);
+      for (const json& task : document.at("result").at("tasks")) {
+        SACCADE_CHECK(check_task_record(task));
+        tasks_.push_back(task);
+      }
       if (tasks_.empty()) return {};
       for (const json& region : tasks_.back().at("regions")) {
         const json& end = region.at("end");
@@ -122,12 +125,14 @@ class CellUpdate {
         const auto center = region.at("center_m").get<std::array<double, 3>>();
         RegionOfInterest left;
         left.bounds = Sphere{{center[0], center[1], center[2]}, region.at("radius_m").get<double>()};
+        SACCADE_CHECK(validate(left.bounds));
         left.saliency = region.at("saliency").get<double>();
         left.why = region.at("why").get<std::string>();
         left_.push_back(std::move(left));
       }
     } catch (const json::exception& e) {
-      return Error{Errc::corrupt_data, e.what(), (out_ / "update.json").string()};
+      return Error{Errc::corrupt_data, std::string{"this is no run to go on with: "} + e.what(),
+                   (out_ / "update.json").string()};
     }
     return {};
   }
@@ -181,6 +186,9 @@ class CellUpdate {
     figures.scan = scan_;
     figures.stand_by = devices_.robot().configuration();
     figures.before = figures.forgotten = figures.after = map_.snapshot();
+    // A kill while the robot looks loses no region: they are in the file as not begun.
+    tasks_.push_back(task_record(options_, task_, figures, subject_.scene.workspace, "interrupted"));
+    SACCADE_CHECK(write_json(out_ / "update.json", document(0.0)));
     std::string end{"nothing_to_do"};
     const Status looked = task_.regions.empty() ? Status{} : look_at(folder, figures, end);
     figures.after = map_.snapshot();
@@ -189,7 +197,7 @@ class CellUpdate {
     record["regions_left_before"] = regions_left_before_;
     if (!problem_.empty()) record["problem"] = problem_;
     if (!looked.ok()) record["problem"] = looked.error().to_string();
-    tasks_.push_back(record);
+    tasks_.back() = record;
     if (looked.ok()) SACCADE_CHECK(write(0.0));
     if (options_.write_pictures) SACCADE_CHECK(draw(folder, figures, record));
     return looked;

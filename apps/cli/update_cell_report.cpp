@@ -111,6 +111,18 @@ json task_record(const UpdateOptions& options, const WatchedTask& task, const Up
           {"stopped_because", end}};
 }
 
+Status check_task_record(const json& record) {
+  try {
+    static_cast<void>(cell_task(record, 1));
+    for (const json& region : record.at("regions")) {
+      SACCADE_TRY([[maybe_unused]] const RefusalCounts refused, refusals_from_json(region.at("refused")));
+    }
+  } catch (const json::exception& e) {
+    return Error{Errc::corrupt_data, std::string{"no record of a task: "} + e.what(), "update.json"};
+  }
+  return {};
+}
+
 void print_tasks(const json& records) {
   const Summary summary{std::cout};
   if (records.empty()) summary.line("tasks", "none");

@@ -20,6 +20,8 @@ namespace saccade::cli {
 [[nodiscard]] nlohmann::json task_record(const UpdateOptions& options, const WatchedTask& task,
                                          const UpdateFigures& figures, const Box& workspace, std::string_view end);
 
+/// corrupt_data for what is no record that task_record wrote.
+[[nodiscard]] Status check_task_record(const nlohmann::json& record);
 /// A line for each task, from their records.
 void print_tasks(const nlohmann::json& records);
 

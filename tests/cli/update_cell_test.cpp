@@ -111,6 +111,15 @@ TEST_F(UpdateCell, RegionsThatAFailureLeftAreLookedAtWhenTheRunGoesOn) {
   ASSERT_EQ(before.at("tasks").size(), 1U);
   EXPECT_EQ(before.at("tasks")[0].at("stopped_because"), "device_failed");
   EXPECT_EQ(before.at("tasks")[0].at("views").size(), 1U);
+  // What is no run of ours is refused, and stays as it is.
+  const std::string kept = text_of(folder_ / "run/update.json");
+  for (const char* wrong : {"{\"result\": {\"scanned\": true, \"tasks\": [5]}}",
+                            "{\"result\": {\"scanned\": true, \"tasks\": [{}]}}", "{\"result\": {}}", "{"}) {
+    std::ofstream{folder_ / "run/update.json"} << wrong;
+    expect_failure(run_program(update({"--resume"})), 3, "update", {"update.json"});
+    EXPECT_EQ(text_of(folder_ / "run/update.json"), wrong);
+  }
+  std::ofstream{folder_ / "run/update.json"} << kept;
   // The devices work again, and the hand does not come back.
   std::ofstream{cell()} << cell_as_it_works;
   std::ofstream{folder_ / "hand.py"} << "import sys\n"
@@ -126,6 +135,24 @@ TEST_F(UpdateCell, RegionsThatAFailureLeftAreLookedAtWhenTheRunGoesOn) {
   EXPECT_EQ(after.at("stopped_because"), "regions_done");
   EXPECT_GE(after.at("views").size(), 1U);
   expect_failure(run_program({"update", "--scene", "bottle", "--resume", "--quiet"}), 2, "update", {"--resume"});
+}
+
+TEST_F(UpdateCell, AKillWhileTheRobotLooksLosesNoRegion) {
+  write("hand: {command: python3 -B hand.py}\n");
+  RunningProgram looking{update({})};
+  const fs::path file = folder_ / "run/update.json";
+  const auto has_task = [&] {
+    const json document = fs::exists(file) ? json::parse(text_of(file), nullptr, false) : json{};
+    return document.is_object() && !document.at("result").at("tasks").empty();
+  };
+  for (int i = 0; i < 600 && !has_task(); ++i) std::this_thread::sleep_for(std::chrono::milliseconds{50});
+  looking.send(SIGKILL);
+  static_cast<void>(looking.finish());
+  ASSERT_TRUE(has_task());
+  const json task = json::parse(text_of(file)).at("result").at("tasks")[0];
+  ASSERT_GE(task.at("regions").size(), 1U);
+  EXPECT_EQ(task.at("stopped_because"), "interrupted");
+  for (const json& region : task.at("regions")) EXPECT_EQ(region.at("end"), "not_begun");
 }
 
 TEST_F(UpdateCell, ADryRunPlansForTheTaskAndMovesNothing) {
