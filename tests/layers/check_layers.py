@@ -21,6 +21,7 @@ TABLE = {
     "surfel": ["sensor"],
     "io/clouds": ["io/files", "cloud", "map", "surfel"],
     "io/maps": ["io/files", "map"],
+    "io/messages": [],
     "tracking": ["sensor", "map", "surfel"],
     "segment": ["cloud", "map", "surfel"],
     "attention": ["cloud", "map", "segment"],
