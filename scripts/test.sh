@@ -10,42 +10,43 @@ results=out/test
 rm -rf "$results"
 mkdir -p "$results"
 
-phases="${SACCADE_TEST_PHASES:-format release web asan tsan fuzz tidy}"
+phases="${SACCADE_TEST_PHASES:-format release web asan tsan fuzz tidy ros}"
 
-# run_ctest PRESET OPTIONS…: two at a time. ctest leaves its results in out/test/PRESET.xml, GoogleTest in out/test/PRESET/.
+# run_ctest NAME PRESET OPTIONS…: two at a time. ctest leaves its results in out/test/NAME.xml, GoogleTest in out/test/NAME/.
 run_ctest() {
-  local preset="$1" status=0
-  shift
+  local name="$1" preset="$2" status=0
+  shift 2
   rm -rf "build/$preset/gtest"
   mkdir -p "build/$preset/gtest"
-  "${launcher[@]}" ctest --test-dir "build/$preset" -j 2 --output-on-failure --no-tests=error --output-junit "$PWD/$results/$preset.xml" \
+  "${launcher[@]}" ctest --test-dir "build/$preset" -j 2 --output-on-failure --no-tests=error --output-junit "$PWD/$results/$name.xml" \
     --test-output-size-passed 8192 --test-output-size-failed 65536 "$@" || status=$?
-  cp -r "build/$preset/gtest" "$results/$preset"
+  cp -r "build/$preset/gtest" "$results/$name"
   return $status
 }
 
+release_options=(-DSACCADE_BUILD_TESTS=ON -DSACCADE_BUILD_BENCH=ON -DSACCADE_WARNINGS_AS_ERRORS=ON)
 launcher=()  # what ctest is started by
 
 build_format() { :; }
 phase_format() { scripts/format.sh; }
 
 build_release() {
-  configure release -DSACCADE_BUILD_TESTS=ON -DSACCADE_BUILD_BENCH=ON -DSACCADE_WARNINGS_AS_ERRORS=ON && compile release
+  configure release "${release_options[@]}" -DSACCADE_ROS1=OFF -DSACCADE_ROS2=OFF && compile release
 }
-phase_release() { run_ctest release -LE floors; }
+phase_release() { run_ctest release release -LE "floors|ros"; }
 
 # The page: its bundle, then a browser that uses it.
 build_web() { scripts/web.sh check; }
 phase_web() { scripts/web.sh test --project pages; }
 
 build_asan() { configure asan-ubsan && compile asan-ubsan; }
-phase_asan() { UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 run_ctest asan-ubsan -L memory; }
+phase_asan() { UBSAN_OPTIONS=print_stacktrace=1:halt_on_error=1 run_ctest asan-ubsan asan-ubsan -L memory; }
 
 build_tsan() { configure tsan -DSACCADE_BUILD_APPS=OFF -DSACCADE_BUILD_EXAMPLES=OFF && compile tsan; }
 phase_tsan() {
   # ThreadSanitizer of g++ 12 does not start under the address randomisation of newer kernels.
   if setarch "$(uname -m)" -R true 2>/dev/null; then local launcher=(setarch "$(uname -m)" -R); fi
-  TSAN_OPTIONS="halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan.supp" run_ctest tsan -L threads
+  TSAN_OPTIONS="halt_on_error=1:second_deadlock_stack=1:suppressions=$PWD/tests/tsan.supp" run_ctest tsan tsan -L threads
 }
 
 build_fuzz() { :; }  # its targets are of the preset asan-ubsan
@@ -53,6 +54,12 @@ phase_fuzz() { scripts/fuzz.sh "${SACCADE_FUZZ_SECONDS:-5}"; }
 
 build_tidy() { :; }
 phase_tidy() { scripts/tidy.sh; }
+
+# The adapters for ROS, with their packages; all before was built and tested without them.
+build_ros() {
+  scripts/install_packages.sh ros && configure release "${release_options[@]}" -DSACCADE_ROS1=ON -DSACCADE_ROS2=ON && compile release
+}
+phase_ros() { run_ctest ros release -L ros; }
 
 # Times and the compiler cache's work go to out/test/phases.tsv: name, seconds of building and of running, how it ended.
 run_phase() {

@@ -4,5 +4,5 @@
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/common.sh
-configure tidy
+configure tidy -DSACCADE_ROS1=OFF -DSACCADE_ROS2=OFF  # their packages are not part of [tests]
 exec /usr/bin/python3 -B scripts/tidy.py "$(jobs_here)"
