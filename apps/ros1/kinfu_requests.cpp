@@ -13,7 +13,6 @@ using saccade::ros1::Question;
 
 namespace {
 
-constexpr std::size_t kMostWorkers{16};
 constexpr double kKeep_s{30.0};
 constexpr double kGrace_s{1.0};  ///< from the first subscriber on: a latched message is sent after it connected
 constexpr const char* kBusy{"16 requests are being answered already"};
@@ -29,44 +28,6 @@ double megabytes(const MapAnswer& answer) {
 }
 
 }  // namespace
-
-Workers::~Workers() {
-  cancel_all();
-  for (Worker& worker : workers_) worker.thread.join();
-}
-
-bool Workers::start(std::function<void(const std::atomic<bool>&)> work, const std::string& name) {
-  const std::scoped_lock lock{mutex_};
-  workers_.remove_if([](Worker& worker) {
-    if (!worker.done) return false;
-    worker.thread.join();
-    return true;
-  });
-  if (workers_.size() >= kMostWorkers) return false;
-  Worker& worker = workers_.emplace_back();
-  worker.name = name;
-  worker.thread = std::thread{[&worker, work = std::move(work)] {
-    try {
-      work(worker.cancelled);
-    } catch (const std::exception& error) {
-      ROS_ERROR("%s: %s", worker.name.c_str(), error.what());
-    }
-    worker.done = true;
-  }};
-  return true;
-}
-
-void Workers::cancel(const std::string& name) {
-  const std::scoped_lock lock{mutex_};
-  for (Worker& worker : workers_) {
-    if (worker.name == name) worker.cancelled = true;
-  }
-}
-
-void Workers::cancel_all() {
-  const std::scoped_lock lock{mutex_};
-  for (Worker& worker : workers_) worker.cancelled = true;
-}
 
 KinfuRequests::KinfuRequests(ros::NodeHandle node, saccade::ros1::KinfuMap& map, const RequestSettings& settings,
                              std::function<void()> on_reset)

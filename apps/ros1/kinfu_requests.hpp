@@ -10,33 +10,11 @@
 #include <atomic>
 #include <functional>
 #include <list>
-#include <map>
-#include <memory>
 #include <mutex>
 #include <string>
-#include <thread>
 
 #include "kinfu_map.hpp"
-
-/// Threads that work on one thing each; joined when they are done, or when this ends.
-class Workers {
- public:
-  ~Workers();
-  /// Returns false where too many are at work.
-  bool start(std::function<void(const std::atomic<bool>& cancelled)> work, const std::string& name);
-  void cancel(const std::string& name);
-  void cancel_all();
-
- private:
-  struct Worker {
-    std::string name;
-    std::atomic<bool> cancelled{false};
-    std::atomic<bool> done{false};
-    std::thread thread;
-  };
-  std::mutex mutex_;
-  std::list<Worker> workers_;
-};
+#include "workers.hpp"
 
 struct RequestSettings {
   std::string action_name, upload_name, topic;
