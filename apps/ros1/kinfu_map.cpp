@@ -46,7 +46,7 @@ struct KinfuMap::State {
   TsdfMap map;
   std::optional<Pose> T_world_last;
   std::optional<Pose> T_world_fused;
-  std::optional<Pose> T_world_start;  ///< of the next frame
+  std::optional<Pose> T_world_start;  ///< where the next frame is tracked from
   std::optional<Eigen::Vector3d> volume_center;
   int frames{0};
   mutable std::mutex reader;  ///< what questions look at beside the map

@@ -33,7 +33,7 @@ struct FrameOutcome {
   bool lost{false};
   std::string why;    ///< when lost
   bool fused{false};  ///< tracked frames that moved too little are not
-  PlainPose pose;     ///< of the last frame that was not lost
+  PlainPose pose;     ///< the camera at the last frame that was not lost
   double track_ms{0.0}, fuse_ms{0.0};
   double forgotten_mb{0.0};
 };

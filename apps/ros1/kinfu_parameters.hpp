@@ -13,7 +13,7 @@ struct KinfuParameters {
   std::string depth_topic, info_topic, color_topic;
   std::string command_topic, command_ack_topic, require_reset_topic, image_ack_topic, current_view_topic,
       icp_lost_topic;
-  std::string first_frame, current_frame;        ///< of TF, without a leading slash
+  std::string first_frame, current_frame;        ///< names for TF, without a leading slash
   std::string forced_reference, forced_current;  ///< current empty: the image's own frame
   std::string shift_checker;
   double target_distance{0.0}, shift_distance{0.0};

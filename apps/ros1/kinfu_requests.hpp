@@ -18,7 +18,7 @@
 
 struct RequestSettings {
   std::string action_name, upload_name, topic;
-  std::string frame_id;  ///< of answers
+  std::string frame_id;  ///< in the headers of answers
   std::string temporary_folder;
   double largest_message_mb{900.0};
 };

@@ -90,7 +90,7 @@ struct MapAnswer {
   std::vector<std::uint8_t> rgb;
   std::vector<float> floats;
   std::vector<std::uint64_t> counts;
-  std::vector<Dimension> dimensions;  ///< of floats or counts
+  std::vector<Dimension> dimensions;  ///< how floats or counts are laid out
 };
 
 }  // namespace saccade::ros1

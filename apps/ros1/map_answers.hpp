@@ -15,7 +15,7 @@ namespace saccade::ros1 {
 /// What an answer is made from.
 struct Source {
   const TsdfSnapshot& map;
-  std::optional<PinholeCamera> sensor;  ///< of the last frame
+  std::optional<PinholeCamera> sensor;  ///< the camera that took the last frame
   double max_range_m{0.0};
   const std::atomic<bool>& cancelled;
   Executor executor;
