@@ -209,7 +209,10 @@ std::string KinfuMap::upload(const MapUpload& upload) {
     if (upload.known[i] == 0) continue;
     const std::size_t nx = upload.known_size[0];
     const std::size_t ny = upload.known_size[1];
-    const Eigen::Vector3d cell{0.5 + double(i % nx), 0.5 + double(i / nx % ny), 0.5 + double(i / nx / ny)};
+    const std::size_t x = i % nx;
+    const std::size_t y = i / nx % ny;
+    const std::size_t z = i / nx / ny;
+    const Eigen::Vector3d cell{0.5 + double(x), 0.5 + double(y), 0.5 + double(z)};
     written = written.hull(write(voxel_at(box.min + edge_m * cell, edge_m), {kTsdfOne, free_weight}));
   }
   for (const auto& [x, y, z, value] : upload.points) {
