@@ -38,12 +38,12 @@ struct ProgramConfig {
 /// A program that has the devices of a version of ROS, in a build that found its packages.
 struct RosProgram {
   std::string_view name;      ///< "ROS 1"
-  std::string_view prefix;    ///< of a command that names a device: "ros:"
+  std::string_view prefix;    ///< begins a command that names a device: "ros:"
   std::string_view program;   ///< "saccade-ros1"
-  std::string_view packages;  ///< of Debian
+  std::string_view packages;  ///< that it needs to be built (Debian)
 };
 inline constexpr std::array<RosProgram, 2> kRosPrograms{
-    {{"ROS 1", "ros:", "saccade-ros1", "ros-core-dev, libactionlib-dev and libtf2-ros-dev"},
+    {{"ROS 1", "ros:", "saccade-ros1", "ros-core-dev, libactionlib-dev, libtf2-ros-dev and libpcl-msgs-dev"},
      {"ROS 2", "ros2:", "saccade-ros2", "cyclonedds-dev and cyclonedds-tools"}}};
 /// Looks beside the program that is running, and then in PATH. Empty: it is not there.
 [[nodiscard]] std::filesystem::path find_program(std::string_view name);
