@@ -1,0 +1,28 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// DepthMessage: the bytes of a depth image as messages have them; to_metres: the same as metres.
+
+#include <cstddef>
+#include <cstdint>
+#include <string>
+#include <vector>
+
+namespace saccade::ros1 {
+
+/// A sensor_msgs/Image, borrowed.
+struct DepthMessage {
+  std::uint32_t width{0};
+  std::uint32_t height{0};
+  std::string encoding;
+  bool is_bigendian{false};
+  std::uint32_t step{0};  ///< bytes of a row, padding included
+  const std::uint8_t* data{nullptr};
+  std::size_t bytes{0};
+};
+
+/// Converts depth to metres along z: 16UC1 and mono16 are millimetres, 32FC1 metres; 0: no return; negative: seen free
+/// up to there.
+/// @return what is wrong with the message; empty when nothing is.
+[[nodiscard]] std::string to_metres(const DepthMessage& message, std::vector<float>& metres);
+
+}  // namespace saccade::ros1

@@ -1,0 +1,7 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The nodes that saccade-ros1 can be, one source file each. Each returns the program's exit status.
+
+int run_kinfu(int argc, char** argv);
+int run_surfel_next_best_view(int argc, char** argv);
+int run_basic_next_best_view(int argc, char** argv);
