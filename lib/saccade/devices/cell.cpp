@@ -107,7 +107,9 @@ CellArm read_cell_arm(const YAML::Node& node, const fs::path& folder) {
 std::string ros_command(YamlMap& map, const std::string& role, const YAML::Node& name, const std::string& prefix) {
   std::string command = prefix + yaml_text(name);
   for (const std::string_view option : ros_options(role)) {
-    const std::string value = text_in(map, std::string{option});
+    std::string key{option};
+    std::replace(key.begin(), key.end(), '-', '_');
+    const std::string value = text_in(map, key);
     if (!value.empty()) command += " --" + std::string{option} + " " + shell_quoted(value);
   }
   return command;

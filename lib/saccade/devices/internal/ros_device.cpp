@@ -16,8 +16,8 @@ namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 9> kCameraOptions{"info",      "color",     "frame", "reference", "min_range",
-                                                         "max_range", "rectified", "skip",  "domain"};
+constexpr std::array<std::string_view, 9> kCameraOptions{"info",      "color",     "frame", "reference", "min-range",
+                                                         "max-range", "rectified", "skip",  "domain"};
 constexpr std::array<std::string_view, 2> kJointsOptions{"states", "domain"};
 constexpr std::array<std::string_view, 2> kHandOptions{"reference", "domain"};
 

@@ -12,7 +12,8 @@
 
 namespace saccade {
 
-/// Returns the keys that a cell's file may have beside the name, which are options of the program: "info" is --info.
+/// Returns the keys that a cell's file may have beside the name, which are options of the program: "info" is --info; a
+/// key has _ in place of -.
 [[nodiscard]] std::span<const std::string_view> ros_options(std::string_view role);
 
 /// Whether a command names a device over ROS.
