@@ -1,0 +1,84 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// KinfuMap: the map behind the node kinfu. Frames are tracked and fused by one thread while others ask questions.
+
+#include <atomic>
+#include <memory>
+
+#include "kinfu_types.hpp"
+
+namespace saccade::ros1 {
+
+struct KinfuConfig {
+  double volume_size{3.0};
+  std::uint32_t volume_resolution{512};  ///< voxels along the volume: with its size, the size of a voxel
+  double truncation{0.0};                ///< 0: 5.12 voxels
+  double min_range{0.1}, max_range{4.4};
+  bool minimum_motion{true};
+  double memory_limit_mb{0.0};  ///< above it, what lies outside the volume is forgotten; 0: never
+};
+
+enum class Hint { none, start, forced };
+
+struct PlainFrame {
+  PlainCamera camera;
+  std::vector<float> metres;
+  std::vector<std::uint8_t> rgb;  ///< empty, or as large as the camera's image
+  Hint hint{Hint::none};
+  PlainPose pose;  ///< what the hint says
+};
+
+struct FrameOutcome {
+  std::string error;  ///< the frame cannot be used; the map is untouched
+  bool lost{false};
+  std::string why;    ///< when lost
+  bool fused{false};  ///< tracked frames that moved too little are not
+  PlainPose pose;     ///< of the last frame that was not lost
+  double track_ms{0.0}, fuse_ms{0.0};
+  double forgotten_mb{0.0};
+};
+
+/// What is uploaded: TSDF values at points, and voxels that are known, x fastest.
+struct MapUpload {
+  std::vector<std::array<float, 4>> points;  ///< x, y, z, value in [-1, 1]
+  PlainBox box;
+  std::vector<std::uint8_t> known;
+  std::array<std::uint32_t, 3> known_size{};
+  bool reset{false};
+};
+
+class KinfuMap {
+ public:
+  /// Throws std::invalid_argument, with what is wrong.
+  explicit KinfuMap(const KinfuConfig& config);
+  ~KinfuMap();
+  KinfuMap(const KinfuMap&) = delete;
+  KinfuMap& operator=(const KinfuMap&) = delete;
+
+  // Writers wait for each other, so that any thread may call any of these.
+  [[nodiscard]] FrameOutcome process(PlainFrame frame);
+  /// Empties the map. The next frame is taken from `start`, or defines the world. Returns what is wrong with the pose.
+  std::string reset(const std::optional<PlainPose>& start);
+  /// Sets voxels unknown, or empty; returns what is wrong with the region.
+  std::string clear(const PlainSphere& region, bool to_empty);
+  std::string clear(const PlainBox& region, bool to_empty);
+  std::string clear(const PlainCylinder& region, bool to_empty);
+  std::string upload(const MapUpload& upload);
+  void set_minimum_motion(bool on);
+  void set_volume_center(const std::array<double, 3>& center);
+
+  /// Answers from the map as it is at the call, while it goes on. Any thread.
+  [[nodiscard]] MapAnswer answer(const MapRequest& request, const std::atomic<bool>& cancelled) const;
+  /// Camera of the last frame; nothing before.
+  [[nodiscard]] std::optional<PlainCamera> camera() const;
+  [[nodiscard]] double voxel_size() const;
+
+ private:
+  struct State;
+  std::unique_ptr<State> state_;
+};
+
+/// Writes a cloud, or a mesh where there are triangles, as PCD or PLY; returns what went wrong.
+std::string write_answer(const std::string& path, const MapAnswer& answer);
+
+}  // namespace saccade::ros1
