@@ -55,6 +55,7 @@ class Images {
  public:
   void subscribe(ros::NodeHandle& node, const std::string& topic) {
     topic_ = topic;
+    subscriber_.shutdown();  // two at a time would share a registration
     subscriber_ = node.subscribe<sensor_msgs::Image>(topic, 2, &Images::take, this, ros::TransportHints{}.tcpNoDelay());
   }
   [[nodiscard]] std::size_t count() const {

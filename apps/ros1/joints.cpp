@@ -27,6 +27,8 @@ using devices::say;
 using nlohmann::json;
 using Client = actionlib::SimpleActionClient<control_msgs::FollowJointTrajectoryAction>;
 
+constexpr double kGone_s{0.5};  ///< connections of a server that was started anew come and go for a moment
+
 /// Says how a goal ended that did not succeed.
 std::string end_of_goal(const Client& client) {
   const actionlib::SimpleClientGoalState state = client.getState();
@@ -83,7 +85,8 @@ class RosJoints {
     const bool done = client_->getState().isDone();
     if (done && ended_s_ == 0.0) ended_s_ = now_s();
     if (done && client_->getState() != actionlib::SimpleClientGoalState::SUCCEEDED) fail(end_of_goal(*client_));
-    if (!done && !client_->isServerConnected()) fail("the action server " + action_ + " has gone");
+    if (done || client_->isServerConnected()) connected_s_ = now_s();
+    if (now_s() - connected_s_ > kGone_s) fail("the action server " + action_ + " has gone");
     if (!at) {
       if (now_s() - told_s_ > silence_s_) fail(states_.silence(states_topic_));
       return;
@@ -100,6 +103,7 @@ class RosJoints {
 
  private:
   void subscribe() {
+    subscriber_.shutdown();  // two at a time would share a registration
     subscriber_ = connection_.node().subscribe<sensor_msgs::JointState>(states_topic_, 8, &JointStates::take, &states_,
                                                                         ros::TransportHints{}.tcpNoDelay());
     client_.emplace(action_, false);
@@ -140,7 +144,7 @@ class RosJoints {
     number_ = request.at("number");
     moving_ = true;
     ended_s_ = 0.0;
-    told_s_ = now_s();
+    told_s_ = connected_s_ = now_s();
     client_->sendGoal(goal);
   }
 
@@ -180,7 +184,8 @@ class RosJoints {
   ros::Subscriber subscriber_;
   json number_;
   bool moving_{false};
-  double told_s_{0.0};   ///< when the position came that was told last
+  double told_s_{0.0};  ///< when the position came that was told last
+  double connected_s_{0.0};
   double ended_s_{0.0};  ///< when the goal ended; 0: not yet
 };
 

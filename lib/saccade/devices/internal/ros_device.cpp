@@ -67,6 +67,10 @@ Status check_over_ros(std::string_view role, std::string_view command) {
 }
 
 std::string shell_quoted(std::string_view text) {
+  const auto plain = [](char c) {
+    return std::isalnum(static_cast<unsigned char>(c)) != 0 || c == '_' || c == '/' || c == '-' || c == '.';
+  };
+  if (!text.empty() && std::all_of(text.begin(), text.end(), plain)) return std::string{text};
   std::string quoted{"'"};
   for (const char c : text) quoted += c == '\'' ? std::string{"'\\''"} : std::string{c};
   return quoted + "'";

@@ -22,7 +22,7 @@ namespace saccade {
 /// invalid_argument for a role that no program over ROS has, or a name that no topic can have.
 [[nodiscard]] Status check_over_ros(std::string_view role, std::string_view command);
 
-/// Quotes a text for a shell.
+/// Quotes a text for a shell, where it needs to be.
 [[nodiscard]] std::string shell_quoted(std::string_view text);
 
 /// Returns the command as a shell runs it: itself, if it is not over ROS. unavailable: Saccade was built without.
