@@ -11,6 +11,7 @@
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/little_endian.hpp"
 #include "saccade/io/files/npy_io.hpp"
+#include "saccade/map/voxel_row.hpp"
 #include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {
@@ -170,26 +171,6 @@ Result<IndexBox> volume_box(const TsdfSnapshot& map, const TernaryVolumeConfig& 
   return box;
 }
 
-/// The states of one row of voxels along x.
-void fill_row(const TsdfGrid& grid, const IndexBox& box, std::int32_t y, std::int32_t z, std::uint8_t* row) {
-  for (std::int32_t x = box.lo.x; x < box.hi.x;) {
-    const Index3 voxel{x, y, z};
-    const Sector* sector = grid.find(parent(parent(voxel)));
-    const int bits = sector == nullptr ? kSectorVoxelEdge : kBrickEdge;
-    const std::int32_t end = std::min((x & ~(bits - 1)) + bits, box.hi.x);
-    if (sector == nullptr) {
-      std::fill_n(row, end - x, std::uint8_t{0});
-    } else {
-      const BrickRef& ref = sector->bricks[static_cast<std::size_t>(child_index(parent(voxel)))];
-      for (std::int32_t i = x; i < end; ++i) {
-        row[i - x] = static_cast<std::uint8_t>(state_of(ref.voxel(child_index({i, y, z}))));
-      }
-    }
-    row += end - x;
-    x = end;
-  }
-}
-
 nlohmann::ordered_json sidecar(const IndexBox& box, double voxel_size_m, const std::filesystem::path& volume) {
   const auto [z, y, x] = shape_of(box);
   const Eigen::Vector3d origin = voxel_center(box.lo, voxel_size_m);
@@ -269,7 +250,9 @@ Result<IndexBox> write_ternary_volume(const TsdfSnapshot& map, const std::filesy
   std::vector<std::uint8_t> slice(static_cast<std::size_t>(height * width));
   for (std::int32_t z = box.lo.z; z < box.hi.z; ++z) {
     for (std::int32_t y = box.lo.y; y < box.hi.y; ++y) {
-      fill_row(map.grid, box, y, z, slice.data() + static_cast<std::size_t>(y - box.lo.y) * width);
+      std::uint8_t* state = slice.data() + static_cast<std::size_t>(y - box.lo.y) * width;
+      for_each_in_row(map.grid, {box.lo.x, y, z}, box.hi.x,
+                      [&](const Voxel& voxel) { *state++ = static_cast<std::uint8_t>(state_of(voxel)); });
     }
     SACCADE_CHECK(file.write(std::as_bytes(std::span{slice})));
   }

@@ -1,0 +1,11 @@
+// SPDX-License-Identifier: Apache-2.0
+// The Python module. Its docstrings name shapes, units and frames; docs/guides/python.md leads through it.
+#include "convert.hpp"
+
+PYBIND11_MODULE(_saccade, module) {
+  module.doc() = "Next-best-view planning and TSDF mapping for robot-held depth cameras.";
+  saccade::python::bind_sensor(module);
+  saccade::python::bind_map(module);
+  saccade::python::bind_views(module);
+  saccade::python::bind_trial(module);
+}
