@@ -105,7 +105,7 @@ CellArm read_cell_arm(const YAML::Node& node, const fs::path& folder) {
 
 /// A device over ROS in full: {ros: /camera/depth, info: /camera/camera_info}. Returns "ros:/camera/depth --info …".
 std::string ros_command(YamlMap& map, const std::string& role, const YAML::Node& name, const std::string& prefix) {
-  std::string command = prefix + yaml_text(name);
+  std::string command = prefix + shell_quoted(yaml_text(name));
   for (const std::string_view option : ros_options(role)) {
     std::string key{option};
     std::replace(key.begin(), key.end(), '-', '_');
