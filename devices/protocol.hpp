@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a device's program says and hears: LineInput, say, keep_output_for_answers; Options of its command line.
+// What a device's program says and hears: LineInput, say, keep_output_for_answers; Options of its command line. C++17,
+// which libraries of some devices need.
 
 #include <fcntl.h>
 #include <poll.h>
@@ -14,9 +15,9 @@
 #include <map>
 #include <nlohmann/json.hpp>
 #include <optional>
-#include <span>
 #include <stdexcept>
 #include <string>
+#include <string_view>
 #include <vector>
 
 namespace saccade::devices {
@@ -61,13 +62,13 @@ inline void keep_output_for_answers() {
   ::dup2(STDERR_FILENO, STDOUT_FILENO);
 }
 
-inline void say(const nlohmann::json& message, std::span<const char> bytes = {}) {
+inline void say(const nlohmann::json& message, std::string_view bytes = {}) {
   const std::string line = message.dump() + '\n';
-  for (std::span<const char> rest : {std::span<const char>{line}, bytes}) {
+  for (std::string_view rest : {std::string_view{line}, bytes}) {
     while (!rest.empty()) {
       const ssize_t written = ::write(answer_output(), rest.data(), rest.size());
       if (written < 0) throw std::runtime_error{"Saccade does not listen any more"};
-      rest = rest.subspan(static_cast<std::size_t>(written));
+      rest.remove_prefix(static_cast<std::size_t>(written));
     }
   }
 }
@@ -78,7 +79,7 @@ class Options {
   Options(int argc, char** argv, const std::vector<std::string>& switches = {}) {
     for (int i = 1; i < argc; ++i) {
       const std::string name{argv[i]};
-      if (!name.starts_with("--")) {
+      if (name.substr(0, 2) != "--") {
         if (!values_.emplace("", name).second) throw std::runtime_error{"one argument too many: " + name};
       } else if (std::find(switches.begin(), switches.end(), name) != switches.end()) {
         values_.emplace(name, "yes");
@@ -96,7 +97,7 @@ class Options {
       throw std::runtime_error{name.empty() ? "one argument too many: " + value : "unknown option " + name};
     }
   }
-  [[nodiscard]] bool has(const std::string& name) const { return values_.contains(name); }
+  [[nodiscard]] bool has(const std::string& name) const { return values_.count(name) != 0; }
   [[nodiscard]] std::string text(const std::string& name, const std::string& otherwise = "") const {
     const auto found = values_.find(name);
     return found == values_.end() ? otherwise : found->second;

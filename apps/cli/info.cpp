@@ -18,6 +18,7 @@
 #include "json_output.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/core/simd.hpp"
+#include "saccade/devices/programs.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "summary.hpp"
@@ -76,6 +77,16 @@ json dependencies() {
           {"zlib", zlibVersion()}};
 }
 
+/// Where the programs of devices over ROS are; null: not there.
+json ros_json() {
+  json found = json::object();
+  for (const RosProgram& version : kRosPrograms) {
+    const fs::path path = find_program(version.program);
+    found[std::string{version.program}] = path.empty() ? json{} : json{path.string()};
+  }
+  return found;
+}
+
 json program_json(const Executor& executor) {
   return {{"compiler", compiler()},
           {"processor", processor()},
@@ -85,7 +96,23 @@ json program_json(const Executor& executor) {
           {"cores", std::thread::hardware_concurrency()},
           {"backends", {{"sequential", true}, {"tbb", true}, {"cuda", false}}},
           {"backend", executor.backend_name()},
+          {"ros", ros_json()},
           {"dependencies", dependencies()}};
+}
+
+/// "ROS 1 (saccade-ros1); absent: ROS 2 (saccade-ros2, which needs …)"
+std::string ros_text(const json& found) {
+  std::string present;
+  std::string absent;
+  for (const RosProgram& version : kRosPrograms) {
+    const bool has = !found[std::string{version.program}].is_null();
+    std::string text = std::string{version.name} + " (" + std::string{version.program};
+    text += has ? ")" : ", which needs " + std::string{version.packages} + " when saccade is built)";
+    std::string& list = has ? present : absent;
+    list += (list.empty() ? "" : ", ") + text;
+  }
+  const std::string missing = absent.empty() ? "" : "absent: " + absent;
+  return present + (present.empty() || absent.empty() ? "" : "; ") + missing;
 }
 
 json saved_map_json(const TsdfSnapshot& map) {
@@ -137,6 +164,7 @@ void print_program(const json& about) {
   std::string absent;
   for (const auto& [name, has] : about["backends"].items()) (has.get<bool>() ? present : absent) += " " + name;
   summary.line("back ends", present.substr(1) + "; absent:" + absent);
+  summary.line("devices", ros_text(about["ros"]));
   std::string versions;
   for (const auto& [name, version] : about["dependencies"].items()) {
     versions += (versions.empty() ? "" : ", ") + name + " " + version.get<std::string>();

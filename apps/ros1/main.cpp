@@ -19,6 +19,9 @@ constexpr Subcommand kSubcommands[] = {
     {"kinfu", "tracks and fuses depth images; answers commands and requests", run_kinfu},
     {"surfel_next_best_view", "evaluates view poses against clouds of surfels", run_surfel_next_best_view},
     {"basic_next_best_view", "ranks view poses around points of interest", run_basic_next_best_view},
+    {"camera", "a camera's topic as a device of Saccade's (ros:TOPIC in a cell)", run_camera_device},
+    {"joints", "a FollowJointTrajectory action as the joints of an arm (ros:ACTION in a cell)", run_joints_device},
+    {"hand", "a frame of TF as a hand (ros:FRAME in a cell)", run_hand_device},
 };
 
 int usage(std::FILE* file, int status) {

@@ -5,3 +5,8 @@
 int run_kinfu(int argc, char** argv);
 int run_surfel_next_best_view(int argc, char** argv);
 int run_basic_next_best_view(int argc, char** argv);
+
+// Programs of devices, which saccade starts itself (ros:NAME in a cell).
+int run_camera_device(int argc, char** argv);
+int run_joints_device(int argc, char** argv);
+int run_hand_device(int argc, char** argv);

@@ -24,10 +24,10 @@ def free_port():
 
 
 class Session:
-    """Starts roscore; `program` is saccade-ros1, `python` the folder of its generated messages."""
+    """Starts a master; `program` is saccade-ros1, `python` the folder of its generated messages."""
 
     def __init__(self, program, python):
-        for tool in ("roscore", "rostopic", "rosservice"):
+        for tool in ("rosmaster", "rostopic", "rosservice"):
             if shutil.which(tool) is None:
                 skip(f"{tool} is not there (packages.txt, ros)")
         self.program = program
@@ -38,8 +38,12 @@ class Session:
         os.environ.pop("ROS_HOSTNAME", None)
         sys.path.insert(0, python)
         self.processes = []
-        self.core = self.start(["roscore", "-p", str(self.port)], "roscore")
-        self.until(self.has_master, 20, "roscore did not start")
+        self.start_master()
+
+    def start_master(self):
+        """What roscore starts: its own children would outlive it."""
+        self.core = self.start(["rosmaster", "--core", "-p", str(self.port)], "rosmaster")
+        self.until(self.has_master, 20, "rosmaster did not start")
 
     def has_master(self):
         with socket.socket() as probe:
@@ -73,7 +77,7 @@ class Session:
     def close(self):
         for process in reversed(self.processes):
             try:
-                os.killpg(process.pid, signal.SIGKILL)  # roscore has children, and takes its time over them
+                os.killpg(process.pid, signal.SIGKILL)
             except ProcessLookupError:
                 pass
             process.wait()

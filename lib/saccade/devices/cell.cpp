@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "saccade/core/angle.hpp"
+#include "saccade/devices/internal/ros_device.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/yaml_map.hpp"
 
@@ -102,22 +103,76 @@ CellArm read_cell_arm(const YAML::Node& node, const fs::path& folder) {
   return arm;
 }
 
-CellProgram read_program(YamlMap& map) {
-  CellProgram program;
-  const YAML::Node command = map.need("command");
-  program.command = yaml_text(command);
-  if (program.command.find_first_not_of(" \t") == std::string::npos) yaml_problem(command, "the command is empty");
-  program.timeout_s = positive_in(map, "timeout");
-  return program;
+/// A device over ROS in full: {ros: /camera/depth, info: /camera/camera_info}. Returns "ros:/camera/depth --info …".
+std::string ros_command(YamlMap& map, const std::string& role, const YAML::Node& name, const std::string& prefix) {
+  std::string command = prefix + shell_quoted(yaml_text(name));
+  for (const std::string_view option : ros_options(role)) {
+    std::string key{option};
+    std::replace(key.begin(), key.end(), '-', '_');
+    const std::string value = text_in(map, key);
+    if (!value.empty()) command += " --" + std::string{option} + " " + shell_quoted(value);
+  }
+  return command;
 }
+
+/// Refuses what no program over ROS can be.
+void check_ros_name(const YAML::Node& node, const std::string& role, const std::string& command) {
+  if (const Status status = check_over_ros(role, command); !status.ok()) yaml_problem(node, status.error().message);
+}
+
+std::string read_command(YamlMap& map, const std::string& role) {
+  for (const char* prefix : {"ros", "ros2"}) {
+    const YAML::Node name = map.find(prefix);
+    if (!name.IsDefined()) continue;
+    if (map.find("command").IsDefined()) yaml_problem(name, "command and ros exclude each other");
+    const std::string command = ros_command(map, role, name, std::string{prefix} + ":");
+    check_ros_name(name, role, command);
+    return command;
+  }
+  const YAML::Node node = map.need("command");
+  const std::string command = yaml_text(node);
+  if (command.find_first_not_of(" \t") == std::string::npos) yaml_problem(node, "the command is empty");
+  check_ros_name(node, role, command);
+  return command;
+}
+
+/// A device's keys; or, in place of all of them, ros:NAME.
+class ProgramKeys {
+ public:
+  ProgramKeys(const YAML::Node& node, const std::string& role) {
+    if (node.IsScalar() && is_over_ros(yaml_text(node))) {
+      program_.command = yaml_text(node);
+      check_ros_name(node, role, program_.command);
+      return;
+    }
+    map_.emplace(node, role);
+    program_.command = read_command(*map_, role);
+    program_.timeout_s = positive("timeout");
+    tell("timeout", program_.timeout_s);
+  }
+  [[nodiscard]] std::optional<double> positive(const std::string& key) {
+    return map_ ? positive_in(*map_, key) : std::nullopt;
+  }
+  [[nodiscard]] double number(const std::string& key) { return map_ ? map_->number(key, 0.0) : 0.0; }
+  /// Tells a program over ROS what Saccade waits for, so that it gives up a little earlier, and says why.
+  void tell(const char* option, std::optional<double> limit_s) {
+    constexpr double kEarlier{0.8};
+    if (!limit_s || !is_over_ros(program_.command)) return;
+    program_.command += std::string{" --"} + option + " " + std::to_string(kEarlier * *limit_s);
+  }
+  [[nodiscard]] CellProgram finish() const {
+    if (map_) map_->finish();
+    return program_;
+  }
+
+ private:
+  std::optional<YamlMap> map_;
+  CellProgram program_;
+};
 
 CellProgram program_under(YamlMap& cell, const std::string& key) {
   const YAML::Node node = cell.find(key);
-  if (!node.IsDefined()) return {};
-  YamlMap map{node, key};
-  CellProgram program = read_program(map);
-  map.finish();
-  return program;
+  return node.IsDefined() ? ProgramKeys{node, key}.finish() : CellProgram{};
 }
 
 Cell read_cell_document(const YAML::Node& document, const fs::path& folder) {
@@ -126,16 +181,15 @@ Cell read_cell_document(const YAML::Node& document, const fs::path& folder) {
   cell.folder = folder;
   if (const YAML::Node arm = map.find("arm"); arm.IsDefined()) cell.arm = read_cell_arm(arm, folder);
   if (const YAML::Node camera = map.find("camera"); camera.IsDefined()) {
-    YamlMap keys{camera, "a camera"};
-    cell.camera = read_program(keys);
-    cell.camera_clock_offset_s = keys.number("clock_offset", 0.0);
-    keys.finish();
+    ProgramKeys keys{camera, "camera"};
+    cell.camera_clock_offset_s = keys.number("clock_offset");
+    cell.camera = keys.finish();
   }
   if (const YAML::Node joints = map.find("joints"); joints.IsDefined()) {
-    YamlMap keys{joints, "joints"};
-    cell.joints = read_program(keys);
-    cell.watch = {positive_in(keys, "tolerance"), positive_in(keys, "lag"), positive_in(keys, "watchdog")};
-    keys.finish();
+    ProgramKeys keys{joints, "joints"};
+    cell.watch = {keys.positive("tolerance"), keys.positive("lag"), keys.positive("watchdog")};
+    keys.tell("silence", cell.watch.watchdog_s);
+    cell.joints = keys.finish();
     if (!cell.arm) yaml_problem(joints, "joints need an arm that plans: add the key arm, with its URDF");
   }
   cell.robot = program_under(map, "robot");

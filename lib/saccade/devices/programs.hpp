@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Devices behind programs of the user's, docs/processes.md: ProgramCamera, ProgramRobot, ProgramJoints, ProgramHand;
-// ProgramConfig: how such a program is run.
+// ProgramConfig: how such a program is run; kRosPrograms: those of ours that devices over ROS are behind.
 
+#include <array>
 #include <filesystem>
 #include <functional>
 #include <memory>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saccade/core/names.hpp"
@@ -24,7 +26,7 @@ class ExternalProcess;
 /// How a program is run. Every class below starts it, is used by one caller at a time, and ends it when it is
 /// destroyed; no process of it is left then, nor after a crash of the caller.
 struct ProgramConfig {
-  std::string command;                ///< as a shell would run it
+  std::string command;                ///< as a shell would run it; or ros:NAME, ros2:NAME, with options
   std::filesystem::path folder{};     ///< working directory; empty: that of the caller
   double start_timeout_s{30.0};       ///< until it has said what it is
   double timeout_s{10.0};             ///< until it has answered a request; a motion adds its own duration
@@ -32,6 +34,19 @@ struct ProgramConfig {
 
   [[nodiscard]] Status validate(const char* role) const;
 };
+
+/// A program that has the devices of a version of ROS, in a build that found its packages.
+struct RosProgram {
+  std::string_view name;      ///< "ROS 1"
+  std::string_view prefix;    ///< begins a command that names a device: "ros:"
+  std::string_view program;   ///< "saccade-ros1"
+  std::string_view packages;  ///< that it needs to be built (Debian)
+};
+inline constexpr std::array<RosProgram, 2> kRosPrograms{
+    {{"ROS 1", "ros:", "saccade-ros1", "ros-core-dev, libactionlib-dev, libtf2-ros-dev and libpcl-msgs-dev"},
+     {"ROS 2", "ros2:", "saccade-ros2", "cyclonedds-dev and cyclonedds-tools"}}};
+/// Looks beside the program that is running, and then in PATH. Empty: it is not there.
+[[nodiscard]] std::filesystem::path find_program(std::string_view name);
 
 /// A pose that a program reports may be this far from the one that was asked for; a farther one is an error.
 constexpr double kMaxPoseError_m{0.5};

@@ -5,6 +5,7 @@
 
 #include <fstream>
 
+#include "saccade/devices/programs.hpp"
 #include "support/temp_folder.hpp"
 
 namespace saccade {
@@ -29,6 +30,44 @@ joints: {command: ./joints, tolerance: 0.02, lag: 0.1, watchdog: 0.5}
 hand: {command: ./hand}
 tracking: hint
 )"};
+
+TEST(Cell, DevicesOverRosAreProgramsWithOptions) {
+  const auto cell = parse_cell(R"(arm: {robot: comau_smart_six}
+camera: {ros: /camera/depth, info: /camera/camera_info, min_range: 0.3, timeout: 5, clock_offset: 0.1}
+joints: {ros: /arm_controller/follow_joint_trajectory, states: "/it's/states", watchdog: 0.5}
+hand: ros2:/hand_frame
+)");
+  ASSERT_TRUE(cell.ok()) << cell.error().to_string();
+  EXPECT_EQ(cell->camera.command, "ros:/camera/depth --info /camera/camera_info --min-range 0.3 --timeout 4.000000");
+  EXPECT_EQ(cell->camera_clock_offset_s, 0.1);
+  EXPECT_EQ(cell->joints.command,
+            "ros:/arm_controller/follow_joint_trajectory --states '/it'\\''s/states' --silence 0.400000");
+  EXPECT_EQ(cell->watch.watchdog_s, 0.5);
+  EXPECT_EQ(cell->hand.command, "ros2:/hand_frame");
+}
+
+TEST(Cell, WhatCannotBeOverRosIsSaid) {
+  const auto problem = [](const char* yaml) {
+    const auto cell = parse_cell(yaml);
+    return cell.ok() ? std::string{} : cell.error().to_string();
+  };
+  EXPECT_NE(problem("robot: ros:/arm").find("no program over ROS"), std::string::npos) << problem("robot: ros:/arm");
+  EXPECT_NE(problem("camera: {ros: /a b}").find("needs a name of ROS"), std::string::npos);
+  EXPECT_NE(problem("camera: {ros: /a, command: b}").find("exclude each other"), std::string::npos);
+  EXPECT_NE(problem("hand: {ros: /a, info: /b}").find("info"), std::string::npos);
+}
+
+TEST(RosDevice, AProgramThatIsMissingIsSaidWithItsPackages) {
+  EXPECT_TRUE(find_program("saccade-there-is-none").empty());
+  EXPECT_FALSE(find_program("sh").empty());
+  if (!find_program("saccade-ros2").empty()) GTEST_SKIP() << "saccade-ros2 is in PATH";
+  ProgramConfig config;
+  config.command = "ros2:/camera";
+  const auto camera = ProgramCamera::start(config);
+  ASSERT_FALSE(camera.ok());
+  EXPECT_EQ(camera.error().code, Errc::unavailable);
+  EXPECT_NE(camera.error().to_string().find("built without ROS 2"), std::string::npos) << camera.error().to_string();
+}
 
 TEST(Cell, AllOfItIsRead) {
   const auto cell = parse_cell(kWhole, "/cells");

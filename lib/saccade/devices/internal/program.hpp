@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "saccade/devices/internal/external_process.hpp"
+#include "saccade/devices/internal/ros_device.hpp"
 #include "saccade/devices/programs.hpp"
 
 namespace saccade {
@@ -25,7 +26,8 @@ template <class Answer, class Parse>
 [[nodiscard]] Result<StartedProgram<Answer>> start_program(const char* role, const ProgramConfig& config,
                                                            std::string_view hello, const Parse& parse) {
   SACCADE_CHECK(config.validate(role));
-  SACCADE_TRY(auto process, ExternalProcess::start({role, config.command, config.folder, config.cancelled}));
+  SACCADE_TRY(const std::string command, ros_command_line(role, config.command));
+  SACCADE_TRY(auto process, ExternalProcess::start({role, command, config.folder, config.cancelled}));
   const Request request{"hello", config.start_timeout_s};
   SACCADE_TRY(const std::string line, process->ask(request, hello));
   Result<Answer> answer = parse(line);

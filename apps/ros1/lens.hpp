@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// Lens: the camera that a CameraInfo describes, and its images without distortion.
+
+#include <array>
+#include <cstdint>
+#include <memory>
+#include <string>
+#include <vector>
+
+namespace saccade::ros1 {
+
+/// A sensor_msgs/CameraInfo, as far as it matters here.
+struct CalibratedCamera {
+  int width{0};
+  int height{0};
+  std::string model;  ///< "plumb_bob"
+  std::vector<double> D;
+  std::array<double, 9> K{};
+  std::array<double, 12> P{};
+};
+
+class Lens {
+ public:
+  /// @param rectified the images were undistorted already: P describes them, where it is given, and not K and D.
+  /// Throws what is wrong.
+  Lens(const CalibratedCamera& camera, bool rectified);
+  ~Lens();
+
+  [[nodiscard]] double fx() const { return fx_; }
+  [[nodiscard]] double fy() const { return fy_; }
+  [[nodiscard]] double cx() const { return cx_; }
+  [[nodiscard]] double cy() const { return cy_; }
+  /// Whether images have to be undistorted.
+  [[nodiscard]] bool bends() const { return map_ != nullptr; }
+  /// The nearest pixel's depth, so that two surfaces never blend.
+  void undistort(std::vector<float>& depth) const;
+  /// Bilinear, three bytes a pixel.
+  void undistort(std::string& rgb) const;
+
+ private:
+  struct Map;
+  int width_, height_;
+  double fx_{0.0}, fy_{0.0}, cx_{0.0}, cy_{0.0};
+  std::unique_ptr<Map> map_;
+};
+
+}  // namespace saccade::ros1
