@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <algorithm>
 #include <set>
 
 #include "commands.hpp"
@@ -15,6 +16,7 @@ using nlohmann::json;
 
 constexpr int kMovingDepth{100};
 constexpr double kReadingPatience_s{0.02};
+constexpr double kTick_s{1e-4};
 
 /// A frame of /tf as a hand.
 class FrameHand {
@@ -63,14 +65,16 @@ class FrameHand {
       const auto located = transforms_.find(reference_, frame_);
       if (located && (!located->time_s || located->time_s != last_s_)) {
         last_s_ = located->time_s.value_or(now_s());
+        told_s_ = std::max(told_s_ + kTick_s, *last_s_);
         heard_s_ = now_s();
         const Eigen::Vector3d p = located->T_reference_frame.translation();
-        return {{"time_s", *last_s_}, {"position", {p.x(), p.y(), p.z()}}};
+        return {{"time_s", told_s_}, {"position", {p.x(), p.y(), p.z()}}};
       }
       if (now_s() - began_s > timeout_s_) {
         if (!located) note("no transform from " + frame_ + " to " + reference_ + "; frames: " + transforms_.frames());
         if (located) note("the transform from " + frame_ + " to " + reference_ + " stands still in time");
-        return {{"time_s", last_s_.value_or(0.0) + now_s() - heard_s_}, {"position", nullptr}};
+        told_s_ = std::max(told_s_ + kTick_s, last_s_.value_or(0.0) + now_s() - heard_s_);
+        return {{"time_s", told_s_}, {"position", nullptr}};
       }
     }
   }
@@ -82,6 +86,7 @@ class FrameHand {
   Transforms transforms_;
   std::optional<double> last_s_;  ///< time of the last reading
   double heard_s_{now_s()};
+  double told_s_{0.0};  ///< times that are told increase
   std::set<std::string> noted_;
 };
 
