@@ -16,7 +16,7 @@ using messages::JointTrajectoryPoint;
 using nlohmann::json;
 
 constexpr double kSilence_s{0.2};       // states must come at least this often while the arm moves
-constexpr double kStandsAfter_s{0.06};  // of not moving
+constexpr double kStandsAfter_s{0.06};  // without having moved
 constexpr double kStopTimeout_s{0.45};  // Saccade waits half a second
 constexpr double kTellEvery_s{0.008};   // positions on the way
 constexpr std::chrono::milliseconds kMoving{2};

@@ -109,6 +109,15 @@ TEST(Ros2Camera, FaultsAreSaid) {
     EXPECT_NE(again.find("no depth"), std::string::npos) << again;
   }
   {
+    FastCamera camera{node, info(), [] {
+                        FastImage image = depth_image("32FC1");
+                        image.data_().resize(1000);
+                        return image;
+                      }};
+    const std::string said = refusal(ros2_command("camera /camera/depth"));
+    EXPECT_NE(said.find("40x30 pixels with 160 bytes a row has 1000 bytes"), std::string::npos) << said;
+  }
+  {
     FastInfo distorted = info();
     distorted.d_({0.1, 0.0, 0.0, 0.0, 0.0});
     FastCamera camera{node, distorted, [] { return depth_image("16UC1"); }};
