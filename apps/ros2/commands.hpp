@@ -1,0 +1,14 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// The commands of saccade-ros2. Each runs until its input ends, returns its exit status, and throws what is wrong.
+
+#include "devices/camera_program.hpp"
+
+namespace saccade::ros2 {
+
+int run_camera_command(const devices::Options& options);
+int run_joints(const devices::Options& options);
+int run_hand(const devices::Options& options);
+int run_publish(const devices::Options& options);
+
+}  // namespace saccade::ros2
