@@ -122,6 +122,7 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
                    "draw no pictures, write no report, and keep no maps of views");
   command.add_flag("--show", options.show, "show the run in the browser while it goes on, and after it until Ctrl-C");
   add_serve_options(command, options.serve);
+  add_message_options(command, options.messages);
   command.add_flag("--force", options.force, "write into a folder that holds other files or an interrupted run");
 }
 

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "command.hpp"
+#include "message_options.hpp"
 #include "robot_options.hpp"
 #include "run_options.hpp"
 #include "saccade/devices/cell.hpp"
@@ -40,6 +41,8 @@ struct ExploreOptions : RunOptions {
   bool force{false};
   std::string strategy{"surface"};  ///< as it was given
   SaliencyOptions saliency;
+
+  MessageOptions messages;
 
   bool show{false};
   ServeOptions serve;

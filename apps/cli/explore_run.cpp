@@ -138,7 +138,9 @@ Status ExploreRun::resume(SavedExploration saved) {
 
 Status ExploreRun::run(const std::function<void()>& recorded) {
   recorded_ = recorded;
+  SACCADE_TRY(messages_, run_messages(options_.messages, devices_.intrinsics()));
   const Status ended = run_to_end();
+  messages_->finish();
   if (ended.ok()) return ended;
   if (ended.error().code != Errc::cancelled) {
     // A device failed: what it has shown since the last view is kept, too.
@@ -154,7 +156,8 @@ Status ExploreRun::run_to_end() {
   Progress cancel;
   const CancelOnInterrupt guard{cancel};
   const Approve approve = [this](const RankedView& view) { return ask(view); };
-  Explorer explorer{{map_, devices_.camera(), devices_.robot(), executor_, this, nullptr, approve, &cancel},
+  Recorders recorders{messages_.get(), this};  // the first sees what a view was chosen from
+  Explorer explorer{{map_, devices_.camera(), devices_.robot(), executor_, &recorders, nullptr, approve, &cancel},
                     options_.run.exploration};
   if (!journal_.scanned) {
     progress_.update("initial scan", 0, 0);

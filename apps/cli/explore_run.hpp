@@ -53,6 +53,7 @@ class ExploreRun final : private Recorder {
   ExploreJournal journal_;
   std::optional<TruthMeter> truth_meter_;  // of a scene with a truth
   std::function<void()> recorded_;
+  std::unique_ptr<RunMessages> messages_;
 };
 
 }  // namespace saccade::cli

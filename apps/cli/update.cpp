@@ -61,8 +61,11 @@ Result<int> run_update_command(const UpdateOptions& options, const GlobalOptions
   SACCADE_CHECK(remove_update_pictures(out));
 
   UpdatePictures pictures{options, subject.after.scene.workspace, task, devices, out, executor};
-  SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress,
-                                                      options.write_pictures ? &pictures : nullptr));
+  SACCADE_TRY(const std::unique_ptr<RunMessages> messages, run_messages(options.messages, devices.intrinsics()));
+  Recorder silent;
+  Recorders recorders{options.write_pictures ? &pictures : &silent, messages.get()};
+  SACCADE_TRY(const UpdateFigures figures, run_update(options, subject, task, devices, executor, progress, &recorders));
+  messages->finish();
   SACCADE_CHECK(write_maps(out, figures, task, executor));
   SACCADE_TRY(const json result, update_json(options, subject, task, figures, devices, executor, progress));
   const json document = json_envelope("update", global, executor, {{"total", total.elapsed_ms()}}, result);

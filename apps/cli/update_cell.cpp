@@ -51,7 +51,7 @@ Result<std::unique_ptr<HandTracker>> open_hand(const UpdateOptions& options) {
 class CellUpdate {
  public:
   CellUpdate(const UpdateOptions& options, const GlobalOptions& global, const ExploreCase& subject,
-             ExploreDevices& devices, const RunFolder& out, ProgressBar& bar, TsdfMap map)
+             ExploreDevices& devices, const RunFolder& out, ProgressBar& bar, TsdfMap map, RunMessages& messages)
       : options_{options},
         global_{global},
         executor_{global.executor()},
@@ -60,12 +60,13 @@ class CellUpdate {
         out_{out},
         bar_{bar},
         map_{std::move(map)},
+        messages_{messages},
         has_scan_{!options.map.empty()} {}
 
   [[nodiscard]] Status scan() {
     Progress progress = shown();
     const CancelOnInterrupt guard{progress};
-    Explorer explorer = explorer_with(progress, nullptr);
+    Explorer explorer = explorer_with(progress, &messages_);
     for (const Box& box : options_.free_boxes()) SACCADE_CHECK(map_.free(box));
     if (options_.dry_run) {
       SACCADE_TRY([[maybe_unused]] const bool seen, devices_.look_from_where_it_stands(map_, executor_));
@@ -225,7 +226,7 @@ class CellUpdate {
     RegionMeter of_regions{task_.regions};
     UpdatePictures pictures{options_, subject_.scene.workspace, task_, devices_, folder, executor_};
     Recorder silent;
-    Recorders recorders{&meter, &of_regions, options_.write_pictures ? &pictures : &silent};
+    Recorders recorders{&meter, &of_regions, options_.write_pictures ? &pictures : &silent, &messages_};
     Explorer explorer = explorer_with(progress, &recorders);
     const Stopwatch stopwatch;
     SACCADE_CHECK(explorer.forget(task_.regions));
@@ -264,6 +265,7 @@ class CellUpdate {
   const RunFolder& out_;
   ProgressBar& bar_;
   TsdfMap map_;
+  RunMessages& messages_;
   bool has_scan_;  ///< the map knows what the scan would show
   ScanRecord scan_;
   std::vector<json> tasks_;
@@ -297,10 +299,12 @@ Result<int> run_cell_update(const UpdateOptions& given, const GlobalOptions& glo
   SACCADE_TRY(std::unique_ptr<HandTracker> hand, open_hand(options));
   SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
   SACCADE_TRY(TsdfMap map, map_to_begin_with(options, subject.scene, executor));
-  CellUpdate update{options, global, subject, devices, out, bar, std::move(map)};
+  SACCADE_TRY(const std::unique_ptr<RunMessages> messages, run_messages(options.messages, devices.intrinsics()));
+  CellUpdate update{options, global, subject, devices, out, bar, std::move(map), *messages};
   if (before) SACCADE_CHECK(update.resume(*before));
   Status ended = update.scan();
   if (ended.ok() && update.scanned()) ended = update.watch(std::move(hand));
+  messages->finish();
   const bool stopped = interrupted() || (!ended.ok() && ended.error().code == Errc::cancelled);
   const Status written = update.write(total.elapsed_ms());  // whatever happened, what was seen is kept
   bar.finish();

@@ -77,6 +77,7 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
       "--resume", options.resume,
       "with CELL: go on with the interrupted updates in the folder: with their map and tasks, and first with "
       "the regions that were left");
+  add_message_options(command, options.messages);
   command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
   command.add_flag("--force", options.force, "write into a folder that holds other files");
 }

@@ -1,0 +1,31 @@
+// SPDX-License-Identifier: Apache-2.0
+#include "message_options.hpp"
+
+#include <iostream>
+
+#include "add_value.hpp"
+#include "saccade/io/messages/mcap_writer.hpp"
+
+namespace saccade::cli {
+
+void add_message_options(CLI::App& command, MessageOptions& options) {
+  add_value(command, "--record", options.record, "FILE.mcap",
+            "record the run as messages of ROS 2: map, frontier, candidates, views, depth; for Foxglove and ros2 bag");
+  add_value(command, "--frame-id", options.frame_id, "NAME", "frame of the world in messages");
+}
+
+Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options, const PinholeCamera& camera) {
+  RunMessagesConfig config;
+  config.frame_id = options.frame_id;
+  config.failed = [](const Error& error) {
+    std::cerr << "saccade: " << error.to_string() << "; the run goes on without it" << std::endl;
+  };
+  auto messages = std::make_unique<RunMessages>(std::move(config), camera);
+  if (!options.record.empty()) {
+    SACCADE_TRY(messages::McapWriter file, messages::McapWriter::create(options.record));
+    messages->add(std::make_unique<messages::McapWriter>(std::move(file)));
+  }
+  return messages;
+}
+
+}  // namespace saccade::cli
