@@ -9,8 +9,9 @@ namespace saccade::test {
 namespace {
 
 Arguments explore_tiny(const fs::path& out, const Arguments& more) {
-  return Arguments{"explore", tiny_cell_file(), "--out", out.string(), "--quiet", "--image-size", "96,72", "--voxel-size",
-                   "0.015", "--robot", "free", "--max-views", "1", "--no-pictures"} +
+  return Arguments{"explore", tiny_cell_file(), "--out", out.string(), "--quiet", "--image-size",
+                   "96,72",   "--voxel-size",   "0.015", "--robot",    "free",    "--max-views",
+                   "1",       "--no-pictures"} +
          more;
 }
 

@@ -16,7 +16,7 @@ namespace saccade {
 struct RunMessagesConfig {
   std::string frame_id{"world"};
   std::string camera_frame_id{"saccade_camera"};
-  std::string prefix{"/saccade"};      ///< of topics
+  std::string prefix{"/saccade"};      ///< Every topic begins with it, but for /tf.
   std::size_t most_points{1'000'000};  ///< a cloud with more is thinned evenly
   std::size_t most_candidates{200};    ///< the best by gain
   /// Time of messages; the system's clock by default.

@@ -63,8 +63,16 @@ TEST(McapWriter, ChunksIndexesAndSummaryAgree) {
   const auto records = records_of(file.subspan(8, file.size() - 16));
   std::string ops;
   for (const Record& record : records) ops += "0123456789ABCDEF"[record.op & 15];
-  // header, chunk and its two indexes, chunk and its one, end of data; schema, two channels, statistics, chunk indexes, footer
-  EXPECT_EQ(ops, "1677" "67" "F" "344" "B" "88" "2");
+  // header, chunk and its two indexes, chunk and its one, end of data; schema, two channels, statistics, chunk indexes,
+  // footer
+  EXPECT_EQ(ops,
+            "1677"
+            "67"
+            "F"
+            "344"
+            "B"
+            "88"
+            "2");
   const auto chunk = unpacked(records[1].content);
   const auto inside = records_of(chunk);
   ASSERT_EQ(inside.size(), 5U);  // schema, channel, message, channel, message

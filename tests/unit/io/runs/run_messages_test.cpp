@@ -95,7 +95,8 @@ TEST(RunMessages, AViewIsWhatTheMapAndTheRecordHold) {
     std::array<float, 3> p{};
     std::memcpy(p.data(), occupied.data.data() + 16 * i, 12);
     EXPECT_LT(std::abs(p[2]), 0.1F);
-    columns.emplace(static_cast<int>(std::floor((p[0] + 0.2F) / 0.02F)), static_cast<int>(std::floor((p[1] + 0.2F) / 0.02F)));
+    columns.emplace(static_cast<int>(std::floor((p[0] + 0.2F) / 0.02F)),
+                    static_cast<int>(std::floor((p[1] + 0.2F) / 0.02F)));
   }
   ASSERT_EQ(plan.info.width, 20U);
   ASSERT_EQ(plan.info.height, 20U);
@@ -111,7 +112,7 @@ TEST(RunMessages, AViewIsWhatTheMapAndTheRecordHold) {
 
   const auto markers = message_on<messages::MarkerArray>(sent, "/saccade/candidates");
   ASSERT_EQ(markers.markers.size(), 2U);
-  EXPECT_EQ(markers.markers[0].points.size(), 4U);  // two candidates were evaluated
+  EXPECT_EQ(markers.markers[0].points.size(), 4U);         // two candidates were evaluated
   EXPECT_NEAR(markers.markers[0].points[0].z, 0.5, 1e-9);  // the better one first
   EXPECT_EQ(markers.markers[1].points.size(), 16U);
   EXPECT_EQ(message_on<messages::Path>(sent, "/saccade/plan").poses.size(), 2U);

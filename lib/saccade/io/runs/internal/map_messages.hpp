@@ -19,7 +19,8 @@ namespace saccade {
 [[nodiscard]] std::vector<Eigen::Vector3f> thinned(std::vector<Eigen::Vector3f> points, std::size_t most);
 /// Fields x, y, z: float32.
 [[nodiscard]] messages::PointCloud2 cloud_of(messages::Header header, const std::vector<Eigen::Vector3f>& points);
-/// Centres of the workspace's occupied voxels, and rgb, packed as PCL does; grey where no colour was fused. At most `most`.
+/// Centres of the workspace's occupied voxels, and rgb, packed as PCL does; grey where no colour was fused. At most
+/// `most`.
 [[nodiscard]] messages::PointCloud2 occupied_cloud(messages::Header header, const TsdfSnapshot& map, std::size_t most);
 /// The workspace from above: 100 where a voxel of the column is occupied, else -1 where one is unknown, else 0.
 [[nodiscard]] messages::OccupancyGrid plan_of(messages::Header header, const TsdfSnapshot& map, const Box& workspace);
