@@ -44,7 +44,7 @@ Result<std::vector<fs::path>> trajectory_files(const AttendOptions& options) {
 /// One trajectory through the detector; nullopt for one that is left out.
 Result<std::optional<AttendedTrajectory>> attend_one(const fs::path& file, std::size_t index,
                                                      const AttendOptions& options, const AttendDetector& detector) {
-  SACCADE_TRY(HandRecording recording, read_hand_trajectory(file, options.format));
+  SACCADE_TRY(HandRecording recording, read_hand_file(file, options.hand_file));
   LabelledTrajectory labelled{file.stem().string(), std::move(recording.trajectory), {}};
   if (options.evaluate) {
     SACCADE_TRY(labelled.labels_m, read_hand_labels(file));
@@ -135,7 +135,7 @@ void add_method_options(CLI::App& command, AttendOptions& options) {
   add_method_option(command, options.method);
   command.add_flag("--as-printed", options.as_printed,
                    "formula and thresholds as the thesis prints them, which do not give its tables");
-  add_hand_format_option(command, options.format);
+  add_hand_file_options(command, options.hand_file);
 }
 
 void add_condition_options(CLI::App& command, AttendOptions& options) {
@@ -169,7 +169,8 @@ void check_attend_options(const AttendOptions& options) {
 void add_attend(CLI::App& program, const GlobalOptions& global, Action& action) {
   CLI::App* command = program.add_subcommand("attend", "finds where hands acted in their trajectories");
   auto options = std::make_shared<AttendOptions>();
-  add_value(*command, "files", options->files, "FILE...", "trajectories; a folder stands for all .traj files below it")
+  add_value(*command, "files", options->files, "FILE...",
+            "trajectories, or bags of ROS; a folder stands for all .traj files below it")
       ->required();
   add_method_options(*command, *options);
   add_condition_options(*command, *options);

@@ -18,7 +18,7 @@ namespace saccade::cli {
 
 struct AttendOptions {
   std::vector<std::filesystem::path> files;  ///< trajectories, and folders of .traj files
-  std::optional<HandFormat> format;
+  HandFileOptions hand_file;
   const AttendMethod* method{nullptr};
   bool as_printed{false};
   bool evaluate{false};

@@ -72,9 +72,20 @@ void add_method_option(CLI::App& command, const AttendMethod*& method) {
   add_words(command, "--method", names, take, "detector of actions", method->name);
 }
 
-void add_hand_format_option(CLI::App& command, std::optional<HandFormat>& format) {
-  add_choice(command, "--format", format, kHandFormatNames,
+void add_hand_file_options(CLI::App& command, HandFileOptions& options) {
+  add_choice(command, "--format", options.format, kHandFormatNames,
              "format of the files of hands (default: by extension; .traj, .csv, .tum or .txt)");
+  add_value(command, "--hand", options.bag_hand, "TOPIC|FRAME",
+            "hand in a bag of ROS: a topic of poses or points, or a frame of TF (default: the only such topic)");
+  add_value(command, "--world-frame", options.world_frame, "FRAME",
+            "frame of the hand's positions in a bag (default: that of its poses, or the root of its TF tree)");
+}
+
+Result<HandRecording> read_hand_file(const std::filesystem::path& path, const HandFileOptions& options) {
+  if (is_bag(path)) return read_bag_hand(path, options.bag_hand, options.world_frame);
+  if (options.bag_hand.empty() && options.world_frame.empty()) return read_hand_trajectory(path, options.format);
+  return Error{Errc::invalid_argument, "--hand and --world-frame are for bags of ROS and MCAP files; this is neither",
+               path.string()};
 }
 
 }  // namespace saccade::cli

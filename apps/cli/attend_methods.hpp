@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "saccade/core/result.hpp"
+#include "saccade/io/bags/bags.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/report/attention_picture.hpp"
 #include "saccade/sensor/hand_trajectory.hpp"
@@ -33,8 +34,17 @@ struct AttendMethod {
 
 /// Adds --method, which sets `method`, the default at once.
 void add_method_option(CLI::App& command, const AttendMethod*& method);
-/// Adds --format, of the files of hands.
-void add_hand_format_option(CLI::App& command, std::optional<HandFormat>& format);
+/// How a recording of a hand is read.
+struct HandFileOptions {
+  std::optional<HandFormat> format;
+  std::string bag_hand;     ///< a topic or a frame of TF, in a bag
+  std::string world_frame;  ///< of the positions, in a bag
+};
+
+/// Adds --format, --hand and --world-frame.
+void add_hand_file_options(CLI::App& command, HandFileOptions& options);
+/// A file of samples, or a bag.
+[[nodiscard]] Result<HandRecording> read_hand_file(const std::filesystem::path& path, const HandFileOptions& options);
 
 /// nullptr for a name that none has.
 [[nodiscard]] const AttendMethod* find_attend_method(std::string_view name);

@@ -2,6 +2,7 @@
 #include "frame_options.hpp"
 
 #include "add_value.hpp"
+#include "exit_status.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -60,6 +61,29 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
   add_value(command, "--every", options.folder.every_nth, "N", "use every n-th frame")->check(check_whole_number);
 }
 
+void add_bag_options(CLI::App& command, BagFramesConfig& bag) {
+  add_value(command, "--depth", bag.depth, "TOPIC", "depth images in a bag (default: the only topic of depth)");
+  add_value(command, "--info", bag.info, "TOPIC", "their camera_info (default: beside them)");
+  add_value(command, "--color", bag.color, "TOPIC", "colour images in a bag, registered to the depth images");
+  add_value(command, "--world-frame", bag.world_frame, "FRAME",
+            "frame of TF in which a bag's camera poses are (default: the root of the camera's tree)");
+}
+
+Result<std::unique_ptr<RgbdFolderSource>> open_source(const FrameOptions& options, const RgbdFolderConfig& reading) {
+  if (is_bag(options.frames)) {
+    BagFramesConfig bag = options.bag;
+    bag.reading = reading;
+    return open_bag_frames(options.frames, bag);
+  }
+  const BagFramesConfig& bag = options.bag;
+  if (!bag.depth.empty() || !bag.info.empty() || !bag.color.empty() || !bag.world_frame.empty()) {
+    return Error{Errc::invalid_argument,
+                 "--depth, --info, --color and --world-frame are for bags of ROS and MCAP files; this is neither",
+                 options.frames.string()};
+  }
+  return open_rgbd_folder(options.frames, reading);
+}
+
 /// The tracking mode that was asked for or that the folder allows.
 Result<TrackingMode> choose_tracking(const FrameOptions& options, const RgbdFolderInfo& info) {
   if (!options.tracking) return info.has_poses ? TrackingMode::forced : TrackingMode::icp;
@@ -75,10 +99,13 @@ Result<TrackingMode> choose_tracking(const FrameOptions& options, const RgbdFold
 }  // namespace
 
 void add_frame_options(CLI::App& command, FrameOptions& options) {
-  add_value(command, "frames", options.frames, "DIR", "folder of RGB-D frames")->required();
+  add_value(command, "frames", options.frames, "DIR|BAG",
+            "folder of RGB-D frames, bag of ROS (.bag) or MCAP file (.mcap)")
+      ->required();
   add_choice(command, "--tracking", options.tracking, kTrackingModeNames,
              "icp: by the depth images alone; hint: ICP from the given poses; forced: the given poses as they are "
              "(default: forced where there are poses, else icp)");
+  add_bag_options(command, options.bag);
   add_reading_options(command, options);
 }
 
@@ -122,13 +149,18 @@ Status check_beside_frames(const FrameOptions& options, const std::filesystem::p
 Result<OpenFrames> open_frames(const FrameOptions& options) {
   OpenFrames frames;
   frames.folder = options.folder;
-  SACCADE_TRY(frames.source, open_rgbd_folder(options.frames, frames.folder));
+  SACCADE_TRY(frames.source, open_source(options, frames.folder));
   SACCADE_TRY(frames.tracking, choose_tracking(options, frames.source->info()));
   if (frames.tracking == TrackingMode::icp) {
     frames.folder.require_poses = false;
-    SACCADE_TRY(frames.source, open_rgbd_folder(options.frames, frames.folder));
+    SACCADE_TRY(frames.source, open_source(options, frames.folder));
   }
   return frames;
+}
+
+void warn_of_damage(const std::string& command, const std::filesystem::path& frames, const RgbdFolderInfo& info) {
+  if (info.damage.empty()) return;
+  print_error(command, "warning: " + frames.string() + ": " + info.damage + "; what could be read was read");
 }
 
 }  // namespace saccade::cli

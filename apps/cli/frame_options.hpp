@@ -8,6 +8,7 @@
 #include <string_view>
 
 #include "options.hpp"
+#include "saccade/io/bags/bags.hpp"
 #include "saccade/io/frames/rgbd_folder.hpp"
 #include "saccade/sensor/gap_filling.hpp"
 #include "saccade/tracking/reconstruction.hpp"
@@ -23,6 +24,7 @@ struct FrameOptions {
   std::optional<TrackingMode> tracking;  ///< default: forced where the folder has poses, else icp
   CameraOptions camera;
   RgbdFolderConfig folder;
+  BagFramesConfig bag;  ///< topics and frames alone; empty where frames are a folder
   std::optional<double> depth_scale;
   std::optional<int> fill_gaps_px;  ///< default: as the first frame needs it
 };
@@ -44,5 +46,8 @@ struct OpenFrames {
 
 /// ICP alone needs no poses: a bad one is then no reason to leave a frame out.
 [[nodiscard]] Result<OpenFrames> open_frames(const FrameOptions& options);
+
+/// Says on standard error that a bag is cut or damaged, and was read as far as it goes.
+void warn_of_damage(const std::string& command, const std::filesystem::path& frames, const RgbdFolderInfo& info);
 
 }  // namespace saccade::cli

@@ -85,7 +85,8 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
   const bool tracked = !record.raycast_ms.empty() || !run.fit;
   json result{{"folder", run.options.frames.string()},
               {"out", run.options.out.string()},
-              {"layout", to_string(run.info.layout)},
+              {"layout", run.info.is_bag ? "bag" : to_string(run.info.layout)},
+              {"damage", run.info.damage.empty() ? json{} : json(run.info.damage)},
               {"camera", camera_to_json(run.camera)},
               {"intrinsics_from", run.info.intrinsics_from},
               {"tracking", to_string(run.tracking)},
@@ -152,7 +153,7 @@ Status write_trajectory(const RunFolder& out, const FuseRecord& record) {
 }
 
 /// The results but run.json, which stands for a complete run: an earlier one goes first, the new one comes last.
-Status write_results(FuseRun& run, const RunFolder& out, const TsdfSnapshot& map) {
+Status write_results(FuseRun& run, const RgbdFolderSource& source, const RunFolder& out, const TsdfSnapshot& map) {
   SACCADE_CHECK(out.remove(std::span{kRunFiles}.first(1)));
   Stopwatch stopwatch;
   run.progress.update("saving the map", 0, 0);
@@ -168,8 +169,8 @@ Status write_results(FuseRun& run, const RunFolder& out, const TsdfSnapshot& map
     run.timings_ms["mesh"] = stopwatch.lap_ms();
   }
   if (run.options.write_pictures && !interrupted()) {
-    SACCADE_CHECK(write_fuse_pictures(out, map, run.camera, run.options.frames, run.folder, run.record, run.executor,
-                                      run.progress));
+    SACCADE_CHECK(
+        write_fuse_pictures(out, map, run.camera, source, run.folder, run.record, run.executor, run.progress));
     run.timings_ms["pictures"] = stopwatch.lap_ms();
   }
   return {};
@@ -193,10 +194,9 @@ Result<int> run_fuse(const FuseOptions& options, const GlobalOptions& global) {
   const TsdfSnapshot& map = reconstruction.map().content();
   if (run.record.fused.empty() || map.grid.empty()) return nothing_fused("fuse", run.record, options.frames);
   if (run.tracking != TrackingMode::forced) run.trajectory = measure_trajectory(run.record);
-  SACCADE_TRY(run.fit,
-              measure_map(map, run.camera, options.frames, run.folder, run.record, run.executor, run.progress));
+  SACCADE_TRY(run.fit, measure_map(map, run.camera, *source, run.folder, run.record, run.executor, run.progress));
   run.timings_ms["residual"] = stopwatch.lap_ms();
-  SACCADE_CHECK(write_results(run, out, map));
+  SACCADE_CHECK(write_results(run, *source, out, map));
   run.timings_ms["total"] = total.elapsed_ms();
 
   const json document = json_envelope("fuse", global, run.executor, run.timings_ms, result_json(run, map));
@@ -205,6 +205,7 @@ Result<int> run_fuse(const FuseOptions& options, const GlobalOptions& global) {
   SACCADE_CHECK(write_json_output(global, document));
   if (!global.json_to_stdout()) print_summary(run, map);
   warn_of_left_out("fuse", run.record);
+  warn_of_damage("fuse", options.frames, run.info);
   if (!interrupted()) return static_cast<int>(ExitStatus::done);
   print_error("fuse", "interrupted after " + std::to_string(run.record.fused.size()) +
                           " frames; what they gave is in " + options.out.string());

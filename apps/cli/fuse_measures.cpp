@@ -7,27 +7,19 @@
 
 namespace saccade::cli {
 
-Result<Frame> read_frame_again(const std::filesystem::path& folder, const RgbdFolderConfig& config, std::size_t index) {
-  RgbdFolderConfig one = config;
-  one.first = index;
-  one.every_nth = 1;
-  one.count = 1;
-  one.read_color = false;
-  SACCADE_TRY(const auto source, open_rgbd_folder(folder, one));
-  SACCADE_TRY(auto frame, source->next());
-  if (!frame) return Error{Errc::not_found, "frame " + std::to_string(index) + " is gone", folder.string()};
-  return std::move(*frame);
+Result<Frame> read_frame_again(const RgbdFolderSource& source, const RgbdFolderConfig& config, std::size_t index) {
+  return source.at((index - config.first) / config.every_nth);
 }
 
 Result<std::optional<MapFit>> measure_map(const TsdfSnapshot& map, const PinholeCamera& camera,
-                                          const std::filesystem::path& folder, const RgbdFolderConfig& config,
+                                          const RgbdFolderSource& source, const RgbdFolderConfig& config,
                                           const FuseRecord& record, const Executor& executor, ProgressBar& progress) {
   constexpr std::size_t kEvery{10};
   MapFit fit;
   for (std::size_t i = 0; i < record.fused.size(); i += kEvery) {
     if (interrupted()) return std::optional<MapFit>{};
     progress.update("comparing the map with its frames", i / kEvery, (record.fused.size() + kEvery - 1) / kEvery);
-    SACCADE_TRY(const Frame frame, read_frame_again(folder, config, record.fused[i].index));
+    SACCADE_TRY(const Frame frame, read_frame_again(source, config, record.fused[i].index));
     const Stopwatch stopwatch;
     SACCADE_TRY(const SurfaceView view, raycast(map, camera, record.fused[i].T_world_camera, executor));
     fit.raycast_ms.push_back(stopwatch.elapsed_ms());

@@ -13,7 +13,7 @@
 namespace saccade::cli {
 
 /// Reads one frame of the folder again, as the configuration says, whichever frames that selects.
-[[nodiscard]] Result<Frame> read_frame_again(const std::filesystem::path& folder, const RgbdFolderConfig& config,
+[[nodiscard]] Result<Frame> read_frame_again(const RgbdFolderSource& source, const RgbdFolderConfig& config,
                                              std::size_t index);
 
 struct MapFit {
@@ -25,9 +25,9 @@ struct MapFit {
 /// The final map against every 10th fused frame, at the poses they were fused with (docs/metrics.md). nullopt when the
 /// program is interrupted meanwhile.
 [[nodiscard]] Result<std::optional<MapFit>> measure_map(const TsdfSnapshot& map, const PinholeCamera& camera,
-                                                        const std::filesystem::path& folder,
-                                                        const RgbdFolderConfig& config, const FuseRecord& record,
-                                                        const Executor& executor, ProgressBar& progress);
+                                                        const RgbdFolderSource& source, const RgbdFolderConfig& config,
+                                                        const FuseRecord& record, const Executor& executor,
+                                                        ProgressBar& progress);
 
 /// Over the fused frames whose true pose is known; nullopt where there is none.
 [[nodiscard]] std::optional<TrajectoryError> measure_trajectory(const FuseRecord& record);

@@ -30,9 +30,9 @@ Viewpoint wider_view(const PinholeCamera& camera, const Pose& T_world_camera) {
 }
 
 Status write_fusion_picture(const std::filesystem::path& path, const TsdfSnapshot& map, const PinholeCamera& camera,
-                            const std::filesystem::path& folder, const RgbdFolderConfig& config,
-                            const FusedFrame& fused, const Executor& executor) {
-  SACCADE_TRY(const Frame frame, read_frame_again(folder, config, fused.index));
+                            const RgbdFolderSource& source, const RgbdFolderConfig& config, const FusedFrame& fused,
+                            const Executor& executor) {
+  SACCADE_TRY(const Frame frame, read_frame_again(source, config, fused.index));
   SACCADE_TRY(const SurfaceView view, raycast(map, camera, fused.T_world_camera, executor));
   FusionPictureConfig picture;
   picture.title = "Depth image " + fused.name + " against the map";
@@ -42,8 +42,8 @@ Status write_fusion_picture(const std::filesystem::path& path, const TsdfSnapsho
 }  // namespace
 
 Status write_fuse_pictures(const RunFolder& out, const TsdfSnapshot& map, const PinholeCamera& camera,
-                           const std::filesystem::path& folder, const RgbdFolderConfig& config,
-                           const FuseRecord& record, const Executor& executor, ProgressBar& progress) {
+                           const RgbdFolderSource& source, const RgbdFolderConfig& config, const FuseRecord& record,
+                           const Executor& executor, ProgressBar& progress) {
   const std::array<std::pair<const char*, std::size_t>, 3> chosen{{{"fusion-first.png", 0},
                                                                    {"fusion-middle.png", record.fused.size() / 2},
                                                                    {"fusion-last.png", record.fused.size() - 1}}};
@@ -51,7 +51,7 @@ Status write_fuse_pictures(const RunFolder& out, const TsdfSnapshot& map, const 
   for (const auto& [name, position] : chosen) {
     if (interrupted()) return {};
     progress.update("drawing", done++, chosen.size() + 1);
-    SACCADE_CHECK(write_fusion_picture(out / name, map, camera, folder, config, record.fused[position], executor));
+    SACCADE_CHECK(write_fusion_picture(out / name, map, camera, source, config, record.fused[position], executor));
   }
   progress.update("drawing", done, chosen.size() + 1);
   const FusedFrame& first = record.fused.front();

@@ -13,7 +13,7 @@ namespace saccade::cli {
 /// fusion-first.png, fusion-middle.png, fusion-last.png: a measured depth image, the map as seen from its pose, and
 /// their difference. ternary.png: occupied, empty and unknown, seen from where the first frame was taken.
 [[nodiscard]] Status write_fuse_pictures(const RunFolder& out, const TsdfSnapshot& map, const PinholeCamera& camera,
-                                         const std::filesystem::path& folder, const RgbdFolderConfig& config,
+                                         const RgbdFolderSource& source, const RgbdFolderConfig& config,
                                          const FuseRecord& record, const Executor& executor, ProgressBar& progress);
 
 }  // namespace saccade::cli

@@ -262,6 +262,7 @@ Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& glob
   SACCADE_CHECK(write_result("surfels", global, run.executor, run.timings_ms, result_json(run)));
   if (!global.json_to_stdout()) print_summary(run);
   warn_of_left_out("surfels", run.record);
+  warn_of_damage("surfels", options.frames, run.frames.source->info());
   if (!interrupted()) return static_cast<int>(ExitStatus::done);
   print_error("surfels", "interrupted after " + std::to_string(run.record.fused.size()) +
                              " frames; what they gave is in " + options.out.string());

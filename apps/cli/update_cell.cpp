@@ -34,7 +34,7 @@ using nlohmann::json;
 /// The tracker that the cell names, or a recording in its place.
 Result<std::unique_ptr<HandTracker>> open_hand(const UpdateOptions& options) {
   if (!options.simulates_hand()) {
-    SACCADE_TRY(HandRecording recording, read_hand_trajectory(options.trajectory, options.format));
+    SACCADE_TRY(HandRecording recording, read_hand_file(options.trajectory, options.hand_file));
     return std::unique_ptr<HandTracker>{std::make_unique<saccade::RecordedHand>(std::move(recording.trajectory))};
   }
   if (options.hand_command.empty()) {

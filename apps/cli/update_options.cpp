@@ -11,8 +11,9 @@ namespace {
 
 void add_hand_options(CLI::App& command, UpdateOptions& options) {
   add_value(command, "--trajectory", options.trajectory, "FILE|simulated",
-            "how the hand moved in the task: a file (docs/formats.md), in the scene's frame, or simulated");
-  add_hand_format_option(command, options.format);
+            "how the hand moved in the task: a file (docs/formats.md) or a bag of ROS, in the scene's frame, or "
+            "simulated");
+  add_hand_file_options(command, options.hand_file);
   add_method_option(command, options.method);
   options.method = nullptr;  // unless it is named: check_update_options chooses
   add_value(command, "--region-radius", options.region_radius_m, "METRES",

@@ -17,7 +17,7 @@ struct UpdateOptions : ExploreOptions {
   std::string hand_command;             ///< program that tracks the hand of a cell
   std::string before;                   ///< scene before the task; empty: SCENE-before
   std::string trajectory{"simulated"};  ///< a file, or "simulated"
-  std::optional<HandFormat> format;
+  HandFileOptions hand_file;
   const AttendMethod* method{nullptr};  ///< nullptr before the check: ours, or the thesis' with --as-printed
   double region_radius_m{0.2};
   FuseWhen fuse_when{FuseWhen::viewpoints};

@@ -49,7 +49,7 @@ Result<WatchedTask> watch_task(const UpdateOptions& options, const UpdateCase& s
     task.report = check_samples(task.trajectory);
     for (const HandPlace& place : hand.places) places_m.push_back(place.position_m);
   } else {
-    SACCADE_TRY(HandRecording recording, read_hand_trajectory(options.trajectory, options.format));
+    SACCADE_TRY(HandRecording recording, read_hand_file(options.trajectory, options.hand_file));
     task.trajectory = std::move(recording.trajectory);
     task.report = recording.report;
   }

@@ -22,6 +22,7 @@ TABLE = {
     "io/clouds": ["io/files", "cloud", "map", "surfel"],
     "io/maps": ["io/files", "map"],
     "io/messages": ["io/files"],
+    "io/bags": ["io/files", "io/frames", "io/messages", "sensor"],
     "tracking": ["sensor", "map", "surfel"],
     "segment": ["cloud", "map", "surfel"],
     "attention": ["cloud", "map", "segment"],

@@ -15,21 +15,26 @@ namespace fs = std::filesystem;
 
 std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
+Status check_size(const PinholeCamera& camera, int width, int height) {
+  if (width == camera.width && height == camera.height) return {};
+  return Error{Errc::size_mismatch,
+               "image is " + size_text(width, height) + ", not " + size_text(camera.width, camera.height),
+               {}};
+}
+
 class FolderSource final : public RgbdFolderSource {
  public:
-  FolderSource(PinholeCamera camera, RgbdFolderInfo info, std::vector<RgbdFrameFiles> frames,
-               std::optional<Undistorter> undistorter, std::optional<MaskImage> mask, const RgbdFolderConfig& config)
-      : camera_{camera},
+  FolderSource(ImageCorrection correction, RgbdFolderInfo info, std::vector<RgbdFrameFiles> frames,
+               const RgbdFolderConfig& config)
+      : correction_{std::move(correction)},
         info_{std::move(info)},
         frames_{std::move(frames)},
-        undistorter_{std::move(undistorter)},
-        mask_{std::move(mask)},
         every_nth_{config.every_nth},
         first_{config.first},
         require_poses_{config.require_poses && info_.has_poses},
         read_color_{config.read_color} {}
 
-  [[nodiscard]] const PinholeCamera& camera() const override { return camera_; }
+  [[nodiscard]] const PinholeCamera& camera() const override { return correction_.camera(); }
   [[nodiscard]] std::optional<std::size_t> size() const override { return frames_.size(); }
   [[nodiscard]] const RgbdFolderInfo& info() const override { return info_; }
 
@@ -86,37 +91,20 @@ class FolderSource final : public RgbdFolderSource {
     return poses.front();
   }
 
-  [[nodiscard]] Status check_size(int width, int height, const fs::path& path) const {
-    if (width == camera_.width && height == camera_.height) return {};
-    return Error{Errc::size_mismatch,
-                 "image is " + size_text(width, height) + ", not " + size_text(camera_.width, camera_.height),
-                 path.string()};
-  }
-
   [[nodiscard]] Result<DepthImage> read_depth(const RgbdFrameFiles& files) const {
     if (!files.depth) return Error{Errc::not_found, "its depth image is missing", {}};
     SACCADE_TRY(const Image16 samples, read_png16(*files.depth));
-    SACCADE_CHECK(check_size(samples.width(), samples.height(), *files.depth));
-    DepthImage depth = decode_depth(samples, info_.encoding);
-    if (undistorter_) {
-      SACCADE_TRY(depth, undistorter_->undistort(depth));
-    }
-    if (mask_) SACCADE_CHECK(apply_mask(*mask_, depth));
-    clip_to_range(camera_, depth);
-    return depth;
+    return in_file(correction_.apply(decode_depth(samples, info_.encoding)), *files.depth);
   }
 
   [[nodiscard]] Result<ColorImage> read_frame_color(const fs::path& path) const {
     SACCADE_TRY(ColorImage color, saccade::read_color(path));
-    SACCADE_CHECK(check_size(color.width(), color.height(), path));
-    return undistorter_ ? undistorter_->undistort(color) : Result<ColorImage>{std::move(color)};
+    return in_file(correction_.apply(std::move(color)), path);
   }
 
-  PinholeCamera camera_;
+  ImageCorrection correction_;
   RgbdFolderInfo info_;
   std::vector<RgbdFrameFiles> frames_;
-  std::optional<Undistorter> undistorter_;
-  std::optional<MaskImage> mask_;
   std::size_t every_nth_;
   std::size_t first_;
   bool require_poses_;
@@ -199,6 +187,35 @@ std::vector<RgbdFrameFiles> selected(std::vector<RgbdFrameFiles> all, const Rgbd
 
 }  // namespace
 
+Result<ImageCorrection> ImageCorrection::create(Intrinsics intrinsics, int width, int height,
+                                                const RgbdFolderConfig& config) {
+  if (config.min_range_m) intrinsics.min_range_m = config.min_range_m;
+  if (config.max_range_m) intrinsics.max_range_m = config.max_range_m;
+  ImageCorrection correction;
+  SACCADE_TRY(correction.camera_, intrinsics.camera(width, height));
+  const Distortion distortion = config.distortion.value_or(intrinsics.distortion.value_or(Distortion{}));
+  if (!distortion.is_zero()) {
+    SACCADE_TRY(correction.undistorter_, Undistorter::create(correction.camera_, distortion));
+  }
+  SACCADE_TRY(correction.mask_, find_mask(config, correction.camera_));
+  return correction;
+}
+
+Result<DepthImage> ImageCorrection::apply(DepthImage depth) const {
+  SACCADE_CHECK(check_size(camera_, depth.width(), depth.height()));
+  if (undistorter_) {
+    SACCADE_TRY(depth, undistorter_->undistort(depth));
+  }
+  if (mask_) SACCADE_CHECK(apply_mask(*mask_, depth));
+  clip_to_range(camera_, depth);
+  return depth;
+}
+
+Result<ColorImage> ImageCorrection::apply(ColorImage color) const {
+  SACCADE_CHECK(check_size(camera_, color.width(), color.height()));
+  return undistorter_ ? undistorter_->undistort(color) : Result<ColorImage>{std::move(color)};
+}
+
 Status RgbdFolderConfig::validate() const {
   const auto fail = [](const char* what) { return Error{Errc::invalid_argument, what, "RGB-D folder"}; };
   if (every_nth == 0) return fail("the step between frames must be at least 1");
@@ -220,25 +237,19 @@ Result<std::unique_ptr<RgbdFolderSource>> open_rgbd_folder(const fs::path& folde
   }
   SACCADE_CHECK(find_intrinsics(folder, config, listing));
   SACCADE_TRY(const PngSize size, first_size(listing.frames));
-  Intrinsics intrinsics = *listing.intrinsics;
-  if (config.min_range_m) intrinsics.min_range_m = config.min_range_m;
-  if (config.max_range_m) intrinsics.max_range_m = config.max_range_m;
-  SACCADE_TRY(const PinholeCamera camera, intrinsics.camera(size.width, size.height));
-
-  const Distortion distortion = config.distortion.value_or(intrinsics.distortion.value_or(Distortion{}));
-  std::optional<Undistorter> undistorter;
-  if (!distortion.is_zero()) {
-    SACCADE_TRY(undistorter, Undistorter::create(camera, distortion));
-  }
-  SACCADE_TRY(auto mask, find_mask(config, camera));
-
-  RgbdFolderInfo info{listing.layout, config.encoding.value_or(listing.encoding), listing.intrinsics_from,
-                      listing.has_poses, false};
+  SACCADE_TRY(ImageCorrection correction,
+              ImageCorrection::create(*listing.intrinsics, size.width, size.height, config));
+  RgbdFolderInfo info{listing.layout,
+                      config.encoding.value_or(listing.encoding),
+                      listing.intrinsics_from,
+                      listing.has_poses,
+                      false,
+                      false,
+                      {}};
   info.has_color = config.read_color && std::any_of(listing.frames.begin(), listing.frames.end(),
                                                     [](const RgbdFrameFiles& f) { return f.color.has_value(); });
-  return std::unique_ptr<RgbdFolderSource>{
-      std::make_unique<FolderSource>(camera, std::move(info), selected(std::move(listing.frames), config),
-                                     std::move(undistorter), std::move(mask), config)};
+  return std::unique_ptr<RgbdFolderSource>{std::make_unique<FolderSource>(
+      std::move(correction), std::move(info), selected(std::move(listing.frames), config), config)};
 }
 
 }  // namespace saccade

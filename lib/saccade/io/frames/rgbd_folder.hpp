@@ -65,6 +65,26 @@ struct RgbdFolderInfo {
   std::string intrinsics_from;  ///< "given", or the file
   bool has_poses{false};
   bool has_color{false};
+  bool is_bag{false};  ///< no folder: io/bags reads those, and the layout means nothing
+  std::string damage;  ///< what is wrong with a bag, for people; empty where nothing is
+};
+
+/// What is done to the images of a recording before they are used: the lens' distortion is undone, ignored pixels are
+/// masked, depths clipped to the camera's range.
+class ImageCorrection {
+ public:
+  /// @param intrinsics  of the images, with their own distortion and range; the config's come first.
+  [[nodiscard]] static Result<ImageCorrection> create(Intrinsics intrinsics, int width, int height,
+                                                      const RgbdFolderConfig& config);
+  [[nodiscard]] const PinholeCamera& camera() const { return camera_; }
+  /// size_mismatch unless the image has the camera's size.
+  [[nodiscard]] Result<DepthImage> apply(DepthImage depth) const;
+  [[nodiscard]] Result<ColorImage> apply(ColorImage color) const;
+
+ private:
+  PinholeCamera camera_;
+  std::optional<Undistorter> undistorter_;
+  std::optional<MaskImage> mask_;
 };
 
 /// Frames of a folder in the order of their names or times. next() reads, decodes, undistorts, masks and clips; a
