@@ -38,7 +38,7 @@ void add_method_option(CLI::App& command, const AttendMethod*& method);
 struct HandFileOptions {
   std::optional<HandFormat> format;
   std::string bag_hand;     ///< a topic or a frame of TF, in a bag
-  std::string world_frame;  ///< of the positions, in a bag
+  std::string world_frame;  ///< TF frame that positions are in, for a bag
 };
 
 /// Adds --format, --hand and --world-frame.

@@ -3,6 +3,7 @@
 #include <gtest/gtest.h>
 
 #include "run_program.hpp"
+#include "support/effort.hpp"
 #include "support/places.hpp"
 
 namespace saccade::test {
