@@ -134,6 +134,10 @@ Status RunMessages::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<
   if (silent()) return {};
   time_ = config_.now();
   send_view(view);
+  // A frame is tilted against its view: the camera is where the frame was taken.
+  const bool has_pose = !frames.empty() && frames.back().T_world_camera;
+  const Pose& T_world_camera = has_pose ? *frames.back().T_world_camera : view.T_world_camera;
+  send("/tf", messages::TFMessage{{{header(), config_.camera_frame_id, to_message(T_world_camera)}}});
   if (!frames.empty()) send_frame(frames.back());
   send_map(map);
   flush();
@@ -157,7 +161,6 @@ void RunMessages::send_view(const ViewRecord& view) {
   messages::Path path{header(), {}};
   for (const Eigen::Vector3d& p : view.path) path.poses.push_back({header(), {to_point(p), {}}});
   send(config_.prefix + "/plan", path);
-  send("/tf", messages::TFMessage{{{header(), config_.camera_frame_id, to_message(view.T_world_camera)}}});
 }
 
 void RunMessages::send_frame(const Frame& frame) {

@@ -82,7 +82,9 @@ TEST(RunMessages, AViewIsWhatTheMapAndTheRecordHold) {
   ViewChoice choice;
   choice.candidates = {{Pose::Identity(), 1.0}, {view.T_world_camera, 4.0}, {Pose::Identity(), std::nan("")}};
   view.choice = std::make_shared<const ViewChoice>(choice);
-  ASSERT_TRUE(run.viewed(view, map.snapshot(), std::span{&frame, 1}).ok());
+  Frame tilted = frame;
+  tilted.T_world_camera = look_at({0.0, 0.0, 0.55}, {0.0, 0.0, 0.0});
+  ASSERT_TRUE(run.viewed(view, map.snapshot(), std::span{&tilted, 1}).ok());
 
   const auto occupied = message_on<messages::PointCloud2>(sent, "/saccade/occupied");
   const auto plan = message_on<messages::OccupancyGrid>(sent, "/saccade/map_2d");
@@ -117,7 +119,7 @@ TEST(RunMessages, AViewIsWhatTheMapAndTheRecordHold) {
   EXPECT_EQ(markers.markers[1].points.size(), 16U);
   EXPECT_EQ(message_on<messages::Path>(sent, "/saccade/plan").poses.size(), 2U);
   const auto tf = message_on<messages::TFMessage>(sent, "/tf");
-  EXPECT_NEAR(tf.transforms.at(0).transform.position.z, 0.5, 1e-12);
+  EXPECT_NEAR(tf.transforms.at(0).transform.position.z, 0.55, 1e-12);             // of the frame, not of the view
   EXPECT_NEAR(std::abs(tf.transforms.at(0).transform.orientation.w), 0.0, 1e-9);  // turned over
   const auto depth = message_on<messages::Image>(sent, "/saccade/depth/image_raw");
   EXPECT_EQ(depth.encoding, "32FC1");
