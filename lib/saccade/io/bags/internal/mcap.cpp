@@ -147,7 +147,7 @@ class Mcap final : public BagFormat {
       ++counts[id];
     };
     const bool whole = walk_from(window, kMcapMagic.size(), on_message, on_record);
-    SACCADE_CHECK(failed);
+    if (!failed) return failed;
     if (loose > 0) {
       const std::uint64_t begin = kMcapMagic.size();
       chunks.push_back({begin, file.size() - begin, file.size() - begin, Packing::none, !whole, 0, 0, 0});
