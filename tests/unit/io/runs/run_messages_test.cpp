@@ -119,7 +119,7 @@ TEST(RunMessages, AViewIsWhatTheMapAndTheRecordHold) {
   EXPECT_EQ(markers.markers[1].points.size(), 16U);
   EXPECT_EQ(message_on<messages::Path>(sent, "/saccade/plan").poses.size(), 2U);
   const auto tf = message_on<messages::TFMessage>(sent, "/tf");
-  EXPECT_NEAR(tf.transforms.at(0).transform.position.z, 0.55, 1e-12);             // where the frame was taken, not the view
+  EXPECT_NEAR(tf.transforms.at(0).transform.position.z, 0.55, 1e-12);  // where the frame was taken, not the view
   EXPECT_NEAR(std::abs(tf.transforms.at(0).transform.orientation.w), 0.0, 1e-9);  // turned over
   const auto depth = message_on<messages::Image>(sent, "/saccade/depth/image_raw");
   EXPECT_EQ(depth.encoding, "32FC1");
