@@ -22,6 +22,11 @@ Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options,
   };
   auto messages = std::make_unique<RunMessages>(std::move(config), camera);
   if (!options.record.empty()) {
+    std::error_code ignored;
+    if (std::filesystem::is_regular_file(options.record, ignored)) {  // an earlier recording, perhaps of this very run
+      return Error{Errc::io_failure, "there is a recording already; remove it, or choose another name",
+                   options.record.string()};
+    }
     SACCADE_TRY(messages::McapWriter file, messages::McapWriter::create(options.record));
     messages->add(std::make_unique<messages::McapWriter>(std::move(file)));
   }

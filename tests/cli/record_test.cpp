@@ -2,6 +2,8 @@
 // saccade explore --record: an MCAP file beside a run that stays as it is.
 #include <gtest/gtest.h>
 
+#include <fstream>
+
 #include "run_program.hpp"
 #include "support/effort.hpp"
 #include "support/places.hpp"
@@ -36,6 +38,10 @@ TEST(Record, AFileThatCannotBeWrittenIsSaidBeforeTheRun) {
   const TempFolder folder;
   expect_failure(run_program(explore_tiny(folder / "a", {"--record", "/nowhere/run.mcap"})), 3, "explore",
                  {"/nowhere/run.mcap"});
+  std::ofstream{folder / "old.mcap"} << "kept";
+  expect_failure(run_program(explore_tiny(folder / "b", {"--record", (folder / "old.mcap").string()})), 3, "explore",
+                 {"old.mcap", "another name"});
+  EXPECT_EQ(text_of(folder / "old.mcap"), "kept");
 }
 
 }  // namespace
