@@ -4,7 +4,6 @@ import time
 import unittest
 
 import numpy as np
-import actionlib
 import rospy
 import tf2_ros
 from actionlib_msgs.msg import GoalStatus
@@ -14,6 +13,7 @@ from kinfu_msgs import msg as msgs
 from kinfu_msgs import srv as srvs
 
 import numpy_scene as scene
+from patient_client import PatientClient
 
 VOXEL = 0.01
 BOX = ((-0.4, -0.4, 0.4), (0.4, 0.4, 1.2))
@@ -38,8 +38,8 @@ class KinfuClient(unittest.TestCase):
         cls.commands = rospy.Publisher("/kinfu_command_topic", msgs.KinfuCommand, queue_size=50)
         cls.requests = rospy.Publisher("/kinfu_request_topic", msgs.KinfuTsdfRequest, queue_size=50)
         cls.resets = rospy.Publisher("/kinfu_require_reset_topic", Empty, queue_size=5)
-        cls.client = actionlib.SimpleActionClient("/kinfu_output/actions/request", msgs.RequestAction)
-        cls.upload = actionlib.SimpleActionClient("/kinfu/world_upload", msgs.WorldUploadAction)
+        cls.client = PatientClient("/kinfu_output/actions/request", msgs.RequestAction)
+        cls.upload = PatientClient("/kinfu/world_upload", msgs.WorldUploadAction)
         cls.buffer = tf2_ros.Buffer()
         cls.listener = tf2_ros.TransformListener(cls.buffer)
         cls.broadcaster = tf2_ros.TransformBroadcaster()

@@ -12,7 +12,6 @@ import ros_session
 sys.path.insert(0, sys.argv[2])
 try:
     import numpy as np
-    import actionlib
     import rospy
     from actionlib_msgs.msg import GoalStatus
     from geometry_msgs.msg import TransformStamped
@@ -21,6 +20,7 @@ try:
 
     import numpy_scene as scene
     from kinfu_client import BOX, SIZE, VOXEL, KinfuClient, msgs, srvs
+    from patient_client import PatientClient
 except ImportError as error:
     ros_session.skip(f"{error.name} is not there (packages.txt, ros)")
 
@@ -298,7 +298,7 @@ class Kinfu(KinfuClient):
         goal = msgs.RequestGoal(request=self.request(12, request_camera_intrinsics=True, camera_intrinsics=camera,
                                                      request_view_poses=True, view_poses=[self.pose()] * 20000))
         self.client.send_goal(goal)
-        other = actionlib.SimpleActionClient("/kinfu_output/actions/request", msgs.RequestAction)
+        other = PatientClient("/kinfu_output/actions/request", msgs.RequestAction)
         self.assertTrue(other.wait_for_server(rospy.Duration(5)))
         other.send_goal(msgs.RequestGoal(request=self.request(0)))
         self.assertTrue(other.wait_for_result(rospy.Duration(5)))

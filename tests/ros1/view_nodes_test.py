@@ -9,13 +9,13 @@ import ros_session
 
 try:
     import numpy as np
-    import actionlib
     import rospy
     from actionlib_msgs.msg import GoalStatus
     from geometry_msgs.msg import Point, Pose, PoseArray
     from sensor_msgs import point_cloud2
     from sensor_msgs.msg import PointField
     from std_msgs.msg import Empty, Header
+    from patient_client import PatientClient
 except ImportError as error:
     ros_session.skip(f"{error.name} is not there (packages.txt, ros)")
 
@@ -48,9 +48,9 @@ class ViewNodes(unittest.TestCase):
         import basic_next_best_view.msg as basic
         import surfel_next_best_view_msgs.msg as surfel
         cls.basic, cls.surfel = basic, surfel
-        cls.set_cloud = actionlib.SimpleActionClient("/surfel_next_best_view/set_point_cloud", surfel.SetPointCloudAction)
-        cls.evaluate = actionlib.SimpleActionClient("/surfel_next_best_view/evaluate_poses", surfel.EvaluatePosesAction)
-        cls.execute = actionlib.SimpleActionClient("/basic_next_best_view/execute", basic.ExecuteAction)
+        cls.set_cloud = PatientClient("/surfel_next_best_view/set_point_cloud", surfel.SetPointCloudAction)
+        cls.evaluate = PatientClient("/surfel_next_best_view/evaluate_poses", surfel.EvaluatePosesAction)
+        cls.execute = PatientClient("/basic_next_best_view/execute", basic.ExecuteAction)
         for client in (cls.set_cloud, cls.evaluate, cls.execute):
             assert client.wait_for_server(rospy.Duration(10)), client.action_client.ns
 
