@@ -14,6 +14,7 @@
 
 #include <condition_variable>
 #include <thread>
+#include <utility>
 
 #include "depth_message.hpp"
 #include "kinfu_commands.hpp"
@@ -103,13 +104,16 @@ class KinfuNode {
     ros::NodeHandle frames{node};
     frames.setCallbackQueue(&frame_queue_);
     info_subscriber_ = frames.subscribe<sensor_msgs::CameraInfo>(
-        parameters.info_topic, 2, [this](const sensor_msgs::CameraInfo::ConstPtr& info) { info_ = info; });
+        parameters.info_topic, 2, [this](const sensor_msgs::CameraInfo::ConstPtr& info) {
+          info_ = info;
+          if (const auto early = std::exchange(early_image_, nullptr)) take(*early);
+        });
     if (!parameters.color_topic.empty()) {
       color_subscriber_ = frames.subscribe<sensor_msgs::Image>(
           parameters.color_topic, 2, [this](const sensor_msgs::Image::ConstPtr& color) { color_ = color; });
     }
     depth_subscriber_ = frames.subscribe<sensor_msgs::Image>(
-        parameters.depth_topic, 2, [this](const sensor_msgs::Image::ConstPtr& depth) { on_depth(*depth); });
+        parameters.depth_topic, 2, [this](const sensor_msgs::Image::ConstPtr& depth) { on_depth(depth); });
     spinner_ = std::make_unique<ros::AsyncSpinner>(1, &frame_queue_);
     spinner_->start();
   }
@@ -118,7 +122,13 @@ class KinfuNode {
  private:
   void refuse(const std::string& why) { ROS_WARN_THROTTLE(kSayEvery_s, "an image cannot be used: %s", why.c_str()); }
 
-  void on_depth(const sensor_msgs::Image& image) {
+  void on_depth(const sensor_msgs::Image::ConstPtr& image) {
+    if (info_) return take(*image);
+    // The first image may overtake the first description: it waits.
+    if (std::exchange(early_image_, image)) refuse("no camera_info came on " + parameters_.info_topic);
+  }
+
+  void take(const sensor_msgs::Image& image) {
     const KinfuCommands::Turn turn = commands_.next_turn();
     if (!turn.wanted) return;
     const ros::WallTime begin = ros::WallTime::now();
@@ -137,7 +147,6 @@ class KinfuNode {
   }
 
   bool read(const sensor_msgs::Image& image, PlainFrame& frame) {
-    if (!info_) return refuse("no camera_info came on " + parameters_.info_topic), false;
     if (info_->width != image.width || info_->height != image.height) {
       return refuse("it has " + std::to_string(image.width) + " x " + std::to_string(image.height) +
                     " pixels, camera_info says " + std::to_string(info_->width) + " x " +
@@ -241,6 +250,7 @@ class KinfuNode {
   ros::Publisher image_acks_, lost_;
   ros::Subscriber info_subscriber_, color_subscriber_, depth_subscriber_, require_reset_;
   sensor_msgs::CameraInfo::ConstPtr info_;
+  sensor_msgs::Image::ConstPtr early_image_;  ///< came before any camera_info
   sensor_msgs::Image::ConstPtr color_;
   bool transform_missing_{false};
   std::unique_ptr<ros::AsyncSpinner> spinner_;
