@@ -79,6 +79,9 @@ class CallerProgress {
 void bind_sensor(py::module_& module);
 void bind_map(py::module_& module);
 void bind_views(py::module_& module);
+void bind_strategy(py::module_& module);
+void bind_arm(py::module_& module);
+void bind_explore(py::module_& module);
 void bind_trial(py::module_& module);
 
 }  // namespace saccade::python

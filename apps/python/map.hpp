@@ -33,7 +33,7 @@ class SharedMap {
   struct Content {
     explicit Content(TsdfMap m) : map{std::move(m)} {}
     TsdfMap map;
-    std::mutex mutex;
+    std::recursive_mutex mutex;  ///< what a writer calls may write, too
   };
   [[nodiscard]] std::shared_ptr<Content> open() const {
     if (!content_) throw py::value_error{"the map was closed"};

@@ -7,5 +7,8 @@ PYBIND11_MODULE(_saccade, module) {
   saccade::python::bind_sensor(module);
   saccade::python::bind_map(module);
   saccade::python::bind_views(module);
+  saccade::python::bind_strategy(module);
+  saccade::python::bind_arm(module);
+  saccade::python::bind_explore(module);
   saccade::python::bind_trial(module);
 }

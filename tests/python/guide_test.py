@@ -12,4 +12,5 @@ names = {}
 for block in blocks:
     exec(compile(block, str(PAGE), "exec"), names)
 assert names["states"].shape == (60, 100, 100) and names["gains"].shape == (960,)
-assert 0.0 < names["run"]["final"]["coverage"] <= 1.0
+assert {row["strategy"] for row in names["result"]["summary"]} == {"sphere", "by-distance"}
+assert len(names["record"]["views"]) == 2 and names["camera"].measure(names["m"])["coverage"] > 0.5
