@@ -1,13 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // PipedMessage, next_message: messages that Saccade writes into a program which publishes them (docs/processes.md,
-// Publishers). C++17, as libraries of some programs need.
+// Publishers). PublisherEnd: how long such a program lasts. C++17, as libraries of some programs need.
 
 #include <poll.h>
 #include <unistd.h>
 
+#include <algorithm>
 #include <array>
 #include <cerrno>
+#include <chrono>
 #include <cstddef>
 #include <cstdint>
 #include <functional>
@@ -15,6 +17,7 @@
 #include <optional>
 #include <stdexcept>
 #include <string>
+#include <thread>
 #include <vector>
 
 namespace saccade::devices {
@@ -70,5 +73,23 @@ inline std::optional<PipedMessage> next_message(const std::function<void()>& idl
   if (!read_input(message.bytes.data(), size, idle)) return std::nullopt;
   return message;
 }
+
+/// The end of a program that publishes: it waits for subscribers that are still finding the topics, or reading.
+class PublisherEnd {
+ public:
+  /// To be told of each message.
+  void published() {
+    if (!first_) first_ = std::chrono::steady_clock::now();
+  }
+  /// Waits half a second, and until two seconds after the first message.
+  void wait() const {
+    if (!first_) return;
+    const auto now = std::chrono::steady_clock::now();
+    std::this_thread::sleep_until(std::max(now + std::chrono::milliseconds{500}, *first_ + std::chrono::seconds{2}));
+  }
+
+ private:
+  std::optional<std::chrono::steady_clock::time_point> first_;
+};
 
 }  // namespace saccade::devices

@@ -4,11 +4,11 @@
 //   saccade-ros1 publish [--timeout S]
 //
 // Publishes what comes on standard input: messages of any type, as ROS 1 serialises them, with the MD5 sum and the text
-// of their definition. Waits --timeout seconds (3) for a master, and for half a second after its input has ended.
+// of their definition. Waits --timeout seconds (3) for a master. Lasts half a second longer than its
+// input, and two seconds from its first message on.
 #include <topic_tools/shape_shifter.h>
 
 #include <map>
-#include <thread>
 
 #include "../../devices/message_input.hpp"
 #include "../../devices/protocol.hpp"
@@ -18,8 +18,7 @@
 namespace saccade::ros1 {
 namespace {
 
-constexpr std::chrono::milliseconds kLastsAfterEnd{500};  // for what is under way to subscribers
-constexpr std::uint32_t kQueued{2};                       // messages of a topic that wait for a slow subscriber
+constexpr std::uint32_t kQueued{2};  // messages of a topic that wait for a slow subscriber
 
 class Publishers {
  public:
@@ -77,7 +76,11 @@ int run_publish(int argc, char** argv) {
   const devices::Options options{argc, argv};
   options.only({"--timeout"});
   ros1::Publishers publishers{options.number("--timeout", 3.0)};
-  while (auto message = devices::next_message([&] { publishers.idle(); })) publishers.publish(std::move(*message));
-  std::this_thread::sleep_for(ros1::kLastsAfterEnd);
+  devices::PublisherEnd end;
+  while (auto message = devices::next_message([&] { publishers.idle(); })) {
+    publishers.publish(std::move(*message));
+    end.published();
+  }
+  end.wait();
   return 0;
 }

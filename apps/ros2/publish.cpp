@@ -1,6 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <map>
-#include <thread>
 
 #include "commands.hpp"
 #include "devices/message_input.hpp"
@@ -9,8 +8,7 @@
 namespace saccade::ros2 {
 namespace {
 
-constexpr std::chrono::milliseconds kLastsAfterEnd{500};  // for readers that are just finding the topics
-constexpr double kFlush_s{1.5};                           // for readers that have not acknowledged all
+constexpr double kFlush_s{1.0};  // for readers that have not acknowledged all
 
 /// sensor_msgs::msg::dds_::Image_ for sensor_msgs/Image and for sensor_msgs/msg/Image.
 std::string dds_name_of(const std::string& type) {
@@ -62,8 +60,12 @@ class Publishers {
 int run_publish(const devices::Options& options) {
   options.only({""});
   Publishers publishers;
-  while (const auto message = devices::next_message()) publishers.publish(*message);
-  std::this_thread::sleep_for(kLastsAfterEnd);
+  devices::PublisherEnd end;
+  while (const auto message = devices::next_message()) {
+    publishers.publish(*message);
+    end.published();
+  }
+  end.wait();
   publishers.flush(kFlush_s);
   return 0;
 }

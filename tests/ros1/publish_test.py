@@ -6,6 +6,7 @@ publish_test.py SACCADE_ROS1 PYTHON_MESSAGES; saccade lies beside saccade-ros1."
 import json
 import os
 import pathlib
+import re
 import shutil
 import signal
 import subprocess
@@ -15,6 +16,7 @@ import time
 import unittest
 
 import numpy as np
+import yaml
 
 from ros_session import Session, free_port, skip
 
@@ -30,6 +32,7 @@ except ImportError as error:
     skip(f"{error} (packages.txt, ros)")
 
 PROGRAM, MESSAGES = sys.argv[1:3]
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 SACCADE = pathlib.Path(PROGRAM).resolve().parent / "saccade"
 TOPICS = {"/saccade/occupied": PointCloud2, "/saccade/frontier": PointCloud2, "/saccade/map_2d": OccupancyGrid,
           "/saccade/candidates": MarkerArray, "/saccade/next_view": PoseStamped, "/saccade/plan": Path, "/tf": TFMessage,
@@ -122,6 +125,25 @@ class Publish(unittest.TestCase):
 
     def wait_to_hear(self, heard, topics, count=1):
         Session.until(lambda: heard.has(topics, count), 10, f"heard only {heard.counts}")
+
+    def test_0_rviz_shows_each_topic_of_the_table(self):
+        table = (ROOT / "docs/guides/looking-at-runs.md").read_text()
+        topics = set(re.findall(r"^\| `(/[a-z_/0-9]+)`", table, re.MULTILINE))
+        self.assertEqual(topics | {"/saccade/depth/camera_info"}, set(TOPICS))
+        for file in ("apps/ros1/package/rviz/saccade.rviz", "apps/ros2/rviz/saccade_ros2.rviz"):
+            manager = yaml.safe_load((ROOT / file).read_text())["Visualization Manager"]
+            self.assertEqual(manager["Global Options"]["Fixed Frame"], "world")
+            shown = set()
+            for display in manager["Displays"]:
+                kind = display["Class"].split("/")[1]
+                name = next((display[key] for key in ("Topic", "Image Topic", "Marker Topic") if key in display), None)
+                if isinstance(name, dict):
+                    self.assertEqual(name["Durability Policy"], "Transient Local")
+                    name = name["Value"]
+                shown |= {name, "/tf" if kind == "TF" else None}
+                if kind == "Camera":  # subscribes to the camera_info beside its image, too
+                    shown.add("/saccade/depth/camera_info")
+            self.assertEqual(shown - {None}, set(TOPICS), file)
 
     def test_1_every_topic_has_what_the_run_has(self):
         began = time.time()
