@@ -23,7 +23,8 @@ void add_message_options(CLI::App& command, MessageOptions& options) {
       .add_option_function<std::vector<std::string>>(
           "--publish", publish, "publish the run for RViz: over ROS 1 (ros), over ROS 2 (ros2), or both (ros,ros2)")
       ->type_name("ros|ros2")
-      ->delimiter(',');
+      ->delimiter(',')
+      ->allow_extra_args(false);
   add_value(command, "--frame-id", options.frame_id, "NAME", "frame of the world in messages");
 }
 

@@ -81,8 +81,8 @@ class Run:
     def __init__(self, folder, name, views, program=SACCADE, **environment):
         self.out = pathlib.Path(folder) / name
         self.process = subprocess.Popen(
-            [program, "explore", "tabletop-1", "--robot", "free", "--max-views", str(views), "--voxel-size", "0.02",
-             "--image-size", "160,120", "--no-pictures", "--quiet", "--step", "--publish", "ros", "--out", self.out], stdin=subprocess.PIPE,
+            [program, "explore", "--publish", "ros", "tabletop-1", "--robot", "free", "--max-views", str(views),
+             "--voxel-size", "0.02", "--image-size", "160,120", "--no-pictures", "--quiet", "--step", "--out", self.out], stdin=subprocess.PIPE,
             stdout=subprocess.DEVNULL, stderr=subprocess.PIPE, text=True, env={**os.environ, **environment})
         self.go(SCAN_POSES)
 
