@@ -4,6 +4,7 @@
 #include <iostream>
 
 #include "add_value.hpp"
+#include "options.hpp"
 #include "saccade/io/messages/mcap_writer.hpp"
 
 namespace saccade::cli {
@@ -11,6 +12,19 @@ namespace saccade::cli {
 void add_message_options(CLI::App& command, MessageOptions& options) {
   add_value(command, "--record", options.record, "FILE.mcap",
             "record the run as messages of ROS 2: map, frontier, candidates, views, depth; for Foxglove and ros2 bag");
+  const auto publish = [&options](const std::vector<std::string>& words) {
+    for (const std::string& word : words) {
+      const std::optional<RosVersion> version = kRosVersionNames.find(word);
+      if (!version) usage_error("--publish", "must be " + kRosVersionNames.listed() + ", not '" + word + "'");
+      options.publish.insert(*version);
+    }
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--publish", publish, "publish the run for RViz: over ROS 1 (ros), over ROS 2 (ros2), or both (ros,ros2)")
+      ->type_name("ros|ros2")
+      ->delimiter(',')
+      ->allow_extra_args(false);
   add_value(command, "--frame-id", options.frame_id, "NAME", "frame of the world in messages");
 }
 
@@ -29,6 +43,11 @@ Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options,
     }
     SACCADE_TRY(messages::McapWriter file, messages::McapWriter::create(options.record));
     messages->add(std::make_unique<messages::McapWriter>(std::move(file)));
+  }
+  for (const RosVersion version : options.publish) {
+    SACCADE_TRY(std::string program, publisher_command(version));
+    SACCADE_TRY(auto published, ProgramMessages::start({std::move(program), wire_of(version)}));
+    messages->add(std::move(published));
   }
   return messages;
 }

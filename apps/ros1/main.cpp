@@ -22,6 +22,7 @@ constexpr Subcommand kSubcommands[] = {
     {"camera", "a camera's topic as a device of Saccade's (ros:TOPIC in a cell)", run_camera_device},
     {"joints", "a FollowJointTrajectory action as the joints of an arm (ros:ACTION in a cell)", run_joints_device},
     {"hand", "a frame of TF as a hand (ros:FRAME in a cell)", run_hand_device},
+    {"publish", "publishes messages that come on standard input (saccade explore --publish ros)", run_publish},
 };
 
 int usage(std::FILE* file, int status) {

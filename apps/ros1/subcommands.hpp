@@ -10,3 +10,6 @@ int run_basic_next_best_view(int argc, char** argv);
 int run_camera_device(int argc, char** argv);
 int run_joints_device(int argc, char** argv);
 int run_hand_device(int argc, char** argv);
+
+/// Publishes what saccade writes into its input (--publish ros).
+int run_publish(int argc, char** argv);

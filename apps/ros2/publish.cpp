@@ -1,24 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <bit>
-#include <cstring>
 #include <map>
-#include <nlohmann/json.hpp>
-#include <thread>
 
 #include "commands.hpp"
+#include "devices/message_input.hpp"
 #include "node.hpp"
 
 namespace saccade::ros2 {
 namespace {
 
-constexpr std::uint32_t kMostHeadBytes{65536};
-constexpr std::size_t kMostMessageBytes{std::size_t{1} << 30};
-constexpr std::chrono::milliseconds kLastsAfterEnd{500};
-
-/// Reads all of it, or returns false at the end of the input.
-bool read_input(void* bytes, std::size_t size) {
-  return std::cin.read(static_cast<char*>(bytes), static_cast<std::streamsize>(size)).good();
-}
+constexpr double kFlush_s{1.0};  // for readers that have not acknowledged all
 
 /// sensor_msgs::msg::dds_::Image_ for sensor_msgs/Image and for sensor_msgs/msg/Image.
 std::string dds_name_of(const std::string& type) {
@@ -32,21 +22,27 @@ std::string dds_name_of(const std::string& type) {
 
 class Publishers {
  public:
-  void publish(const nlohmann::json& head, std::span<const std::byte> cdr) {
-    const std::string topic = head.at("topic");
-    const std::string type = dds_name_of(head.at("type"));
-    Topic& found = topics_[topic];
+  void publish(const devices::PipedMessage& message) {
+    if (message.bytes.size() < 4) throw std::runtime_error{"a message of " + message.topic + " has no header of CDR"};
+    const std::string type = dds_name_of(message.type);
+    Topic& found = topics_[message.topic];
     if (!found.writer) {
       found.type = type;
-      found.writer = std::make_unique<RawWriter>(node_, topic, type,
-                                                 head.value("latched", false) ? Delivery::latched : Delivery::reliable);
+      found.writer = std::make_unique<RawWriter>(node_, message.topic, type,
+                                                 message.latched ? Delivery::latched : Delivery::reliable);
     }
-    if (found.type != type) throw std::runtime_error{topic + " has had another type before: " + found.type};
+    if (found.type != type) throw std::runtime_error{message.topic + " has had another type before: " + found.type};
     try {
-      found.writer->write(cdr);
+      found.writer->write(message.bytes);
     } catch (const std::exception& e) {
-      if (!std::exchange(found.said, true)) std::cerr << topic << ": " << e.what() << '\n';
+      if (!std::exchange(found.said, true)) std::cerr << message.topic << ": " << e.what() << '\n';
     }
+  }
+
+  /// Waits until readers have it all, no longer than given.
+  void flush(double longest_s) {
+    const double until_s = devices::now_s() + longest_s;
+    for (const auto& [name, topic] : topics_) topic.writer->flush(until_s - devices::now_s());
   }
 
  private:
@@ -64,25 +60,13 @@ class Publishers {
 int run_publish(const devices::Options& options) {
   options.only({""});
   Publishers publishers;
-  for (;;) {
-    std::array<unsigned char, 4> length{};
-    if (!read_input(length.data(), length.size())) break;
-    const std::uint32_t head_bytes = length[0] | (static_cast<std::uint32_t>(length[1]) << 8U) |
-                                     (static_cast<std::uint32_t>(length[2]) << 16U) |
-                                     (static_cast<std::uint32_t>(length[3]) << 24U);
-    if (head_bytes > kMostHeadBytes) throw std::runtime_error{"the head of a message is too long: out of step"};
-    std::string text(head_bytes, '\0');
-    if (!read_input(text.data(), text.size())) break;
-    const nlohmann::json head = nlohmann::json::parse(text);
-    const auto size = head.at("bytes").get<std::size_t>();
-    if (size < 4 || size > kMostMessageBytes) {
-      throw std::runtime_error{"a message must have 4 bytes to 1 GiB, not " + std::to_string(size)};
-    }
-    std::vector<std::byte> cdr(size);
-    if (!read_input(cdr.data(), cdr.size())) break;
-    publishers.publish(head, cdr);
+  devices::PublisherEnd end;
+  while (const auto message = devices::next_message()) {
+    publishers.publish(*message);
+    end.published();
   }
-  std::this_thread::sleep_for(kLastsAfterEnd);
+  end.wait();
+  publishers.flush(kFlush_s);
   return 0;
 }
 

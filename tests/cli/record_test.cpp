@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade explore --record: an MCAP file beside a run that stays as it is.
+// saccade explore --record: an MCAP file beside a run that stays as it is. --publish: what is wrong with it.
 #include <gtest/gtest.h>
 
 #include <fstream>
@@ -42,6 +42,13 @@ TEST(Record, AFileThatCannotBeWrittenIsSaidBeforeTheRun) {
   expect_failure(run_program(explore_tiny(folder / "b", {"--record", (folder / "old.mcap").string()})), 3, "explore",
                  {"old.mcap", "another name"});
   EXPECT_EQ(text_of(folder / "old.mcap"), "kept");
+}
+
+TEST(Publish, AVersionOfRosThatIsNoneIsSaidBeforeTheRun) {
+  const TempFolder folder;
+  expect_failure(run_program(explore_tiny(folder / "a", {"--publish", "ros,ros3"})), 2, "explore",
+                 {"--publish", "ros or ros2", "'ros3'"});
+  EXPECT_FALSE(fs::exists(folder / "a"));
 }
 
 }  // namespace

@@ -30,7 +30,7 @@ TABLE = {
     "robot": ["map"],
     "explore": ["tracking", "attention", "views", "robot"],
     "arm": ["robot", "views", "io/clouds"],
-    "devices": ["io/files", "io/frames", "robot"],
+    "devices": ["io/files", "io/frames", "io/messages", "robot"],
     "io/runs": ["io/frames", "io/clouds", "io/maps", "io/messages", "explore"],
     "scene": ["io/clouds", "devices"],
     "trial": ["scene", "arm", "io/runs"],

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Devices behind programs of the user's, docs/processes.md: ProgramCamera, ProgramRobot, ProgramJoints, ProgramHand;
-// ProgramConfig: how such a program is run; kRosPrograms: those of ours that devices over ROS are behind.
+// ProgramConfig: how such a program is run; kRosPrograms: those of ours that speak ROS.
 
 #include <array>
 #include <filesystem>
@@ -35,7 +35,7 @@ struct ProgramConfig {
   [[nodiscard]] Status validate(const char* role) const;
 };
 
-/// A program that has the devices of a version of ROS, in a build that found its packages.
+/// A program that has the devices of a version of ROS, and publishes, in a build that found its packages.
 struct RosProgram {
   std::string_view name;      ///< "ROS 1"
   std::string_view prefix;    ///< begins a command that names a device: "ros:"
@@ -43,7 +43,8 @@ struct RosProgram {
   std::string_view packages;  ///< that it needs to be built (Debian)
 };
 inline constexpr std::array<RosProgram, 2> kRosPrograms{
-    {{"ROS 1", "ros:", "saccade-ros1", "ros-core-dev, libactionlib-dev, libtf2-ros-dev and libpcl-msgs-dev"},
+    {{"ROS 1", "ros:", "saccade-ros1",
+      "ros-core-dev, libactionlib-dev, libtf2-ros-dev, libtopic-tools-dev and libpcl-msgs-dev"},
      {"ROS 2", "ros2:", "saccade-ros2", "cyclonedds-dev and cyclonedds-tools"}}};
 /// Looks beside the program that is running, and then in PATH. Empty: it is not there.
 [[nodiscard]] std::filesystem::path find_program(std::string_view name);

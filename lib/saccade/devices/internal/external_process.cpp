@@ -177,18 +177,42 @@ Status ExternalProcess::write_line(const Request& request, std::string_view line
 Status ExternalProcess::interject(const Request& request, std::string_view line) {
   if (failure_) return *failure_;
   const std::string text = std::string{line} + '\n';
+  return write(request, std::as_bytes(std::span{text}), "the answer to " + request.name(),
+               "it did not read the request");
+}
+
+Status ExternalProcess::write_bytes(const Request& request, std::span<const std::byte> bytes) {
+  if (failure_) return *failure_;
+  cancelled_at_.reset();
+  return write(request, bytes, "the end of its input", "it did not read all of it");
+}
+
+Status ExternalProcess::write(const Request& request, std::span<const std::byte> bytes, const std::string& missing,
+                              const char* unread) {
   const NoSigpipe no_signal;
-  for (std::size_t written = 0; written < text.size();) {
-    const ssize_t put = ::write(to_.get(), text.data() + written, text.size() - written);
+  while (!bytes.empty()) {
+    const ssize_t put = ::write(to_.get(), bytes.data(), bytes.size());
     if (put >= 0) {
-      written += static_cast<std::size_t>(put);
+      bytes = bytes.subspan(static_cast<std::size_t>(put));
     } else if (errno == EAGAIN) {
-      if (!wait({to_.get(), POLLOUT, 0}, request)) return late(request, "it did not read the request");
+      if (!wait({to_.get(), POLLOUT, 0}, request)) return late(request, unread);
     } else if (errno != EINTR) {
-      return ended("the answer to " + request.name(), "input");
+      return ended(missing, "input");
     }
   }
   return {};
+}
+
+Status ExternalProcess::finish(std::chrono::milliseconds longest) {
+  if (failure_) return *failure_;
+  to_.reset();
+  if (!gone_within(longest)) {
+    hangs_ = true;
+    return fail(Errc::io_failure, "it goes on running after the end of its input");
+  }
+  const siginfo_t info = end_of(pid_).value_or(siginfo_t{});
+  if (has_exited(info, 0)) return {};
+  return fail(Errc::io_failure, "it " + in_words(info) + " after the end of its input");
 }
 
 Result<std::string> ExternalProcess::read_line(const Request& request) {

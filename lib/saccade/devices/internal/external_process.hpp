@@ -80,6 +80,11 @@ class ExternalProcess {
   /// Exactly as many bytes as fit. io_failure as for read_line.
   [[nodiscard]] Status read_bytes(const Request& request, std::span<std::byte> bytes);
 
+  /// Writes all bytes. Errors: those of write_line; what the program sends is not read.
+  [[nodiscard]] Status write_bytes(const Request& request, std::span<const std::byte> bytes);
+  /// Ends its input and waits for its end. io_failure: it goes on, or ends with another exit status than 0.
+  [[nodiscard]] Status finish(std::chrono::milliseconds longest);
+
   /// write_line, then read_line.
   [[nodiscard]] Result<std::string> ask(const Request& request, std::string_view line);
   /// The error that an answer turned out to be, with the process named. unavailable: the process reports it itself and
@@ -101,6 +106,10 @@ class ExternalProcess {
   /// Returns whether the pipe can be read, or written, before the request's time is over.
   [[nodiscard]] bool wait(pollfd pipe, const Request& request);
   [[nodiscard]] Status nothing_unasked(const Request& request);
+  /// @param missing what does not come where the program has ended
+  /// @param unread what has not happened where the time is over
+  [[nodiscard]] Status write(const Request& request, std::span<const std::byte> bytes, const std::string& missing,
+                             const char* unread);
   [[nodiscard]] bool gone_within(std::chrono::milliseconds longest) const;
   /// A line that has come; nullopt: none, or not all of it.
   [[nodiscard]] Result<std::optional<std::string>> take_line(const Request& request);

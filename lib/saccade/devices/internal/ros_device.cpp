@@ -9,17 +9,15 @@
 #include <filesystem>
 #include <sstream>
 
-#include "saccade/devices/programs.hpp"
-
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::array<std::string_view, 9> kCameraOptions{"info",      "color",     "frame", "reference", "min-range",
-                                                         "max-range", "rectified", "skip",  "domain"};
-constexpr std::array<std::string_view, 2> kJointsOptions{"states", "domain"};
-constexpr std::array<std::string_view, 2> kHandOptions{"reference", "domain"};
+constexpr std::array<std::string_view, 8> kCameraOptions{"info",      "color",     "frame",     "reference",
+                                                         "min-range", "max-range", "rectified", "skip"};
+constexpr std::array<std::string_view, 1> kJointsOptions{"states"};
+constexpr std::array<std::string_view, 1> kHandOptions{"reference"};
 
 /// A version of ROS, by the prefix of its names.
 const RosProgram* version_of(std::string_view command) {
@@ -88,19 +86,22 @@ fs::path find_program(std::string_view name) {
   return {};
 }
 
+Result<std::string> quoted_program(const RosProgram& version, const std::string& context) {
+  const fs::path program = find_program(version.program);
+  if (!program.empty()) return shell_quoted(program.string());
+  return Error{Errc::unavailable,
+               "this saccade was built without " + std::string{version.name} + ": there is no " +
+                   std::string{version.program} + " beside it or in PATH; install " + std::string{version.packages} +
+                   ", and build it again",
+               context};
+}
+
 Result<std::string> ros_command_line(std::string_view role, const std::string& command) {
   const RosProgram* version = version_of(command);
   if (version == nullptr) return command;
   SACCADE_CHECK(check_over_ros(role, command));
-  const fs::path program = find_program(version->program);
-  if (program.empty()) {
-    return Error{Errc::unavailable,
-                 "this saccade was built without " + std::string{version->name} + ": there is no " +
-                     std::string{version->program} + " beside it or in PATH; install " +
-                     std::string{version->packages} + ", and build it again",
-                 command};
-  }
-  return shell_quoted(program.string()) + " " + std::string{role} + " " + command.substr(version->prefix.size());
+  SACCADE_TRY(const std::string program, quoted_program(*version, command));
+  return program + " " + std::string{role} + " " + command.substr(version->prefix.size());
 }
 
 }  // namespace saccade

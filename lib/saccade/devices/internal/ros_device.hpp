@@ -9,6 +9,7 @@
 #include <string_view>
 
 #include "saccade/core/result.hpp"
+#include "saccade/devices/programs.hpp"
 
 namespace saccade {
 
@@ -21,6 +22,9 @@ namespace saccade {
 
 /// invalid_argument for a role that no program over ROS has, or a name that no topic can have.
 [[nodiscard]] Status check_over_ros(std::string_view role, std::string_view command);
+
+/// Returns the path of a version's program, for a shell. unavailable: it is not there.
+[[nodiscard]] Result<std::string> quoted_program(const RosProgram& version, const std::string& context);
 
 /// Quotes a text for a shell, where it needs to be.
 [[nodiscard]] std::string shell_quoted(std::string_view text);

@@ -16,7 +16,7 @@ using messages::Marker;
 
 constexpr double kFrustum_m{0.08};  ///< depth of a camera that is drawn
 constexpr double kArrow_m{0.05};    ///< length of a candidate's axis
-constexpr double kLine_m{0.002};    ///< width of lines
+constexpr double kLine_m{0.003};    ///< width of lines
 constexpr ColorRGBA kChosen{0.1F, 0.9F, 0.3F, 1.0F};
 
 messages::Time system_time() {
