@@ -75,10 +75,16 @@ Result<std::unique_ptr<RgbdFolderSource>> open_source(const FrameOptions& option
     bag.reading = reading;
     return open_bag_frames(options.frames, bag);
   }
+  std::error_code ignored;
+  if (std::filesystem::is_regular_file(options.frames, ignored)) {
+    return Error{Errc::invalid_argument,
+                 "this file is neither a bag of ROS 1 nor an MCAP file; other frames are read from a folder",
+                 options.frames.string()};
+  }
   const BagFramesConfig& bag = options.bag;
   if (!bag.depth.empty() || !bag.info.empty() || !bag.color.empty() || !bag.world_frame.empty()) {
     return Error{Errc::invalid_argument,
-                 "--depth, --info, --color and --world-frame are for bags of ROS and MCAP files; this is neither",
+                 "--depth, --info, --color and --world-frame are for bags of ROS and MCAP files; this is a folder",
                  options.frames.string()};
   }
   return open_rgbd_folder(options.frames, reading);

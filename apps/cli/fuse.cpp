@@ -125,10 +125,9 @@ void print_summary(const FuseRun& run, const TsdfSnapshot& map) {
   Summary summary{std::cout};
   summary.line("frames", std::to_string(record.fused.size()) + " fused, " + std::to_string(record.lost.size()) +
                              " lost, " + std::to_string(record.skipped.size()) + " skipped");
-  summary.line("tracking",
-               std::string{to_string(run.tracking)} + (run.options.tracking ? ""
-                                                       : run.info.has_poses ? " (the folder has poses)"
-                                                                            : " (the folder has no poses)"));
+  const std::string source = run.info.is_bag ? "bag" : "folder";
+  const std::string why = " (the " + source + (run.info.has_poses ? " has poses)" : " has no poses)");
+  summary.line("tracking", std::string{to_string(run.tracking)} + (run.options.tracking ? "" : why));
   if (run.fit) {
     summary.line("residual", millimetres(run.fit->residual.median_m()) + " median over " +
                                  percent(run.fit->residual.share()) + " of the pixels");

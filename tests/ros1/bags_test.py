@@ -120,6 +120,13 @@ class Bags(unittest.TestCase):
         self.assertTrue(cut.stderr, "a bag that was cut is said")
         self.assertNotIn("terminate", cut.stderr)
 
+    def test_what_is_no_bag_is_said(self):
+        for name, content in (("empty.bag", b""), ("noise.mcap", bytes(range(256)) * 8), ("noise.zip", bytes(range(256)))):
+            (self.path / name).write_bytes(content)
+            ran = saccade("fuse", self.path / name, "--out", self.path / "none")
+            self.assertEqual(ran.returncode, 3, ran.stderr)
+            self.assertIn("neither a bag of ROS 1 nor an MCAP file", ran.stderr)
+
     def test_a_hand_comes_from_a_topic(self):
         write_bag(self.path / "a.bag", "none")
         ran = saccade("attend", self.path / "a.bag", "--hand", "/hand", "--json", "-")

@@ -195,6 +195,7 @@ bool is_bag(const std::filesystem::path& path) {
   using namespace internal::io_bags;
   std::error_code ignored;
   if (!std::filesystem::is_regular_file(path, ignored)) return false;
+  if (path.extension() == ".bag" || path.extension() == ".mcap") return true;
   const auto file = BagFile::open(path);
   if (!file) return false;
   std::array<std::byte, 16> start{};

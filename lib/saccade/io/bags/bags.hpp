@@ -67,7 +67,7 @@ class Bag {
   [[nodiscard]] std::string list(std::span<const std::string_view> types = {}) const;
 };
 
-/// Whether a file begins as a bag or an MCAP file does.
+/// Whether a file begins, or is called, as bags and MCAP files are.
 [[nodiscard]] bool is_bag(const std::filesystem::path& path);
 
 struct BagFramesConfig {
