@@ -59,7 +59,7 @@ export const kTypes: Record<string, string> = {
   "/saccade/depth/camera_info": "sensor_msgs/msg/CameraInfo",
 };
 
-/** Of the scene tabletop-1, and what its views are taken from. */
+/** Workspace of a scene, and the size of its voxels. */
 export interface Place {
   low: readonly [number, number, number];
   high: readonly [number, number, number];
