@@ -17,7 +17,7 @@ import { expectMessage, kTypes, type Place, readerOf } from "./support/ros_messa
 // As a module for require: Node finds not all its names as those of an ES module.
 const { FoxgloveClient } = createRequire(import.meta.url)("@foxglove/ws-protocol") as typeof protocol;
 
-const kPlace: Place = { low: [-0.7, -0.5, -0.03], high: [0.7, 0.5, 0.45], voxel_m: 0.01 };
+const kPlace: Place = { low: [-0.7, -0.5, -0.03], high: [0.7, 0.5, 0.45], voxel_m: 0.02 };
 const kViews = 2;
 const kTopics = Object.keys(kTypes).sort();
 const kOnlyOfViews = kTopics.filter((topic) => !/occupied|frontier|map_2d/.test(topic));
