@@ -217,9 +217,10 @@ Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& glob
     SACCADE_TRY(show, ExploreShow::start(options.serve, global, subject.scene, out.path()));
     if (options.resume) show->changed();
   }
-  const Status ended = run->run([&show] {
+  const auto recorded = [&show] {
     if (show) show->changed();
-  });
+  };
+  const Status ended = run->run(recorded, show ? show->message_sink() : nullptr);
   if (!ended) return kept(ended.error(), out);
   const StopReason reason = run->record().stopped_because;
   const Status written = write_map(out, *run, subject.scene.workspace, executor);

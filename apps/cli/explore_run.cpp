@@ -136,9 +136,10 @@ Status ExploreRun::resume(SavedExploration saved) {
   return journal_.q && !options_.moves_real() ? devices_.place_arm(*journal_.q) : Status{};
 }
 
-Status ExploreRun::run(const std::function<void()>& recorded) {
+Status ExploreRun::run(const std::function<void()>& recorded, std::unique_ptr<messages::MessageSink> look_on) {
   recorded_ = recorded;
   SACCADE_TRY(messages_, run_messages(options_.messages, devices_.intrinsics()));
+  if (look_on) messages_->add(std::move(look_on));
   const Status ended = run_to_end();
   messages_->finish();
   if (ended.ok()) return ended;

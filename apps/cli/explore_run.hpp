@@ -23,7 +23,8 @@ class ExploreRun final : private Recorder {
 
   /// Scans, unless that was done before, and explores. After the scan and after every view the journal is written, and
   /// then `recorded` is called.
-  [[nodiscard]] Status run(const std::function<void()>& recorded = {});
+  /// @param look_on  takes the run's messages, besides what the options name; null: none.
+  [[nodiscard]] Status run(const std::function<void()>& recorded, std::unique_ptr<messages::MessageSink> look_on);
 
   [[nodiscard]] const TsdfSnapshot& map() const { return map_.content(); }
   [[nodiscard]] bool scanned() const { return journal_.scanned; }

@@ -25,17 +25,20 @@ server::SceneDocument first_document(const Scene& scene) {
 
 Result<std::unique_ptr<ExploreShow>> ExploreShow::start(const ServeOptions& options, const GlobalOptions& global,
                                                         const Scene& scene, const std::filesystem::path& folder) {
-  SACCADE_TRY(std::unique_ptr<server::HttpServer> server, listen(options));
-  std::unique_ptr<ExploreShow> show{new ExploreShow{std::move(server), first_document(scene), folder}};
+  auto foxglove = std::make_shared<server::FoxgloveHub>();
+  SACCADE_TRY(std::unique_ptr<server::HttpServer> server, listen(options, foxglove));
+  std::unique_ptr<ExploreShow> show{
+      new ExploreShow{std::move(server), std::move(foxglove), first_document(scene), folder}};
   show->quiet_ = global.quiet;
   show->server_->serve(*show->service_);
+  std::cerr << "Foxglove connects to " << show->server_->foxglove_url() << std::endl;
   show->page_ = announce(options, global, *show->server_);
   return show;
 }
 
-ExploreShow::ExploreShow(std::unique_ptr<server::HttpServer> server, const server::SceneDocument& document,
-                         const std::filesystem::path& folder)
-    : server_{std::move(server)}, reader_{folder, Executor{}} {
+ExploreShow::ExploreShow(std::unique_ptr<server::HttpServer> server, std::shared_ptr<server::FoxgloveHub> foxglove,
+                         const server::SceneDocument& document, const std::filesystem::path& folder)
+    : server_{std::move(server)}, foxglove_{std::move(foxglove)}, reader_{folder, Executor{}} {
   server::HttpServer* const serving = server_.get();
   const auto post = [serving](std::function<void()> work) { serving->post(std::move(work)); };
   service_ = std::make_unique<server::ViewerService>(*server_, server::ViewerConfig{SACCADE_VERSION, post}, document);
@@ -46,6 +49,10 @@ ExploreShow::~ExploreShow() {
   wake(Wanted::stop);
   thread_.join();
   server_.reset();  // before the service that it calls
+}
+
+std::unique_ptr<messages::MessageSink> ExploreShow::message_sink() const {
+  return std::make_unique<server::FoxgloveSink>(foxglove_, nullptr);
 }
 
 void ExploreShow::wake(Wanted wanted) {

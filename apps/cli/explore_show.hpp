@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ExploreShow: an exploration in the browser while it runs.
+// ExploreShow: an exploration in the browser, and in Foxglove, while it runs.
 
 #include <condition_variable>
 #include <memory>
@@ -10,6 +10,7 @@
 
 #include "explore_devices.hpp"
 #include "serve.hpp"
+#include "server/foxglove/foxglove_hub.hpp"
 #include "server/show/run_reader.hpp"
 #include "server/show/viewer_service.hpp"
 
@@ -25,6 +26,8 @@ class ExploreShow {
                                                                   const std::filesystem::path& folder);
   ~ExploreShow();
 
+  /// Takes the run's messages, for Foxglove.
+  [[nodiscard]] std::unique_ptr<messages::MessageSink> message_sink() const;
   /// The folder has another view.
   void changed() { wake(Wanted::live); }
   /// The run is over; what it left is shown until Ctrl-C.
@@ -32,13 +35,14 @@ class ExploreShow {
 
  private:
   enum class Wanted : std::uint8_t { nothing, live, end, stop };
-  ExploreShow(std::unique_ptr<server::HttpServer> server, const server::SceneDocument& document,
-              const std::filesystem::path& folder);
+  ExploreShow(std::unique_ptr<server::HttpServer> server, std::shared_ptr<server::FoxgloveHub> foxglove,
+              const server::SceneDocument& document, const std::filesystem::path& folder);
   void wake(Wanted wanted);
   void read_and_show();
 
   std::optional<BrowserPage> page_;
   std::unique_ptr<server::HttpServer> server_;
+  std::shared_ptr<server::FoxgloveHub> foxglove_;
   std::unique_ptr<server::ViewerService> service_;
   server::RunReader reader_;
   std::mutex mutex_;

@@ -1,13 +1,65 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "message_options.hpp"
 
+#include <CLI/CLI.hpp>
+#include <charconv>
 #include <iostream>
 
 #include "add_value.hpp"
 #include "options.hpp"
 #include "saccade/io/messages/mcap_writer.hpp"
+#include "server/foxglove/foxglove_hub.hpp"
+#include "server/http_server.hpp"
 
 namespace saccade::cli {
+namespace {
+
+std::optional<std::uint16_t> port_in(std::string_view text) {
+  std::uint16_t port{0};
+  const auto [end, error] = std::from_chars(text.data(), text.data() + text.size(), port);
+  if (error != std::errc{} || end != text.data() + text.size()) return std::nullopt;
+  return port;
+}
+
+Result<std::unique_ptr<messages::MessageSink>> foxglove_sink(const FoxglovePlace& place) {
+  server::ServerConfig config;
+  config.address = place.address;
+  config.port = place.port;
+  config.token = server::make_token();
+  config.foxglove = std::make_shared<server::FoxgloveHub>();
+  config.foxglove_only = true;
+  SACCADE_TRY(std::unique_ptr<server::HttpServer> server, server::HttpServer::listen(config));
+  const std::string url = server->foxglove_url();
+  std::cerr << "Foxglove connects to " << url << std::endl;
+  if (url.find("?token=") != std::string::npos) {
+    std::cerr << "Anyone who reaches this address and knows the token may look on; nothing is encrypted." << std::endl;
+  }
+  return std::unique_ptr<messages::MessageSink>{
+      std::make_unique<server::FoxgloveSink>(config.foxglove, std::move(server))};
+}
+
+}  // namespace
+
+Result<FoxglovePlace> foxglove_place(const std::string& text) {
+  FoxglovePlace place;
+  if (const auto port = port_in(text)) {
+    place.port = *port;
+    return place;
+  }
+  const std::size_t colon = text.rfind(':');
+  const bool has_port = colon != std::string::npos && (text.find(':') == colon || text[colon - 1] == ']');
+  std::string host = has_port ? text.substr(0, colon) : text;
+  if (host.starts_with('[') && host.ends_with(']')) host = host.substr(1, host.size() - 2);
+  const auto port = has_port ? port_in(std::string_view{text}.substr(colon + 1)) : place.port;
+  const bool is_address = host == "localhost" || host.find_first_of(".:") != std::string::npos;
+  if (!port || !is_address) {
+    return Error{Errc::invalid_argument, "needs PORT or HOST:PORT with an address of this machine, not '" + text + "'",
+                 ""};
+  }
+  place.address = host;
+  place.port = *port;
+  return place;
+}
 
 void add_message_options(CLI::App& command, MessageOptions& options) {
   add_value(command, "--record", options.record, "FILE.mcap",
@@ -26,6 +78,19 @@ void add_message_options(CLI::App& command, MessageOptions& options) {
       ->delimiter(',')
       ->allow_extra_args(false);
   add_value(command, "--frame-id", options.frame_id, "NAME", "frame of the world in messages");
+  const auto take = [&options](const std::vector<std::string>& given) {
+    const bool has_place = !given.empty() && !given.front().empty() && given.front() != "true";
+    const auto place = has_place ? foxglove_place(given.front()) : FoxglovePlace{};
+    require_ok(place ? Status{} : Status{place.error()}, "--foxglove");
+    options.foxglove = *place;
+  };
+  command
+      .add_option_function<std::vector<std::string>>(
+          "--foxglove", take,
+          "let Foxglove look on while the run goes on: ws://localhost:8765, or where PORT or HOST:PORT says "
+          "(docs/guides/looking-at-runs.md)")
+      ->expected(0, 1)
+      ->type_name("[PORT|HOST:PORT]");
 }
 
 Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options, const PinholeCamera& camera) {
@@ -48,6 +113,10 @@ Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options,
     SACCADE_TRY(std::string program, publisher_command(version));
     SACCADE_TRY(auto published, ProgramMessages::start({std::move(program), wire_of(version)}));
     messages->add(std::move(published));
+  }
+  if (options.foxglove) {
+    SACCADE_TRY(std::unique_ptr<messages::MessageSink> sink, foxglove_sink(*options.foxglove));
+    messages->add(std::move(sink));
   }
   return messages;
 }

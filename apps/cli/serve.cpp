@@ -138,8 +138,10 @@ void add_serve_options(CLI::App& command, ServeOptions& options) {
   command.add_flag("--no-browser", options.no_browser, "only say where the page is")->each(given("--no-browser"));
 }
 
-Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options) {
+Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options,
+                                                   std::shared_ptr<server::FoxgloveHub> foxglove) {
   server::ServerConfig config;
+  config.foxglove = std::move(foxglove);
   config.address = options.address;
   config.port = options.port;
   config.host_names = options.host_names;

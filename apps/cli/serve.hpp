@@ -29,7 +29,9 @@ void add_serve_options(CLI::App& command, ServeOptions& options);
 
 /// Listens: from here on the page is there, and waits for its socket until HttpServer::serve. Reads the token file, or
 /// makes it (mode 0600). Errors name the option's value.
-[[nodiscard]] Result<std::unique_ptr<server::HttpServer>> listen(const ServeOptions& options);
+/// @param foxglove  a run that Foxglove may look at; null: none.
+[[nodiscard]] Result<std::unique_ptr<server::HttpServer>> listen(
+    const ServeOptions& options, std::shared_ptr<server::FoxgloveHub> foxglove = nullptr);
 
 /// Says the URL (on standard output; on standard error with --json -), how to reach it from elsewhere where there is no
 /// display or it is that of SSH, and opens the browser elsewhere; or says why it could not.

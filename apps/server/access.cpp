@@ -99,6 +99,14 @@ bool is_origin_of(std::string_view origin, std::string_view host) {
   return false;
 }
 
+bool is_foxglove_origin(std::string_view origin) {
+  constexpr std::string_view kPlain{"http://"};
+  if (origin == "https://app.foxglove.dev" || origin == "file://") return true;
+  if (!origin.starts_with(kPlain)) return false;
+  const std::string name = host_name(origin.substr(kPlain.size()));
+  return name == "localhost" || name == "127.0.0.1" || name == "::1";
+}
+
 std::string_view cookie_value(std::string_view header, std::string_view name) {
   while (!header.empty()) {
     std::string_view cookie = take_until(header, ';');

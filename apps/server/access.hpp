@@ -26,6 +26,10 @@ struct Target {
 /// Whether `origin` ("http://localhost:8080") is this `host` ("localhost:8080").
 [[nodiscard]] bool is_origin_of(std::string_view origin, std::string_view host);
 
+/// Whether `origin` may look on without a token: Foxglove's own page (https://app.foxglove.dev), a program of the
+/// desktop (file://), or a page that this machine serves (http://localhost:8080).
+[[nodiscard]] bool is_foxglove_origin(std::string_view origin);
+
 /// The value of a cookie in a Cookie header; empty without it.
 [[nodiscard]] std::string_view cookie_value(std::string_view header, std::string_view name);
 

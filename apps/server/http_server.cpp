@@ -102,9 +102,14 @@ class BeastServer final : public HttpServer {
     if (const auto connection = state_.connections.find(id)) connection->close({code, reason, false});
   }
   [[nodiscard]] std::uint16_t port() const override { return port_; }
-  [[nodiscard]] std::string url() const override;
+  [[nodiscard]] std::string url() const override { return "http://" + host() + "/?token=" + state_.config.token; }
+  [[nodiscard]] std::string foxglove_url() const override {
+    const std::string place = "ws://" + host() + "/foxglove";
+    return state_.foxglove_is_open ? place : place + "?token=" + state_.config.token;
+  }
 
  private:
+  [[nodiscard]] std::string host() const;  ///< and its port
   [[nodiscard]] Status listen_on(const asio::ip::address& address);
   void run_network();
 
@@ -164,6 +169,7 @@ Status BeastServer::open() {
   SACCADE_CHECK(listen_on(address_));
   port_ = first_.port();
   state_.cookie = "saccade_" + std::to_string(port_);
+  state_.foxglove_is_open = state_.config.foxglove_only && address_.is_loopback();
   if (address_.is_unspecified()) {
     state_.host_names.insert(machine_name());
   } else {
@@ -186,14 +192,14 @@ void BeastServer::run_network() {
   }
 }
 
-std::string BeastServer::url() const {
+std::string BeastServer::host() const {
   std::string host{"localhost"};
   if (address_.is_unspecified()) {
     host = machine_name();
   } else if (!address_.is_loopback()) {
     host = address_.is_v6() ? "[" + address_.to_string() + "]" : address_.to_string();
   }
-  return "http://" + host + ":" + std::to_string(port_) + "/?token=" + state_.config.token;
+  return host + ":" + std::to_string(port_);
 }
 
 }  // namespace

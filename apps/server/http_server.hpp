@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HttpServer: the page, its WebSocket and its files, for those who know the token.
+// HttpServer: the page, its WebSocket and its files, for those who know the token; a run for Foxglove.
 
 #include <chrono>
 #include <cstddef>
@@ -15,12 +15,17 @@
 
 namespace saccade::server {
 
+class FoxgloveHub;
+
 struct ServerConfig {
-  std::string address{"127.0.0.1"};     ///< that is listened on
-  std::uint16_t port{0};                ///< 0: one that is free
-  std::string token;                    ///< at least 16 letters, digits, - and _
-  std::vector<std::string> host_names;  ///< that a Host header may name besides this machine
-  std::size_t max_connections{64};      ///< WebSockets, until they are served to their end; then 503
+  std::string address{"127.0.0.1"};         ///< that is listened on
+  std::uint16_t port{0};                    ///< 0: one that is free
+  std::string token;                        ///< at least 16 letters, digits, - and _
+  std::vector<std::string> host_names;      ///< that a Host header may name besides this machine
+  std::shared_ptr<FoxgloveHub> foxglove{};  ///< what /foxglove sends; null: there is no such place
+  /// No page: Foxglove's place is / as well, and on a loopback address Foxglove needs no token.
+  bool foxglove_only{false};
+  std::size_t max_connections{64};  ///< WebSockets, until they are served to their end; then 503
   std::size_t max_message_bytes{1U << 20U};
   std::size_t max_waiting_messages{32};  ///< of one connection, that the service has not seen; then it is not read from
   std::size_t max_waiting_bytes{64U << 20U};          ///< that a connection has not read; then it is ended
@@ -52,6 +57,8 @@ class HttpServer : public Clients {
   [[nodiscard]] virtual std::uint16_t port() const = 0;
   /// "http://localhost:PORT/?token=TOKEN", of the address where that is not loopback.
   [[nodiscard]] virtual std::string url() const = 0;
+  /// "ws://localhost:PORT/foxglove", with the token where it is needed.
+  [[nodiscard]] virtual std::string foxglove_url() const = 0;
 };
 
 }  // namespace saccade::server

@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/http_session.hpp"
 
+#include <algorithm>
 #include <boost/asio/post.hpp>
 #include <boost/beast/http/read.hpp>
 #include <boost/beast/http/write.hpp>
 #include <boost/beast/websocket/rfc6455.hpp>
 #include <exception>
 
+#include "server/foxglove/foxglove_session.hpp"
 #include "server/socket_session.hpp"
 
 namespace saccade::server {
@@ -106,11 +108,54 @@ bool HttpSession::has_token(const Target& target) const {
   return is_same_token(cookie_value(text_of(request_[field::cookie]), state_.cookie), state_.config.token);
 }
 
-void HttpSession::answer_request() {
+bool HttpSession::has_own_host() const {
   const auto hosts = request_.equal_range(field::host);
   const bool one_host = hosts.first != hosts.second && std::next(hosts.first) == hosts.second;
+  return one_host && state_.is_host(text_of(request_[field::host]), local_address_);
+}
+
+bool HttpSession::is_foxglove() const {
+  const auto [begin, end] = request_.equal_range(field::origin);
+  return std::all_of(begin, end, [](const auto& origin) { return is_foxglove_origin(text_of(origin.value())); });
+}
+
+bool HttpSession::is_for_foxglove(const Target& target) const {
+  if (state_.config.foxglove == nullptr) return false;
+  return target.path == "/foxglove" || (target.path == "/" && state_.config.foxglove_only);
+}
+
+void HttpSession::answer_foxglove(const Target& target) {
+  if (!has_token(target)) {
+    if (!state_.foxglove_is_open) {
+      return refuse(status::forbidden, "Foxglove's address is what the program printed: it ends with its token.");
+    }
+    if (!has_own_host()) return refuse(status::forbidden, "This name is not known here: localhost is.");
+    if (!is_foxglove()) return refuse(status::forbidden, "Pages of another origin get nothing here.");
+  }
+  if (!beast::websocket::is_upgrade(request_) || request_.method() != http::verb::get) {
+    return refuse(status::upgrade_required, "This is Foxglove's place: open it there as a Foxglove WebSocket.");
+  }
+  std::string offered;
+  for (auto [header, end] = request_.equal_range(field::sec_websocket_protocol); header != end; ++header) {
+    offered.append(offered.empty() ? "" : ",").append(text_of(header->value()));
+  }
+  const std::string_view subprotocol = foxglove_subprotocol(offered);
+  if (subprotocol.empty()) {
+    return refuse(status::bad_request, "The subprotocol is foxglove.sdk.v1 or foxglove.websocket.v1 here.");
+  }
+  Seat seat = state_.take_seat();
+  if (!seat) return refuse(status::service_unavailable, "Too many are connected.");
+  const auto session = std::make_shared<FoxgloveSession>(state_, std::move(stream_), std::move(seat), subprotocol);
+  finished_ = true;  // the socket is another's now
+  state_.sessions.erase(this);
+  session->run(std::move(request_));
+}
+
+void HttpSession::answer_request() {
+  const auto target = parse_target(text_of(request_.target()));
+  if (target && is_for_foxglove(*target)) return answer_foxglove(*target);
   const std::string_view host = text_of(request_[field::host]);
-  if (!one_host || !state_.is_host(host, local_address_)) {
+  if (!has_own_host()) {
     return refuse(status::forbidden, "This name is not known here: start the program with --host NAME.");
   }
   for (auto [origin, end] = request_.equal_range(field::origin); origin != end; ++origin) {
@@ -118,7 +163,6 @@ void HttpSession::answer_request() {
       return refuse(status::forbidden, "Pages of another origin get nothing here.");
     }
   }
-  const auto target = parse_target(text_of(request_.target()));
   if (!target) return refuse(status::bad_request, "This is no path.");
   const std::string path = target->path == "/" ? "index.html" : target->path.substr(1);
   if (path.starts_with("assets/")) return answer_page(*target, path);

@@ -40,7 +40,13 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   void on_data(HttpAnswer answer);
   void end_data();
   void open_socket();
+  [[nodiscard]] bool is_for_foxglove(const Target& target) const;
+  void answer_foxglove(const Target& target);
   [[nodiscard]] bool has_token(const Target& target) const;
+  /// Whether there is one Host header, and it means this server.
+  [[nodiscard]] bool has_own_host() const;
+  /// Whether a client without the token may look on: a program, or Foxglove itself.
+  [[nodiscard]] bool is_foxglove() const;
   /// Of the browser's own making: another site's page asked.
   [[nodiscard]] bool is_foreign() const;
 

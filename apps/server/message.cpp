@@ -4,7 +4,6 @@
 #include <algorithm>
 #include <bit>
 #include <cstring>
-#include <string_view>
 
 namespace saccade::server {
 namespace {
@@ -20,24 +19,27 @@ std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 
 }  // namespace
 
-Result<ParsedMessage> parse_message(std::span<const std::uint8_t> message) {
-  if (message.size() < kLengthBytes) return Error{Errc::corrupt_data, "a message is at least four bytes long", ""};
-  std::uint32_t length{0};
-  std::memcpy(&length, message.data(), kLengthBytes);
-  const std::span<const std::uint8_t> rest = message.subspan(kLengthBytes);
-  if (length > rest.size()) return Error{Errc::corrupt_data, "the message ends within its head", ""};
-  const std::string_view text{reinterpret_cast<const char*>(rest.data()), length};
-  if (text.find('\0') != std::string_view::npos) {  // the parser takes it for the end
-    return Error{Errc::corrupt_data, "the head is no JSON object", ""};
-  }
+Result<json> parse_object(std::string_view text) {
+  const Error broken{Errc::corrupt_data, "the head is no JSON object", ""};
+  if (text.find('\0') != std::string_view::npos) return broken;  // the parser takes it for the end
   bool too_deep{false};
   const auto watch_depth = [&too_deep](int depth, json::parse_event_t event, json& /*parsed*/) {
     const bool goes_down = event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
     too_deep = too_deep || (goes_down && depth >= kDeepest);
     return !too_deep;
   };
-  json head = json::parse(text.begin(), text.end(), watch_depth, /*allow_exceptions=*/false);
-  if (too_deep || !head.is_object()) return Error{Errc::corrupt_data, "the head is no JSON object", ""};
+  json object = json::parse(text.begin(), text.end(), watch_depth, /*allow_exceptions=*/false);
+  if (too_deep || !object.is_object()) return broken;
+  return object;
+}
+
+Result<ParsedMessage> parse_message(std::span<const std::uint8_t> message) {
+  if (message.size() < kLengthBytes) return Error{Errc::corrupt_data, "a message is at least four bytes long", ""};
+  std::uint32_t length{0};
+  std::memcpy(&length, message.data(), kLengthBytes);
+  const std::span<const std::uint8_t> rest = message.subspan(kLengthBytes);
+  if (length > rest.size()) return Error{Errc::corrupt_data, "the message ends within its head", ""};
+  SACCADE_TRY(json head, parse_object({reinterpret_cast<const char*>(rest.data()), length}));
   const std::size_t body = std::min(padded(length), rest.size());
   for (const std::uint8_t zero : rest.subspan(length, body - length)) {
     if (zero != 0) return Error{Errc::corrupt_data, "between head and body there are only zeros", ""};

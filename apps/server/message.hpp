@@ -6,12 +6,17 @@
 #include <nlohmann/json.hpp>
 #include <span>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "saccade/core/result.hpp"
 #include "server/service.hpp"
 
 namespace saccade::server {
+
+/// corrupt_data for what is no JSON object, not UTF-8 or nested deeper than 32. Never throws; takes time and memory in
+/// proportion to the text.
+[[nodiscard]] Result<nlohmann::json> parse_object(std::string_view text);
 
 struct ParsedMessage {
   nlohmann::json head;  ///< an object

@@ -27,6 +27,7 @@ void OpenConnections::remove(ConnectionId id) {
 ServerState::ServerState(ServerConfig server_config)
     : config{std::move(server_config)}, host_names{"localhost", "127.0.0.1", "::1"} {
   for (const std::string& name : config.host_names) host_names.insert(host_name(name));
+  if (config.foxglove_only) return;
   for (const PageFile& file : page_files()) {
     Fnv1a hash;
     for (const std::uint8_t byte : file.content) hash.add(std::uint64_t{byte});

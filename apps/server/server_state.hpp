@@ -76,6 +76,7 @@ struct ServerState {
   const ServerConfig config;
   std::set<std::string> host_names;
   std::string cookie;                            ///< its name
+  bool foxglove_is_open{false};                  ///< needs no token
   std::map<std::string_view, CachedFile> files;  ///< by path
   std::atomic<Service*> service{nullptr};        ///< null until it serves
   std::atomic<std::size_t> web_sockets{0};       ///< with those that are gone and were not served to their end

@@ -7,7 +7,7 @@ import { fileURLToPath } from "node:url";
 const kStart_ms = 60_000;
 const kEnd_ms = 20_000;
 
-function programFile(): string {
+export function programFile(): string {
   const file = process.env["SACCADE_PROGRAM"] ?? fileURLToPath(new URL("../../../build/release/saccade", import.meta.url));
   if (!existsSync(file)) throw new Error(`${file} is not there: make build, or name the program in SACCADE_PROGRAM`);
   return file;
