@@ -33,14 +33,13 @@ def add_changelogs(stage, version, maintainer, epoch):
     write_compressed(copyright_file.with_name("changelog.gz"), debian_changelog(version, maintainer, epoch).encode())
 
 
-def add_device_manuals(stage, version, epoch):
+def add_device_manuals(stage, version, day):
     """Adds a manual page for each program that has none: those of devices, whose options stand in the documentation."""
     template = (ROOT / "packaging/man/saccade-devices.1.in").read_text()
     for program in sorted((stage / "usr/bin").glob("*")):
         page = stage / "usr/share/man/man1" / f"{program.name}.1"
         if not page.exists():
             page.parent.mkdir(parents=True, exist_ok=True)
-            day = time.strftime("%Y-%m-%d", time.gmtime(epoch))
             values = {"@PROGRAM@": program.name.upper(), "@program@": program.name, "@version@": version, "@date@": day}
             text = template
             for key, value in values.items():
@@ -48,9 +47,11 @@ def add_device_manuals(stage, version, epoch):
             page.write_text(text)
 
 
-def compress_manuals(stage):
+def compress_manuals(stage, day):
+    """Puts the date into pages that have none, and packs them."""
     for page in sorted(stage.glob("usr/share/man/man*/*.[1-9]")):
-        write_compressed(page.with_name(page.name + ".gz"), page.read_bytes())
+        text = page.read_text().replace(' 1 "" ', f' 1 "{day}" ', 1)
+        write_compressed(page.with_name(page.name + ".gz"), text.encode())
         page.unlink()
 
 
@@ -75,13 +76,14 @@ def main():
     if "SOURCE_DATE_EPOCH" not in os.environ:
         sys.exit("stage.py: SOURCE_DATE_EPOCH is not set; make packages by scripts/package.sh (make package)")
     epoch = int(os.environ["SOURCE_DATE_EPOCH"])
+    day = time.strftime("%Y-%m-%d", time.gmtime(epoch))
     stages = sorted(path for path in pathlib.Path(folder).iterdir() if (path / "usr").is_dir())
     if not stages:
         sys.exit(f"stage.py: no package is staged in {folder}")
     for stage in stages:
         add_changelogs(stage, version, maintainer, epoch)
-        add_device_manuals(stage, version, epoch)
-        compress_manuals(stage)
+        add_device_manuals(stage, version, day)
+        compress_manuals(stage, day)
         strip_archives(stage)
         normalise(stage, epoch)
 

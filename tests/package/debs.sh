@@ -1,0 +1,68 @@
+#!/bin/bash
+# SPDX-License-Identifier: Apache-2.0
+# Installs the Debian packages of build/release/packages in an empty Debian, runs the program and the module there, builds against
+# the library, and removes them again: no file is left. Where mmdebstrap cannot make one, the packages are unpacked instead.
+# Usage: debs.sh SOURCE PACKAGES WORK
+set -euo pipefail
+source_dir="$1" packages="$(cd "$2" && pwd)" work="$3"
+rm -rf "$work"
+mkdir -p "$work"
+work="$(cd "$work" && pwd)"
+
+echo "== lintian"
+lintian --allow-root --fail-on error,warning "$packages"/*.deb
+
+consume() {  # PREFIX: a program that finds the library there prints what it should
+  cmake -S "$source_dir/tests/package/consumer" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$1" \
+    -DCONSUMER_SOURCE="$source_dir/examples/embedding.cpp" "-DCONSUMER_COMPONENTS=core;map" >"$work/consumer.log"
+  cmake --build "$work/consumer"
+  grep -q "$1/" "$work/consumer/CMakeCache.txt"
+  "$work/consumer/consumer" | grep -x '1.005 m: occupied'
+}
+
+echo "== find_package(saccade)"
+for package in "$packages"/*.deb; do dpkg -x "$package" "$work/unpacked"; done
+consume "$work/unpacked/usr"
+desktop-file-validate "$work/unpacked/usr/share/applications/saccade.desktop"
+update-mime-database "$work/unpacked/usr/share/mime"
+grep -q x-saccade-map "$work/unpacked/usr/share/mime/globs2"
+
+echo "== installed, used, removed"
+suite="$(. /etc/os-release && echo "$VERSION_CODENAME")"
+if ((EUID != 0)) || ! timeout 240 mmdebstrap --quiet --variant=apt "$suite" "$work/root" 2>"$work/mmdebstrap.log"; then
+  echo "no empty Debian can be made here ($(tail -n 1 "$work/mmdebstrap.log" 2>/dev/null)); the unpacked packages run on this one" >&2
+  "$work/unpacked/usr/bin/saccade" info
+  "$work/unpacked/usr/bin/saccade" explore tabletop-1 --out "$work/run" --max-views 1 --quiet --no-pictures
+  PYTHONPATH="$work/unpacked/usr/lib/python3/dist-packages" /usr/bin/python3 -B -c 'import saccade; saccade.TsdfMap(voxel_size_m=0.01)'
+  exit 0
+fi
+root="$work/root"
+inside() { chroot "$root" env -i PATH=/usr/sbin:/usr/bin:/sbin:/bin HOME=/root DEBIAN_FRONTEND=noninteractive "$@"; }
+files() { (cd "$root" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./dev -o -path ./tmp -o -path ./var -o -path ./etc/ld.so.cache \) \
+  -prune -o -print | sort); }
+mkdir -p "$root/tmp/packages"
+cp "$packages"/saccade_*.deb "$packages"/python3-saccade_*.deb "$root/tmp/packages"
+cp /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
+# What the packages need comes first, so that what they bring themselves can be told.
+needed="$(for package in "$packages"/saccade_*.deb "$packages"/python3-saccade_*.deb; do dpkg-deb -f "$package" Depends; done |
+  tr ',' '\n' | sed 's/(.*//; s/ //g' | grep -vx saccade | sort -u)"
+inside apt-get -q -y install --no-install-recommends $needed >"$work/apt.log" 2>&1
+files >"$work/before.txt"
+began=$SECONDS
+inside sh -c 'apt-get -q -y install --no-install-recommends /tmp/packages/*.deb' >>"$work/apt.log" 2>&1
+echo "installed in $((SECONDS - began)) s"
+inside saccade info
+inside saccade explore tabletop-1 --out /tmp/run --max-views 1 --quiet --no-pictures
+inside python3 -c 'import saccade; print(saccade.TsdfMap(voxel_size_m=0.01))'
+inside python3 -m saccade --version
+files >"$work/installed.txt"
+(($(comm -13 "$work/before.txt" "$work/installed.txt" | wc -l) > 50)) || { echo "too few files were installed" >&2; exit 1; }
+inside dpkg -P python3-saccade saccade >>"$work/apt.log" 2>&1
+files >"$work/after.txt"
+left="$(comm -13 "$work/before.txt" "$work/after.txt")"
+if [[ -n $left ]]; then
+  printf 'removal left:\n%s\n' "$left" >&2
+  exit 1
+fi
+echo "removal left nothing"
+rm -rf "$root"
