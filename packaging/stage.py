@@ -2,7 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 """Finishes the files of the Debian packages before CPack packs them: changelogs, compression, permissions, times.
 
-Usage: stage.py FOLDER VERSION MAINTAINER. FOLDER has one folder per component. Times are SOURCE_DATE_EPOCH (scripts/package.sh
+Usage: stage.py FOLDER VERSION MAINTAINER BUILD. FOLDER has one folder per component, BUILD is where they were built. Times are SOURCE_DATE_EPOCH (scripts/package.sh
 sets it), so that the same sources give the same packages."""
 import gzip
 import os
@@ -11,6 +11,8 @@ import subprocess
 import sys
 import time
 from email.utils import formatdate
+
+import sbom
 
 ROOT = pathlib.Path(__file__).resolve().parent.parent
 
@@ -21,14 +23,20 @@ def write_compressed(path, data):
         packed.write(data)
 
 
+def package_of(stage):
+    """Returns the name of the package: the folder of documentation that has a copyright file bears it."""
+    (copyright_file,) = stage.glob("usr/share/doc/*/copyright")
+    return copyright_file.parent.name
+
+
 def debian_changelog(version, maintainer, epoch):
     return (f"saccade ({version}) unstable; urgency=medium\n\n  * Built from source. CHANGELOG.md.gz has what changed.\n\n"
             f" -- {maintainer}  {formatdate(epoch)}\n")
 
 
 def add_changelogs(stage, version, maintainer, epoch):
-    """Adds both changelogs to the documentation folder of the package, which is the one with a copyright file."""
-    (copyright_file,) = stage.glob("usr/share/doc/*/copyright")
+    """Adds both changelogs to the documentation folder of the package."""
+    copyright_file = stage / f"usr/share/doc/{package_of(stage)}/copyright"
     write_compressed(copyright_file.with_name("CHANGELOG.md.gz"), (ROOT / "CHANGELOG.md").read_bytes())
     write_compressed(copyright_file.with_name("changelog.gz"), debian_changelog(version, maintainer, epoch).encode())
 
@@ -72,7 +80,7 @@ def normalise(stage, epoch):
 
 
 def main():
-    folder, version, maintainer = sys.argv[1:]
+    folder, version, maintainer, build = sys.argv[1:]
     if "SOURCE_DATE_EPOCH" not in os.environ:
         sys.exit("stage.py: SOURCE_DATE_EPOCH is not set; make packages by scripts/package.sh (make package)")
     epoch = int(os.environ["SOURCE_DATE_EPOCH"])
@@ -85,6 +93,7 @@ def main():
         add_device_manuals(stage, version, day)
         compress_manuals(stage, day)
         strip_archives(stage)
+        sbom.write_bill(stage, package_of(stage), version, epoch, build)
         normalise(stage, epoch)
 
 

@@ -4,7 +4,7 @@
 # the library, and removes them again: no file is left. Where mmdebstrap cannot make one, the packages are unpacked instead.
 # Usage: debs.sh SOURCE PACKAGES WORK
 set -euo pipefail
-source_dir="$1" packages="$(cd "$2" && pwd)" work="$3"
+source_dir="$(cd "$1" && pwd)" packages="$(cd "$2" && pwd)" work="$3"
 rm -rf "$work"
 mkdir -p "$work"
 work="$(cd "$work" && pwd)"
@@ -16,7 +16,7 @@ consume() {  # PREFIX: a program that finds the library there prints what it sho
   cmake -S "$source_dir/tests/package/consumer" -B "$work/consumer" -G Ninja -DCMAKE_PREFIX_PATH="$1" \
     -DCONSUMER_SOURCE="$source_dir/examples/embedding.cpp" "-DCONSUMER_COMPONENTS=core;map" >"$work/consumer.log"
   cmake --build "$work/consumer"
-  grep -q "$1/" "$work/consumer/CMakeCache.txt"
+  grep -q "^saccade_DIR:PATH=$1/" "$work/consumer/CMakeCache.txt"
   "$work/consumer/consumer" | grep -x '1.005 m: occupied'
 }
 
