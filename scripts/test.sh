@@ -63,7 +63,12 @@ phase_ros() { run_ctest ros release -L ros; }
 
 # Debian packages of what the phases before built, in an empty Debian.
 build_package() { scripts/install_packages.sh package && scripts/package.sh; }
-phase_package() { tests/package/debs.sh . build/release/packages "$results/debs"; }
+phase_package() {
+  local status=0
+  tests/package/debs.sh . build/release/packages "$results/debs" || status=$?
+  tests/package/pip.sh . build/release "$results/pip" || status=$?
+  return $status
+}
 
 # Times and the compiler cache's work go to out/test/phases.tsv: name, seconds of building and of running, how it ended.
 run_phase() {

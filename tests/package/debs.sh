@@ -24,12 +24,15 @@ echo "== find_package(saccade)"
 for package in "$packages"/*.deb; do dpkg -x "$package" "$work/unpacked"; done
 consume "$work/unpacked/usr"
 desktop-file-validate "$work/unpacked/usr/share/applications/saccade.desktop"
-update-mime-database "$work/unpacked/usr/share/mime"
+update-mime-database "$work/unpacked/usr/share/mime" 2>"$work/mime.log"
 grep -q x-saccade-map "$work/unpacked/usr/share/mime/globs2"
 
 echo "== installed, used, removed"
+# What the packages need is there before them, so that what they bring themselves can be told, and nothing is downloaded later.
+needed="$(for package in "$packages"/saccade_*.deb "$packages"/python3-saccade_*.deb; do dpkg-deb -f "$package" Depends; done |
+  tr ',' '\n' | sed 's/(.*//; s/ //g' | sort -u | paste -s -d ,)"
 suite="$(. /etc/os-release && echo "$VERSION_CODENAME")"
-if ((EUID != 0)) || ! timeout 240 mmdebstrap --quiet --variant=apt "$suite" "$work/root" 2>"$work/mmdebstrap.log"; then
+if ((EUID != 0)) || ! timeout 240 mmdebstrap --quiet --variant=apt "--include=$needed" "$suite" "$work/root" 2>"$work/mmdebstrap.log"; then
   echo "no empty Debian can be made here ($(tail -n 1 "$work/mmdebstrap.log" 2>/dev/null)); the unpacked packages run on this one" >&2
   "$work/unpacked/usr/bin/saccade" info
   "$work/unpacked/usr/bin/saccade" explore tabletop-1 --out "$work/run" --max-views 1 --quiet --no-pictures
@@ -42,14 +45,9 @@ files() { (cd "$root" && find . -xdev \( -path ./proc -o -path ./sys -o -path ./
   -prune -o -print | sort); }
 mkdir -p "$root/tmp/packages"
 cp "$packages"/saccade_*.deb "$packages"/python3-saccade_*.deb "$root/tmp/packages"
-cp /etc/resolv.conf /etc/hosts "$root/etc/" 2>/dev/null || true
-# What the packages need comes first, so that what they bring themselves can be told.
-needed="$(for package in "$packages"/saccade_*.deb "$packages"/python3-saccade_*.deb; do dpkg-deb -f "$package" Depends; done |
-  tr ',' '\n' | sed 's/(.*//; s/ //g' | grep -vx saccade | sort -u)"
-inside apt-get -q -y install --no-install-recommends $needed >"$work/apt.log" 2>&1
 files >"$work/before.txt"
 began=$SECONDS
-inside sh -c 'apt-get -q -y install --no-install-recommends /tmp/packages/*.deb' >>"$work/apt.log" 2>&1
+inside sh -c 'dpkg -i /tmp/packages/*.deb' >"$work/dpkg.log" 2>&1
 echo "installed in $((SECONDS - began)) s"
 inside saccade info
 inside saccade explore tabletop-1 --out /tmp/run --max-views 1 --quiet --no-pictures
@@ -57,7 +55,7 @@ inside python3 -c 'import saccade; print(saccade.TsdfMap(voxel_size_m=0.01))'
 inside python3 -m saccade --version
 files >"$work/installed.txt"
 (($(comm -13 "$work/before.txt" "$work/installed.txt" | wc -l) > 50)) || { echo "too few files were installed" >&2; exit 1; }
-inside dpkg -P python3-saccade saccade >>"$work/apt.log" 2>&1
+inside dpkg -P python3-saccade saccade >>"$work/dpkg.log" 2>&1
 files >"$work/after.txt"
 left="$(comm -13 "$work/before.txt" "$work/after.txt")"
 if [[ -n $left ]]; then
