@@ -26,6 +26,12 @@ def is_elf(path):
         return file.read(4) == b"\x7fELF"
 
 
+def bits_of(path):
+    """Returns the class of an ELF file: 1 for 32 bits, 2 for 64."""
+    with open(path, "rb") as file:
+        return file.read(5)[-1]
+
+
 def owners_of(paths):
     """Returns the Debian packages that own the files, with usrmerge undone where the database has the old name."""
     wanted = sorted({*paths, *(path.removeprefix("/usr") for path in paths if path.startswith("/usr/lib"))})
@@ -38,7 +44,11 @@ def owners_of(paths):
 
 def linked_packages(stage):
     """Packages of the shared libraries that the programs and modules name themselves (NEEDED)."""
-    places = {line.split()[0]: os.path.realpath(line.split()[-1]) for line in lines_of("/sbin/ldconfig", "-p") if "=>" in line}
+    places = {}  # of this machine's width alone: those of 32 bits have the same names
+    for line in lines_of("/sbin/ldconfig", "-p"):
+        path = os.path.realpath(line.split()[-1])
+        if "=>" in line and os.path.exists(path) and bits_of(path) == bits_of(sys.executable):
+            places.setdefault(line.split()[0], path)
     needed = set()
     for path in stage.rglob("*"):
         if path.is_file() and not path.is_symlink() and is_elf(path):
