@@ -2,7 +2,7 @@
 # Front door: make demo, make test. What is built where is CMake's business (CMakePresets.json).
 SHELL := /bin/bash
 .DEFAULT_GOAL := help
-.PHONY: help build demo test bench evidence format tidy web clean
+.PHONY: help build demo test package bench evidence format tidy web clean
 
 help:  ## this list
 	@awk -F ':.*## ' '/^[a-z]+:.*## / { printf "  make %-9s %s\n", $$1, $$2 }' Makefile
@@ -15,6 +15,9 @@ demo: build  ## explores a simulated table and opens the report; results in out/
 
 test:  ## installs what is missing, builds and runs every test, sanitizers, fuzzing, lint
 	@scripts/test.sh
+
+package:  ## Debian packages of the program, the library and the Python module, in build/release/packages
+	@scripts/package.sh
 
 bench:  ## builds and runs the benchmarks
 	@scripts/bench.sh

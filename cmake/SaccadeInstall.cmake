@@ -20,5 +20,5 @@ file(GLOB find_modules ${CMAKE_CURRENT_LIST_DIR}/Find*.cmake)
 install(FILES ${PROJECT_BINARY_DIR}/package/saccadeConfig.cmake
               ${PROJECT_BINARY_DIR}/package/saccadeConfigVersion.cmake
               ${find_modules}
-        DESTINATION ${destination})
-install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
+        DESTINATION ${destination} COMPONENT development)
+install(FILES ${PROJECT_SOURCE_DIR}/LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR} COMPONENT license)  # a .deb has it as copyright

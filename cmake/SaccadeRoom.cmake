@@ -131,11 +131,11 @@ function(saccade_room name)
   set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_ROOMS "${ROOM_ROOMS}")
   set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_PACKAGES "${ROOM_PACKAGES}")
   if(SACCADE_INSTALL)
-    install(TARGETS ${target} EXPORT saccade_${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR})
+    install(TARGETS ${target} EXPORT saccade_${name} ARCHIVE DESTINATION ${CMAKE_INSTALL_LIBDIR} COMPONENT development)
     install(EXPORT saccade_${name} NAMESPACE saccade:: FILE saccade-${name}-targets.cmake
-            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/saccade)
+            DESTINATION ${CMAKE_INSTALL_LIBDIR}/cmake/saccade COMPONENT development)
     install(DIRECTORY ${CMAKE_CURRENT_SOURCE_DIR}/ DESTINATION ${CMAKE_INSTALL_INCLUDEDIR}/saccade/${folder}
-            FILES_MATCHING PATTERN "*.hpp" PATTERN "internal" EXCLUDE)
+            COMPONENT development FILES_MATCHING PATTERN "*.hpp" PATTERN "internal" EXCLUDE)
   endif()
 endfunction()
 

@@ -10,7 +10,7 @@ results=out/test
 rm -rf "$results"
 mkdir -p "$results"
 
-phases="${SACCADE_TEST_PHASES:-format release web asan tsan fuzz tidy ros}"
+phases="${SACCADE_TEST_PHASES:-format release web asan tsan fuzz tidy ros package}"
 
 # run_ctest NAME PRESET OPTIONS…: two at a time. ctest leaves its results in out/test/NAME.xml, GoogleTest in out/test/NAME/.
 run_ctest() {
@@ -60,6 +60,15 @@ build_ros() {
   scripts/install_packages.sh ros && configure release "${release_options[@]}" -DSACCADE_ROS1=ON -DSACCADE_ROS2=ON && compile release
 }
 phase_ros() { run_ctest ros release -L ros; }
+
+# Debian packages of what the phases before built, in an empty Debian.
+build_package() { scripts/install_packages.sh package && scripts/package.sh; }
+phase_package() {
+  local status=0
+  tests/package/debs.sh . build/release/packages "$results/debs" || status=$?
+  tests/package/pip.sh . build/release "$results/pip" || status=$?
+  return $status
+}
 
 # Times and the compiler cache's work go to out/test/phases.tsv: name, seconds of building and of running, how it ended.
 run_phase() {

@@ -33,7 +33,8 @@ using Action = std::function<Result<int>()>;
 /// Adds a subcommand. `global` and `action` outlive the parsing. Options are checked while they are parsed; what is
 /// wrong with them is thrown as CLI::ValidationError.
 using AddCommand = void(CLI::App& program, const GlobalOptions& global, Action& action);
-AddCommand add_annotate, add_attend, add_calibrate, add_cell, add_compare, add_explore, add_filter, add_fuse, add_info,
-    add_nbv, add_reproduce, add_robot, add_sample, add_scene, add_score, add_segment, add_show, add_surfels, add_update;
+AddCommand add_annotate, add_attend, add_calibrate, add_cell, add_compare, add_explore, add_filter, add_fuse,
+    add_generate, add_info, add_nbv, add_reproduce, add_robot, add_sample, add_scene, add_score, add_segment, add_show,
+    add_surfels, add_update;
 
 }  // namespace saccade::cli

@@ -71,9 +71,9 @@ int run(int argc, char** argv, CLI::App& program, Planners planners) {
   program.fallthrough();
   program.footer(kFooter);
   add_global_options(program, global);
-  for (AddCommand* add : {add_annotate, add_attend, add_calibrate, add_cell, add_compare, add_explore, add_filter,
-                          add_fuse, add_nbv, add_info, add_scene, add_reproduce, add_robot, add_score, add_segment,
-                          add_show, add_sample, add_surfels, add_update}) {
+  for (AddCommand* add : {add_annotate, add_attend,   add_calibrate, add_cell,   add_compare, add_explore,   add_filter,
+                          add_fuse,     add_generate, add_nbv,       add_info,   add_scene,   add_reproduce, add_robot,
+                          add_score,    add_segment,  add_show,      add_sample, add_surfels, add_update}) {
     add(program, global, action);
   }
   refuse_empty_values(program);
@@ -81,7 +81,8 @@ int run(int argc, char** argv, CLI::App& program, Planners planners) {
     program.parse(argc, argv);
   } catch (const CLI::RequiredError& error) {
     if (!program.get_subcommands().empty()) return usage(program, error.what());
-    return usage(program, "name what to do: " + names_of(program.get_subcommands({})));
+    const auto shown = program.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
+    return usage(program, "name what to do: " + names_of(shown));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
     return usage(program, error.what());
