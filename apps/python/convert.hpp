@@ -80,5 +80,6 @@ void bind_sensor(py::module_& module);
 void bind_map(py::module_& module);
 void bind_views(py::module_& module);
 void bind_trial(py::module_& module);
+void bind_hands(py::module_& module);
 
 }  // namespace saccade::python

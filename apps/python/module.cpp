@@ -8,4 +8,5 @@ PYBIND11_MODULE(_saccade, module) {
   saccade::python::bind_map(module);
   saccade::python::bind_views(module);
   saccade::python::bind_trial(module);
+  saccade::python::bind_hands(module);
 }
