@@ -81,5 +81,8 @@ void bind_map(py::module_& module);
 void bind_views(py::module_& module);
 void bind_trial(py::module_& module);
 void bind_hands(py::module_& module);
+void bind_frames(py::module_& module);
+void bind_clouds(py::module_& module);
+void bind_tracking(py::module_& module);
 
 }  // namespace saccade::python

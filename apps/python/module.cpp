@@ -9,4 +9,7 @@ PYBIND11_MODULE(_saccade, module) {
   saccade::python::bind_views(module);
   saccade::python::bind_trial(module);
   saccade::python::bind_hands(module);
+  saccade::python::bind_frames(module);
+  saccade::python::bind_clouds(module);
+  saccade::python::bind_tracking(module);
 }

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Rooms of the library from Python: hands. What the module says is held against the truth and the program."""
+"""Rooms of the library from Python: hands, frames, clouds, tracking. What the module says is held against the truth and the program."""
 import json
 import pathlib
 import subprocess
@@ -98,6 +98,156 @@ class Hands(Folder):
                 (FileNotFoundError, "no such", lambda: saccade.read_hand("/nowhere.csv"))):
             with self.assertRaisesRegex(error, words):
                 call()
+
+
+def rendered(folder, frames=5):
+    """Frames of a camera that moves slowly before a painted scene, with their poses."""
+    subprocess.run([sys.executable, "-m", "saccade", "--quiet", "scene", "sequence", "desk", "--out", str(folder),
+                    "--frames", str(frames), "--image-size", "160,120", "--depth-noise", "off"],
+                   stdout=subprocess.DEVNULL, check=True)
+    return str(folder)
+
+
+class Frames(Folder):
+    def test_a_folder_gives_the_map_that_the_program_makes_of_it(self):
+        path = rendered(self.folder / "frames")
+        frames = saccade.open_frames(path)
+        self.assertEqual((len(frames), frames.has_poses, frames.has_color), (5, True, True))
+        m = saccade.TsdfMap(voxel_size_m=0.02, threads=1)
+        for frame in frames:
+            self.assertEqual((frame.depth.shape, frame.depth.dtype), ((120, 160), np.float32))
+            self.assertEqual((frame.color.shape, frame.color.dtype), ((120, 160, 3), np.uint8))
+            m.integrate(frames.camera, frame.depth, frame.T_world_camera, frame.color)
+        out = self.folder / "run"
+        said = program("fuse", path, "--out", out, "--voxel-size", 0.02, "--clearing", 100, "--no-pictures", "--no-mesh")
+        self.assertEqual(said["tracking"], "forced")
+        theirs = saccade.TsdfMap.load(str(out / "map.sacmap"))
+        np.testing.assert_array_equal(m.ternary(), theirs.ternary())
+        np.testing.assert_array_equal(m.tsdf(), theirs.tsdf())
+        self.assertGreater(np.count_nonzero(m.ternary() == 1), 1000)
+
+    def test_frames_are_chosen_and_read_again(self):
+        path = rendered(self.folder / "frames")
+        frames = saccade.open_frames(path)
+        np.testing.assert_array_equal(frames[-1].depth, list(frames)[4].depth)
+        chosen = saccade.open_frames(path, first=1, every=2, count=2, color=False)
+        self.assertEqual([frame.index for frame in chosen], [1, 3])
+        np.testing.assert_array_equal(chosen[1].depth, frames[3].depth)
+        self.assertIsNone(chosen[0].color)
+        half = saccade.PinholeCamera(160, 120, fx=frames.camera.fx / 2, fy=frames.camera.fy / 2, max_range_m=1.0)
+        near = saccade.open_frames(path, camera=half)
+        self.assertEqual((near.camera.fx, near.camera.max_range_m), (half.fx, 1.0))
+        for error, words, call in (
+                (IndexError, "5 frames, none at 5", lambda: frames[5]),
+                (FileNotFoundError, "", lambda: saccade.open_frames("/nowhere")),
+                (ValueError, "seven-scenes", lambda: saccade.open_frames(path, layout="mine")),
+                (ValueError, "bags", lambda: saccade.open_frames(path, depth_topic="/depth")),
+                (ValueError, "", lambda: saccade.open_frames(path, every=0))):
+            with self.assertRaisesRegex(error, words):
+                call()
+
+    def test_a_frame_that_is_broken_raises_and_the_next_follows(self):
+        path = pathlib.Path(rendered(self.folder / "frames"))
+        broken = sorted(path.rglob("*depth*.png")) or sorted((path / "depth").glob("*.png"))
+        broken[2].write_bytes(b"no PNG")
+        walk = iter(saccade.open_frames(str(path)))
+        self.assertEqual((next(walk).index, next(walk).index), (0, 1))
+        with self.assertRaisesRegex(ValueError, broken[2].name):
+            next(walk)
+        self.assertEqual([frame.index for frame in walk], [3, 4])
+
+
+class Clouds(Folder):
+    def test_files_give_the_arrays_back(self):
+        random = np.random.default_rng(3)
+        points = random.normal(size=(50, 3)).astype(np.float32)
+        normals = (points / np.linalg.norm(points, axis=1, keepdims=True)).astype(np.float32)
+        colors = random.integers(0, 256, (50, 3), np.uint8)
+        labels = random.integers(0, 9, 50)
+        radii = random.uniform(0.1, 0.2, 50).astype(np.float32)
+        for name in ("cloud.ply", "cloud.pcd", "cloud.csv"):
+            path = str(self.folder / name)
+            saccade.write_cloud(path, points, normals=normals, colors=colors, radii=radii, labels=labels)
+            read = saccade.read_cloud(path)
+            for key, array in (("points", points), ("normals", normals), ("radii", radii), ("labels", labels)):
+                np.testing.assert_array_equal(read[key], array, f"{key} of {name}")
+            np.testing.assert_array_equal(read["colors"], colors, name)
+        saccade.write_cloud(path, points.astype(np.float64)[::2])
+        read = saccade.read_cloud(path)
+        np.testing.assert_array_equal(read["points"], points[::2])
+        self.assertEqual([read[key] for key in ("normals", "colors", "radii", "labels")], [None] * 4)
+
+    def test_what_is_wrong_is_an_exception(self):
+        points, path, text = np.zeros((4, 3)), str(self.folder / "cloud.ply"), self.folder / "text.md"
+        text.write_text("no cloud")
+        for error, words, call in (
+                (ValueError, "N x 3", lambda: saccade.write_cloud(path, np.zeros((4, 2)))),
+                (ValueError, "normals", lambda: saccade.write_cloud(path, points, normals=points[:2])),
+                (ValueError, "4 points, but 2 labels", lambda: saccade.write_cloud(path, points, labels=[1, 2])),
+                (ValueError, "not be -1", lambda: saccade.write_cloud(path, points, labels=[-1, 0, 0, 0])),
+                (TypeError, "whole", lambda: saccade.write_cloud(path, points, labels=np.zeros(4))),
+                (ValueError, "0, 1", lambda: saccade.write_cloud(path, points, colors=points + 2.0)),
+                (FileNotFoundError, "", lambda: saccade.read_cloud("/nowhere.ply")),
+                (ValueError, "no point cloud", lambda: saccade.read_cloud(str(text)))):
+            with self.assertRaisesRegex(error, words):
+                call()
+
+
+CAMERA = saccade.PinholeCamera(160, 120, fx=131.25, fy=131.25)
+BALLS = np.array([(0.0, 0.0, 0.05, 0.12), (0.3, 0.1, 0.1, 0.15), (-0.25, 0.2, 0.02, 0.1), (-0.1, -0.3, 0.1, 0.12)])
+
+
+def seen(T_world_camera):
+    """Depth of a table, z = 0, with balls on it."""
+    v, u = np.mgrid[:CAMERA.height, :CAMERA.width]
+    rays = np.stack([(u - CAMERA.cx) / CAMERA.fx, (v - CAMERA.cy) / CAMERA.fy, np.ones(u.shape)], axis=-1)
+    ways, start = rays @ T_world_camera[:3, :3].T, T_world_camera[:3, 3]
+    depth = -start[2] / ways[..., 2]
+    for ball in BALLS:
+        to = start - ball[:3]
+        a, b, c = (ways**2).sum(-1), ways @ to, to @ to - ball[3]**2
+        root = b * b - a * c
+        meets = (-b - np.sqrt(np.maximum(root, 0.0))) / a
+        depth = np.where((root > 0.0) & (meets < depth), meets, depth)
+    return depth.astype(np.float32)
+
+
+class Tracking(unittest.TestCase):
+    def test_icp_finds_the_camera_and_a_wrong_place_is_refused(self):
+        true = [saccade.look_at((0.02 * i, -0.6, 0.8 + 0.01 * i), (0.0, 0.0, 0.0)) for i in range(6)]
+        maps = {}
+        for mode in ("icp", "hint", "forced"):
+            maps[mode] = saccade.TsdfMap(voxel_size_m=0.01, threads=1)
+            tracker = saccade.Tracker(maps[mode], CAMERA, mode)
+            self.assertIsNone(tracker.T_world_camera)
+            for i, pose in enumerate(true):
+                found = tracker.fuse(seen(pose), pose if mode == "forced" or i == 0 else
+                                     true[i - 1] if mode == "hint" else None)
+                self.assertTrue(found["accepted"] and found["fused"], found["why"])
+                off_m = np.linalg.norm((found["T_world_camera"] - pose)[:3, 3])
+                self.assertLessEqual(off_m, 0.0 if mode == "forced" else 0.004)
+                self.assertEqual(found["iterations"] > 0, mode != "forced" and i > 0)
+            np.testing.assert_array_equal(tracker.T_world_camera, found["T_world_camera"])
+        before = maps["icp"].weights()
+        tracker = saccade.Tracker(maps["icp"], CAMERA, "hint")
+        self.assertLess(tracker.track(seen(true[3]), true[3])["rmse_m"], 0.01)
+        away = true[3].copy()
+        away[:3, :3] = away[:3, :3] @ [[-1, 0, 0], [0, 1, 0], [0, 0, -1]]
+        lost = tracker.fuse(seen(true[3]), away)
+        self.assertEqual((lost["accepted"], lost["fused"]), (False, False))
+        self.assertTrue(lost["why"])
+        np.testing.assert_array_equal(maps["icp"].weights(), before)
+        with self.assertRaisesRegex(ValueError, "needs T_hint"):
+            tracker.track(seen(true[0]))
+        with self.assertRaisesRegex(ValueError, "size"):
+            tracker.track(seen(true[0])[:60], true[0])
+        with self.assertRaisesRegex(ValueError, "icp, hint or forced"):
+            saccade.Tracker(maps["icp"], CAMERA, "magic")
+        with self.assertRaisesRegex(TypeError, "TsdfMap"):
+            saccade.Tracker(None, CAMERA)
+        maps["icp"].close()
+        with self.assertRaisesRegex(ValueError, "closed"):
+            tracker.track(seen(true[3]), true[3])
 
 
 if __name__ == "__main__":
