@@ -195,7 +195,7 @@ void bind_frames(py::module_& module) {
       "auto, seven-scenes, tum, princeton or open3d. `camera`: PinholeCamera in place of the folder's. `poses`: file "
       "of "
       "T_world_camera in place of the folder's. `depth_scale`: depth samples per metre. `mask`: PNG (0: ignored) or "
-      "JSON polygons. `fill_gaps_px`: close gaps of up to so many pixels; None: 2 where the first frame has them all "
+      "JSON polygons. `fill_gaps_px`: close gaps up to this wide; None: 2 where the first frame has them all "
       "over. `require_poses`: where there are poses, a frame without a good one is an error. Topics and `world_frame` "
       "are of bags. Returns Frames.");
 }

@@ -12,4 +12,8 @@ PYBIND11_MODULE(_saccade, module) {
   saccade::python::bind_frames(module);
   saccade::python::bind_clouds(module);
   saccade::python::bind_tracking(module);
+  saccade::python::bind_segments(module);
+  saccade::python::bind_filter(module);
+  saccade::python::bind_surfels(module);
+  saccade::python::bind_annotation(module);
 }

@@ -12,4 +12,6 @@ names = {}
 for block in blocks:
     exec(compile(block, str(PAGE), "exec"), names)
 assert names["states"].shape == (60, 100, 100) and names["gains"].shape == (960,)
+assert len(names["desk"].mesh()["vertices"]) > 1000 and names["labels"].max() == len(names["saliency"]) > 3
+assert names["clicked"][names["near"]] == 3 and names["clicked"][names["far"]] == 1
 assert 0.0 < names["run"]["final"]["coverage"] <= 1.0

@@ -250,5 +250,84 @@ class Tracking(unittest.TestCase):
             tracker.track(seen(true[3]), true[3])
 
 
+class Filter(unittest.TestCase):
+    def test_the_shadow_of_a_box_is_removed(self):
+        camera = saccade.PinholeCamera(160, 120, fx=114.0, fy=114.0)
+        depth = np.full((120, 160), 2.0, np.float32)
+        depth[40:80, 60:100] = 1.0
+        depth[0, :5] = 0.0
+        baseline_m = 0.08
+        for side, first in (("left", 100), ("right", 60 - 1)):
+            kept, pixels = saccade.filter_kinect_v2(camera, depth, method="thesis", emitter_side=side, veil_points=False)
+            # The edge at z = 1 hides what lies behind it up to fx b (1 / 1 - 1 / 2) pixels beyond.
+            wide = int(114.0 * baseline_m * 0.5)
+            shadow = np.zeros(depth.shape, bool)
+            step = 1 if side == "left" else -1
+            shadow[40:80, [first + step * i for i in range(wide)]] = True
+            np.testing.assert_array_equal(pixels == 2, shadow)
+            np.testing.assert_array_equal(kept, np.where(shadow, 0, depth))
+            np.testing.assert_array_equal(pixels == 0, depth == 0)
+        self.assertEqual(np.count_nonzero(saccade.filter_kinect_v2(camera, depth, shadow_points=False)[1] == 2), 0)
+        for error, words, call in (
+                (ValueError, "surface or thesis", lambda: saccade.filter_kinect_v2(camera, depth, method="none")),
+                (ValueError, "left or right", lambda: saccade.filter_kinect_v2(camera, depth, emitter_side="up")),
+                (ValueError, "", lambda: saccade.filter_kinect_v2(camera, depth[:7])),
+                (ValueError, "", lambda: saccade.filter_kinect_v2(camera, depth, baseline_m=-1.0))):
+            with self.assertRaisesRegex(error, words):
+                call()
+
+
+class Surfels(Folder):
+    def test_a_folder_gives_the_surfels_that_the_program_makes_of_it(self):
+        path = rendered(self.folder / "frames", 8)
+        frames = saccade.open_frames(path)
+        options = (("sharpened", {}), ("heaviest", {"exposure_compensation": True}))
+        for choice, more in options:
+            surfels = saccade.SurfelMap(choice=choice, **more)
+            created = sum(surfels.integrate(frames.camera, frame.depth, frame.T_world_camera, frame.color)["created"]
+                          for frame in frames)
+            self.assertEqual(len(surfels), created)
+            ours, theirs, average = (str(self.folder / name) for name in ("ours.ply", "all.ply", "all.average.ply"))
+            extra = ["--exposure-compensation", "on"] if more else []
+            program("surfels", path, "--out", theirs, "--mode-filter", "both", "--choice", choice, "--min-confidence", 0,
+                    *extra)
+            for averages, other in ((False, theirs), (True, average)):
+                surfels.save(ours, averages=averages)
+                self.assertEqual(pathlib.Path(ours).read_bytes(), pathlib.Path(other).read_bytes(), choice)
+        points = surfels.points()
+        read = saccade.read_cloud(theirs)
+        for key in ("points", "normals", "colors", "radii"):
+            np.testing.assert_array_equal(points[key], read[key])
+        sure = surfels.points(min_confidence=1.5)["confidences"]
+        self.assertEqual(len(sure), np.count_nonzero(points["confidences"] >= 1.5))
+        self.assertLess(len(sure), len(points["confidences"]))
+
+    def test_a_wall_is_where_it_is_and_noise_is_guided_away(self):
+        depth = np.full((120, 160), 1.0, np.float32)
+        color = np.full((120, 160, 3), 90, np.uint8)
+        surfels = saccade.SurfelMap(mode_filter=False)
+        report = surfels.integrate(CAMERA, depth, saccade.look_at((0, 0, 1), (0, 0, 0)), color)
+        self.assertEqual(report["created"], len(surfels))
+        made = surfels.points()
+        np.testing.assert_allclose(made["points"][:, 2], 0.0, atol=1e-6)
+        np.testing.assert_allclose(made["normals"][:, 2], 1.0, atol=1e-5)
+        self.assertEqual(set(np.unique(made["colors"])), {90})
+        noisy = (depth + np.random.default_rng(1).normal(0.0, 0.01, depth.shape)).astype(np.float32)
+        smooth = saccade.guided_filter(noisy, depth, color)
+        self.assertLess(np.std(smooth), 0.4 * np.std(noisy))
+        noisy[3, 3] = 0.0
+        self.assertEqual(saccade.guided_filter(noisy, depth, color)[3, 3], 0.0)
+        for error, words, call in (
+                (ValueError, "sharpened, densest or heaviest", lambda: saccade.SurfelMap(choice="best")),
+                (ValueError, "", lambda: saccade.SurfelMap(max_modes=0)),
+                (ValueError, "", lambda: surfels.integrate(CAMERA, depth[:9], np.eye(4))),
+                (ValueError, "", lambda: surfels.integrate(CAMERA, depth, np.full((4, 4), np.nan))),
+                (ValueError, "differ in size", lambda: saccade.guided_filter(depth, depth[:9], color)),
+                (ValueError, "", lambda: saccade.guided_filter(depth, depth, color, radius_px=-1)),
+                (OSError, "", lambda: surfels.save("/nowhere/at/all.ply"))):
+            with self.assertRaisesRegex(error, words):
+                call()
+
+
 if __name__ == "__main__":
     unittest.main()
