@@ -143,6 +143,14 @@ PointCloud to_cloud(const py::object& points, const py::object& normals, const p
   if (!radii.is_none()) {
     for (const double radius_m : to_numbers(radii, "radii")) cloud.radii_m.push_back(static_cast<float>(radius_m));
   }
+  const auto expect_each = [&](const py::object& given, std::size_t count, const char* what) {
+    if (given.is_none() || count == cloud.positions_m.size()) return;
+    throw py::value_error{"there are " + std::to_string(cloud.positions_m.size()) + " points, but " +
+                          std::to_string(count) + " " + what};
+  };
+  expect_each(normals, cloud.normals.size(), "normals");
+  expect_each(colors, cloud.colors.size(), "colors");
+  expect_each(radii, cloud.radii_m.size(), "radii");
   take(cloud.validate());
   return cloud;
 }

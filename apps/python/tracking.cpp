@@ -43,8 +43,9 @@ class Tracker {
       throw py::value_error{"mode " + std::string{to_string(mode_)} + " needs T_hint for every frame"};
     }
     auto& map = map_.cast<SharedMap&>();
+    const Pose last = T_world_last_.value_or(hint.value_or(Pose::Identity()));
     const FrameReport report = take(map.write([&](TsdfMap& content) -> Result<FrameReport> {
-      SACCADE_TRY(FrameReport found, find(content.content(), frame, hint, map.executor()));
+      SACCADE_TRY(FrameReport found, find(content.content(), frame, hint, last, map.executor()));
       if (!fuse || found.status == FrameReport::Status::lost) return found;
       const ColorImage* colors = frame.color ? &*frame.color : nullptr;
       SACCADE_TRY(found.fusion, content.integrate(camera_, frame.depth, found.T_world_camera, map.executor(), colors));
@@ -61,8 +62,7 @@ class Tracker {
   /// Where the frame was taken: the hint itself, or what ICP makes of hint or last pose. An empty map has nothing to
   /// align to: the first frame defines the world.
   [[nodiscard]] Result<FrameReport> find(const TsdfSnapshot& map, const Frame& frame, const std::optional<Pose>& hint,
-                                         const Executor& executor) const {
-    const Pose last = T_world_last_.value_or(hint.value_or(Pose::Identity()));
+                                         const Pose& last, const Executor& executor) const {
     if (mode_ != TrackingMode::forced && !map.grid.empty()) {
       return track_frame(map, frame, camera_, mode_ == TrackingMode::hint ? *hint : last, executor);
     }

@@ -182,7 +182,8 @@ class Clouds(Folder):
         text.write_text("no cloud")
         for error, words, call in (
                 (ValueError, "N x 3", lambda: saccade.write_cloud(path, np.zeros((4, 2)))),
-                (ValueError, "normals", lambda: saccade.write_cloud(path, points, normals=points[:2])),
+                (ValueError, "4 points, but 2 normals", lambda: saccade.write_cloud(path, points, normals=points[:2])),
+                (ValueError, "4 points, but 0 colors", lambda: saccade.write_cloud(path, points, colors=[])),
                 (ValueError, "4 points, but 2 labels", lambda: saccade.write_cloud(path, points, labels=[1, 2])),
                 (ValueError, "not be -1", lambda: saccade.write_cloud(path, points, labels=[-1, 0, 0, 0])),
                 (TypeError, "whole", lambda: saccade.write_cloud(path, points, labels=np.zeros(4))),
