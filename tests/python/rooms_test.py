@@ -126,6 +126,20 @@ class Frames(Folder):
         np.testing.assert_array_equal(m.tsdf(), theirs.tsdf())
         self.assertGreater(np.count_nonzero(m.ternary() == 1), 1000)
 
+    def test_a_recording_of_a_run_gives_its_views(self):
+        bag = self.folder / "run.mcap"
+        said = program("explore", "tabletop-1", "--max-views", 1, "--voxel-size", 0.03, "--image-size", "96,72",
+                       "--gain-width", 32, "--no-pictures", "--out", self.folder / "run", "--record", bag)
+        frames = saccade.open_frames(str(bag))
+        self.assertEqual((len(frames), frames.has_poses, frames.camera.width, frames.damage),
+                         (len(said["views"]), True, 96, ""))
+        self.assertGreater(np.count_nonzero(frames[0].depth > 0.0), 1000)
+        # The frame that is recorded is one of several of the view, tilted about the camera's x axis.
+        np.testing.assert_allclose(frames[0].T_world_camera[:, [0, 3]],
+                                   np.array(said["views"][0]["T_world_camera"])[:, [0, 3]], atol=1e-6)
+        with self.assertRaisesRegex(FileNotFoundError, "/nothing"):
+            saccade.open_frames(str(bag), depth_topic="/nothing")
+
     def test_frames_are_chosen_and_read_again(self):
         path = rendered(self.folder / "frames")
         frames = saccade.open_frames(path)
