@@ -5,15 +5,10 @@
 
 #include "add_value.hpp"
 #include "options.hpp"
-#include "saccade/cloud/nearest_neighbours.hpp"
+#include "saccade/cloud/surfel_estimates.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
 
 namespace saccade::cli {
-namespace {
-
-constexpr std::size_t kNearest{10};
-
-}  // namespace
 
 Origin complete_radii(PointCloud& cloud, std::optional<double> radius_m, const Executor& executor) {
   if (radius_m) {
@@ -21,24 +16,13 @@ Origin complete_radii(PointCloud& cloud, std::optional<double> radius_m, const E
     return Origin::option;
   }
   if (!cloud.radii_m.empty()) return Origin::file;
-  const NearestNeighbours near = nearest_neighbours(cloud.positions_m, kNearest, executor);
-  const std::vector<float> of_nodes = estimate_radii(near);
-  cloud.radii_m.assign(cloud.positions_m.size(), 0.0F);
-  for (std::size_t n = 0; n < of_nodes.size(); ++n) cloud.radii_m[near.order[n]] = of_nodes[n];
+  cloud.radii_m = surfel_radii(cloud.positions_m, executor);
   return Origin::estimate;
 }
 
 Origin complete_normals(PointCloud& cloud, const Eigen::Vector3d& viewpoint_m, const Executor& executor) {
   if (!cloud.normals.empty()) return Origin::file;
-  constexpr int kRounds{2};
-  const NearestNeighbours near = nearest_neighbours(cloud.positions_m, kNearest, executor);
-  const std::vector<Eigen::Vector3f> of_nodes = estimate_normals(near, kRounds, executor);
-  cloud.normals.assign(cloud.positions_m.size(), Eigen::Vector3f::Zero());
-  const Eigen::Vector3f towards_m = viewpoint_m.cast<float>();
-  for (std::size_t n = 0; n < of_nodes.size(); ++n) {
-    const bool is_away = of_nodes[n].dot(towards_m - near.positions_m[n]) < 0.0F;
-    cloud.normals[near.order[n]] = is_away ? Eigen::Vector3f{-of_nodes[n]} : of_nodes[n];
-  }
+  cloud.normals = surfel_normals(cloud.positions_m, viewpoint_m, executor);
   return Origin::estimate;
 }
 

@@ -83,5 +83,13 @@ void bind_strategy(py::module_& module);
 void bind_arm(py::module_& module);
 void bind_explore(py::module_& module);
 void bind_trial(py::module_& module);
+void bind_hands(py::module_& module);
+void bind_frames(py::module_& module);
+void bind_clouds(py::module_& module);
+void bind_tracking(py::module_& module);
+void bind_segments(py::module_& module);
+void bind_filter(py::module_& module);
+void bind_surfels(py::module_& module);
+void bind_annotation(py::module_& module);
 
 }  // namespace saccade::python

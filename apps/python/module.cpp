@@ -11,4 +11,12 @@ PYBIND11_MODULE(_saccade, module) {
   saccade::python::bind_arm(module);
   saccade::python::bind_explore(module);
   saccade::python::bind_trial(module);
+  saccade::python::bind_hands(module);
+  saccade::python::bind_frames(module);
+  saccade::python::bind_clouds(module);
+  saccade::python::bind_tracking(module);
+  saccade::python::bind_segments(module);
+  saccade::python::bind_filter(module);
+  saccade::python::bind_surfels(module);
+  saccade::python::bind_annotation(module);
 }

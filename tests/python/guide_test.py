@@ -14,3 +14,5 @@ for block in blocks:
 assert names["states"].shape == (60, 100, 100) and names["gains"].shape == (960,)
 assert {row["strategy"] for row in names["result"]["summary"]} == {"sphere", "by-distance"}
 assert len(names["record"]["views"]) == 2 and names["camera"].measure(names["m"])["coverage"] > 0.5
+assert len(names["desk"].mesh()["vertices"]) > 1000 and names["labels"].max() == len(names["saliency"]) > 3
+assert names["clicked"][names["near"]] == 3 and names["clicked"][names["far"]] == 1
