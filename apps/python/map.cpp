@@ -8,12 +8,14 @@
 namespace saccade::python {
 namespace {
 
-SharedMap make_map(double voxel_size_m, const py::object& workspace, double truncation_vox, int free_weight, bool color,
-                   std::size_t threads) {
+SharedMap make_map(double voxel_size_m, const py::object& workspace, double truncation_vox, int free_weight,
+                   int clearing_percent, bool color, std::size_t threads) {
   TsdfConfig config;
   config.voxel_size_m = voxel_size_m;
   config.truncation_vox = truncation_vox;
   config.free_weight = static_cast<std::uint16_t>(free_weight);
+  if (clearing_percent < 1 || clearing_percent > 100) throw py::value_error{"clearing_percent must be 1 to 100"};
+  config.clearing_percent = static_cast<std::uint8_t>(clearing_percent);
   config.color = color;
   if (!workspace.is_none()) config.workspace = to_box(workspace);
   return {take(TsdfMap::create(config)), threads};
@@ -136,10 +138,12 @@ void bind_map(py::module_& module) {
                         "Truncated signed distance map that never confuses unknown with empty. World frame, metres.")
       .def(py::init(&make_map), py::kw_only(), py::arg("voxel_size_m") = TsdfConfig{}.voxel_size_m,
            py::arg("workspace") = py::none(), py::arg("truncation_vox") = TsdfConfig{}.truncation_vox,
-           py::arg("free_weight") = static_cast<int>(TsdfConfig{}.free_weight), py::arg("color") = true,
+           py::arg("free_weight") = static_cast<int>(TsdfConfig{}.free_weight),
+           py::arg("clearing_percent") = static_cast<int>(TsdfConfig{}.clearing_percent), py::arg("color") = true,
            py::arg("threads") = 0,
            "`workspace`: a Box, or two corners; voxels outside of it count as neither unknown nor in the way. "
-           "`threads`: 0 for all cores.")
+           "`clearing_percent`: how much it counts against a surface when a ray passes it by; less than 100 where poses "
+           "are not exact (`saccade fuse` takes 50). `threads`: 0 for all cores.")
       .def_static("load", &load, py::arg("path"), py::arg("threads") = 0, "Reads a .sacmap file.")
       .def("save", &save, py::arg("path"), "Writes a .sacmap file.")
       .def("integrate", &integrate, py::arg("camera"), py::arg("depth"), py::arg("T_world_camera"),

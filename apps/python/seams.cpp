@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "arrays.hpp"
 #include "records.hpp"
 
 namespace saccade::python {
@@ -175,11 +176,6 @@ std::unique_ptr<Recorder> recorder_of(const py::object& recorder) {
 std::unique_ptr<Stopping> stopping_of(const py::object& stopping) {
   if (stopping.is_none()) return nullptr;
   return std::make_unique<PythonStopping>(body_of(stopping, "reached"));
-}
-
-py::array_t<float> from_depth(const DepthImage& depth) {
-  std::vector<float> values(depth.data(), depth.data() + depth.size());
-  return adopt(std::move(values), {depth.height(), depth.width()});
 }
 
 }  // namespace saccade::python

@@ -64,7 +64,4 @@ struct Strategy {
 /// A function of the run's record: true ends the run.
 [[nodiscard]] std::unique_ptr<Stopping> stopping_of(const py::object& stopping);
 
-/// H×W float32.
-[[nodiscard]] py::array_t<float> from_depth(const DepthImage& depth);
-
 }  // namespace saccade::python

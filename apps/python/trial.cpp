@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include "arrays.hpp"
 #include "records.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/scene/scene_yaml.hpp"

@@ -113,13 +113,13 @@ class Frames(Folder):
         path = rendered(self.folder / "frames")
         frames = saccade.open_frames(path)
         self.assertEqual((len(frames), frames.has_poses, frames.has_color), (5, True, True))
-        m = saccade.TsdfMap(voxel_size_m=0.02, threads=1)
+        m = saccade.TsdfMap(voxel_size_m=0.02, clearing_percent=50, threads=1)
         for frame in frames:
             self.assertEqual((frame.depth.shape, frame.depth.dtype), ((120, 160), np.float32))
             self.assertEqual((frame.color.shape, frame.color.dtype), ((120, 160, 3), np.uint8))
             m.integrate(frames.camera, frame.depth, frame.T_world_camera, frame.color)
         out = self.folder / "run"
-        said = program("fuse", path, "--out", out, "--voxel-size", 0.02, "--clearing", 100, "--no-pictures", "--no-mesh")
+        said = program("fuse", path, "--out", out, "--voxel-size", 0.02, "--no-pictures", "--no-mesh")
         self.assertEqual(said["tracking"], "forced")
         theirs = saccade.TsdfMap.load(str(out / "map.sacmap"))
         np.testing.assert_array_equal(m.ternary(), theirs.ternary())
