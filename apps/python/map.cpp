@@ -136,14 +136,15 @@ SharedMap load(const std::string& path, std::size_t threads) {
 void bind_map(py::module_& module) {
   py::class_<SharedMap>(module, "TsdfMap",
                         "Truncated signed distance map that never confuses unknown with empty. World frame, metres.")
-      .def(py::init(&make_map), py::kw_only(), py::arg("voxel_size_m") = TsdfConfig{}.voxel_size_m,
-           py::arg("workspace") = py::none(), py::arg("truncation_vox") = TsdfConfig{}.truncation_vox,
-           py::arg("free_weight") = static_cast<int>(TsdfConfig{}.free_weight),
-           py::arg("clearing_percent") = static_cast<int>(TsdfConfig{}.clearing_percent), py::arg("color") = true,
-           py::arg("threads") = 0,
-           "`workspace`: a Box, or two corners; voxels outside of it count as neither unknown nor in the way. "
-           "`clearing_percent`: how much it counts against a surface when a ray passes it by; less than 100 where poses "
-           "are not exact (`saccade fuse` takes 50). `threads`: 0 for all cores.")
+      .def(
+          py::init(&make_map), py::kw_only(), py::arg("voxel_size_m") = TsdfConfig{}.voxel_size_m,
+          py::arg("workspace") = py::none(), py::arg("truncation_vox") = TsdfConfig{}.truncation_vox,
+          py::arg("free_weight") = static_cast<int>(TsdfConfig{}.free_weight),
+          py::arg("clearing_percent") = static_cast<int>(TsdfConfig{}.clearing_percent), py::arg("color") = true,
+          py::arg("threads") = 0,
+          "`workspace`: a Box, or two corners; voxels outside of it count as neither unknown nor in the way. "
+          "`clearing_percent`: how much it counts against a surface when a ray passes it by; less than 100 where poses "
+          "are not exact (`saccade fuse` takes 50). `threads`: 0 for all cores.")
       .def_static("load", &load, py::arg("path"), py::arg("threads") = 0, "Reads a .sacmap file.")
       .def("save", &save, py::arg("path"), "Writes a .sacmap file.")
       .def("integrate", &integrate, py::arg("camera"), py::arg("depth"), py::arg("T_world_camera"),
