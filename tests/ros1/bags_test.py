@@ -3,6 +3,7 @@
 """Bags that rosbag's Python wrote, in each compression, fuse to the map of the folder of PNGs that has their frames.
 
 Usage: bags_test.py SACCADE-ROS1 PYTHON; saccade lies beside saccade-ros1."""
+import io
 import pathlib
 import struct
 import subprocess
@@ -20,7 +21,8 @@ try:
     import rosbag
     import rospy
     from geometry_msgs.msg import PoseStamped, TransformStamped
-    from sensor_msgs.msg import CameraInfo, Image
+    from PIL import Image as Picture
+    from sensor_msgs.msg import CameraInfo, CompressedImage, Image
     from tf2_msgs.msg import TFMessage
 except ImportError as missing:
     skip(f"{missing.name} is not there (packages.txt, ros)")
@@ -63,9 +65,10 @@ def write_folder(folder):
     (folder / "groundtruth.txt").write_text("".join(poses))
 
 
-def write_bag(path, compression):
+def write_bag(path, compression="none", change=None, colors=None):
+    """change(info, depth): what of the depth image is recorded; colors(i, stamp): topic and message of a colour image."""
     with rosbag.Bag(str(path), "w", compression=compression) as bag:
-        for time, depth, translation, turn in frames():
+        for i, (time, depth, translation, turn) in enumerate(frames()):
             stamp = rospy.Time.from_sec(time)
             image = Image(height=HEIGHT, width=WIDTH, encoding="16UC1", step=2 * WIDTH, data=depth.tobytes())
             image.header.stamp, image.header.frame_id = stamp, "camera"
@@ -73,6 +76,13 @@ def write_bag(path, compression):
             info.K = [FOCAL, 0, 79.5, 0, FOCAL, 59.5, 0, 0, 1]
             info.R = [1, 0, 0, 0, 1, 0, 0, 0, 1]
             info.P = [FOCAL, 0, 79.5, 0, 0, FOCAL, 59.5, 0, 0, 0, 1, 0]
+            if change is not None:
+                depth = np.ascontiguousarray(change(info, depth))
+                image.height, image.width, image.step, image.data = *depth.shape, 2 * depth.shape[1], depth.tobytes()
+            if colors is not None:
+                for topic, message in colors(i):
+                    message.header = image.header
+                    bag.write(topic, message, stamp)
             link = TransformStamped(child_frame_id="camera")
             link.header.stamp, link.header.frame_id = stamp, "world"
             (link.transform.translation.x, link.transform.translation.y, link.transform.translation.z) = map(float, translation)
@@ -108,6 +118,59 @@ class Bags(unittest.TestCase):
         for compression in ("none", "bz2", "lz4"):
             write_bag(self.path / f"{compression}.bag", compression)
             self.assertEqual(self.fuse(self.path / f"{compression}.bag", compression), expected, compression)
+
+    def test_regions_of_interest_and_binning_are_part_of_the_camera(self):
+        def part(info, depth):
+            info.roi.x_offset, info.roi.y_offset, info.roi.width, info.roi.height = 20, 10, 100, 80
+            info.binning_x = info.binning_y = 2
+            return depth[10:90:2, 20:120:2]
+
+        write_bag(self.path / "part.bag", change=part)
+        mine = self.fuse(self.path / "part.bag", "part")
+        # Pixel u of the picture is the mean of the sensor's 2u + 20 and 2u + 21.
+        center = ((79.5 - 20 - 0.5) / 2, (59.5 - 10 - 0.5) / 2)
+        write_bag(self.path / "plain.bag", change=lambda info, depth: depth[10:90:2, 20:120:2])
+        plain = self.fuse(self.path / "plain.bag", "plain", "--intrinsics", f"{FOCAL / 2},{FOCAL / 2},{center[0]},{center[1]}")
+        self.assertEqual(mine, plain)
+
+    def test_distortion_is_undone_as_that_of_a_folder(self):
+        lens = [0.1, -0.05, 0.001, -0.002, 0.01]
+
+        def distorted(info, depth):
+            info.D = lens
+            return depth
+
+        write_bag(self.path / "lens.bag", change=distorted)
+        mine = self.fuse(self.path / "lens.bag", "lens")
+        write_bag(self.path / "plain.bag")
+        said = self.fuse(self.path / "plain.bag", "said", "--distortion", ",".join(map(str, lens)))
+        self.assertEqual(mine, said)
+        self.assertNotEqual(mine, self.fuse(self.path / "plain.bag", "plain"))
+
+    def test_colours_plain_and_compressed(self):
+        def pixels(i):
+            v, u = np.mgrid[0:HEIGHT, 0:WIDTH]
+            return np.stack([(u + 10 * i) % 256, (2 * v) % 256, (u + v) % 256], axis=2).astype(np.uint8)
+
+        def packed(i, kind):
+            buffer = io.BytesIO()
+            Picture.fromarray(pixels(i)).save(buffer, kind, quality=95)
+            return CompressedImage(format=f"rgb8; {kind} compressed bgr8", data=buffer.getvalue())
+
+        def colors(i):
+            rgb = pixels(i)
+            yield "/rgb", Image(height=HEIGHT, width=WIDTH, encoding="rgb8", step=3 * WIDTH, data=rgb.tobytes())
+            yield "/bgr", Image(height=HEIGHT, width=WIDTH, encoding="bgr8", step=3 * WIDTH, data=rgb[:, :, ::-1].tobytes())
+            yield "/png", packed(i, "png")
+            yield "/jpeg", packed(i, "jpeg")
+
+        write_bag(self.path / "color.bag", "lz4", colors=colors)
+        depth = ("--depth", "/camera/depth/image_raw", "--color")
+        rgb = self.fuse(self.path / "color.bag", "rgb", *depth, "/rgb")
+        self.assertEqual(self.fuse(self.path / "color.bag", "bgr", *depth, "/bgr"), rgb)
+        self.assertEqual(self.fuse(self.path / "color.bag", "png", *depth, "/png"), rgb)
+        jpeg = self.fuse(self.path / "color.bag", "jpeg", *depth, "/jpeg")
+        self.assertNotIn(jpeg, (rgb, self.fuse(self.path / "color.bag", "grey", *depth[:2])))
 
     def test_wrong_topics_and_cut_bags_are_said(self):
         write_bag(self.path / "a.bag", "lz4")
