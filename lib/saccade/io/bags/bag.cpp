@@ -84,7 +84,7 @@ class OpenBag final : public Bag {
         window = window_of(i);
       }
       if (!window) return in_file(window.error(), path_);
-      static_cast<void>(format_->walk(*window, add));
+      static_cast<void>(format_->walk(**window, add));
     }
     std::ranges::sort(found, {}, [](const BagEntry& e) { return std::tuple{e.time_ns, e.chunk, e.offset}; });
     return found;
@@ -94,7 +94,7 @@ class OpenBag final : public Bag {
     SACCADE_EXPECTS(entry.chunk < format_->chunks.size() && entry.topic < topics_.size());
     auto window = window_of(entry.chunk);
     if (!window) return in_file(window.error(), path_);
-    const auto view = format_->message_at(*window, entry.offset);
+    const auto view = format_->message_at(**window, entry.offset);
     if (!view) return in_file(view.error(), path_);
     const BagTopic& topic = topics_[entry.topic];
     const auto channel = topic_of_.find(view->channel);
@@ -119,9 +119,13 @@ class OpenBag final : public Bag {
   }
 
   /// Bytes of a chunk: those of the file, or unpacked ones, which stay until others need their place.
-  Result<ByteWindow> window_of(std::uint32_t index) {
+  /// Holds until the next call.
+  Result<ByteWindow*> window_of(std::uint32_t index) {
     const Chunk& chunk = format_->chunks[index];
-    if (chunk.packing == Packing::none) return ByteWindow{file_, chunk.data_at, chunk.stored};
+    if (chunk.packing == Packing::none) {
+      in_file_.move_to(chunk.data_at, chunk.stored);
+      return &in_file_;
+    }
     auto held = std::ranges::find(unpacked_, index, &Unpacked::chunk);
     if (held == unpacked_.end()) {
       SACCADE_TRY(UnsetVector<std::byte> bytes, BagFormat::unpack(file_, chunk));
@@ -134,7 +138,8 @@ class OpenBag final : public Bag {
     } else if (held != unpacked_.begin()) {
       unpacked_.splice(unpacked_.begin(), unpacked_, held);
     }
-    return ByteWindow{unpacked_.front().bytes};
+    in_memory_ = ByteWindow{unpacked_.front().bytes};
+    return &in_memory_;
   }
 
   struct Unpacked {
@@ -149,6 +154,8 @@ class OpenBag final : public Bag {
   std::map<std::uint32_t, std::uint32_t> topic_of_;  ///< by channel
   std::list<Unpacked> unpacked_;                     ///< the last used first
   std::uint64_t unpacked_bytes_{0};
+  ByteWindow in_file_{file_, 0, 0};
+  ByteWindow in_memory_{std::span<const std::byte>{}};
 };
 
 }  // namespace

@@ -35,8 +35,16 @@ std::size_t BagFile::read(std::uint64_t offset, std::span<std::byte> out) const 
   return done;
 }
 
-ByteWindow::ByteWindow(const BagFile& file, std::uint64_t begin, std::uint64_t size)
-    : file_{&file}, begin_{std::min(begin, file.size())}, size_{std::min(size, file.size() - begin_)} {}
+ByteWindow::ByteWindow(const BagFile& file, std::uint64_t begin, std::uint64_t size) : file_{&file} {
+  move_to(begin, size);
+}
+
+void ByteWindow::move_to(std::uint64_t begin, std::uint64_t size) {
+  SACCADE_EXPECTS(file_ != nullptr);
+  begin_ = std::min(begin, file_->size());
+  size_ = std::min(size, file_->size() - begin_);
+  buffer_.clear();
+}
 
 std::span<const std::byte> ByteWindow::at(std::uint64_t offset, std::size_t count) {
   constexpr std::uint64_t kAhead{std::uint64_t{1} << 16U};

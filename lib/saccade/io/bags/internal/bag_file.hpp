@@ -7,9 +7,9 @@
 #include <filesystem>
 #include <span>
 #include <string>
-#include <vector>
 
 #include "saccade/core/result.hpp"
+#include "saccade/core/unset_vector.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::internal::io_bags {
@@ -36,6 +36,8 @@ class ByteWindow {
   explicit ByteWindow(std::span<const std::byte> memory) : memory_{memory}, size_{memory.size()} {}
   /// Clipped to the file.
   ByteWindow(const BagFile& file, std::uint64_t begin, std::uint64_t size);
+  /// Looks at another part of the file, with the memory that it has. Expects a window of a file.
+  void move_to(std::uint64_t begin, std::uint64_t size);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
   /// Fewer bytes than `count` where the window ends. Expects count ≤ kMaxPieceBytes.
@@ -46,7 +48,7 @@ class ByteWindow {
   const BagFile* file_{nullptr};
   std::uint64_t begin_{0};
   std::uint64_t size_{0};
-  std::vector<std::byte> buffer_;  ///< part of the file
+  UnsetVector<std::byte> buffer_;  ///< part of the file
   std::uint64_t buffer_at_{0};
 };
 
