@@ -19,9 +19,16 @@ std::string dtype_of(const py::array& array) { return py::str(array.dtype()); }
 /// Copies an array of any stride into pixels, each made of an element.
 template <class T, class Pixel>
 void copy_rows(const py::array& array, Pixel* out, const auto& convert) {
-  const auto values = array.cast<py::array_t<T>>().template unchecked<2>();
-  for (py::ssize_t v = 0; v < values.shape(0); ++v) {
-    for (py::ssize_t u = 0; u < values.shape(1); ++u) *out++ = convert(values(v, u));
+  const auto* row = static_cast<const std::byte*>(array.data());
+  const py::ssize_t columns = array.shape(1);
+  const py::ssize_t step = array.strides(1);
+  for (py::ssize_t v = 0; v < array.shape(0); ++v, row += array.strides(0)) {
+    const std::byte* at = row;
+    for (py::ssize_t u = 0; u < columns; ++u, at += step) {
+      T value;
+      std::memcpy(&value, at, sizeof(T));  // arrays of any stride may lie at any address
+      *out++ = convert(value);
+    }
   }
 }
 
