@@ -28,7 +28,7 @@ def integrating():
             stats = m.integrate(camera, depth, pose)
             longer.append(1e3 * (time.perf_counter() - begin) - stats["ms"])
         print(f"integrate {name}: {np.median(longer):.3f} ms beside the fusion's {stats['ms']:.1f} ms")
-        if depth.flags.c_contiguous:  # of others, every line of memory must be fetched for half of its pixels
+        if depth.flags.c_contiguous:  # others need every line of memory for half of its pixels
             yield np.median(longer)
 
 
