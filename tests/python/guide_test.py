@@ -1,16 +1,25 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the Python of docs/guides/python.md, block after block."""
+"""Runs the Python of README.md and of docs/guides/python.md, block after block."""
 import pathlib
 import re
 
-PAGE = pathlib.Path(__file__).resolve().parents[2] / "docs/guides/python.md"
+ROOT = pathlib.Path(__file__).resolve().parents[2]
 
-blocks = re.findall(r"^```python\n(.*?)^```", PAGE.read_text(), re.DOTALL | re.MULTILINE)
-assert len(blocks) >= 2, "the guide has lost its examples"
-names = {}
-for block in blocks:
-    exec(compile(block, str(PAGE), "exec"), names)
+
+def run(page, least):
+    """Names after the last of the page's blocks, which go on from each other."""
+    blocks = re.findall(r"^```python\n(.*?)^```", (ROOT / page).read_text(), re.DOTALL | re.MULTILINE)
+    assert len(blocks) >= least, f"{page} has lost its examples"
+    names = {}
+    for block in blocks:
+        exec(compile(block, page, "exec"), names)
+    return names
+
+
+runs = run("README.md", 1)["result"]["runs"]
+assert [r["strategy"] for r in runs] == ["sphere", "low-first"] * 2 and all(r["final"]["coverage"] > 0.5 for r in runs)
+names = run("docs/guides/python.md", 5)
 assert names["states"].shape == (60, 100, 100) and names["gains"].shape == (960,)
 assert {row["strategy"] for row in names["result"]["summary"]} == {"sphere", "by-distance"}
 assert len(names["record"]["views"]) == 2 and names["camera"].measure(names["m"])["coverage"] > 0.5
