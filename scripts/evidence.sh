@@ -192,6 +192,15 @@ for source in tests/fuzz/fuzz_*.cpp; do
   step "$target" scripts/fuzz.sh "$((60 * ${SACCADE_FUZZ_MINUTES:-10}))" "$target"
 done
 
+if [[ -x build/release/saccade-ros1 ]]; then
+  step ros1_node /usr/bin/python3 scripts/evidence_ros.py build/release 10
+else
+  echo "  ros1_node: skipped, saccade-ros1 is not built (scripts/install_packages.sh ros)"
+fi
+step python_costs env PYTHONPATH=build/release/python /usr/bin/python3 scripts/evidence_python.py
+step packages_made scripts/package.sh &&
+  step packages_clean_root env SACCADE_CLEAN_ROOT=1 tests/package/debs.sh . build/release/packages "$out/debs"
+
 /usr/bin/python3 scripts/evidence_table.py "$out" docs/evidence.md || failed=1
 echo "The figures are in docs/evidence.md"
 exit "$failed"

@@ -1,17 +1,14 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # make package: Debian packages in build/release/packages, of what the build folder is configured for. SOURCE_DATE_EPOCH is the
-# time that stands in them: that of the last commit, unless it is set.
+# time that stands in them: that of the last commit, or of CHANGELOG.md where git does not say, unless it is set.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 scripts/install_packages.sh program package
 source scripts/common.sh
 umask 022
 if [[ -z ${SOURCE_DATE_EPOCH:-} ]]; then
-  SOURCE_DATE_EPOCH="$(git log -1 --format=%ct 2>/dev/null)" || {
-    echo "package.sh: no git repository here; set SOURCE_DATE_EPOCH to the time that the packages shall bear" >&2
-    exit 2
-  }
+  SOURCE_DATE_EPOCH="$(git log -1 --format=%ct 2>/dev/null)" || SOURCE_DATE_EPOCH="$(stat -c %Y CHANGELOG.md)"
 fi
 export SOURCE_DATE_EPOCH
 

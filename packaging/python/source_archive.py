@@ -3,6 +3,7 @@
 import gzip
 import io
 import os
+import shutil
 import subprocess
 import tarfile
 
@@ -10,9 +11,10 @@ LEFT_OUT = {".git", "build", "out", ".cache", "__pycache__", "node_modules", "te
 
 
 def source_files(root):
-    """What git tracks; in an unpacked archive, where there is no git, all but what building makes."""
-    if (root / ".git").exists():
-        listed = subprocess.run(["git", "ls-files", "-z"], cwd=root, capture_output=True, text=True, check=True).stdout
+    """What git tracks; where git does not say, as in an unpacked archive, all but what building makes."""
+    git = shutil.which("git") if (root / ".git").exists() else None
+    listed = git and subprocess.run([git, "ls-files", "-z"], cwd=root, capture_output=True, text=True).stdout
+    if listed:
         return sorted(name for name in listed.split("\0") if name and (root / name).is_file())
     return sorted(path.relative_to(root).as_posix() for path in root.rglob("*")
                   if path.is_file() and not LEFT_OUT & set(path.relative_to(root).parts) and path.name != "PKG-INFO")
