@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/explore/explorer.hpp"
 
+#include <mutex>
+
 #include "arm.hpp"
 #include "records.hpp"
 #include "saccade/trial/simulated_run.hpp"
@@ -151,6 +153,7 @@ class OwnPlanner {
     for (const Pose& pose : to_poses(taken)) attempts.add_skipped(0, pose);
     const auto rank = [&] {
       const py::gil_scoped_release released;
+      const std::scoped_lock lock{mutex_};
       PlanningScene scene{snapshot, map.executor()};
       scene.attempts = &attempts;
       return planner_->rank(scene);
@@ -169,6 +172,7 @@ class OwnPlanner {
  private:
   SimulatedRunConfig config_;
   py::object regions_;
+  std::mutex mutex_;  ///< callers from other threads wait
   std::optional<ViewPlanner> planner_;
 };
 

@@ -1,6 +1,7 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """The loop from Python: each of its seams as an object of Python, strategies, comparisons, and what goes wrong in them."""
+import threading
 import unittest
 
 import numpy as np
@@ -144,6 +145,13 @@ class Explorers(unittest.TestCase):
         other = planner.next_views(m, count=1, taken=[views[0]["T_world_camera"]])[0]
         self.assertFalse(np.array_equal(other["T_world_camera"], views[0]["T_world_camera"]))
         self.assertLessEqual(other["gain"], gains[0])
+        found = []
+        threads = [threading.Thread(target=lambda: found.append(planner.next_views(m, count=1)[0]["gain"])) for _ in range(3)]
+        for thread in threads:
+            thread.start()
+        for thread in threads:
+            thread.join()
+        self.assertEqual(found, [gains[0]] * 3)
 
 
 class Arms(unittest.TestCase):
