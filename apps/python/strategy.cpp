@@ -129,7 +129,7 @@ void bind_strategy(py::module_& module) {
       "A strategy by its name, with parts of one's own in place of its attention, its views or its gain. Each is a "
       "function, or an object with the method named here.")
       .def(py::init([](std::string base, py::object attention, py::object views, py::object gain,
-                       std::optional<double> min_gain, std::optional<std::string> name, std::string gain_unit) {
+                       std::optional<double> min_gain, const std::optional<std::string>& name, std::string gain_unit) {
              static_cast<void>(take(builtin_planners().find(base)));
              if (!attention.is_none()) static_cast<void>(body_of(attention, "regions"));
              if (!views.is_none()) static_cast<void>(body_of(views, "views"));
