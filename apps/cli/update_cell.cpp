@@ -76,6 +76,9 @@ class CellUpdate {
     if (!scan_.complete) return {};
     has_scan_ = true;
     scan_.measures.unknown_left = count_unknown(map_.content(), subject_.scene.workspace);
+    // A kill while the hand is waited for loses no scan.
+    SACCADE_CHECK(save_map(map_.content(), out_ / "map.sacmap", executor_));
+    SACCADE_CHECK(write_json(out_ / "update.json", document(0.0)));
     SACCADE_TRY([[maybe_unused]] const StandByResult back, explorer.return_to_stand_by());
     return {};
   }

@@ -37,6 +37,13 @@ py::dict integrate(SharedMap& map, const PinholeCamera& camera, const py::array&
   return result;
 }
 
+void expect_countable(const IndexBox& voxels) {
+  const auto edge = [](std::int32_t low, std::int32_t high) { return std::max(0.0, static_cast<double>(high) - low); };
+  if (edge(voxels.lo.x, voxels.hi.x) * edge(voxels.lo.y, voxels.hi.y) * edge(voxels.lo.z, voxels.hi.z) > 4e9) {
+    throw py::value_error{"the volume has more than 4 billion voxels; name a smaller box"};
+  }
+}
+
 /// Voxels of a volume: those of a box, of the workspace, or all that are known.
 IndexBox volume_of(const TsdfSnapshot& map, const py::object& box) {
   IndexBox voxels = map.grid.known_bounds();
@@ -47,9 +54,7 @@ IndexBox volume_of(const TsdfSnapshot& map, const py::object& box) {
     voxels = voxels_with_center_in(*bounds, map.config.voxel_size_m);
   }
   if (voxels.empty()) throw py::value_error{bounds ? "the box holds no voxel" : "the map is empty; name a box"};
-  const double bytes =
-      static_cast<double>(voxels.hi.x - voxels.lo.x) * (voxels.hi.y - voxels.lo.y) * (voxels.hi.z - voxels.lo.z);
-  if (bytes > 4e9) throw py::value_error{"the volume has more than 4 billion voxels; name a smaller box"};
+  expect_countable(voxels);
   return voxels;
 }
 
@@ -168,7 +173,12 @@ void bind_map(py::module_& module) {
       .def(
           "count_unknown",
           [](const SharedMap& map, const py::object& region) {
-            return count_unknown(map.snapshot(), to_region(region));
+            const TsdfSnapshot snapshot = map.snapshot();
+            const Region where = to_region(region);
+            take(validate(where));
+            expect_countable(voxels_with_center_in(bounds(where), snapshot.config.voxel_size_m));
+            const py::gil_scoped_release released;
+            return count_unknown(snapshot, where);
           },
           py::arg("region"), "Unknown voxels of a region, within the workspace.")
       .def(

@@ -37,8 +37,13 @@ void bind_sensor(py::module_& module) {
       .def_readonly("cy", &PinholeCamera::cy)
       .def_readonly("min_range_m", &PinholeCamera::min_range_m)
       .def_readonly("max_range_m", &PinholeCamera::max_range_m)
-      .def("scaled_to_width", &PinholeCamera::scaled_to_width, py::arg("width"),
-           "The camera with `width` pixels across; field of view and range stay.")
+      .def(
+          "scaled_to_width",
+          [](const PinholeCamera& camera, int width) {
+            if (width < 1) throw py::value_error{"width must be one pixel at least, not " + std::to_string(width)};
+            return camera.scaled_to_width(width);
+          },
+          py::arg("width"), "The camera with `width` pixels across; field of view and range stay.")
       .def("__eq__", [](const PinholeCamera& a, const PinholeCamera& b) { return a == b; })
       .def("__repr__", &text_of);
 

@@ -25,6 +25,7 @@ Result<KnownScene> build_scene(const std::string& name, const Executor& executor
 
 /// Settings that runs share.
 SimulatedRunConfig run_config(int max_views, double voxel_size_m, int width, int gain_width, bool noise) {
+  if (width < 1) throw py::value_error{"width must be one pixel at least, not " + std::to_string(width)};
   SimulatedRunConfig config;
   config.voxel_size_m = voxel_size_m;
   config.camera = config.camera.scaled_to_width(width);

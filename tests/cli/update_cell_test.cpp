@@ -155,6 +155,27 @@ TEST_F(UpdateCell, AKillWhileTheRobotLooksLosesNoRegion) {
   for (const json& region : task.at("regions")) EXPECT_EQ(region.at("end"), "not_begun");
 }
 
+TEST_F(UpdateCell, AKillWhileTheHandIsWaitedForLosesNoScan) {
+  std::ofstream{folder_ / "hand.py"}
+      << "import sys, time\nsys.stdin.readline()\nprint('{\"saccade\": 1}', flush=True)\n"
+         "sys.stdin.readline()\ntime.sleep(60)\n";
+  write("hand: {command: python3 -B hand.py}\n");
+  RunningProgram waiting{update({})};
+  const fs::path file = folder_ / "run/update.json";
+  for (int i = 0; i < 600 && !fs::exists(file); ++i) std::this_thread::sleep_for(std::chrono::milliseconds{50});
+  waiting.send(SIGKILL);
+  static_cast<void>(waiting.finish());
+  ASSERT_TRUE(fs::exists(file));
+  EXPECT_TRUE(json::parse(text_of(file)).at("result").at("scanned").get<bool>());
+  std::ofstream{folder_ / "hand.py"}
+      << "import sys\nfor said in ('{\"saccade\": 1}', '{\"number\": 0, \"end\": true}'):\n"
+         "    sys.stdin.readline()\n    print(said, flush=True)\n";
+  const std::string before = text_of(folder_ / "run/map.sacmap");
+  const Outcome outcome = run_program(update({"--resume"}));
+  EXPECT_TRUE(outcome.status == 0 || outcome.status == 5) << outcome.err;
+  EXPECT_EQ(text_of(folder_ / "run/map.sacmap"), before);  // nothing was looked at anew
+}
+
 TEST_F(UpdateCell, ADryRunPlansForTheTaskAndMovesNothing) {
   write("hand: {command: python3 -B hand.py}\n");
   const Outcome outcome = run_program(update({"--dry-run"}));
