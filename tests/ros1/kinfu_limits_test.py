@@ -100,13 +100,4 @@ class Limits(KinfuClient):
 
 
 if __name__ == "__main__":
-    Limits.session = ros_session.Session(*sys.argv[1:3])
-    try:
-        done = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False, warnings="ignore")
-        good = done.result.wasSuccessful()
-        if not good:
-            print(Limits.session.log("kinfu")[-4000:])
-    finally:
-        rospy.signal_shutdown("done")
-        Limits.session.close()
-    os._exit(0 if good else 1)
+    ros_session.run_tests(Limits, "kinfu")

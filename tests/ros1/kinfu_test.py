@@ -360,13 +360,4 @@ class Kinfu(KinfuClient):
 
 
 if __name__ == "__main__":
-    Kinfu.session = ros_session.Session(*sys.argv[1:3])
-    try:
-        done = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False, warnings="ignore")
-        good = done.result.wasSuccessful()
-        if not good:
-            print(Kinfu.session.log("kinfu")[-4000:])
-    finally:
-        rospy.signal_shutdown("done")
-        Kinfu.session.close()
-    os._exit(0 if good else 1)
+    ros_session.run_tests(Kinfu, "kinfu")

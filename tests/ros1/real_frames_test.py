@@ -178,13 +178,4 @@ class RealFrames(unittest.TestCase):
 if __name__ == "__main__":
     if not FRAMES.is_dir():
         ros_session.skip(f"{FRAMES.name} is not there (../shared/data)")
-    RealFrames.session = ros_session.Session(*sys.argv[1:3])
-    try:
-        done = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False, warnings="ignore")
-        good = done.result.wasSuccessful()
-        if not good:
-            print(RealFrames.session.log("kinfu")[-4000:])
-    finally:
-        rospy.signal_shutdown("done")
-        RealFrames.session.close()
-    os._exit(0 if good else 1)
+    ros_session.run_tests(RealFrames, "kinfu")

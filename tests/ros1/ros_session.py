@@ -8,6 +8,7 @@ import subprocess
 import sys
 import tempfile
 import time
+import unittest
 
 SKIPPED = 77
 
@@ -82,3 +83,19 @@ class Session:
                 pass
             process.wait()
         shutil.rmtree(self.folder, ignore_errors=True)
+
+
+def run_tests(test_class, node):
+    """Runs this program's tests with a session of their own; shows what the node said where one fails. Does not return."""
+    import rospy
+    test_class.session = Session(*sys.argv[1:3])
+    good = False
+    try:
+        done = unittest.main(argv=sys.argv[:1] + sys.argv[3:], exit=False, warnings="ignore")
+        good = done.result.wasSuccessful()
+        if not good:
+            print(test_class.session.log(node)[-4000:])
+    finally:
+        rospy.signal_shutdown("done")
+        test_class.session.close()
+    os._exit(0 if good else 1)
