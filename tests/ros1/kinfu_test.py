@@ -1,7 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
 """The node kinfu, asked by the stock clients of ROS 1. kinfu_test.py PROGRAM PYTHON_FOLDER"""
-import os
 import signal
 import sys
 import time
