@@ -22,7 +22,7 @@ package:  ## Debian packages of the program, the library and the Python module, 
 bench:  ## builds and runs the benchmarks
 	@scripts/bench.sh
 
-evidence: build  ## long acceptance runs, resumable; figures go to docs/evidence.md
+evidence: build  ## long acceptance runs, resumable; figures go to docs/results/evidence.md
 	@scripts/evidence.sh
 
 format:  ## lays out the code with clang-format

@@ -61,7 +61,7 @@ std::vector<PointCloud> recorded_clouds() {
   return clouds;
 }
 
-/// Of about as many points as that of thesis §4.2.3.
+/// Returns the cloud whose size is nearest to that of thesis §4.2.3.
 const PointCloud& cloud() {
   static const PointCloud chosen = [] {
     std::vector<PointCloud> clouds = recorded_clouds();
@@ -100,7 +100,7 @@ const PointCloud& ten_million_points() {
   return tiled;
 }
 
-/// Of this process, in MiB: a line of /proc/self/status; 0 where there is none.
+/// Returns a line of /proc/self/status in MiB; 0 where it is missing.
 double memory_mib(const std::string& line) {
   std::ifstream status{"/proc/self/status"};
   for (std::string word; status >> word;) {
@@ -253,7 +253,7 @@ void control_points_90_by_dijkstra(benchmark::State& state) {
   state.counters["reached"] = static_cast<double>(reached);
 }
 
-/// One of many other points becomes a control point beside those that there are, and is none again.
+/// Adds one of many other points as a control point to the existing ones, and removes it again.
 void change_one(benchmark::State& state, const std::shared_ptr<const Neighbourhood>& of, std::size_t there,
                 bool adding) {
   constexpr std::size_t kOthers{997};

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What helps annotators, on a labelled cloud (mOSD) and on one of ten million points: seeds from labels, margins, and
+// Guidance for annotators, on a labelled cloud (mOSD) and on one of ten million points: seeds from labels, margins, and
 // the next best click.
 #include <benchmark/benchmark.h>
 

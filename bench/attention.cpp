@@ -25,7 +25,7 @@ const std::vector<LabelledTrajectory>& hands() {
     std::vector<LabelledTrajectory> all = test::recorded_hands(test::shared_data()).all();
     if (!all.empty()) return all;
     for (std::uint64_t seed = 0; seed < kMadeUpTasks; ++seed) {
-      MadeUpTask task = made_up_task(seed, {.actions = 1 + static_cast<int>(seed % 2)});
+      SyntheticTask task = synthetic_task(seed, {.actions = 1 + static_cast<int>(seed % 2)});
       all.push_back({"made up", std::move(task.trajectory), std::move(task.actions_m)});
     }
     return all;
@@ -61,7 +61,7 @@ constexpr int kSteps{10};
 
 /// Ten steps of EM with eight Gaussians on a task of 8 s: vectors of samples, and the plain formulas.
 std::vector<Eigen::Vector4d> em_samples() {
-  return test::augmented_samples(made_up_task(1, {.actions = 4}).trajectory);
+  return test::augmented_samples(synthetic_task(1, {.actions = 4}).trajectory);
 }
 
 void em_steps(benchmark::State& state) {

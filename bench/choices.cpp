@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What choosing a view takes, all computing, in a whole run: the built-in arm, a table with eight objects, 5.8 mm, five
+// Cost of choosing a view, all computing, in a whole run: the built-in arm, a table with eight objects, 5.8 mm, five
 // views, noise on. A round is a run; its time is the mean choice. The number of threads must not change the views.
 #include <benchmark/benchmark.h>
 
@@ -19,10 +19,10 @@ using namespace saccade;
 constexpr std::array<Phase, 7> kChoosing{Phase::obstacles,    Phase::candidates, Phase::segmentation, Phase::saliency,
                                          Phase::reachability, Phase::gain,       Phase::planning};
 
-const Truth& truth() {
-  static const Truth made = [] {
+const GroundTruth& truth() {
+  static const GroundTruth made = [] {
     const RayScene rays = RayScene::build(find_scene("tabletop-2").value()).value();
-    return Truth::build(rays, 0.004, Executor::with_threads(0)).value();
+    return GroundTruth::build(rays, 0.004, Executor::with_threads(0)).value();
   }();
   return made;
 }

@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // color_agreement DIR TRAJECTORY [GAP]: which camera poses agree with the colour images, those of the folder or those
-// that tracking found (trajectory.txt of `saccade fuse`)? The tables of docs/tracking.md. Depth tracking does not look
-// at colours, so they are a witness of their own: points of one frame are put where the poses want them in the frame
-// GAP (30) later, and their surroundings are looked for around there. What is missing, in pixels, is the error of
+// that tracking found (trajectory.txt of `saccade fuse`)? The tables of docs/guides/tracking.md. Depth tracking does
+// not look at colours, so they are a witness of their own: points of one frame are put where the poses want them in the
+// frame GAP (30) later, and their surroundings are looked for around there. What is missing, in pixels, is the error of
 // poses, depths and of what is assumed of the colour camera; so that camera is varied. Exit status 77: DIR is not
 // there.
 
@@ -26,7 +26,7 @@ using namespace saccade;
 
 constexpr int kHalfPatch_px{6};
 constexpr int kReach_px{24};       ///< searched in each direction
-constexpr int kEvery_px{8};        ///< one point in so many columns and rows
+constexpr int kEvery_px{8};        ///< spacing of points in columns and rows
 constexpr std::size_t kEvery{20};  ///< pairs begin at every 20th frame
 constexpr float kLeastVariance{400.0F};
 constexpr float kLeastCorrelation{0.85F};
@@ -37,7 +37,7 @@ struct ColorCamera {
   double to_the_right_m;
 };
 
-/// What the colour camera may be: the depth camera, if depth is registered; else that of a Kinect v1, by nominal values
+/// Colour camera: the depth camera, if depth is registered; else that of a Kinect v1, by nominal values
 /// of 525 px and 25 mm, either way round, and some more.
 std::vector<ColorCamera> color_cameras(const PinholeCamera& depth) {
   std::vector<ColorCamera> cameras{{depth.fx, depth.fy, depth.cx, depth.cy, 0.0}};
@@ -180,7 +180,7 @@ Result<Sequence> read_sequence(const std::filesystem::path& folder, const std::f
   return sequence;
 }
 
-/// Of one pair of frames: displacements by the given poses, and by the tracked ones.
+/// Displacements of one pair of frames: by the given poses, and by the tracked ones.
 using PairOfFrames = std::array<std::vector<double>, 2>;
 
 std::vector<PairOfFrames> measure(const Sequence& sequence, const ColorCamera& color, std::size_t gap,

@@ -70,7 +70,7 @@ void after_view(benchmark::State& state) {
   state.counters["bricks"] = changed / static_cast<double>(state.iterations());
 }
 
-/// Of the whole map: contour points of its voxels, and their views.
+/// Measures contour points and their views for the voxels of the whole map.
 void points_and_views(benchmark::State& state) {
   const std::vector<ContourVoxel> voxels = contour_voxels(maps().back(), {}, {}).value();
   std::vector<ContourPoint> points;
@@ -103,7 +103,7 @@ const TsdfSnapshot& map_of_two_views() {
   return made;
 }
 
-/// What D_th costs and brings: contour points, and the best gain of their views.
+/// Cost and benefit of D_th: contour points, and the best gain of their views.
 void grouping(benchmark::State& state) {
   const TsdfSnapshot& map = map_of_two_views();
   ContourConfig config;

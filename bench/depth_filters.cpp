@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// depth_filters [CASES]: the tables of docs/depth-filter.md, or their first CASES lines: the bars of thesis Table 3.5
-// under filters, with sensors that are not as the filter takes them to be. DEPTH_FILTERS_OUT=DIR in the environment:
-// frames of both experiments and pictures of what becomes of them are written there. Exit status 1 where ours does not
-// halve the thesis' rate of good points among those removed, or lets more outliers through.
+// depth_filters [CASES]: the tables of docs/guides/depth-filter.md, or their first CASES lines: the bars of thesis
+// Table 3.5 under filters, with sensors that differ from the filter's assumptions. With DEPTH_FILTERS_OUT=DIR in the
+// environment, writes frames of both experiments and pictures of the filtered points there. Exit status 1 where ours
+// does not halve the thesis' rate of good points among those removed, or lets more outliers through.
 
 #include <algorithm>
 #include <array>
@@ -31,7 +31,7 @@ using namespace saccade;
 struct Case {
   const char* name;
   double emitter_m;
-  double filter_share;  ///< of emitter_m, is the filter's
+  double filter_share;  ///< the filter's distance, as a share of emitter_m
   EdgeModel edges{EdgeModel::mean_depth};
   double footprint_px{1.0};
   double shadow_sigma_m{0.1};
@@ -187,12 +187,12 @@ void print_baselines(const std::vector<Trial>& trials) {
   }
 }
 
-/// What became of the points of many images.
+/// Sums over the points of many images.
 struct Totals {
   std::size_t removed{0};
   std::size_t good_removed{0};
   std::size_t wrong_kept{0};
-  std::size_t off_kept{0};  ///< of those, farther than kPlaneDistance_m from the truth along z
+  std::size_t off_kept{0};  ///< among these, points farther than kPlaneDistance_m from the truth along z
 
   void add(const TimeOfFlightFrame& frame, const FilteredDepth& filtered) {
     for (std::size_t i = 0; i < frame.depth.size(); ++i) {

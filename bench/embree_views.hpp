@@ -15,9 +15,9 @@
 
 namespace saccade::bench {
 
-/// The gains of view poses as evaluate_views counts rays, by Embree 3 in single precision: the first face between an
-/// empty voxel and one that is not decides. The same rays, but rays through edges and corners of voxels may end in
-/// another voxel.
+/// Gains of view poses, with rays counted as evaluate_views does, by Embree 3 in single precision: the first face
+/// between an empty voxel and one that is not decides. Rays are equal, but rays through edges and corners of voxels may
+/// end in another voxel.
 class EmbreeViews {
  public:
   /// Collects the faces, one quad each, within a box of bricks around the cameras and the region, and builds the tree.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// hand_actions DATA [SEEDS]: the tables of docs/dip-detector.md as Markdown, from the recorded hands in DATA; 20 seeds
-// by default. Exit status 77 where there are no hands. Tables 2.2 to 2.4 of the thesis: saccade reproduce.
+// hand_actions DATA [SEEDS]: the tables of docs/design/dip-detector.md as Markdown, from the recorded hands in DATA; 20
+// seeds by default. Exit status 77 where there are no hands. Tables 2.2 to 2.4 of the thesis: saccade reproduce.
 
 #include <algorithm>
 #include <cstdio>
@@ -49,7 +49,7 @@ std::vector<Hand> read_hands(const std::filesystem::path& data) {
   return hands;
 }
 
-/// What a detector reports of a hand, the one that takes whole trajectories with the last sample.
+/// Reports of a detector about a hand; the one for whole trajectories reports at the last sample.
 using Detector = Reports (*)(const HandTrajectory&);
 
 Reports whole(const HandTrajectory& hand) {

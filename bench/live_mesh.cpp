@@ -46,7 +46,7 @@ bool same_mesh(const TriangleMesh& a, const TriangleMesh& b) {
   return a.vertices == b.vertices && a.normals == b.normals && a.colors == b.colors && a.triangles == b.triangles;
 }
 
-/// Whether following from one map to the next gives the mesh that is extracted anew, and there is one.
+/// Tells whether following from one map to the next gives the mesh that is extracted anew, and there is one.
 bool follows(const TsdfSnapshot& from, const TsdfSnapshot& to, const Executor& executor) {
   LiveMesh live;
   live.update(from, executor);

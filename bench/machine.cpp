@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this machine can do at most, by the widest vectors it has: the bounds that other figures are held against.
+// Peak rates of this machine with its widest vectors: the bounds for other measurements.
 // Argument: threads. bytes_per_second, items_per_second: of all threads together.
 #include <benchmark/benchmark.h>
 

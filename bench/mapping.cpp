@@ -108,8 +108,8 @@ void open3d_integrate(benchmark::State& state) {
   }
 }
 
-/// Whether two ray casts of the same view show the same surface, within the truncation: the peer's lies 4 mm farther in
-/// the median on the recorded frames, and nine tenths of the pixels within ±12 mm.
+/// Tells whether two ray casts of the same view show the same surface, within the truncation: the peer's lies 4 mm
+/// farther in the median on the recorded frames, and nine tenths of the pixels within ±12 mm.
 bool same_surface(const DepthImage& ours, const DepthImage& theirs) {
   std::size_t both{0};
   std::size_t near{0};

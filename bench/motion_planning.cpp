@@ -140,7 +140,8 @@ Figures plan_all() {
   return figures;
 }
 
-/// What OMPL's users write: a state space of the joints, FCL at states every hundredth of its extent, simplifySolution.
+/// Typical code of OMPL's users: a state space of the joints, FCL at states every hundredth of its extent,
+/// simplifySolution.
 Figures peer_plans_all() {
   namespace ob = ompl::base;
   namespace og = ompl::geometric;

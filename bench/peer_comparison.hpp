@@ -31,7 +31,7 @@ class CostClock {
   std::clock_t cpu_{std::clock()};
 };
 
-/// Of all that scores, the share that is counted differently, pose by pose; 1 where nothing scores.
+/// Returns the share of scoring rays that are counted differently, pose by pose; 1 where nothing scores.
 [[nodiscard]] inline double gain_difference(std::span<const std::uint64_t> gains,
                                             std::span<const std::uint64_t> expected) {
   SACCADE_EXPECTS(gains.size() == expected.size());

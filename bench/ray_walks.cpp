@@ -15,7 +15,7 @@ namespace {
 using namespace saccade;
 using thesis::RaySearch;
 
-constexpr std::size_t kPoses{16};         ///< of the 960; so few share hardly any ray
+constexpr std::size_t kPoses{16};         ///< sample of the 960 poses, small enough to share hardly any ray
 constexpr std::size_t kComparedPoses{4};  ///< all of their rays
 constexpr double kFixedStep_m{0.003};     ///< thesis §2.4.4
 

@@ -21,7 +21,7 @@ using namespace saccade;
 
 constexpr std::size_t kRegionsPerScene{5};
 constexpr double kRadius_m{0.2};
-constexpr int kEveryVoxel{37};  // of a brick, among which points of surfaces are drawn
+constexpr int kEveryVoxel{37};  // step between a brick's voxels among which surface points are drawn
 
 struct Case {
   Region region;

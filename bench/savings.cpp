@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each exact saving of view evaluation brings: none of them, each alone, one more after the other, all but one,
-// and all. Without tiles only some of the 960 poses are evaluated: whole camera centres with their eight rolls, spread
-// over the sphere. Every gain is compared with that of all savings.
+// Effect of each exact saving of view evaluation: none of them, each alone, one more after the other, all but
+// one, and all. Without tiles only some of the 960 poses are evaluated: whole camera centres with their eight rolls,
+// spread over the sphere. Every gain is compared with that of all savings.
 #include <benchmark/benchmark.h>
 
 #include <array>

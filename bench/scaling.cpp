@@ -109,7 +109,7 @@ const TsdfSnapshot& warm_map(double voxel_size_m) {
   return map;
 }
 
-/// What a row of the map runs on.
+/// Input of a row about the map.
 struct MapCase {
   double voxel_size_m;
   std::int64_t width;

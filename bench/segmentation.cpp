@@ -42,7 +42,7 @@ struct Row {
     std::printf("| %s | %.3f | %.3f | %.3f | %.3f | %.3f | %.0f | %.1f | %.2f |\n", who.c_str(), objects, whole_objects,
                 all, fos, fus, segments, supervoxels_ms, lccp_ms);
   }
-  /// What ours is held to.
+  /// Reference for ours.
   [[nodiscard]] bool is_no_worse_than(const Row& peer) const {
     constexpr double kSlack{0.005};
     return objects >= peer.objects - kSlack && whole_objects >= peer.whole_objects - kSlack && all >= peer.all;

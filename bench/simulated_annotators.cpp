@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What simulated annotators do between actions, on a labelled cloud (mOSD): rectangles, errors, and their centres.
+// Work of simulated annotators between actions, on a labelled cloud (mOSD): rectangles, errors, and their centres.
 #include <benchmark/benchmark.h>
 
 #include <algorithm>
@@ -19,7 +19,7 @@ struct Scene {
   std::vector<std::uint32_t> truth;
 };
 
-/// Of about as many points as those of thesis §4.2.3; a made one where there are no recorded ones.
+/// Returns a scene of about the size of those in thesis §4.2.3; a synthetic one where there are no recorded ones.
 const Scene& scene() {
   static const Scene chosen = [] {
     constexpr std::size_t kPoints{150'000};

@@ -20,7 +20,7 @@ using namespace saccade;
 constexpr int kMostViews{4};       // fused after the scan
 constexpr double kGroup_m{0.008};  // D_th
 constexpr double kLowest_m{0.1};   // no camera below the table, whose inside the workspace cuts open
-constexpr std::size_t kEvery{41};  // of the poses whose gains are all determined
+constexpr std::size_t kEvery{41};  // step between the poses whose gains are all computed
 constexpr unsigned kOneInReachable{10};
 
 struct Case {
@@ -41,7 +41,7 @@ std::vector<Pose> every_nth(const std::vector<Pose>& poses, std::size_t n) {
   return some;
 }
 
-/// What an arm reaches may be any of the poses.
+/// An arm may reach any of the poses.
 std::vector<Pose> reachable(const std::vector<Pose>& poses) {
   std::mt19937 random{1};
   std::vector<Pose> some;
@@ -59,7 +59,8 @@ Result<std::vector<Pose>> candidates(const TsdfSnapshot& map, const Executor& ex
   return poses;
 }
 
-/// The table after its scan, and after 1 … kMostViews of the best of every so many candidates.
+/// Returns maps of the table after its scan, and after 1 … kMostViews of the best views among every kEvery-th
+/// candidate.
 Result<std::vector<Case>> make_cases() {
   const Executor executor = Executor::with_threads(0);
   SACCADE_TRY(Scene scene, find_scene("tabletop-2"));

@@ -11,6 +11,11 @@ foreach(room IN LISTS SACCADE_PACKAGE_ROOMS)
   string(APPEND SACCADE_PACKAGE_TABLE "set(_saccade_rooms_of_${room} \"${rooms}\")\n"
                                       "set(_saccade_packages_of_${room} \"${packages}\")\n")
 endforeach()
+get_property(left_out GLOBAL PROPERTY SACCADE_ROOMS_LEFT_OUT)
+foreach(room IN LISTS left_out)
+  get_property(lacks GLOBAL PROPERTY SACCADE_ROOM_${room}_LACKS)
+  string(APPEND SACCADE_PACKAGE_TABLE "set(_saccade_lacks_of_${room} \"${lacks}\")\n")
+endforeach()
 
 configure_package_config_file(${CMAKE_CURRENT_LIST_DIR}/saccadeConfig.cmake.in
   ${PROJECT_BINARY_DIR}/package/saccadeConfig.cmake INSTALL_DESTINATION ${destination})

@@ -7,7 +7,7 @@ install(FILES packaging/saccade-mime.xml DESTINATION ${CMAKE_INSTALL_DATADIR}/mi
 install(FILES web/dist/assets/icon.svg DESTINATION ${CMAKE_INSTALL_DATADIR}/icons/hicolor/scalable/apps RENAME saccade.svg)
 set(documentation ${CMAKE_INSTALL_DATADIR}/doc/saccade)
 install(FILES README.md CITATION.cff DESTINATION ${documentation})
-install(DIRECTORY docs/ DESTINATION ${documentation}/docs PATTERN reference EXCLUDE)
+install(DIRECTORY docs/ DESTINATION ${documentation}/docs PATTERN api.txt EXCLUDE)
 file(GLOB device_programs ${PROJECT_SOURCE_DIR}/devices/*.py)
 install(FILES ${device_programs} DESTINATION ${documentation}/examples/devices)
 install(DIRECTORY examples/cell robots scenes DESTINATION ${documentation}/examples PATTERN README.md EXCLUDE)

@@ -2,9 +2,9 @@
 # saccade_room(NAME …): one folder of lib/saccade = one library target saccade::NAME = one component of the package.
 # saccade_require_rooms(WHO ROOMS…): stops the configuration, naming what is missing, when WHO cannot do without ROOMS.
 
-# Flags of all of Saccade's own code: bit-equal results need FMA contraction off. Nobody reads errno or floating-point
-# traps here; without them loops with square roots and selections become vector code, and every value stays the same.
-# On x86-64, SSE4.2 and POPCNT are expected (processors since 2009); kernels choose wider vectors at run time.
+# Flags of all of Saccade's own code: bit-equal results need FMA contraction off. No code here reads errno or
+# floating-point traps; without them loops with square roots and selections become vector code, and every value stays
+# equal. On x86-64, SSE4.2 and POPCNT are expected (processors since 2009); kernels choose wider vectors at run time.
 string(REGEX MATCH "^(x86_64|AMD64|amd64)$" SACCADE_X86_64 "${CMAKE_SYSTEM_PROCESSOR}")
 add_library(saccade_flags INTERFACE)
 target_compile_features(saccade_flags INTERFACE cxx_std_20)
@@ -98,6 +98,7 @@ function(saccade_room name)
     list(JOIN missing ", " missing)
     message(STATUS "Saccade: room ${name} is left out, for lack of: ${missing}")
     set_property(GLOBAL PROPERTY SACCADE_ROOM_${name}_LACKS "${missing}")
+    set_property(GLOBAL APPEND PROPERTY SACCADE_ROOMS_LEFT_OUT ${name})
     return()
   endif()
 
@@ -111,6 +112,9 @@ function(saccade_room name)
   endforeach()
   add_library(saccade::${name} ALIAS ${target})
   set_target_properties(${target} PROPERTIES EXPORT_NAME ${name} POSITION_INDEPENDENT_CODE ON)
+  if(NOT PROJECT_IS_TOP_LEVEL AND NOT SACCADE_INSTALL)  # a subproject compiles only what a program links
+    set_target_properties(${target} PROPERTIES EXCLUDE_FROM_ALL ON)
+  endif()
   target_include_directories(${target} PUBLIC
     $<BUILD_INTERFACE:${PROJECT_SOURCE_DIR}/lib> $<INSTALL_INTERFACE:${CMAKE_INSTALL_INCLUDEDIR}>)
   target_compile_features(${target} PUBLIC cxx_std_20)

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// reading_of: options of a device's program that say how an arm's description is read, as those of saccade.
+// reading_of: options of a device's program for reading an arm's description, named as in saccade.
 
 #include <algorithm>
 #include <string>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ArmState: where the joints of a simulated arm truly are, in a file that the programs of one cell share.
+// ArmState: the true joint positions of a simulated arm, in a file shared by the programs of one cell.
 
 #include <fcntl.h>
 #include <sys/mman.h>
@@ -14,7 +14,7 @@
 
 namespace saccade::devices {
 
-/// One writer, any number of readers; a reader never sees half a write.
+/// One writer, any number of readers; a reader never sees a partial write.
 class ArmState {
  public:
   explicit ArmState(const std::string& path) {
@@ -30,12 +30,12 @@ class ArmState {
   ~ArmState() { ::munmap(record_, sizeof(Record)); }
 
   void write(const std::vector<double>& q) {
-    record_->writes.fetch_add(1);  // odd: under way
+    record_->writes.fetch_add(1);  // odd: write in progress
     record_->joints.store(q.size());
     for (std::size_t i = 0; i < q.size(); ++i) record_->q[i].store(q[i]);
     record_->writes.fetch_add(1);
   }
-  /// Empty before the first write.
+  /// Returns the positions; empty before the first write.
   [[nodiscard]] std::vector<double> read() const {
     for (;;) {
       const std::size_t before = record_->writes.load();

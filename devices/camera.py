@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A camera for Saccade (docs/processes.md). It sees a ball on a plane; put your own camera in its place.
+"""A camera for Saccade (docs/guides/processes.md). It sees a ball on a plane; put your own camera in its place.
 
 To make it yours: open the camera before the loop, say what it is in HELLO, and take a frame in capture()."""
 import array

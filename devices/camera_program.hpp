@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The program of a camera (docs/processes.md): DeviceCamera, which a device implements; run_camera, which answers for
-// it.
+// Program of a camera (docs/guides/processes.md): DeviceCamera, which a device implements. run_camera, which answers
+// requests with it.
 
 #include <functional>
 #include <memory>
@@ -10,14 +10,14 @@
 
 namespace saccade::devices {
 
-/// A frame as it is answered.
+/// Frame in the form of an answer.
 struct Shot {
-  std::string bytes;                               ///< depth row by row, and after all of it colour
-  std::optional<nlohmann::json> T_world_camera{};  ///< where the camera is, if it knows
+  std::string bytes;                               ///< depth row by row, followed by all colour
+  std::optional<nlohmann::json> T_world_camera{};  ///< pose of the camera, if it knows it
   std::optional<double> time_s{};
 };
 
-/// Its functions throw what is wrong, in words for the user.
+/// Camera of a device. Its functions throw error texts for the user.
 class DeviceCamera {
  public:
   DeviceCamera() = default;
@@ -25,13 +25,13 @@ class DeviceCamera {
   DeviceCamera& operator=(const DeviceCamera&) = delete;
   virtual ~DeviceCamera() = default;
 
-  /// The keys of the answer to hello, without "saccade".
+  /// Returns the keys of the answer to hello, without "saccade".
   [[nodiscard]] virtual nlohmann::json hello() const = 0;
-  /// A frame that shows what is seen after the call.
+  /// Captures a frame taken after the call.
   [[nodiscard]] virtual Shot capture(const nlohmann::json& T_world_camera) = 0;
-  /// Returns how long requests are waited for before the next idle().
+  /// Returns how long to wait for requests before the next idle().
   [[nodiscard]] virtual std::chrono::milliseconds patience() const { return std::chrono::milliseconds{200}; }
-  /// Called again and again while there is no request. What goes wrong here must be told by the next capture.
+  /// Called repeatedly while there is no request. The next capture must report errors that occur here.
   virtual void idle() {}
 };
 
@@ -50,8 +50,8 @@ inline nlohmann::json camera_hello(int width, int height, double fx, double fy, 
           {"color", color}};
 }
 
-/// Answers requests until Saccade is done. The camera is opened when it is greeted, so that what is wrong with it can
-/// be told. Returns the exit status.
+/// Answers requests until Saccade is done. Opens the camera at hello, so that errors can be reported. Returns the exit
+/// status.
 inline int run_camera(const std::function<std::unique_ptr<DeviceCamera>()>& open) {
   keep_output_for_answers();
   LineInput input;

@@ -23,10 +23,10 @@ using namespace saccade;
 using devices::Options;
 using devices::Shot;
 
-constexpr double kFarthest_m{0.5};  // Saccade takes no frame from farther away
+constexpr double kFarthest_m{0.5};  // Saccade rejects frames from farther away
 constexpr double kMetresPerRadian{0.5};
 
-/// Returns the value, or throws what is wrong.
+/// Returns the value, or throws its error.
 template <class T>
 T wanted(Result<T> result) {
   if (!result) throw std::runtime_error{result.error().to_string()};

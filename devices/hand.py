@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The tracker of a hand for Saccade (docs/processes.md). It plays a recording in its own time; put your own tracker in.
+"""The tracker of a hand for Saccade (docs/guides/processes.md). It plays a recording in its own time; put your own tracker in.
 
 The recording is a text file with a line per sample: seconds, x, y, z in metres; other columns and lines are passed over.
 To make it yours: connect to the tracker before the loop, and wait for its next reading in next_sample(). An optional

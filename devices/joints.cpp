@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joints of an arm for Saccade (docs/processes.md), in C++. They do exactly what they are told; put your own arm
-// in.
+// The joints of an arm for Saccade (docs/guides/processes.md), in C++. They do exactly what they are told; put your own
+// arm in.
 //
 //   saccade-joints-example [RATE]
 //
@@ -23,7 +23,7 @@ std::vector<double> position() { return q; }
 
 void set_position(const std::vector<double>& wanted) { q = wanted; }
 
-/// Joint positions of a trajectory, straight between its points.
+/// Returns the joint positions of a trajectory, linear between its points.
 std::vector<double> state_at(const json& points, double t_s) {
   std::size_t i = 1;
   while (i + 1 < points.size() && points[i].at("t_s").get<double>() < t_s) ++i;

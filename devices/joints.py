@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""The joints of an arm for Saccade (docs/processes.md). They do exactly what they are told; put your own arm in.
+"""The joints of an arm for Saccade (docs/guides/processes.md). They do exactly what they are told; put your own arm in.
 
 To make it yours: connect to the arm before the loop, read its joints in position(), and send it a set point in
 set_position(), or the whole list of points where your controller takes trajectories. An optional argument is how much

@@ -32,9 +32,9 @@ constexpr const char* kNoKinect{
 constexpr double kLongest_s{3.0};
 constexpr double kNominalColorFocal_px{525.0};
 
-/// Depth or colour, as it comes.
+/// Depth or colour stream.
 struct Stream {
-  int awaited{0};  ///< this many frames from now is the one that is wanted
+  int awaited{0};  ///< number of frames until the wanted one
   std::string bytes;
   double time_s{0.0};
 
@@ -85,7 +85,7 @@ class Kinect1 final : public DeviceCamera {
     return {depth_.bytes + (has_color() ? color_.bytes : ""), {}, depth_.time_s};
   }
 
-  /// The device sends all the time; what is not taken from it would be handed out later.
+  /// Takes frames while idle: the device sends all the time, and untaken frames would be delivered later.
   void idle() override {
     if (!lost_) handle_events();
   }
@@ -114,7 +114,7 @@ class Kinect1 final : public DeviceCamera {
     }
   }
 
-  /// Asks what there is, rather than for what is wanted: fakenect aborts when it is asked for what it has not.
+  /// Lists the available modes instead of requesting one: fakenect aborts on a request for a missing mode.
   [[nodiscard]] freenect_frame_mode depth_mode(const std::string& wanted) {
     const std::array<std::pair<const char*, freenect_depth_format>, 3> formats{
         {{"registered", FREENECT_DEPTH_REGISTERED}, {"mm", FREENECT_DEPTH_MM}, {"raw", FREENECT_DEPTH_11BIT}}};

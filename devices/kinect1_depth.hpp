@@ -1,24 +1,24 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a Kinect v1 knows of its own geometry: ZeroPlane (from raw depth to millimetres, focal length of its infrared
-// camera) and focal_of_color_px, that of the colour camera.
+// Geometry that a Kinect v1 stores: ZeroPlane (raw depth to millimetres, focal length of its infrared camera) and
+// focal_of_color_px, for the colour camera.
 
 #include <cmath>
 #include <cstdint>
 
 namespace saccade::devices {
 
-/// The plane that the projected pattern was recorded on, in the device's memory. The values here are the nominal ones.
+/// Reference plane of the projected pattern, from the device's memory. The values here are the nominal ones.
 struct ZeroPlane {
   double base_cm{7.5};        ///< from the projector to the infrared camera
   double distance_cm{120.0};  ///< from the infrared camera to that plane
-  double pixel_cm{0.1042};    ///< what a pixel of the infrared sensor (1280 wide) covers on the plane
-  double shift{200.0};        ///< what the device adds to the shift of the pattern, pixels
+  double pixel_cm{0.1042};    ///< size of an infrared pixel (sensor 1280 wide) on the plane
+  double shift{200.0};        ///< offset that the device adds to the shift of the pattern, pixels
 
-  /// Focal length of the 640 x 480 depth image.
+  /// Returns the focal length of the 640 x 480 depth image.
   [[nodiscard]] double focal_px() const { return distance_cm / (2.0 * pixel_cm); }
 
-  /// From the 11 bits that the device sends, quarters of a pixel, by triangulation; 0: nothing seen.
+  /// Converts the device's 11 bits, quarters of a pixel, by triangulation; 0: nothing seen.
   [[nodiscard]] std::uint16_t millimetres(std::uint16_t raw) const {
     if (raw >= 2047) return 0;
     const double moved_cm = pixel_cm * ((raw - 4.0 * shift) / 4.0 - 0.375);
@@ -30,9 +30,9 @@ struct ZeroPlane {
 constexpr int kKinectWidth{640};
 constexpr int kKinectHeight{480};
 
-/// Focal length of the colour image, which registered depth has, too: registration spreads rows of the depth image by
-/// the ratio of the two. Its table has a column and a row of the colour image for each pixel of depth; only rows are
-/// used, in the middle of the picture, where distortion is small.
+/// Returns the focal length of the colour image, which registered depth shares: registration scales rows of the depth
+/// image by the ratio of the two. Its table has a column and a row of the colour image for each pixel of depth. Only
+/// rows in the middle of the image are used, where distortion is small.
 inline double focal_of_color_px(double depth_focal_px, const std::int32_t (*table)[2]) {
   double spread = 0.0;
   int rows = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// PipedMessage, next_message: messages that Saccade writes into a program which publishes them (docs/processes.md,
-// Publishers). PublisherEnd: how long such a program lasts. C++17, as libraries of some programs need.
+// PipedMessage, next_message: messages that Saccade writes to a publishing program (docs/guides/processes.md,
+// Publishers). PublisherEnd: how long such a program runs. C++17, as libraries of some programs need.
 
 #include <poll.h>
 #include <unistd.h>
@@ -33,8 +33,8 @@ struct PipedMessage {
 constexpr std::uint32_t kMostHeadBytes{65536};
 constexpr std::size_t kMostMessageBytes{std::size_t{1} << 30};
 
-/// Reads all of it from standard input, or returns false at the end of the input. Calls idle() every second while
-/// nothing comes.
+/// Reads exactly `size` bytes from standard input, or returns false at the end of the input. Calls idle() every second
+/// while nothing comes.
 inline bool read_input(void* to, std::size_t size, const std::function<void()>& idle) {
   for (std::size_t done = 0; done < size;) {
     pollfd input{STDIN_FILENO, POLLIN, 0};
@@ -50,7 +50,7 @@ inline bool read_input(void* to, std::size_t size, const std::function<void()>& 
   return true;
 }
 
-/// Waits for the next message; nullopt: the input has ended. Throws what is wrong with it.
+/// Waits for the next message; nullopt at the end of the input. Throws an error text.
 inline std::optional<PipedMessage> next_message(const std::function<void()>& idle = {}) {
   std::array<unsigned char, 4> length{};
   if (!read_input(length.data(), length.size(), idle)) return std::nullopt;
@@ -74,7 +74,7 @@ inline std::optional<PipedMessage> next_message(const std::function<void()>& idl
   return message;
 }
 
-/// The end of a program that publishes: it waits for subscribers that are still finding the topics, or reading.
+/// End of a publishing program: waits for subscribers that are still finding the topics, or reading.
 class PublisherEnd {
  public:
   /// To be told of each message.

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a device's program says and hears: LineInput, say, keep_output_for_answers; Options of its command line. C++17,
+// Input and output of a device's program: LineInput, say, keep_output_for_answers; Options of its command line. C++17,
 // which libraries of some devices need.
 
 #include <fcntl.h>

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// A camera for Saccade (docs/processes.md), in C++ with nothing but the standard library. It sees a ball on a plane, in
-// depth and colour; put your own camera in its place.
+// A camera for Saccade (docs/guides/processes.md), in C++ with nothing but the standard library. It sees a ball on a
+// plane, in depth and colour; put your own camera in its place.
 //
 // To make it yours: open the camera at the start of main, say what it is in kHello, and take a frame in capture().
 #include <array>

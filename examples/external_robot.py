@@ -1,6 +1,6 @@
 #!/usr/bin/env python3
 # SPDX-License-Identifier: Apache-2.0
-"""A robot for Saccade (docs/processes.md). It reaches a box; put your own arm in its place.
+"""A robot for Saccade (docs/guides/processes.md). It reaches a box; put your own arm in its place.
 
 To make it yours: connect to the arm before the loop, and in move() bring the camera to the pose and read where it is."""
 import json

@@ -30,7 +30,7 @@ int main() {
   config.camera = config.camera.scaled_to_width(160);
   config.exploration.max_views = 3;
 
-  const auto truth = Truth::build(*RayScene::build(random_clutter(5, 4)), 0.006, executor);
+  const auto truth = GroundTruth::build(*RayScene::build(random_clutter(5, 4)), 0.006, executor);
   WholeWorkspace attention;
   SphereViews views;
   RaysPerMetre gain{{config.camera}, {0.0, -0.8, 0.8}};

@@ -91,7 +91,7 @@ def bill(stage, package, version, epoch, build):
             packages.append(found)
         relations.append((own["SPDXID"], kind, found["SPDXID"]))
 
-    folders = {"saccade": ("apps/cli", "apps/server", "devices", "lib", "bench/thesis"), "libsaccade-dev": ("lib",),
+    folders = {"saccade": ("apps/cli", "apps/reproduce", "apps/server", "devices", "lib", "bench/thesis"), "libsaccade-dev": ("lib",),
                "python3-saccade": ("apps/python", "lib"), "saccade-ros1": ("apps/ros1", "lib"),
                "saccade-ros2": ("apps/ros2", "lib")}[package]
     for kind, names in (("DYNAMIC_LINK", linked_packages(stage)), ("GENERATED_FROM", compiled_packages(build, folders))):

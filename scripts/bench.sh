@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# Builds and runs the benchmarks beside their peers, writes docs/performance.md and its plots, and holds the ratios to
+# Builds and runs the benchmarks beside their peers, writes docs/results/performance.md and its plots, and holds the ratios to
 # bench/floors.json. Results stay in out/bench.
 # Usage: scripts/bench.sh [options of Google Benchmark], for example --benchmark_filter=icp (then nothing is written)
 # SACCADE_BENCH_RESUME=1: programs that were measured since they were built are not measured again.
@@ -40,6 +40,6 @@ for program in build/release/bench/bench_*; do
   fi
 done
 if (($# == 0)); then
-  /usr/bin/python3 -B scripts/performance_table.py "$out" docs/performance.md
+  /usr/bin/python3 -B scripts/performance_table.py "$out" docs/results/performance.md
   /usr/bin/python3 -B scripts/check_floors.py "$out"
 fi

@@ -9,4 +9,4 @@ source scripts/common.sh
 if [[ ! -f build/release/build.ninja ]]; then
   configure release -DSACCADE_BUILD_TESTS=OFF
 fi
-compile release apps/cli/all
+compile release apps/cli/all apps/reproduce/all

@@ -3,7 +3,7 @@
 """Computes the figures of an exploration a second time, from its exported files alone, and compares.
 
 RUN is the folder of `saccade explore` (run.json, mesh.ply, ternary.npy), EXPORT that of `saccade scene export` for the
-same scene. Everything is done the slow and plain way, from the definitions in docs/metrics.md. Both figures are printed
+same scene. Everything is done the slow and plain way, from the definitions in docs/reference/metrics.md. Both figures are printed
 side by side. Exit status: 0 when all agree, 1 when one does not, 2 when the files do not belong together."""
 import argparse
 import json
@@ -149,7 +149,7 @@ def in_box(p, box):
 
 
 def spread_points(triangles, spacing_m, box):
-    """The points of the mesh that count; docs/metrics.md says where they lie."""
+    """The points of the mesh that count; docs/reference/metrics.md says where they lie."""
     points, owed, n = [], 0.5, 0
     ab, ac = triangles[:, 1] - triangles[:, 0], triangles[:, 2] - triangles[:, 0]
     normal = np.cross(ab, ac)
@@ -181,7 +181,7 @@ def random_points(triangles, count, box):
 
 
 def inside(points, body):
-    """Whether points lie in a closed body: upwards they leave it through more triangles than they enter it by."""
+    """Tells whether points lie in a closed body: upwards they leave it through more triangles than they enter it by."""
     result = np.zeros(len(points), dtype=bool)
     low, high = body.min(axis=1), body.max(axis=1)
     candidates = np.flatnonzero(np.all((points >= low.min(axis=0)) & (points <= high.max(axis=0)), axis=1))
@@ -232,7 +232,7 @@ def share(d, limit):
 
 
 class Truth:
-    """What `saccade scene export` wrote."""
+    """Files written by `saccade scene export`."""
 
     def __init__(self, export):
         self.scene = json.loads((export / "scene.json").read_text())

@@ -1,7 +1,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Sourced by the other scripts, in the root of the repository.
 
-# What one checkout compiled, another takes from the cache: paths below the root count as relative ones. CMake's
+# One checkout takes results of another from the cache: paths below the root count as relative ones. CMake's
 # -ffile-prefix-map (SaccadeRoom.cmake) keeps the root out of the objects, so that they are the same ones, too.
 if [[ -z ${CMAKE_CXX_COMPILER_LAUNCHER:-} ]] && command -v ccache >/dev/null; then
   export CMAKE_CXX_COMPILER_LAUNCHER=ccache

@@ -1,7 +1,7 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
 # Long acceptance runs. Every step leaves its result in out/evidence, so an interrupted run continues where it stopped;
-# rm -r out/evidence starts afresh. The figures, with their commands, go to docs/evidence.md.
+# rm -r out/evidence starts afresh. The figures, with their commands, go to docs/results/evidence.md.
 # SACCADE_DATA: recorded sequences (../shared/data). SACCADE_FUZZ_MINUTES: per fuzz target (10).
 set -uo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -77,7 +77,10 @@ if [[ -d $data/hand_polhemus ]]; then
 else
   echo "  without Tables 2.2 to 2.6, $data/hand_polhemus is not there"
 fi
-step reproduce build/release/saccade --quiet reproduce 2.1 "${tables[@]}" --out "$out/figures" --json "$out/reproduce.json"
+step reproduce build/release/saccade --quiet reproduce 2.1 2.12 2.21 3.23 3.24 "${tables[@]}" --out "$out/figures" --force \
+  --json "$out/reproduce.json"
+step reproduce_views build/release/saccade --quiet reproduce 2.16 2.17 2.18 2.19 2.20 3.16 3.18 3.19 3.20 3.21 3.22 4.20 4.21 \
+  --out "$out/figures_of_views" --force --json "$out/reproduce_views.json"
 
 echo "Explorations: ten seeds, noise on"
 scenes="$(build/release/saccade scene list --json - | /usr/bin/python3 -c 'import json, sys; print(",".join(s["name"] for s in json.load(sys.stdin)["result"]["scenes"] if not s["name"].endswith("-before")))')"
@@ -91,8 +94,8 @@ step attention build/release/saccade --quiet compare --scenes tabletop-1,tableto
 step attention_clutter build/release/saccade --quiet compare --scenes clutter:101-130 --strategies attention,standard,sphere,oracle \
   --robot comau --seeds 1 --max-views 5 --out "$out/attention_clutter" --json "$out/attention_clutter.json"
 
-echo "The planner beside the oracle, baselines and sphere; figures go to docs/planner.md"
-step planner scripts/evidence_planner.py build/release/saccade "$out/planner" docs/planner.md
+echo "The planner beside the oracle, baselines and sphere; figures go to docs/results/planner.md"
+step planner scripts/evidence_planner.py build/release/saccade "$out/planner" docs/results/planner.md
 
 echo "Updates after a user's task: ten seeds, noise on"
 for scene in bottle jug; do
@@ -198,9 +201,10 @@ else
   echo "  ros1_node: skipped, saccade-ros1 is not built (scripts/install_packages.sh ros)"
 fi
 step python_costs env PYTHONPATH=build/release/python /usr/bin/python3 scripts/evidence_python.py
+step python_sanitized scripts/python_sanitized.sh
 step packages_made scripts/package.sh &&
   step packages_clean_root env SACCADE_CLEAN_ROOT=1 tests/package/debs.sh . build/release/packages "$out/debs"
 
-/usr/bin/python3 scripts/evidence_table.py "$out" docs/evidence.md || failed=1
-echo "The figures are in docs/evidence.md"
+/usr/bin/python3 scripts/evidence_table.py "$out" docs/results/evidence.md || failed=1
+echo "The figures are in docs/results/evidence.md"
 exit "$failed"

@@ -258,8 +258,8 @@ def main():
             if (folder / name / "runs.csv").exists()}
     lines = ["# The planner, measured", "",
              "Written by `make evidence` (`scripts/evidence_planner.py`). One seed a scene, the noise of a Kinect v1; means "
-             "over scenes. Nothing was chosen by the scenes clutter:201-230. [Metrics](metrics.md), "
-             "[strategies](exploration.md), [gains of other authors](baselines.md).", ""]
+             "over scenes. Nothing was chosen by the scenes clutter:201-230. [Metrics](../reference/metrics.md), "
+             "[strategies](../guides/exploration.md), [gains of other authors](../design/baselines.md).", ""]
     missed = 0
     for name, figures in done.items():
         held = hold(name, figures, done)

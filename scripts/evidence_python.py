@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""What Python costs: a 640 x 480 frame from NumPy beside the same in C++, and a gain over 2,880 candidates beside its body.
+"""Cost of Python: a 640 x 480 frame from NumPy beside the same in C++, and a gain over 2,880 candidates beside its body.
 
 evidence_python.py      PYTHONPATH names the built module; exit status 1: a frame
 that lies in one piece costs more than 0.2 ms, or the gain more than 5 %"""

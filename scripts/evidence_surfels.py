@@ -1,12 +1,12 @@
 # SPDX-License-Identifier: Apache-2.0
-"""Figures of surfels and how well they are segmented, of docs/evidence.md: thesis §4.1.3."""
+"""Figures of surfels and how well they are segmented, of docs/results/evidence.md: thesis §4.1.3."""
 import json
 
 SCENES = ("workshop-1", "workshop-2", "desk", "magazines-1", "magazines-2")
 SEEDS = ((1, "surfels_"), (2, "surfels_seed_2_"))  # and what the steps' names begin with
 SHARPNESS_TEXT = [
     "How steeply luminance rises where the camera's image has edges, in renderings of the averages and of the modes",
-    "(docs/surfels.md). The step fails unless modes are half as steep again, in every frame a third, and cover as much."]
+    "(docs/guides/surfels.md). The step fails unless modes are half as steep again, in every frame a third, and cover as much."]
 GROWTH_TEXT = [
     "The step fails where surfels become more than a hundredth more after the first tenth of the frames, or memory more",
     "at all."]
@@ -31,10 +31,10 @@ def section(folder, lines, command_of):
         return True
     lines += ["## Surfels, segmented", ""]
     lines += [f"`{command_of(folder, steps[trial])}`\n" for trial in trials]
-    lines += ["Rendered scenes with noise, not enhanced → enhanced by the mode filter (docs/surfel-segmentation.md). Held to: better in "
+    lines += ["Rendered scenes with noise, not enhanced → enhanced by the mode filter (docs/guides/surfel-segmentation.md). Held to: better in "
               "every figure. In brackets that of true colours: each surfel not enhanced, but in the one colour of the thing that it is "
               "on. Where that is worse than not enhanced, the figure rewards blur. Times are with whatever else the machine did; "
-              "alone: docs/performance.md.", "", "| scene | seed | frames | surfels | ms per frame | algorithm | "
+              "alone: docs/results/performance.md.", "", "| scene | seed | frames | surfels | ms per frame | algorithm | "
               + " | ".join(f"{title} | better" for _, title, _ in FIGURES) + " |",
               "|---|---|---|---|---|---|" + "---|---|" * len(FIGURES)]
     held = True
@@ -62,7 +62,7 @@ def gain_section(folder, lines, command_of):
         return True
     lines += ["## Surfels with automatic gain", ""]
     lines += [f"`{command_of(folder, f'surfels_gain_{scene}')}`\n" for scene in scenes]
-    lines += ["Enhanced by the mode filter, without gain, with it, and with exposure compensation (docs/surfel-exposure.md). Held to: "
+    lines += ["Enhanced by the mode filter, without gain, with it, and with exposure compensation (docs/guides/surfel-exposure.md). Held to: "
               "half of every loss is won back, or more.", "",
               "| scene | frames | algorithm | figure | gain off | on | on, compensated | loss won back | held |",
               "|---|---|---|---|---|---|---|---|---|"]

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/evidence.md from what scripts/evidence.sh left: evidence_table.py RESULTS DOCUMENT."""
+"""Writes docs/results/evidence.md from what scripts/evidence.sh left: evidence_table.py RESULTS DOCUMENT."""
 import json
 import pathlib
 import platform
@@ -10,7 +10,7 @@ import sys
 
 import evidence_surfels
 
-# What the figures are held to, per step: (name in the JSON result, limit, "at most" or "at least", unit, factor).
+# Limits of the measures, per step: (name in the JSON result, limit, "at most" or "at least", unit, factor).
 LIMITS = {
     "fuse_rgbd_redkitchen_forced": [("depth_residual_m.median", 0.008, "at most"),
                                     ("depth_residual_m.share", 0.9, "at least")],
@@ -76,7 +76,7 @@ def color_section(folder, lines):
     if (folder / "color_agreement.done").exists():
         lines += ["## Poses beside colour images", "", f"`{command_of(folder, 'color_agreement')}`", "",
                   "How far points of a frame lie from where poses and depths put them in the image 30 frames later, median; what it",
-                  "says is in [tracking](tracking.md).", "", path.read_text().rstrip(), ""]
+                  "says is in [tracking](../guides/tracking.md).", "", path.read_text().rstrip(), ""]
 
 
 def nbv_section(folder, lines):
@@ -94,9 +94,10 @@ def nbv_section(folder, lines):
 
 
 def reproduce_section(folder, lines):
-    log = folder / "reproduce.log"
-    if (folder / "reproduce.done").exists():
-        lines += ["## Tables of the thesis", "", f"`{command_of(folder, 'reproduce')}`", "", log.read_text().rstrip(), ""]
+    for step, title in (("reproduce", "Tables of the thesis"), ("reproduce_views", "Figures of the thesis, view by view")):
+        if (folder / f"{step}.done").exists():
+            log = (folder / f"{step}.log").read_text().rstrip()
+            lines += [f"## {title}", "", f"`{command_of(folder, step)}`", "", log, ""]
 
 
 def compare_section(folder, lines):
@@ -160,15 +161,15 @@ def attention_section(folder, lines):
     result = json.loads(path.read_text())["result"]
     lines += ["## Attention beside others", "", f"`{command_of(folder, 'attention')}`", "",
               "Mean and 95 % confidence interval. *Object-directed*: a quarter of what a view made known lies at objects; *axis at "
-              "object*: the optical axis meets one ([metrics](metrics.md)).", ""]
+              "object*: the optical axis meets one ([metrics](../reference/metrics.md)).", ""]
     scenes = [s for s in result["summaries"] if s["scene"] is not None]
     attention_rows(scenes, lines)
     of = {(s["scene"], s["strategy"]): s for s in scenes}
     apart = {(g["scene"], g["b"]): g["unknown_near_objects_at_5"] for g in result["gaps"] if g["a"] == "attention"}
     lines += ["Held to, scene by scene: 70 % of attention's first five views point towards the objects, as Table 3.3 of the thesis "
-              "marks them (by the axis; by what became known, which is stricter, beside it); fewer unknown voxels near the objects "
+              "marks them (by the axis; by newly known voxels, which is stricter, beside it); fewer unknown voxels near the objects "
               "than standard, the intervals apart (the difference seed by seed beside it); 85 % of the oracle's area.", "",
-              "| scene | views at objects, % | by what became known | fewer unknown than standard | difference by seed | "
+              "| scene | views at objects, % | by newly known voxels | fewer unknown than standard | difference by seed | "
               "share of the oracle's area, % |",
               "|---|---|---|---|---|---|"]
     held = True
@@ -286,7 +287,7 @@ def annotation_section(folder, lines):
         lines += [f"`{command_of(folder, 'annotation_' + method)}`", ""]
     lines += [f"Simulated annotators on {clicks['mean']['clouds']} labelled clouds (mOSD); means over these. Control points are placed "
               "at the centre of the largest error, rectangles are drawn around it, in the best of six views, on the surface or "
-              "through it. The best rectangles are, of all that there are, those that correct most; nobody finds them. Held to: "
+              "through it. The best rectangles are those that correct most of all possible ones; users do not find them. Held to: "
               "mean IoU at least 0.90 at three clicks per label, the mean never more than 0.01 below what it was, rectangles worse "
               "with as many actions.", "",
               "| actions per label | control points: mean IoU | wrong of 100,000 | rectangles: mean IoU | wrong of 100,000 | worse | "
@@ -317,7 +318,7 @@ def annotation_section(folder, lines):
               "more than it ought to is corrected by those after it.",
               f"- The thesis' user study: 26.5 control points for four objects and the background, 5.3 per label; 797 of 100,000 "
               f"points wrong, 2354 with rectangles. Here after five per label: {curve[4]['errors_per_100k']:.0f} and "
-              f"{rectangles['mean']['per_label'][4]['errors_per_100k']:.0f}. Other clouds, and nobody's hand: "
+              f"{rectangles['mean']['per_label'][4]['errors_per_100k']:.0f}. Other clouds, and no person: "
               "`saccade reproduce 4.5 4.6` says what compares.", ""]
     return three >= 0.9 and fall <= 0.01 and worse
 
@@ -349,7 +350,7 @@ def fuzz_section(folder, lines):
 
 def main():
     folder, document = pathlib.Path(sys.argv[1]), pathlib.Path(sys.argv[2])
-    lines = ["# Evidence", "", "Written by `make evidence`; what the figures mean is in [metrics](metrics.md). "
+    lines = ["# Evidence", "", "Written by `make evidence`; what the figures mean is in [metrics](../reference/metrics.md). "
              f"Machine: {processor()}.", ""]
     held = fuse_section(folder, lines)
     color_section(folder, lines)
@@ -372,7 +373,7 @@ def main():
     fuzz_section(folder, lines)
     document.write_text("\n".join(lines))
     if not held:
-        print("some figures are not held, see docs/evidence.md", file=sys.stderr)
+        print("some figures are not held, see docs/results/evidence.md", file=sys.stderr)
     sys.exit(0 if held else 1)
 
 

@@ -2,6 +2,7 @@
 # SPDX-License-Identifier: Apache-2.0
 # Builds and runs every fuzz target of build/asan-ubsan for a bounded time on a copy of its seeds: scripts/fuzz.sh [SECONDS [TARGET…]]
 # A crash, leak, hang or undefined behaviour fails, and the input that shows it stays under out/fuzz/TARGET.
+# SACCADE_FUZZ_FAILED names a file for a line per target that failed.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
 source scripts/common.sh
@@ -45,6 +46,9 @@ report() {
     cp "$work/$target.log" "out/fuzz/$target/log.txt"
     tail -n 40 "$work/$target.log"
     echo "  $target FAILED after ${executions:-0} inputs; to see it again: build/asan-ubsan/tests/fuzz/$target $(sed -n 's/.*Test unit written to //p' "$work/$target.log" | tail -n 1)"
+    if [[ -n ${SACCADE_FUZZ_FAILED:-} ]]; then
+      echo "$target, $(grep -m 1 -E '^SUMMARY|ERROR: ' "$work/$target.log" || echo "status $(cat "$work/$target.rc")")" >>"$SACCADE_FUZZ_FAILED"
+    fi
     failed=$((failed + 1))
   fi
 }

@@ -17,7 +17,7 @@ if [[ ! -f $build/build.ninja ]]; then
   configure release -DSACCADE_BUILD_TESTS=OFF
 fi
 targets=(lib/saccade/all devices/all)
-for app in cli python ros1 ros2; do targets+=("apps/$app/all"); done
+for app in cli reproduce python ros1 ros2; do targets+=("apps/$app/all"); done
 compile release "${targets[@]}"
 
 rm -rf "$build/packages"

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Writes docs/performance.md and its plots from what scripts/bench.sh left: performance_table.py RESULTS DOCUMENT."""
+"""Writes docs/results/performance.md and its plots from what scripts/bench.sh left: performance_table.py RESULTS DOCUMENT."""
 import json
 import os
 import pathlib
@@ -12,14 +12,14 @@ from performance import bounds, peers, phases, savings, scaling
 from performance.results import Results
 
 PROGRAM = "build/release/saccade"
-NOTES = pathlib.Path(__file__).parents[1] / "bench/notes.md"  # what other machines and other hours gave
-USUAL_REPETITIONS = 7  # of scripts/bench.sh
+NOTES = pathlib.Path(__file__).parents[1] / "bench/notes.md"  # results of other machines and other hours
+USUAL_REPETITIONS = 7  # default of scripts/bench.sh
 PACKAGES = [("libbenchmark-dev", "Google Benchmark"), ("libembree-dev", "Embree"), ("libopen3d-dev", "Open3D"),
             ("libopencv-contrib-dev", "OpenCV"), ("libpcl-dev", "PCL")]
 
 
 def version(package):
-    """Of a Debian package; None: not installed."""
+    """Returns the version of a Debian package; None: not installed."""
     asked = subprocess.run(["dpkg-query", "-W", "-f", "${Version}", package], capture_output=True, text=True, check=False)
     return asked.stdout if asked.returncode == 0 and asked.stdout else None
 
@@ -34,7 +34,7 @@ def system():
 
 
 def generation():
-    """Of the processor, which virtual machines leave out of its name."""
+    """Returns the family and model of the processor, which virtual machines omit from its name."""
     about = pathlib.Path("/proc/cpuinfo")
     family = re.search(r"^cpu family\s*: (\d+)\nmodel\s*: (\d+)$", about.read_text() if about.exists() else "", re.MULTILINE)
     return f" (family {family[1]}, model {family[2]})" if family else ""
@@ -59,7 +59,7 @@ def main(folder, document):
     results = Results(folder)
     if not results.times:
         sys.exit(f"{folder} holds no results: run make bench")
-    images = document.parent / "images"
+    images = document.parent.parent / "images"
     repetitions = max(len(times) for times in results.times.values())
     beside_peers, held = peers.section(results)
     lines = ["# Performance", "",

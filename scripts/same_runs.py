@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Whether two versions of the program choose the same views and make the same maps.
+"""Tells whether two versions of the program choose the same views and make the same maps.
 
     scripts/same_runs.py run PROGRAM FILE [--set small|full] [--threads N] [--only TEXT]
     scripts/same_runs.py compare FILE FILE
@@ -22,7 +22,7 @@ STRATEGIES = ["attention", "standard", "sphere", "random", "random-contours", "o
 SCENES = ["tabletop-1", "tabletop-2", "tabletop-3", "tabletop-4", "clutter:1", "clutter:2", "clutter:3", "clutter:4"]
 COARSE = ["--voxel-size", "0.012", "--gain-width", "80"]
 VIEWS = ["--max-views", "3"]
-# What two runs of one program differ in.
+# Keys in which two runs of one program differ.
 TIMES = {"ms", "phases_s", "timings_ms", "out", "campaign", "seconds", "finished_at", "program_version"}
 
 

@@ -50,7 +50,7 @@ phase_tsan() {
 }
 
 build_fuzz() { :; }  # its targets are of the preset asan-ubsan
-phase_fuzz() { scripts/fuzz.sh "${SACCADE_FUZZ_SECONDS:-5}"; }
+phase_fuzz() { SACCADE_FUZZ_FAILED="$results/fuzz-failed.txt" scripts/fuzz.sh "${SACCADE_FUZZ_SECONDS:-5}"; }
 
 build_tidy() { :; }
 phase_tidy() { scripts/tidy.sh; }
@@ -84,8 +84,10 @@ run_phase() {
 }
 
 scripts/install_packages.sh program tests || exit 1
-/usr/bin/python3 -B scripts/machine_speed.py >"$results/machine_speed.txt"
-for name in $phases; do run_phase "$name"; done
+for name in $phases; do
+  /usr/bin/python3 -B scripts/machine_speed.py >>"$results/machine_speed.txt"
+  run_phase "$name"
+done
 /usr/bin/python3 -B scripts/machine_speed.py >>"$results/machine_speed.txt"
 echo
 /usr/bin/python3 -B scripts/test_summary.py "$results" tests/budget.json

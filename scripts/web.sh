@@ -1,6 +1,6 @@
 #!/bin/bash
 # SPDX-License-Identifier: Apache-2.0
-# The page of annotate and show: scripts/web.sh build   makes web/dist anew from web/src
+# The pages of annotate, show and reports: scripts/web.sh build   makes web/dist anew from web/src
 #                                scripts/web.sh check   types, and whether web/dist is what web/src gives, byte by byte
 #                                scripts/web.sh test    the browser tests, with build/release/saccade and Chromium; what they leave is in out/test
 # Building the program needs none of this: web/dist is part of the repository (docs/decisions/0015-web-bundle.md).
@@ -33,6 +33,7 @@ case "$what" in
   build)
     npx tsc --noEmit
     npx vite build --logLevel warn
+    npx vite build --logLevel warn -c vite.report.config.ts
     ;;
   check)
     npx tsc --noEmit
@@ -40,6 +41,7 @@ case "$what" in
     fresh="$(mktemp -d)"
     trap 'rm -rf "$fresh"' EXIT
     npx vite build --logLevel warn --outDir "$fresh" --emptyOutDir
+    npx vite build --logLevel warn -c vite.report.config.ts --outDir "$fresh"
     diff -rq dist "$fresh" || {
       echo "web: web/dist is not what web/src gives; run scripts/web.sh build and commit web/dist" >&2
       exit 1

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-# What AddressSanitizer runs of the command line: each command once, and what is wrong with its input. The rest of
+# Command line tests for AddressSanitizer: each command once, and errors in its input. The rest of
 # tests/cli goes through the same code, which the unit and property tests cover under the sanitizers.
 set(smoke_tests
   Annotate.AFewClicksLabelAScene

@@ -3,7 +3,7 @@
 // others are through, alone; with --no-deps without them.
 import { defineConfig } from "@playwright/test";
 
-const large = process.env["SACCADE_LARGE"] === "1" ? [] : ["**/large.spec.ts"];
+const large = process.env["SACCADE_LARGE"] === "1" ? [] : ["**/large*.spec.ts"];
 const measuring = "**/*performance.spec.ts";
 
 export default defineConfig({

@@ -3,15 +3,10 @@
 // or a simulated annotator.
 #include "annotate.hpp"
 
-#include <CLI/CLI.hpp>
 #include <memory>
 #include <set>
 
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "options.hpp"
-#include "saccade/core/clock.hpp"
+#include "context.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
 
 namespace saccade::cli {
@@ -31,10 +26,10 @@ Result<PlannedActions> planned_actions(const AnnotateOptions& options) {
   return actions;
 }
 
-/// What became of one cloud after the other.
+/// The clouds that were done, one after the other.
 template <class T>
 struct Run {
-  std::vector<OfCloud<T>> clouds;
+  std::vector<CloudProgress<T>> clouds;
   bool interrupted{false};
 };
 
@@ -44,6 +39,7 @@ Result<Run<T>> run_jobs(std::span<const CloudJob> jobs, AnnotateProgress& progre
   Run<T> run;
   for (const CloudJob& job : jobs) {
     run.interrupted = run.interrupted || interrupted();
+    if (run.interrupted && run.clouds.empty()) return Error{Errc::cancelled, "interrupted", {}};
     if (run.interrupted) break;
     progress.clouds(run.clouds.size(), jobs.size());
     progress.stage("reading");
@@ -62,28 +58,28 @@ Result<Run<T>> run_jobs(std::span<const CloudJob> jobs, AnnotateProgress& progre
 template <class T, class Json>
 json clouds_json(const Run<T>& run, const Json& to_json) {
   json clouds = json::array();
-  for (const OfCloud<T>& cloud : run.clouds) {
+  for (const CloudProgress<T>& cloud : run.clouds) {
     clouds.push_back(to_json(cloud.made));
     clouds.back()["file"] = cloud.file.string();
   }
   return clouds;
 }
 
-/// The end of a run: its result, and the exit status.
-Result<int> finish(const GlobalOptions& global, const Executor& executor, const Stopwatch& clock, json result,
-                   bool was_interrupted, const std::string& kept) {
-  result["interrupted"] = was_interrupted;
-  SACCADE_CHECK(write_result("annotate", global, executor, {{"total", clock.elapsed_ms()}}, std::move(result)));
-  if (!was_interrupted) return static_cast<int>(ExitStatus::done);
-  print_error("annotate", "interrupted; " + kept);
-  return interrupt_status();
+std::string clouds_done(std::size_t done, std::size_t all) {
+  return std::to_string(done) + " of " + std::to_string(all) + " clouds were done";
 }
 
-Result<int> run_simulations(const AnnotateOptions& options, std::span<const CloudJob> jobs,
-                            const GlobalOptions& global) {
-  const Stopwatch clock;
-  const Executor executor = global.executor();
-  AnnotateProgress progress{global.quiet, options.of_folder()};
+/// Says how a run ended. `kept` tells what an interrupted one has kept.
+Outcome ended(json result, std::string text, bool was_interrupted, const std::string& kept) {
+  result["interrupted"] = was_interrupted;
+  return {.result = std::move(result),
+          .text = std::move(text),
+          .cut_short = was_interrupted ? "interrupted; " + kept : std::string{}};
+}
+
+Result<Outcome> run_simulations(const AnnotateOptions& options, std::span<const CloudJob> jobs, Context& context) {
+  const Executor& executor = context.executor();
+  AnnotateProgress progress{context.bar(), options.of_folder()};
   const auto simulate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<SimulatedAnnotation> {
     SACCADE_TRY(const std::vector<std::uint32_t> truth, read_truth(options, job, cloud.points, progress));
     SACCADE_TRY(SimulatedAnnotation made, simulate_annotation(options, job, cloud.points, truth, executor, progress));
@@ -91,22 +87,19 @@ Result<int> run_simulations(const AnnotateOptions& options, std::span<const Clou
     return made;
   };
   SACCADE_TRY(const Run<SimulatedAnnotation> run, run_jobs<SimulatedAnnotation>(jobs, progress, simulate));
-  progress.finish();
+  const std::string kept = clouds_done(run.clouds.size(), jobs.size());
+  if (!options.of_folder()) {
+    const SimulatedAnnotation& made = run.clouds.front().made;
+    return ended(simulation_json(options, made), simulation_text(options, made), run.interrupted, kept);
+  }
   const auto to_json = [&](const SimulatedAnnotation& made) { return simulation_json(options, made); };
-  json result = options.of_folder()
-                    ? json{{"clouds", clouds_json(run, to_json)}, {"mean", mean_json(options, run.clouds)}}
-                    : to_json(run.clouds.front().made);
-  if (!global.json_to_stdout() && options.of_folder()) print_simulations(options, run.clouds);
-  if (!global.json_to_stdout() && !options.of_folder()) print_simulation(options, run.clouds.front().made);
-  return finish(global, executor, clock, std::move(result), run.interrupted,
-                std::to_string(run.clouds.size()) + " of " + std::to_string(jobs.size()) + " clouds were done");
+  return ended({{"clouds", clouds_json(run, to_json)}, {"mean", mean_json(options, run.clouds)}},
+               simulations_text(options, run.clouds), run.interrupted, kept);
 }
 
-Result<int> run_annotations(const AnnotateOptions& options, std::span<const CloudJob> jobs,
-                            const GlobalOptions& global) {
-  const Stopwatch clock;
-  const Executor executor = global.executor();
-  AnnotateProgress progress{global.quiet, options.of_folder()};
+Result<Outcome> run_annotations(const AnnotateOptions& options, std::span<const CloudJob> jobs, Context& context) {
+  const Executor& executor = context.executor();
+  AnnotateProgress progress{context.bar(), options.of_folder()};
   SACCADE_TRY(const PlannedActions actions, planned_actions(options));
   bool cut_short{false};
   const auto annotate = [&](const CloudJob& job, const LoadedCloud& cloud) -> Result<AnnotatedCloud> {
@@ -119,27 +112,48 @@ Result<int> run_annotations(const AnnotateOptions& options, std::span<const Clou
     return made;
   };
   SACCADE_TRY(const Run<AnnotatedCloud> run, run_jobs<AnnotatedCloud>(jobs, progress, annotate));
-  progress.finish();
-  json result = options.of_folder()
-                    ? json{{"clouds", clouds_json(run, annotation_json)}, {"mean", mean_json(run.clouds)}}
-                    : annotation_json(run.clouds.front().made);
-  if (!global.json_to_stdout() && options.of_folder()) print_annotations(run.clouds);
-  if (!global.json_to_stdout() && !options.of_folder()) print_annotation(options, run.clouds.front().made);
-  const std::string kept =
-      options.of_folder()
-          ? std::to_string(run.clouds.size()) + " of " + std::to_string(jobs.size()) + " clouds were done"
-          : std::to_string(run.clouds.front().made.action_ms.size()) + " of " + std::to_string(actions.script.size()) +
-                " actions were done" + (options.session.empty() ? "" : " and are in the session") +
-                "; no other file was written";
-  return finish(global, executor, clock, std::move(result), run.interrupted || cut_short, kept);
+  if (options.of_folder()) {
+    return ended({{"clouds", clouds_json(run, annotation_json)}, {"mean", mean_json(run.clouds)}},
+                 annotations_text(run.clouds), run.interrupted || cut_short,
+                 clouds_done(run.clouds.size(), jobs.size()));
+  }
+  const AnnotatedCloud& made = run.clouds.front().made;
+  return ended(annotation_json(made), annotation_text(options, made), run.interrupted || cut_short,
+               std::to_string(made.action_ms.size()) + " of " + std::to_string(actions.script.size()) +
+                   " actions were done" + (options.session.empty() ? "" : " and are in the session") +
+                   "; no other file was written");
 }
 
-Result<int> run_annotate(const AnnotateOptions& options, const GlobalOptions& global) {
-  if (options.opens_page()) return serve_annotation(options, global);
-  SACCADE_TRY(const std::vector<CloudJob> jobs, plan_jobs(options));
-  SACCADE_CHECK(check_outputs(options, jobs, global));
-  return options.truth.empty() ? run_annotations(options, jobs, global) : run_simulations(options, jobs, global);
-}
+class Annotate final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"annotate",
+            "labels of a point cloud from a few control points: opens a page in the browser to place them; or a "
+            "script, labels or a simulated annotator do"};
+  }
+  void declare(Options& options) override { add_annotate_options(options.group(), annotate_); }
+  void check(const GlobalOptions& /*global*/) override { check_annotate_options(annotate_); }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    if (annotate_.opens_page()) return open_page(context);
+    SACCADE_TRY(const std::vector<CloudJob> jobs, plan_jobs(annotate_));
+    SACCADE_CHECK(check_outputs(annotate_, jobs, context.global()));
+    return annotate_.truth.empty() ? run_annotations(annotate_, jobs, context)
+                                   : run_simulations(annotate_, jobs, context);
+  }
+
+ private:
+  [[nodiscard]] Result<Outcome> open_page(Context& context) {
+    SACCADE_TRY(page_, AnnotatePage::open(annotate_, context.global()));
+    return Outcome{.result = page_->result(), .afterwards = [this] {
+                     page_->serve();
+                     page_.reset();
+                   }};
+  }
+
+  AnnotateOptions annotate_;
+  std::unique_ptr<AnnotatePage> page_;
+};
 
 }  // namespace
 
@@ -163,21 +177,11 @@ Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> j
     SACCADE_CHECK(check(job.files.picture, "--picture"));
     SACCADE_CHECK(check(job.files.margins, "--margins"));
   }
-  SACCADE_CHECK(check(global.json_to_stdout() ? "" : global.json, "--json"));
-  return check_json_output(global);
+  return check(global.json_to_stdout() ? "" : global.json, "--json");
 }
 
 void add_annotate(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("annotate",
-                                             "labels of a point cloud from a few control points: opens a page in the "
-                                             "browser to place them; or a script, labels "
-                                             "or a simulated annotator do");
-  auto options = std::make_shared<AnnotateOptions>();
-  add_annotate_options(*command, *options);
-  command->callback([&global, &action, options] {
-    check_annotate_options(*options);
-    action = [&global, options] { return run_annotate(*options, global); };
-  });
+  add_command<Annotate>(program, global, action);
 }
 
 }  // namespace saccade::cli

@@ -1,10 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `saccade annotate` is made of.
+// AnnotateOptions and the parts of `saccade annotate`: its jobs, a simulated annotator, sessions and scripts, the page.
 
 #include <cstdint>
 #include <filesystem>
 #include <functional>
+#include <memory>
 #include <nlohmann/json.hpp>
 #include <optional>
 #include <set>
@@ -49,11 +50,11 @@ struct AnnotateOptions {
   std::filesystem::path script;
   std::filesystem::path session;
   std::filesystem::path presets;
-  std::uint64_t client{0};      ///< of actions in the script that name none
+  std::uint64_t client{0};      ///< does the actions in the script that name no client
   std::filesystem::path seeds;  ///< labels to begin with
-  double seed_share{0.99};      ///< of them that control points give back
+  double seed_share{0.99};      ///< share of the seeds that control points give back
   std::filesystem::path out;    ///< labels
-  std::filesystem::path names;  ///< of labels
+  std::filesystem::path names;  ///< names of labels
   std::filesystem::path picture;
   std::filesystem::path margins;  ///< the cloud with how sure the label of each point is
   NeighbourhoodConfig graph;
@@ -66,10 +67,10 @@ struct AnnotateOptions {
   [[nodiscard]] bool opens_page() const;
 };
 
-/// Of one cloud what is being done to it; of several how many are done. Every note once.
+/// Shows the work on one cloud, or the number of clouds of a folder that are done. Says every note once.
 class AnnotateProgress {
  public:
-  AnnotateProgress(bool quiet, bool of_folder) : bar_{quiet}, of_folder_{of_folder} {}
+  AnnotateProgress(ProgressBar& bar, bool of_folder) : bar_{bar}, of_folder_{of_folder} {}
   void stage(std::string_view name, std::size_t done = 0, std::size_t total = 0) {
     if (!of_folder_) bar_.update(name, done, total);
   }
@@ -79,10 +80,9 @@ class AnnotateProgress {
   void note(const std::string& line) {
     if (noted_.insert(line).second) bar_.note(line);
   }
-  void finish() { bar_.finish(); }
 
  private:
-  ProgressBar bar_;
+  ProgressBar& bar_;
   bool of_folder_;
   std::set<std::string> noted_;
 };
@@ -112,8 +112,19 @@ void check_annotate_options(const AnnotateOptions& options);
 [[nodiscard]] Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> jobs,
                                    const GlobalOptions& global);
 
-/// Serves the page until Ctrl-C.
-[[nodiscard]] Result<int> serve_annotation(const AnnotateOptions& options, const GlobalOptions& global);
+/// The page in which a person annotates.
+class AnnotatePage {
+ public:
+  /// Listens, and prepares the cloud, unless there are several. Errors: those of plan_jobs, check_outputs, listen() and
+  /// of the cloud with its session; invalid_argument where labels would replace those of another program.
+  [[nodiscard]] static Result<std::unique_ptr<AnnotatePage>> open(const AnnotateOptions& options,
+                                                                  const GlobalOptions& global);
+  virtual ~AnnotatePage() = default;
+  /// Returns where sessions and labels go.
+  [[nodiscard]] virtual nlohmann::json result() const = 0;
+  /// Serves until Ctrl-C.
+  virtual void serve() = 0;
+};
 
 /// Where a simulated annotation is after one action.
 struct AnnotationStep {
@@ -135,7 +146,7 @@ struct SimulatedAnnotation {
 
   /// Clicks until the mean IoU was at least this; none: never.
   [[nodiscard]] std::optional<std::size_t> clicks_to(double iou_mean) const;
-  /// After so many clicks per label, or the last one where nothing was wrong any more.
+  /// Returns the state after a number of clicks per label, or after the last click where nothing was wrong any more.
   [[nodiscard]] AnnotationStep after(std::size_t clicks_per_label) const;
 };
 
@@ -148,23 +159,23 @@ struct SimulatedAnnotation {
                                                               const std::vector<std::uint32_t>& truth,
                                                               const Executor& executor, AnnotateProgress& progress);
 
-/// What control points give back of labels.
+/// Labels that control points give back.
 struct SeedOutcome {
   std::size_t points{0};  ///< with a label
   std::size_t reproduced{0};
   std::size_t control_points{0};
 };
 
-/// What a session, a script or both made of a cloud.
+/// A cloud as a session, a script or both have labelled it.
 struct AnnotatedCloud {
   std::size_t points{0};  ///< that are finite
   LabelledPoints labels;
   std::uint64_t actions{0};  ///< since the annotation began
   std::optional<SeedOutcome> seeds;
   std::optional<BestClick> next;    ///< where margins are asked for
-  Eigen::Vector3f next_m{0, 0, 0};  ///< its place
+  Eigen::Vector3d next_m{0, 0, 0};  ///< its place
   double graph_ms{0.0};
-  std::vector<double> action_ms;  ///< of this run
+  std::vector<double> action_ms;  ///< time of each action of this run
   bool interrupted{false};
 
   [[nodiscard]] double labelled_share() const;
@@ -182,24 +193,26 @@ struct PlannedActions {
 [[nodiscard]] Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const CloudJob& job,
                                                     const PlannedActions& actions, const LoadedCloud& cloud,
                                                     const Executor& executor, AnnotateProgress& progress);
-/// Of a cloud on which nothing was done.
+/// Returns a cloud on which nothing was done.
 [[nodiscard]] AnnotatedCloud untouched(const LoadedCloud& cloud);
 
 /// A cloud of a folder with what was made of it.
 template <class T>
-struct OfCloud {
+struct CloudProgress {
   std::filesystem::path file;
   T made;
 };
 
 [[nodiscard]] nlohmann::json simulation_json(const AnnotateOptions& options, const SimulatedAnnotation& annotation);
 [[nodiscard]] nlohmann::json mean_json(const AnnotateOptions& options,
-                                       std::span<const OfCloud<SimulatedAnnotation>> clouds);
+                                       std::span<const CloudProgress<SimulatedAnnotation>> clouds);
 [[nodiscard]] nlohmann::json annotation_json(const AnnotatedCloud& cloud);
-[[nodiscard]] nlohmann::json mean_json(std::span<const OfCloud<AnnotatedCloud>> clouds);
-void print_simulation(const AnnotateOptions& options, const SimulatedAnnotation& annotation);
-void print_simulations(const AnnotateOptions& options, std::span<const OfCloud<SimulatedAnnotation>> clouds);
-void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& cloud);
-void print_annotations(std::span<const OfCloud<AnnotatedCloud>> clouds);
+[[nodiscard]] nlohmann::json mean_json(std::span<const CloudProgress<AnnotatedCloud>> clouds);
+/// Summaries for people: of one cloud, and a table of several.
+[[nodiscard]] std::string simulation_text(const AnnotateOptions& options, const SimulatedAnnotation& annotation);
+[[nodiscard]] std::string simulations_text(const AnnotateOptions& options,
+                                           std::span<const CloudProgress<SimulatedAnnotation>> clouds);
+[[nodiscard]] std::string annotation_text(const AnnotateOptions& options, const AnnotatedCloud& cloud);
+[[nodiscard]] std::string annotations_text(std::span<const CloudProgress<AnnotatedCloud>> clouds);
 
 }  // namespace saccade::cli

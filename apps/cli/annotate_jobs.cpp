@@ -87,7 +87,7 @@ Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options) {
   SACCADE_CHECK(check_stems(clouds));
   for (const fs::path& folder : {options.truth, options.session, options.seeds}) {
     if (folder.empty() || is_folder(folder)) continue;
-    return Error{Errc::not_found, "is no folder, as it must be for a folder of clouds", folder.string()};
+    return Error{Errc::not_found, "is not a folder, as it must be for a folder of clouds", folder.string()};
   }
   std::vector<CloudJob> jobs;
   for (const fs::path& cloud : clouds) {

@@ -60,7 +60,7 @@ constexpr const char* kGraph{"The graph (of a session that is begun)"};
 
 void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option& simulate) {
   CLI::Option* script = add_value(command, "--script", options.script, "FILE",
-                                  "actions to do, one JSON object per line (docs/annotation.md)")
+                                  "actions to do, one JSON object per line (docs/guides/annotation.md)")
                             ->check(CLI::ExistingFile)
                             ->group(kWithoutPage)
                             ->excludes(&simulate);
@@ -68,7 +68,8 @@ void add_action_options(CLI::App& command, AnnotateOptions& options, CLI::Option
             "goes on with the annotation in this file, or begins it; every action is in it before it counts. Of a "
             "folder: a folder of them (.sacann). The page's is beside the cloud, unless it is named here")
       ->excludes(&simulate);
-  add_value(command, "--presets", options.presets, "FILE", "labels that are known: YAML or JSON (docs/formats.md)")
+  add_value(command, "--presets", options.presets, "FILE",
+            "labels that are known: YAML or JSON (docs/reference/formats.md)")
       ->check(CLI::ExistingFile)
       ->excludes(&simulate);
   add_value(command, "--margins", options.margins, "FILE",

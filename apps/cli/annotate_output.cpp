@@ -1,8 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include <algorithm>
 #include <iomanip>
-#include <iostream>
-#include <set>
+#include <span>
+#include <sstream>
 
 #include "annotate.hpp"
 #include "json_output.hpp"
@@ -37,7 +37,7 @@ struct GoalMean {
   std::size_t reached{0};
 };
 
-GoalMean mean_to(std::span<const OfCloud<SimulatedAnnotation>> clouds, int goal_percent) {
+GoalMean mean_to(std::span<const CloudProgress<SimulatedAnnotation>> clouds, int goal_percent) {
   GoalMean mean;
   for (const auto& cloud : clouds) {
     const std::optional<std::size_t> needed = cloud.made.clicks_to(0.01 * goal_percent);
@@ -57,7 +57,7 @@ struct StepMean {
   double errors_per_100k{0.0};
 };
 
-StepMean mean_after(std::span<const OfCloud<SimulatedAnnotation>> clouds, std::size_t clicks_per_label) {
+StepMean mean_after(std::span<const CloudProgress<SimulatedAnnotation>> clouds, std::size_t clicks_per_label) {
   StepMean mean;
   for (const auto& cloud : clouds) {
     const AnnotationStep step = cloud.made.after(clicks_per_label);
@@ -125,7 +125,7 @@ json simulation_json(const AnnotateOptions& options, const SimulatedAnnotation& 
   return result;
 }
 
-json mean_json(const AnnotateOptions& options, std::span<const OfCloud<SimulatedAnnotation>> clouds) {
+json mean_json(const AnnotateOptions& options, std::span<const CloudProgress<SimulatedAnnotation>> clouds) {
   json per_label = json::array();
   for (int n = 1; n <= options.clicks; ++n) {
     const StepMean mean = mean_after(clouds, static_cast<std::size_t>(n));
@@ -159,9 +159,7 @@ json annotation_json(const AnnotatedCloud& cloud) {
                   {"max", action_ms.empty() ? 0.0 : *std::max_element(action_ms.begin(), action_ms.end())}}}}}};
   if (cloud.next) {
     json& next = result["next_best_click"];
-    next = {{"point", cloud.next->point},
-            {"position_m", point_json(cloud.next_m.cast<double>())},
-            {"settles", cloud.next->gain}};
+    next = {{"point", cloud.next->point}, {"position_m", point_json(cloud.next_m)}, {"settles", cloud.next->gain}};
     if (cloud.next->label != kNoLabel) next["label"] = cloud.next->label;
   }
   if (cloud.seeds) {
@@ -172,7 +170,7 @@ json annotation_json(const AnnotatedCloud& cloud) {
   return result;
 }
 
-json mean_json(std::span<const OfCloud<AnnotatedCloud>> clouds) {
+json mean_json(std::span<const CloudProgress<AnnotatedCloud>> clouds) {
   double share{0.0};
   std::uint64_t actions{0};
   std::size_t begun{0};
@@ -184,8 +182,9 @@ json mean_json(std::span<const OfCloud<AnnotatedCloud>> clouds) {
   return {{"clouds", clouds.size()}, {"begun", begun}, {"labelled_share", share}, {"actions", actions}};
 }
 
-void print_simulation(const AnnotateOptions& options, const SimulatedAnnotation& annotation) {
-  const Summary summary{std::cout};
+std::string simulation_text(const AnnotateOptions& options, const SimulatedAnnotation& annotation) {
+  std::ostringstream text;
+  const Summary summary{text};
   const std::string action = action_of(options);
   summary.line("points", std::to_string(annotation.points) + " in " + std::to_string(annotation.objects) + " labels");
   for (std::size_t n = annotation.objects; n <= annotation.clicks.size(); n += annotation.objects) {
@@ -195,31 +194,33 @@ void print_simulation(const AnnotateOptions& options, const SimulatedAnnotation&
     summary.line(std::to_string(annotation.clicks.size()) + " " + action,
                  text_of(annotation.clicks.back(), annotation.points));
   }
-  if (options.method != AnnotationMethod::control_points) return;
+  if (options.method != AnnotationMethod::control_points) return text.str();
   summary.line("graph", fixed(annotation.graph_ms, 1) + " ms");
   summary.line("add, delete",
                fixed(median(annotation.add_ms), 2) + " ms, " + fixed(median(annotation.delete_ms), 2) + " ms (median)");
+  return text.str();
 }
 
-void print_simulations(const AnnotateOptions& options, std::span<const OfCloud<SimulatedAnnotation>> clouds) {
+std::string simulations_text(const AnnotateOptions& options,
+                             std::span<const CloudProgress<SimulatedAnnotation>> clouds) {
+  std::ostringstream text;
   const auto width = static_cast<int>(widest_name(clouds));
-  std::cout << std::left << std::setw(width) << "cloud" << std::right << std::setw(10) << "points" << std::setw(8)
-            << "labels"
-            << "  mean IoU after 1 to " << options.clicks << ' ' << action_of(options) << " per label\n";
+  text << std::left << std::setw(width) << "cloud" << std::right << std::setw(10) << "points" << std::setw(8)
+       << "labels"
+       << "  mean IoU after 1 to " << options.clicks << ' ' << action_of(options) << " per label\n";
   const auto row = [&](const std::string& name, const std::string& points, const std::string& labels,
                        const auto& iou_after) {
-    std::cout << std::left << std::setw(width) << name << std::right << std::setw(10) << points << std::setw(8)
-              << labels;
-    for (int n = 1; n <= options.clicks; ++n) std::cout << "  " << fixed(iou_after(static_cast<std::size_t>(n)), 3);
-    std::cout << '\n';
+    text << std::left << std::setw(width) << name << std::right << std::setw(10) << points << std::setw(8) << labels;
+    for (int n = 1; n <= options.clicks; ++n) text << "  " << fixed(iou_after(static_cast<std::size_t>(n)), 3);
+    text << '\n';
   };
   for (const auto& cloud : clouds) {
     row(cloud.file.filename().string(), std::to_string(cloud.made.points), std::to_string(cloud.made.objects),
         [&](std::size_t n) { return cloud.made.after(n).iou_mean; });
   }
   row("mean", "", "", [&](std::size_t n) { return mean_after(clouds, n).iou_mean; });
-  const Summary summary{std::cout};
-  std::cout << '\n';
+  const Summary summary{text};
+  text << '\n';
   for (const int goal : kGoals_percent) {
     const GoalMean mean = mean_to(clouds, goal);
     const std::size_t never = clouds.size() - mean.reached;
@@ -231,15 +232,17 @@ void print_simulations(const AnnotateOptions& options, std::span<const OfCloud<S
   }
   const StepMean last = mean_after(clouds, static_cast<std::size_t>(options.clicks));
   summary.line("wrong", fixed(last.errors_per_100k, 0) + " of 100000 points at the end");
+  return text.str();
 }
 
-void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& cloud) {
-  const Summary summary{std::cout};
+std::string annotation_text(const AnnotateOptions& options, const AnnotatedCloud& cloud) {
+  std::ostringstream text;
+  const Summary summary{text};
   const std::size_t labelled = cloud.labels.labelled();
   summary.line("points", std::to_string(cloud.points));
   summary.line("labelled", std::to_string(labelled) + " (" + percent(cloud.labelled_share()) + ")");
   if (cloud.next) {
-    const Eigen::Vector3f& p = cloud.next_m;
+    const Eigen::Vector3d& p = cloud.next_m;
     summary.line("next click", "point " + std::to_string(cloud.next->point) + " at " +
                                    fixed(static_cast<double>(p.x()), 3) + ", " + fixed(static_cast<double>(p.y()), 3) +
                                    ", " + fixed(static_cast<double>(p.z()), 3) + " m settles about " +
@@ -268,25 +271,31 @@ void print_annotation(const AnnotateOptions& options, const AnnotatedCloud& clou
     const bool written = !cloud.interrupted || file == &options.session;
     if (!file->empty() && written) summary.line(name, file->string());
   }
-  std::cout << "\n     label    points  control points  name\n";
-  for (const LabelRow& row : cloud.labels.rows) {
-    std::cout << std::right << std::setw(10) << row.label.number << std::setw(10) << row.label.points << std::setw(16)
-              << row.control_points << (row.label.name.empty() ? "" : "  " + row.label.name) << '\n';
+  text << "\n     label    points  control points  name\n";
+  constexpr std::size_t kShown{40};
+  const std::span<const LabelRow> rows{cloud.labels.rows};
+  for (const LabelRow& row : rows.first(std::min(kShown, rows.size()))) {
+    text << std::right << std::setw(10) << row.label.number << std::setw(10) << row.label.points << std::setw(16)
+         << row.control_points << (row.label.name.empty() ? "" : "  " + row.label.name) << '\n';
   }
-  std::cout << std::right << std::setw(10) << "none" << std::setw(10) << cloud.points - std::min(labelled, cloud.points)
-            << '\n';
+  if (rows.size() > kShown) text << "       ... and " << rows.size() - kShown << " more, all in the JSON result\n";
+  text << std::right << std::setw(10) << "none" << std::setw(10) << cloud.points - std::min(labelled, cloud.points)
+       << '\n';
+  return text.str();
 }
 
-void print_annotations(std::span<const OfCloud<AnnotatedCloud>> clouds) {
+std::string annotations_text(std::span<const CloudProgress<AnnotatedCloud>> clouds) {
+  std::ostringstream text;
   const auto width = static_cast<int>(widest_name(clouds));
-  std::cout << std::left << std::setw(width) << "cloud" << std::right << std::setw(10) << "points" << std::setw(10)
-            << "labelled" << std::setw(8) << "labels" << std::setw(9) << "actions" << '\n';
+  text << std::left << std::setw(width) << "cloud" << std::right << std::setw(10) << "points" << std::setw(10)
+       << "labelled" << std::setw(8) << "labels" << std::setw(9) << "actions" << '\n';
   for (const auto& cloud : clouds) {
     const bool begun = cloud.made.actions > 0;
-    std::cout << std::left << std::setw(width) << cloud.file.filename().string() << std::right << std::setw(10)
-              << cloud.made.points << std::setw(10) << (begun ? percent(cloud.made.labelled_share()) : "-")
-              << std::setw(8) << cloud.made.labels.rows.size() << std::setw(9) << cloud.made.actions << '\n';
+    text << std::left << std::setw(width) << cloud.file.filename().string() << std::right << std::setw(10)
+         << cloud.made.points << std::setw(10) << (begun ? percent(cloud.made.labelled_share()) : "-") << std::setw(8)
+         << cloud.made.labels.rows.size() << std::setw(9) << cloud.made.actions << '\n';
   }
+  return text.str();
 }
 
 }  // namespace saccade::cli

@@ -1,16 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade annotate with a page: a person labels the cloud, or the clouds of a folder, in the browser.
-#include <chrono>
-#include <cstdlib>
-#include <future>
-#include <iostream>
 #include <mutex>
 
 #include "annotate.hpp"
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
 #include "serve.hpp"
 #include "server/annotate/annotation_service.hpp"
@@ -21,10 +13,10 @@ namespace {
 namespace fs = std::filesystem;
 using nlohmann::json;
 
-/// What the service posts goes to the server, as long as there is one.
-class PostBox {
+/// Posts work of the service to the server, as long as there is one.
+class ServerHandle {
  public:
-  explicit PostBox(server::HttpServer& server) : server_{&server} {}
+  explicit ServerHandle(server::HttpServer& server) : server_{&server} {}
   void post(std::function<void()> work) {
     const std::lock_guard lock{mutex_};
     if (server_ != nullptr) server_->post(std::move(work));
@@ -49,7 +41,7 @@ fs::path default_labels(const AnnotateOptions& options, const fs::path& cloud) {
 
 fs::path names_of(const fs::path& labels) { return fs::path{labels}.replace_extension(".names.json"); }
 
-/// Labels that somebody else has put where they go unasked stay there.
+/// Keeps labels of another program from being replaced where --out is not given. invalid_argument.
 Status check_default_labels(const fs::path& file, const CloudJob& job) {
   std::error_code ignored;
   if (!fs::exists(file, ignored)) return {};
@@ -96,21 +88,49 @@ Result<server::AnnotationServiceConfig> service_config(const AnnotateOptions& op
   return config;
 }
 
-/// Of one cloud what is wrong with it or its session is said before there is a page. Whoever ends the program meanwhile
-/// does not wait for a large cloud to be read: what is not read has nothing to keep, and a session is whole at any
-/// time.
-Status prepare(server::AnnotationService& service, server::HttpServer& server) {
-  constexpr std::chrono::milliseconds kLookEvery{50};
-  auto prepared = std::make_shared<std::promise<Status>>();
-  std::future<Status> done = prepared->get_future();
-  server.post([&service, prepared] { prepared->set_value(service.prepare(0)); });
-  while (done.wait_for(kLookEvery) != std::future_status::ready) {
-    if (!interrupted()) continue;
-    std::cerr << "saccade annotate: interrupted" << std::endl;
-    std::_Exit(interrupt_status());
+class ServedAnnotation final : public AnnotatePage {
+ public:
+  ServedAnnotation(const AnnotateOptions& options, const GlobalOptions& global, std::vector<CloudJob> jobs,
+                   server::AnnotationServiceConfig config, std::unique_ptr<server::HttpServer> server)
+      : options_{options},
+        global_{global},
+        jobs_{std::move(jobs)},
+        server_{std::move(server)},
+        posts_{std::make_shared<ServerHandle>(*server_)},
+        service_{std::move(config), *server_,
+                 [posts = posts_](std::function<void()> work) { posts->post(std::move(work)); }} {}
+  ServedAnnotation(const ServedAnnotation&) = delete;
+  ServedAnnotation& operator=(const ServedAnnotation&) = delete;
+  ~ServedAnnotation() override {
+    posts_->close();
+    server_.reset();  // before the service that it serves
   }
-  return done.get();
-}
+
+  /// Finds what is wrong with one cloud or its session before there is a page. Ctrl-C does not wait for a large cloud
+  /// to be read: nothing of it has to be kept, and a session is whole at any time.
+  [[nodiscard]] Status prepare() {
+    return run_before_page("annotate", *server_, [this] { return service_.prepare(0); });
+  }
+
+  [[nodiscard]] json result() const override {
+    json clouds = json::array();
+    for (const CloudJob& job : jobs_) {
+      clouds.push_back(
+          {{"file", job.cloud.string()}, {"session", job.session.string()}, {"labels", job.files.out.string()}});
+    }
+    return {{"clouds", std::move(clouds)}};
+  }
+
+  void serve() override { cli::serve(options_.serve, global_, *server_, service_); }
+
+ private:
+  const AnnotateOptions& options_;
+  const GlobalOptions& global_;
+  std::vector<CloudJob> jobs_;
+  std::unique_ptr<server::HttpServer> server_;
+  std::shared_ptr<ServerHandle> posts_;
+  server::AnnotationService service_;
+};
 
 }  // namespace
 
@@ -118,28 +138,14 @@ bool AnnotateOptions::opens_page() const {
   return page || !serve.given.empty() || (truth.empty() && script.empty() && session.empty() && seeds.empty());
 }
 
-Result<int> serve_annotation(const AnnotateOptions& options, const GlobalOptions& global) {
-  const Stopwatch clock;
-  SACCADE_TRY(const std::vector<CloudJob> jobs, plan_page(options, global));
+Result<std::unique_ptr<AnnotatePage>> AnnotatePage::open(const AnnotateOptions& options, const GlobalOptions& global) {
+  SACCADE_TRY(std::vector<CloudJob> jobs, plan_page(options, global));
   SACCADE_TRY(server::AnnotationServiceConfig config, service_config(options, jobs, global));
   SACCADE_TRY(std::unique_ptr<server::HttpServer> server, listen(options.serve));
-  const auto posts = std::make_shared<PostBox>(*server);
-  server::AnnotationService service{std::move(config), *server,
-                                    [posts](std::function<void()> work) { posts->post(std::move(work)); }};
-  Status ready;
-  if (!options.of_folder()) ready = prepare(service, *server);
-  const int status = ready ? serve(options.serve, global, *server, service) : 0;
-  posts->close();
-  server.reset();  // before the service that it serves
-  if (!ready) return ready.error();
-  json clouds = json::array();
-  for (const CloudJob& job : jobs) {
-    clouds.push_back(
-        {{"file", job.cloud.string()}, {"session", job.session.string()}, {"labels", job.files.out.string()}});
-  }
-  SACCADE_CHECK(
-      write_result("annotate", global, global.executor(), {{"total", clock.elapsed_ms()}}, {{"clouds", clouds}}));
-  return status;
+  auto page =
+      std::make_unique<ServedAnnotation>(options, global, std::move(jobs), std::move(config), std::move(server));
+  if (!options.of_folder()) SACCADE_CHECK(page->prepare());
+  return std::unique_ptr<AnnotatePage>{std::move(page)};
 }
 
 }  // namespace saccade::cli

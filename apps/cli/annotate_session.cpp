@@ -14,6 +14,7 @@
 #include "saccade/io/sessions/annotation_session.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
 #include "server/annotate/session_start.hpp"
+#include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -127,7 +128,8 @@ Status replay(const AnnotateOptions& options, std::span<const ScriptedAction> sc
     }
     progress.stage("actions", made.action_ms.size(), script.size());
     const Stopwatch stopwatch;
-    auto action = resolve_action(scripted, cloud.points.positions_m, annotation.annotation(), options.client, executor);
+    auto action = resolve_action(scripted, cloud.points.positions_m, annotation.annotation(), options.client, executor,
+                                 cloud.points.offset_m);
     if (!action)
       return failed_at(action.error(), scripted, options.script, made.action_ms.size(), annotation.is_kept());
     const std::uint64_t client = action->client;
@@ -151,7 +153,7 @@ void find_margins(const Annotation& annotation, const LoadedCloud& cloud, Annota
   const std::vector<std::uint8_t> ends =
       cloud_ends(annotation.forest().neighbourhood(), cloud.points.positions_m, cloud.points.normals);
   made.next = next_best_click(annotation, made.labels.margins, ends);
-  if (made.next) made.next_m = cloud.points.positions_m[made.next->point];
+  if (made.next) made.next_m = cloud.points.positions_m[made.next->point].cast<double>() + cloud.points.offset_m;
 }
 
 }  // namespace
@@ -179,6 +181,7 @@ Result<AnnotatedCloud> annotate_cloud(const AnnotateOptions& options, const Clou
     progress.note(job.session.string() + ": the last action was never finished (" + std::to_string(saved->torn_bytes) +
                   " bytes) and does not count");
   }
+  if (!cloud.points.offset_m.isZero(0.0)) progress.note(offset_text(cloud.points.offset_m));
   const NeighbourhoodConfig& config = saved ? saved->subject.graph : options.graph;
   const Status checked = check_script(actions.script, cloud.points.positions_m.size(), config.max_path);
   if (!checked) return in_file(checked.error(), options.script);

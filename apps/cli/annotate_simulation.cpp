@@ -30,7 +30,7 @@ std::size_t most_actions(const AnnotateOptions& options, const SimulatedAnnotati
   return options.actions.value_or(static_cast<std::size_t>(options.clicks) * annotation.objects);
 }
 
-/// What the score takes for no label.
+/// Returns the label that the score takes for no label.
 std::optional<std::uint32_t> background_of(const AnnotateOptions& options, const std::vector<std::uint32_t>& truth) {
   if (!options.background_is_none) return std::nullopt;
   std::map<std::uint32_t, std::size_t> counts;

@@ -6,6 +6,7 @@
 #include <numbers>
 
 #include "saccade/cloud/nearest_neighbours.hpp"
+#include "saccade/io/clouds/cloud_upright.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/segment_picture.hpp"
 
@@ -48,7 +49,7 @@ std::string legend_text(const NamedLabel& label) {
 ColorImage picture_of(const LoadedCloud& cloud, const LabelledPoints& labels, const Executor& executor) {
   constexpr std::size_t kNamed{24};
   const std::vector<Eigen::Vector3f>& positions_m = cloud.points.positions_m;
-  std::map<std::uint32_t, std::uint32_t> places;  // of labels among the rows
+  std::map<std::uint32_t, std::uint32_t> places;  // rows of labels
   std::vector<Rgb8> colors;
   std::vector<LegendEntry> legend;
   for (const LabelRow& row : labels.rows) {
@@ -60,11 +61,7 @@ ColorImage picture_of(const LoadedCloud& cloud, const LabelledPoints& labels, co
   for (std::size_t i = 0; i < drawn.size(); ++i) {
     if (labels.labels[i] != kNoLabel) drawn[i] = places.at(labels.labels[i]);
   }
-  OverviewConfig overview;
-  overview.width = kWidth_px;
-  overview.height = kHeight_px;
-  const Viewpoint view = server::is_in_camera_frame(positions_m) ? camera_view_of(positions_m, kWidth_px, kHeight_px)
-                                                                 : overview_of_points(positions_m, overview);
+  const Viewpoint view = upright_view_of(positions_m, upright_of(cloud.file, positions_m), kWidth_px, kHeight_px);
   const NearestNeighbours near = nearest_neighbours(positions_m, kNeighbours, executor);
   const std::vector<Eigen::Vector3f> normals = normals_of(cloud.points, near, executor);
   const DrawnSegments segments{positions_m, normals, drawn, {}, spacing_of(near)};

@@ -2,22 +2,14 @@
 // saccade attend: where hands acted, by their trajectories; with labels, how good the detector is.
 #include "attend.hpp"
 
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
-#include <iostream>
-#include <memory>
 
-#include "add_value.hpp"
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "options.hpp"
-#include "progress_bar.hpp"
-#include "run_folder.hpp"
+#include "context.hpp"
+#include "length_options.hpp"
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 
 namespace saccade::cli {
@@ -85,8 +77,8 @@ Result<AttendResult> attend_all(const std::vector<fs::path>& files, const Attend
   return result;
 }
 
-Status write_outputs(const RunFolder& out, const AttendOptions& options, const AttendResult& result,
-                     const nlohmann::json& document, ProgressBar& bar) {
+Status write_pictures(const RunFolder& out, const AttendOptions& options, const AttendResult& result,
+                      ProgressBar& bar) {
   for (std::size_t i = 0; i < result.trajectories.size(); ++i) {
     if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
     bar.update("drawing", i, result.trajectories.size());
@@ -99,89 +91,81 @@ Status write_outputs(const RunFolder& out, const AttendOptions& options, const A
       SACCADE_CHECK(write_file_atomically(out / speed_name, speed_plot));
     }
   }
-  return write_json(out / kAttendFiles.front(), document);
+  return {};
 }
 
-Result<int> run_attend(const AttendOptions& options, const GlobalOptions& global) {
-  const Stopwatch total;
-  Stopwatch stopwatch;
-  TimingsMs timings_ms;
-  ProgressBar bar{global.quiet};
-  SACCADE_CHECK(check_json_output(global));
-  std::optional<RunFolder> out;
-  if (!options.out.empty()) {
-    SACCADE_TRY(RunFolder opened, RunFolder::open(options.out, kAttendFiles, kAttendFiles.front(), options.force));
-    out.emplace(std::move(opened));
+class Attend final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"attend", "finds where hands acted in their trajectories"};
   }
-  SACCADE_TRY(const std::vector<fs::path> files, trajectory_files(options));
-  SACCADE_TRY(const AttendResult result, attend_all(files, options, bar));
-  timings_ms["attend"] = stopwatch.lap_ms();
-  timings_ms["total"] = total.elapsed_ms();
-  const nlohmann::json document =
-      json_envelope("attend", global, global.executor(), timings_ms, attend_json(options, result));
-  if (out) SACCADE_CHECK(write_outputs(*out, options, result, document, bar));
-  bar.finish();
-  SACCADE_CHECK(write_json_output(global, document));
-  if (!global.json_to_stdout()) {
-    print_attend(options, result);
-    if (out) std::cout << "results: " << options.out.string() << '\n';
-  }
-  if (result.actions() > 0) return static_cast<int>(ExitStatus::done);
-  print_error("attend", "no action was found in any trajectory");
-  return static_cast<int>(ExitStatus::no_result);
-}
 
-void add_method_options(CLI::App& command, AttendOptions& options) {
-  add_method_option(command, options.method);
-  command.add_flag("--as-printed", options.as_printed,
-                   "formula and thresholds as the thesis prints them, which do not give its tables");
-  add_hand_file_options(command, options.hand_file);
-}
-
-void add_condition_options(CLI::App& command, AttendOptions& options) {
-  EvaluationConditions& conditions = options.conditions;
-  add_value(command, "--speed", conditions.speed, "K",
-            "resample to so many times as many samples first: 0.25 is a fast hand");
-  add_value(command, "--noise-m", conditions.sigma_m, "METRES",
-            "then add noise of this standard deviation, metres (see --seed)");
-  command.add_flag("--evaluate", options.evaluate, "compare with the labels in FILE.res: precision and recall");
-  add_value(command, "--match-radius", conditions.match_radius_m, "METRES",
-            "with --evaluate: an action is found by a point of interest within, metres");
-  command.add_flag("--exclude-mislabelled", conditions.exclude_mislabelled,
-                   "with --evaluate: leave out trajectories with a label farther than 0.2 m from every sample");
-}
-
-void check_attend_options(const AttendOptions& options) {
-  const EvaluationConditions& conditions = options.conditions;
-  require_positive(conditions.speed, "--speed");
-  require_positive(conditions.match_radius_m, "--match-radius");
-  if (!(conditions.sigma_m >= 0.0) || !std::isfinite(conditions.sigma_m)) {
-    usage_error("--noise-m", "must not be negative");
+  void declare(Options& options) override {
+    options
+        .value("files", attend_.files, "FILE...",
+               "trajectories, or bags of ROS; a folder stands for all .traj files below it")
+        .required();
+    add_method_option(options.group(), attend_.method);
+    options.flag("--as-printed", attend_.as_printed,
+                 "use formula and thresholds as the thesis prints them; they do not give its tables");
+    add_hand_file_options(options.group(), attend_.hand_file);
+    declare_conditions(options);
+    options.folder({.help = "folder for attend.json, a picture of each trajectory, and for --method ours its speed",
+                    .files = {kAttendFiles.begin(), kAttendFiles.end()},
+                    .document = kAttendFiles.front()});
+    options.flag("--no-pictures{false}", pictures_, "draw no pictures");
   }
-  if (conditions.exclude_mislabelled && !options.evaluate) usage_error("--exclude-mislabelled", "goes with --evaluate");
-  if (options.as_printed && !options.method->has_printed) {
-    usage_error("--as-printed", "the thesis prints nothing for --method " + std::string{options.method->name});
+
+  void check(const GlobalOptions& global) override {
+    EvaluationConditions& conditions = attend_.conditions;
+    require_positive(conditions.speed, "--speed");
+    require_length(conditions.match_radius_m, "--match-radius");
+    if (!(conditions.sigma_m >= 0.0) || !std::isfinite(conditions.sigma_m)) {
+      usage_error("--noise-m", "must not be negative");
+    }
+    if (conditions.exclude_mislabelled && !attend_.evaluate) {
+      usage_error("--exclude-mislabelled", "goes with --evaluate");
+    }
+    if (attend_.as_printed && !attend_.method->has_printed) {
+      usage_error("--as-printed", "the thesis prints nothing for --method " + std::string{attend_.method->name});
+    }
+    conditions.seed = global.seed;
   }
-}
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    SACCADE_TRY(const std::vector<fs::path> files, trajectory_files(attend_));
+    SACCADE_TRY(const AttendResult result, attend_all(files, attend_, context.bar()));
+    context.lap("attend");
+    std::string text = attend_text(attend_, result);
+    if (context.folder() != nullptr) {
+      if (pictures_) SACCADE_CHECK(write_pictures(*context.folder(), attend_, result, context.bar()));
+      text += "results: " + context.out().string() + "\n";
+    }
+    return Outcome{.result = attend_json(attend_, result), .text = std::move(text)}.empty_if(
+        result.actions() == 0, "no action was found in any trajectory");
+  }
+
+ private:
+  void declare_conditions(Options& options) {
+    EvaluationConditions& conditions = attend_.conditions;
+    options.value("--speed", conditions.speed, "K", "resample to K times as many samples first: 0.25 is a fast hand");
+    options.value("--noise-m", conditions.sigma_m, "METRES",
+                  "then add noise of this standard deviation, metres (see --seed)");
+    options.flag("--evaluate", attend_.evaluate, "compare with the labels in FILE.res: precision and recall");
+    options.value("--match-radius", conditions.match_radius_m, "METRES",
+                  "with --evaluate: an action counts as found if a point of interest is within this distance, metres");
+    options.flag("--exclude-mislabelled", conditions.exclude_mislabelled,
+                 "with --evaluate: leave out trajectories with a label farther than 0.2 m from every sample");
+  }
+
+  AttendOptions attend_;
+  bool pictures_{true};
+};
 
 }  // namespace
 
 void add_attend(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("attend", "finds where hands acted in their trajectories");
-  auto options = std::make_shared<AttendOptions>();
-  add_value(*command, "files", options->files, "FILE...",
-            "trajectories, or bags of ROS; a folder stands for all .traj files below it")
-      ->required();
-  add_method_options(*command, *options);
-  add_condition_options(*command, *options);
-  add_value(*command, "--out", options->out, "DIR",
-            "folder for attend.json, a picture of each trajectory, and for --method ours its speed");
-  command->add_flag("--force", options->force, "write into a folder that holds other files");
-  command->callback([options, &global, &action] {
-    check_attend_options(*options);
-    options->conditions.seed = global.seed;
-    action = [options, &global] { return run_attend(*options, global); };
-  });
+  add_command<Attend>(program, global, action);
 }
 
 }  // namespace saccade::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `saccade attend` was asked for and what it found, for its output.
+// Request and findings of `saccade attend`, for its output.
 
 #include <filesystem>
 #include <optional>
@@ -23,11 +23,9 @@ struct AttendOptions {
   bool as_printed{false};
   bool evaluate{false};
   EvaluationConditions conditions;
-  std::filesystem::path out;
-  bool force{false};
 };
 
-/// One trajectory: as it was given to the detector, and what came of it.
+/// One trajectory: as it was given to the detector, and its result.
 struct AttendedTrajectory {
   std::filesystem::path file;
   SampleReport report;
@@ -48,7 +46,8 @@ struct AttendResult {
 [[nodiscard]] nlohmann::json action_json(const HandAction& action);
 [[nodiscard]] nlohmann::json sample_report_json(const SampleReport& report);
 [[nodiscard]] nlohmann::json attend_json(const AttendOptions& options, const AttendResult& result);
-void print_attend(const AttendOptions& options, const AttendResult& result);
+/// For people: the actions of each trajectory, or with --evaluate how good the detector is.
+[[nodiscard]] std::string attend_text(const AttendOptions& options, const AttendResult& result);
 /// Names of a trajectory's picture and of the plot of its speed, from its number.
 [[nodiscard]] std::string attend_picture_name(std::size_t index);
 [[nodiscard]] std::string attend_speed_name(std::size_t index);

@@ -20,7 +20,7 @@ class App;
 
 namespace saccade::cli {
 
-/// What a detector found, with what there is to draw of its way there.
+/// Finds points of interest in a trajectory; the findings hold the intermediate results that pictures show.
 using AttendDetector = std::function<Result<AttentionFindings>(const HandTrajectory&)>;
 
 struct AttendMethod {

@@ -2,7 +2,7 @@
 #include <array>
 #include <cstdio>
 #include <iomanip>
-#include <iostream>
+#include <sstream>
 
 #include "attend.hpp"
 #include "json_output.hpp"
@@ -30,21 +30,22 @@ json trajectory_json(const AttendedTrajectory& trajectory) {
   return entry;
 }
 
-void print_actions(const AttendedTrajectory& trajectory) {
-  std::cout << trajectory.file.string() << ": " << trajectory.report.to_string() << '\n';
+void list_actions(const AttendedTrajectory& trajectory, std::ostream& text) {
+  text << trajectory.file.string() << ": " << trajectory.report.to_string() << '\n';
   for (const HandAction& action : trajectory.findings.actions) {
-    std::cout << std::setw(8) << fixed(action.time_s, 2) << " s ";
-    for (Eigen::Index axis = 0; axis < 3; ++axis) std::cout << std::setw(8) << fixed(action.position_m[axis], 3);
-    std::cout << " m  " << action.why << '\n';
+    text << std::setw(8) << fixed(action.time_s, 2) << " s ";
+    for (Eigen::Index axis = 0; axis < 3; ++axis) text << std::setw(8) << fixed(action.position_m[axis], 3);
+    text << " m  " << action.why << '\n';
   }
-  if (trajectory.findings.actions.empty()) std::cout << "  no action\n";
+  if (trajectory.findings.actions.empty()) text << "  no action\n";
 }
 
-void print_evaluation(const AttendResult& result) {
+std::string evaluation_text(const AttendResult& result) {
+  std::ostringstream text;
   const DetectorEvaluation evaluation = result.evaluation();
   const DetectionCounts& counts = evaluation.counts;
   const auto share = [](const std::optional<double>& value) { return value ? percent(*value) : std::string{"none"}; };
-  const Summary summary{std::cout};
+  const Summary summary{text};
   summary.line("files", std::to_string(evaluation.trajectories) + (result.excluded.empty()
                                                                        ? ""
                                                                        : ", " + std::to_string(result.excluded.size()) +
@@ -57,6 +58,7 @@ void print_evaluation(const AttendResult& result) {
   const auto error_m = evaluation.median_location_error_m();
   summary.line("off by", error_m ? millimetres(*error_m) + ", median" : "none");
   summary.line("time", fixed(result.median_ms(), 2) + " ms per trajectory, median");
+  return text.str();
 }
 
 std::string numbered_name(std::size_t index, const char* ending) {
@@ -141,9 +143,11 @@ json attend_json(const AttendOptions& options, const AttendResult& result) {
   return document;
 }
 
-void print_attend(const AttendOptions& options, const AttendResult& result) {
-  if (options.evaluate) return print_evaluation(result);
-  for (const AttendedTrajectory& trajectory : result.trajectories) print_actions(trajectory);
+std::string attend_text(const AttendOptions& options, const AttendResult& result) {
+  if (options.evaluate) return evaluation_text(result);
+  std::ostringstream text;
+  for (const AttendedTrajectory& trajectory : result.trajectories) list_actions(trajectory, text);
+  return text.str();
 }
 
 std::string attend_picture_name(std::size_t index) { return numbered_name(index, ".png"); }

@@ -1,22 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade calibrate: where the camera of a cell sits on the arm's flange, and how their clocks differ, without a board.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iomanip>
-#include <iostream>
-#include <memory>
 #include <sstream>
 
-#include "add_value.hpp"
 #include "cell_options.hpp"
-#include "exit_status.hpp"
+#include "context.hpp"
 #include "explore_devices.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "progress_bar.hpp"
+#include "length_options.hpp"
 #include "saccade/arm/kinematics.hpp"
 #include "saccade/core/angle.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/tracking/hand_eye.hpp"
@@ -72,7 +65,7 @@ class ViewCollector {
     for (std::size_t i = 0; i < std::min(count, reached_.size()); ++i) {
       progress_.report("views in motion", i, count);
       Status taken;
-      const OnWay on_way = [&](const CameraSample& sample) {
+      const MotionObserver on_way = [&](const MotionSample& sample) {
         taken = take_on_way(sample);
         return taken.ok() && !progress_.cancelled() ? Advance::go_on : Advance::stop;
       };
@@ -86,7 +79,7 @@ class ViewCollector {
   [[nodiscard]] const HandEyeInput& input() const { return input_; }
 
  private:
-  [[nodiscard]] Result<std::optional<Arrival>> go_to(const Pose& pose, const OnWay& on_way) {
+  [[nodiscard]] Result<std::optional<Arrival>> go_to(const Pose& pose, const MotionObserver& on_way) {
     if (progress_.cancelled()) return Error{Errc::cancelled, "interrupted", "calibrate"};
     SACCADE_TRY(const PlannedMotion planned, devices_.robot().plan(std::span{&pose, 1}));
     if (!planned.motion) return std::optional<Arrival>{};
@@ -104,7 +97,7 @@ class ViewCollector {
     return frame;
   }
 
-  [[nodiscard]] Status take_on_way(const CameraSample& sample) {
+  [[nodiscard]] Status take_on_way(const MotionSample& sample) {
     if (!sample.time_s) return {};
     std::vector<FlangeSample>& flange = input_.flange;
     if (!flange.empty() && *sample.time_s <= flange.back().time_s) return {};
@@ -187,11 +180,10 @@ std::string yaml_of(const HandEyeResult& found) {
   return text.str();
 }
 
-void print_calibration(const HandEyeInput& input, const HandEyeResult& found) {
-  std::cout << std::left;
-  const auto line = [](const char* name, const std::string& text) {
-    std::cout << std::setw(10) << name << text << '\n';
-  };
+std::string calibration_text(const HandEyeInput& input, const HandEyeResult& found) {
+  std::ostringstream out;
+  out << std::left;
+  const auto line = [&out](const char* name, const std::string& text) { out << std::setw(10) << name << text << '\n'; };
   line("views", std::to_string(input.still.size()) + " at rest, " + std::to_string(input.moving.size()) + " in motion");
   if (found.T_flange_camera) {
     const Pose moved = input.T_flange_camera_guess->inverse() * *found.T_flange_camera;
@@ -209,61 +201,66 @@ void print_calibration(const HandEyeInput& input, const HandEyeResult& found) {
                           fixed(1e3 * found.agreement_after->median_depth_m, 2) + " mm after (median)");
   }
   for (const std::string& missing : found.missing) line("missing", missing);
-  if (found.T_flange_camera) std::cout << "\nInto the cell's file:\n\n" << yaml_of(found);
+  if (found.T_flange_camera) out << "\nInto the cell's file:\n\n" << yaml_of(found);
+  return out.str();
 }
 
-Result<int> run_calibrate(const CalibrateOptions& options, const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  const Executor executor = global.executor();
-  ProgressBar bar{global.quiet};
-  Progress progress{[&bar](std::string_view stage, std::size_t done, std::size_t of) { bar.update(stage, done, of); }};
-  const CancelOnInterrupt cancel{progress};
-  SACCADE_CHECK(check_json_output(global));
-  if (options.cell_problem) return *options.cell_problem;
-  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options, &bar));
-  if (!arm) return Error{Errc::invalid_argument, "no arm carries the camera; add the key arm", options.scene};
-  SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
-  if (subject.scene.scan.empty()) {
-    return Error{Errc::invalid_argument, "there are no poses to look from; add some under the key scan", options.scene};
+class Calibrate final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"calibrate",
+            "finds the pose of the camera on the arm's flange, and the offset of their clocks, without a board"};
   }
-  SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
-  ViewCollector views{devices, *arm, options.max_depth_m, progress};
-  for (const Pose& pose : subject.scene.scan) SACCADE_CHECK(views.look_around(pose, to_rad(options.turn_deg)));
-  constexpr std::size_t kMotions{7};  // back through the views around the first pose
-  SACCADE_CHECK(views.move_through(kMotions));
-  SACCADE_TRY(const HandEyeResult found,
-              calibrate_hand_eye(views.input(), executor, config_for(views.input()), &progress));
-  bar.finish();
-  if (!global.json_to_stdout()) print_calibration(views.input(), found);
-  SACCADE_CHECK(write_result("calibrate", global, executor, {{"total", stopwatch.elapsed_ms()}},
-                             calibration_json(views.input(), found)));
-  if (found.T_flange_camera) return static_cast<int>(ExitStatus::done);
-  print_error("calibrate", found.missing.empty() ? "the views do not determine the mount" : found.missing.front());
-  return static_cast<int>(ExitStatus::no_result);
-}
+
+  void declare(Options& options) override {
+    options.value("cell", cell_.scene, "CELL", "a cell's YAML file (docs/reference/cell.md)").required();
+    options
+        .value("--turn", cell_.turn_deg, "DEGREES",
+               "turn of the views around each pose of the scan, about each axis of the camera")
+        .range(3.0, 45.0);
+    options.value("--max-depth", cell_.max_depth_m, "METRES",
+                  "depth beyond this is left out: it is too noisy to be tracked");
+    add_arm_options(options.group(), cell_);
+    add_device_options(options.group(), cell_);
+  }
+
+  void check(const GlobalOptions& global) override {
+    require_length(cell_.max_depth_m, "--max-depth");
+    check_device_options(cell_);
+    if (cell_.robot.empty()) cell_.robot = "free";
+    check_arm_options(cell_, global);
+    cell_.arm.obstacles.unknown_is_obstacle = false;  // nothing is known yet, and the caller vouches for the space
+  }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    const Executor& executor = context.executor();
+    if (cell_.cell_problem) return *cell_.cell_problem;
+    SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(cell_, &context.bar()));
+    if (!arm) return Error{Errc::invalid_argument, "no arm carries the camera; add the key arm", cell_.scene};
+    SACCADE_TRY(const ExploreSetup subject, open_case(cell_, executor));
+    if (subject.scene.scan.empty()) {
+      return Error{Errc::invalid_argument, "there are no poses to look from; add some under the key scan", cell_.scene};
+    }
+    SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(cell_, subject, arm, executor));
+    ViewCollector views{devices, *arm, cell_.max_depth_m, context.progress()};
+    for (const Pose& pose : subject.scene.scan) SACCADE_CHECK(views.look_around(pose, to_rad(cell_.turn_deg)));
+    constexpr std::size_t kMotions{7};  // back through the views around the first pose
+    SACCADE_CHECK(views.move_through(kMotions));
+    SACCADE_TRY(const HandEyeResult found,
+                calibrate_hand_eye(views.input(), executor, config_for(views.input()), &context.progress()));
+    return Outcome{.result = calibration_json(views.input(), found), .text = calibration_text(views.input(), found)}
+        .empty_if(!found.T_flange_camera,
+                  found.missing.empty() ? "the views do not determine the mount" : found.missing.front());
+  }
+
+ private:
+  CalibrateOptions cell_;
+};
 
 }  // namespace
 
 void add_calibrate(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand(
-      "calibrate", "finds where the camera sits on the arm's flange, and how their clocks differ, without a board");
-  auto options = std::make_shared<CalibrateOptions>();
-  add_value(*command, "cell", options->scene, "CELL", "a cell's YAML file (docs/cell.md)")->required();
-  add_value(*command, "--turn", options->turn_deg, "DEGREES",
-            "turn of the views around each pose of the scan, about each axis of the camera")
-      ->check(CLI::Range(3.0, 45.0));
-  add_value(*command, "--max-depth", options->max_depth_m, "METRES",
-            "depth beyond this is left out: it is too noisy to be tracked")
-      ->check(CLI::PositiveNumber);
-  add_arm_options(*command, *options);
-  add_device_options(*command, *options);
-  command->callback([options, &global, &action] {
-    check_device_options(*options);
-    if (options->robot.empty()) options->robot = "free";
-    check_arm_options(*options, global);
-    options->arm.obstacles.unknown_is_obstacle = false;  // nothing is known yet, and the caller vouches for the space
-    action = [options, &global] { return run_calibrate(*options, global); };
-  });
+  add_command<Calibrate>(program, global, action);
 }
 
 }  // namespace saccade::cli

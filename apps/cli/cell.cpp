@@ -1,18 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade cell check: starts the devices of a cell, shows what they deliver, and says what is wrong.
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
-#include <memory>
+#include <sstream>
 
-#include "add_value.hpp"
 #include "cell_options.hpp"
-#include "exit_status.hpp"
+#include "context.hpp"
 #include "explore_devices.hpp"
-#include "json_output.hpp"
 #include "saccade/arm/arm_silhouette.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/json_io.hpp"
@@ -197,48 +192,62 @@ class CellCheck {
   json found_;
 };
 
-Result<int> run_cell_check(const ExploreOptions& options, const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  SACCADE_CHECK(check_json_output(global));
-  if (options.cell_problem) return *options.cell_problem;
-  SACCADE_TRY(Scene scene, find_scene(options.scene));
-  constexpr std::array<std::string_view, 1> kFiles{"camera.png"};
-  std::optional<RunFolder> out;
-  if (!options.out.empty()) {
-    SACCADE_TRY(RunFolder opened, RunFolder::open(options.out, kFiles, "", options.force));
-    out.emplace(std::move(opened));
+class CellCheckCommand final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {.name = "check",
+            .description = "starts each device of a cell, and shows what it delivers",
+            .result_name = "cell check"};
   }
-  CellCheck check{options, std::move(scene)};
-  check.run(options.out);
-  if (!global.json_to_stdout()) {
-    for (const auto& [name, text] : check.lines()) std::cout << std::left << std::setw(9) << name << text << '\n';
+
+  void declare(Options& options) override {
+    options.value("cell", cell_.scene, "CELL", "a cell's YAML file (docs/reference/cell.md)").required();
+    options.folder({.help = "folder for a picture of a frame, with the arm in it",
+                    .files = {"camera.png"},
+                    .opened_by_command = true});
+    add_arm_options(options.group(), cell_);
+    add_device_options(options.group(), cell_);
   }
-  SACCADE_CHECK(
-      write_result("cell check", global, global.executor(), {{"total", stopwatch.elapsed_ms()}}, check.result()));
-  if (check.problems().empty()) return static_cast<int>(ExitStatus::done);
-  const std::size_t count = check.problems().size();
-  print_error("cell check", std::to_string(count) + (count == 1 ? " thing is" : " things are") +
-                                " wrong: " + check.problems().front().to_string());
-  return static_cast<int>(ExitStatus::no_result);
-}
+
+  void check(const GlobalOptions& global) override {
+    check_device_options(cell_);
+    if (cell_.robot.empty()) cell_.robot = "free";
+    check_arm_options(cell_, global);
+  }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    if (cell_.cell_problem) return *cell_.cell_problem;
+    SACCADE_TRY(Scene scene, find_scene(cell_.scene));
+    SACCADE_CHECK(context.open_folder());
+    CellCheck check{cell_, std::move(scene)};
+    check.run(context.out());
+    std::ostringstream text;
+    for (const auto& [name, line] : check.lines()) text << std::left << std::setw(9) << name << line << '\n';
+    Outcome outcome{.result = check.result(), .text = text.str()};
+    const std::size_t count = check.problems().size();
+    if (count == 0) return outcome;
+    return std::move(outcome).empty_if(true, std::to_string(count) + (count == 1 ? " thing is" : " things are") +
+                                                 " wrong: " + check.problems().front().to_string());
+  }
+
+ private:
+  ExploreOptions cell_;
+};
+
+class CellCommands final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override { return {"cell", "checks the devices of a real cell"}; }
+  [[nodiscard]] std::vector<std::unique_ptr<Command>> parts() const override {
+    std::vector<std::unique_ptr<Command>> parts;
+    parts.push_back(std::make_unique<CellCheckCommand>());
+    return parts;
+  }
+};
 
 }  // namespace
 
 void add_cell(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("cell", "checks the devices of a real cell");
-  command->require_subcommand(1);
-  auto options = std::make_shared<ExploreOptions>();
-  CLI::App* check = command->add_subcommand("check", "starts each device of a cell, and says what it delivers");
-  add_value(*check, "cell", options->scene, "CELL", "a cell's YAML file (docs/cell.md)")->required();
-  add_value(*check, "--out", options->out, "DIR", "folder for a picture of a frame, with the arm in it");
-  add_arm_options(*check, *options);
-  add_device_options(*check, *options);
-  check->callback([options, &global, &action] {
-    check_device_options(*options);
-    if (options->robot.empty()) options->robot = "free";
-    check_arm_options(*options, global);
-    action = [options, &global] { return run_cell_check(*options, global); };
-  });
+  add_command<CellCommands>(program, global, action);
 }
 
 }  // namespace saccade::cli

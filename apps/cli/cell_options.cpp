@@ -4,6 +4,7 @@
 #include <utility>
 
 #include "interrupt.hpp"
+#include "saccade/scene/scene_yaml.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -26,6 +27,7 @@ void take_arm(ExploreOptions& options, const CellArm& arm) {
   take(urdf.T_world_base, arm.T_world_base);
   take(urdf.T_flange_camera, arm.T_flange_camera);
   urdf.packages.insert(arm.packages.begin(), arm.packages.end());
+  urdf.package_paths.insert(urdf.package_paths.end(), arm.package_paths.begin(), arm.package_paths.end());
   options.arm_reading.drop_beyond_tip = options.arm_reading.drop_beyond_tip || arm.drop_beyond_tip;
   take(options.speed, std::optional{arm.speed});
 }
@@ -33,7 +35,7 @@ void take_arm(ExploreOptions& options, const CellArm& arm) {
 }  // namespace
 
 void take_cell(ExploreOptions& options) {
-  if (!std::filesystem::is_regular_file(options.scene)) return;
+  if (!std::filesystem::is_regular_file(options.scene) || is_mesh_file(options.scene)) return;
   auto read = read_cell(options.scene);
   if (!read) {
     options.cell_problem = read.error();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a cell's file says in place of options, and the programs of a cell as they are started.
+// Settings that a cell's file gives in place of options, and the programs of a cell as they are started.
 
 #include "explore_options.hpp"
 #include "saccade/arm/arm_model.hpp"

@@ -9,17 +9,21 @@
 
 #include "add_value.hpp"
 #include "command.hpp"
+#include "command_tree.hpp"
 #include "exit_status.hpp"
+#include "help_formatter.hpp"
 #include "interrupt.hpp"
 #include "options.hpp"
 #include "saccade/core/freed_memory.hpp"
+#include "saccade/core/version.hpp"
+#include "unknown_argument.hpp"
 
 namespace saccade::cli {
 namespace {
 
 constexpr const char* kFooter{
     "Exit status: 0 done, 1 a bug, 2 usage, 3 bad input, 4 not available here, 5 finished without any result,\n"
-    "130 or 143 interrupted (Ctrl-C, SIGTERM): what was done is kept. A second Ctrl-C ends at once.\n"
+    "129, 130 or 143 interrupted (SIGHUP, Ctrl-C, SIGTERM): what was done is kept. A second Ctrl-C ends at once.\n"
     "Lengths are in metres; points and poses are in the map's world frame; angles on the command line are in degrees."};
 
 void add_global_options(CLI::App& program, GlobalOptions& global) {
@@ -40,6 +44,16 @@ void refuse_empty_values(CLI::App& program) {
   for (CLI::App* subcommand : program.get_subcommands({})) refuse_empty_values(*subcommand);
 }
 
+/// "scene render": the command that was chosen, and those above it.
+std::string chosen_path(const CLI::App& program) {
+  const CLI::App* chosen = chosen_command(program);
+  std::string path;
+  for (; chosen != nullptr && chosen != &program; chosen = chosen->get_parent()) {
+    path = chosen->get_name() + (path.empty() ? "" : " ") + path;
+  }
+  return path;
+}
+
 int fail(const CLI::App& program, ExitStatus status, const std::string& text) {
   const auto chosen = program.get_subcommands();
   print_error(chosen.empty() ? "" : chosen.front()->get_name(), text);
@@ -47,29 +61,33 @@ int fail(const CLI::App& program, ExitStatus status, const std::string& text) {
 }
 
 int usage(const CLI::App& program, const std::string& text) {
-  const auto chosen = program.get_subcommands();
-  const std::string help = chosen.empty() ? "saccade --help" : "saccade " + chosen.front()->get_name() + " --help";
-  return fail(program, ExitStatus::usage, text + " (see " + help + ")");
+  const std::string path = chosen_path(program);
+  return fail(program, ExitStatus::usage, text + " (see saccade " + path + (path.empty() ? "" : " ") + "--help)");
 }
 
-/// "annotate, attend, …, surfels or update".
-std::string names_of(const std::vector<CLI::App*>& commands) {
-  std::string names;
-  for (const CLI::App* command : commands) {
-    if (!names.empty()) names += command == commands.back() ? " or " : ", ";
-    names += command->get_name();
+/// What is wrong with arguments that were not parsed. One that is not known is said first: it may be why another one
+/// is missing.
+std::string parse_problem(const CLI::App& program, const CLI::ParseError& error) {
+  const bool may_be_unknown = dynamic_cast<const CLI::RequiredError*>(&error) != nullptr ||
+                              dynamic_cast<const CLI::ExtrasError*>(&error) != nullptr;
+  if (!may_be_unknown) return error.what();
+  if (std::string unknown = unknown_argument(program); !unknown.empty()) return unknown;
+  const CLI::App& chosen = *chosen_command(program);
+  if (chosen.get_require_subcommand_min() > 0 && chosen.get_subcommands().empty()) {
+    return "name what to do: " + listed(visible_commands(chosen));
   }
-  return names;
+  return error.what();
 }
 
 int run(int argc, char** argv, CLI::App& program, Planners planners) {
   GlobalOptions global;
   global.planners = std::move(planners);
   Action action;
-  program.set_version_flag("--version", std::string{"saccade "} + SACCADE_VERSION);
+  program.set_version_flag("--version", std::string{"saccade "}.append(version()));
   program.require_subcommand(1);
   program.fallthrough();
   program.footer(kFooter);
+  program.formatter(std::make_shared<HelpFormatter>());
   add_global_options(program, global);
   for (AddCommand* add : {add_annotate, add_attend,   add_calibrate, add_cell,   add_compare, add_explore,   add_filter,
                           add_fuse,     add_generate, add_nbv,       add_info,   add_scene,   add_reproduce, add_robot,
@@ -79,13 +97,9 @@ int run(int argc, char** argv, CLI::App& program, Planners planners) {
   refuse_empty_values(program);
   try {
     program.parse(argc, argv);
-  } catch (const CLI::RequiredError& error) {
-    if (!program.get_subcommands().empty()) return usage(program, error.what());
-    const auto shown = program.get_subcommands([](const CLI::App* command) { return !command->get_group().empty(); });
-    return usage(program, "name what to do: " + names_of(shown));
   } catch (const CLI::ParseError& error) {
     if (error.get_exit_code() == 0) return program.exit(error);  // --help and --version
-    return usage(program, error.what());
+    return usage(program, parse_problem(program, error));
   }
   const Result<int> status = action();
   std::cout.flush();

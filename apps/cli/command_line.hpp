@@ -7,7 +7,7 @@
 
 namespace saccade::cli {
 
-/// Does what the arguments say, and prints what comes of it.
+/// Runs the command that the arguments name and prints its result.
 /// @param planners  strategies that explore and compare know: trial_planners(), and one's own
 /// @return the exit status
 [[nodiscard]] int run_command_line(int argc, char** argv, Planners planners);

@@ -6,6 +6,7 @@
 #include <cctype>
 #include <string_view>
 
+#include "help_formatter.hpp"
 #include "saccade/core/names.hpp"
 
 namespace saccade::cli {
@@ -25,7 +26,7 @@ bool has_capital(const std::string& text) {
   return std::any_of(text.begin(), text.end(), [](unsigned char c) { return std::isupper(c) != 0; });
 }
 
-/// What CLI11 says of the type: a placeholder, then what each check says of itself, with colons between.
+/// CLI11's text for a type: a placeholder, then the description of each check, with colons between.
 struct TypeText {
   std::string placeholder;
   std::string checks;
@@ -64,9 +65,7 @@ ValueKind kind_of(const TypeText& type, const std::vector<std::string>& words) {
   return ValueKind::text;
 }
 
-std::string range_of(const TypeText& type) {
-  return type.checks.find(" in [") != std::string::npos ? type.checks : std::string{};
-}
+std::string range_of(const TypeText& type) { return range_text(type.checks); }
 
 std::string placeholder_of(const TypeText& type, const std::vector<std::string>& words) {
   if (!words.empty()) return joined(words, "|");
@@ -76,7 +75,7 @@ std::string placeholder_of(const TypeText& type, const std::vector<std::string>&
 OptionEntry option_entry(const CLI::Option& option) {
   OptionEntry entry;
   for (const std::string& name : option.get_snames()) entry.names.push_back("-" + name);
-  for (const std::string& name : option.get_lnames()) entry.names.push_back("--" + name);
+  for (const std::string& name : shown_names(option)) entry.names.push_back("--" + name);
   entry.description = option.get_description();
   entry.group = option.get_group();
   entry.required = option.get_required();
@@ -123,6 +122,18 @@ CommandEntry command_entry(const CLI::App& command, std::vector<std::string> pat
 }
 
 }  // namespace
+
+std::vector<std::string> shown_names(const CLI::Option& option) {
+  std::vector<std::string> names = option.get_lnames();
+  const bool is_flag = option.get_items_expected_max() == 0;
+  if (!is_flag && names.size() > 1) names.resize(1);
+  return names;
+}
+
+ValueText value_text(const CLI::Option& option) {
+  const TypeText type = type_text(option);
+  return {placeholder_of(type, words_of(type)), range_of(type)};
+}
 
 std::string CommandEntry::path_with(const std::string& separator) const { return joined(path, separator); }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // CommandEntry, OptionEntry, ArgumentEntry: what the program takes, read off its CLI::App, for manual pages and
-// completion. manual_pages, bash_completion, zsh_completion, fish_completion: texts made of them.
+// completion. manual_pages, markdown_reference, bash_completion, zsh_completion, fish_completion: texts made of them.
 
 #include <map>
 #include <string>
@@ -9,7 +9,8 @@
 
 namespace CLI {
 class App;
-}
+class Option;
+}  // namespace CLI
 
 namespace saccade::cli {
 
@@ -22,7 +23,7 @@ struct OptionEntry {
   ValueKind kind{ValueKind::text};
   std::vector<std::string> words;  ///< values, where there are but a few
   std::string preset;              ///< default value, or empty
-  std::string range;               ///< "INT in [0 - 12]", or empty
+  std::string range;               ///< "0 to 12", or empty
   std::string description;
   std::string group;  ///< heading in the help
   bool required{false};
@@ -51,6 +52,16 @@ struct CommandEntry {
   [[nodiscard]] std::string path_with(const std::string& separator) const;
 };
 
+/// The value of an option, for people.
+struct ValueText {
+  std::string placeholder;  ///< "METRES", "a|b"
+  std::string range;        ///< "0 to 12", or empty
+};
+/// Long names of an option without the dashes. Those after the first are old names, which are read and not shown; of a
+/// switch, all are shown.
+[[nodiscard]] std::vector<std::string> shown_names(const CLI::Option& option);
+[[nodiscard]] ValueText value_text(const CLI::Option& option);
+
 /// Reads the program and all its commands; hidden ones are left out.
 [[nodiscard]] CommandEntry command_tree(const CLI::App& program);
 
@@ -62,6 +73,9 @@ struct CommandEntry {
 /// @param date     YYYY-MM-DD
 [[nodiscard]] std::map<std::string, std::string> manual_pages(const CommandEntry& program, const std::string& version,
                                                               const std::string& date);
+
+/// Makes docs/reference/cli.md.
+[[nodiscard]] std::string markdown_reference(const CommandEntry& program);
 
 [[nodiscard]] std::string bash_completion(const CommandEntry& program);
 [[nodiscard]] std::string zsh_completion(const CommandEntry& program);

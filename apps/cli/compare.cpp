@@ -1,21 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade compare: strategies × scenes × noises × seeds, in one SQLite file that an interrupted comparison goes on
 // from.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <iomanip>
-#include <iostream>
-#include <memory>
+#include <sstream>
 
 #include "compare_jobs.hpp"
 #include "compare_report.hpp"
 #include "comparison.hpp"
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "run_folder.hpp"
-#include "saccade/core/clock.hpp"
-#include "saccade/io/files/file_io.hpp"
+#include "context.hpp"
+#include "server/report_file.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -32,8 +26,16 @@ json planned_json(const Comparison& comparison, const PlannedRun& run) {
           {"found", run.found}};
 }
 
+/// Width of a column that holds all of some names, and a gap.
+template <class Items, class Name>
+int column_width(const Items& items, const Name& name) {
+  std::size_t width = 0;
+  for (const auto& item : items) width = std::max(width, std::invoke(name, item).size());
+  return static_cast<int>(width) + 2;
+}
+
 /// Writes nothing and makes no folder.
-Result<int> list_runs(const Comparison& comparison, const GlobalOptions& global, const Stopwatch& clock) {
+Result<Outcome> list_runs(const Comparison& comparison) {
   const std::filesystem::path path = comparison.options().out / kCampaignFile;
   std::optional<Campaign> campaign;
   if (std::filesystem::exists(path)) {
@@ -41,20 +43,20 @@ Result<int> list_runs(const Comparison& comparison, const GlobalOptions& global,
   }
   SACCADE_TRY(const std::vector<PlannedRun> runs, comparison.plan(campaign ? &*campaign : nullptr));
   json rows = json::array();
+  std::ostringstream text;
+  text << std::left;
+  const int scene_width = column_width(comparison.scenes(), &ComparedScene::name);
+  const int strategy_width = column_width(runs, [](const PlannedRun& run) { return run.strategy.name; });
   for (const PlannedRun& run : runs) {
     rows.push_back(planned_json(comparison, run));
-    if (global.json_to_stdout()) continue;
-    std::cout << std::left << std::setw(18) << comparison.scenes()[run.scene].name << std::setw(10) << run.strategy.name
-              << ' ' << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed
-              << (run.max_views ? std::to_string(*run.max_views) + " views at most" : "as many views as sphere takes")
-              << (run.found ? ", done" : "") << '\n';
+    text << std::setw(scene_width) << comparison.scenes()[run.scene].name << std::setw(strategy_width)
+         << run.strategy.name << std::setw(12) << run.noise << "seed " << std::setw(8) << run.seed
+         << (run.max_views ? std::to_string(*run.max_views) + " views at most" : "as many views as sphere takes")
+         << (run.found ? ", done" : "") << '\n';
   }
-  const auto found = static_cast<std::size_t>(
-      std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; }));
-  if (!global.json_to_stdout()) std::cout << runs.size() << " runs, " << found << " of them done\n";
-  SACCADE_CHECK(
-      write_result("compare", global, global.executor(), {{"total", clock.elapsed_ms()}}, {{"runs", std::move(rows)}}));
-  return static_cast<int>(ExitStatus::done);
+  const auto found = std::count_if(runs.begin(), runs.end(), [](const PlannedRun& run) { return run.found; });
+  text << runs.size() << " runs, " << found << " of them done\n";
+  return Outcome{.result = {{"runs", std::move(rows)}}, .text = text.str()};
 }
 
 json result_json(const Comparison& comparison, std::size_t planned, std::size_t now, const ComparedRuns& compared) {
@@ -71,49 +73,64 @@ json result_json(const Comparison& comparison, std::size_t planned, std::size_t 
   return result;
 }
 
-Result<int> run_compare(const CompareOptions& options, const GlobalOptions& global) {
-  const Stopwatch clock;
-  const Executor executor = global.executor();
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(const Comparison comparison, Comparison::create(options));
-  if (options.list) return list_runs(comparison, global, clock);
-  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, kCampaignFile, options.force));
-  SACCADE_TRY(const Campaign campaign, Campaign::open(out / kCampaignFile));
+class Compare final : public Command {
+ public:
+  explicit Compare(const Planners& planners) : planners_{&planners} {}
 
-  ProgressBar progress{global.quiet};
-  for (const std::string& choice : comparison.arm_choices()) progress.note("arm: " + choice);
-  SACCADE_TRY(const std::size_t now, run_missing(comparison, campaign, executor.threads(), progress));
-  SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(campaign));
-  const std::size_t done = runs.size();
-  const std::size_t planned =
-      comparison.scenes().size() * options.noises.size() * options.seeds.size() * options.strategies.size();
-  const ComparedRuns results = compared(std::move(runs), comparison.budget());
-  SACCADE_CHECK(write_comparison(out.path(), results));
-  const std::string page = comparison_report_html(comparison_report(comparison, results, planned));
-  SACCADE_CHECK(write_file_atomically(out / kReportFile, page));
-  SACCADE_CHECK(write_result("compare", global, executor, {{"total", clock.elapsed_ms()}},
-                             result_json(comparison, planned, now, results)));
-  if (!global.json_to_stdout()) {
-    print_comparison(std::cout, results);
-    std::cout << "runs      " << now << " done now, " << done - now << " found\n"
-              << "report    " << (options.out / kReportFile).string() << '\n';
+  [[nodiscard]] CommandInfo info() const override {
+    return {"compare", "compares strategies in scenes, with means and confidence intervals"};
   }
-  if (done == planned) return static_cast<int>(ExitStatus::done);
-  print_error("compare", "interrupted after " + std::to_string(done) + " of " + std::to_string(planned) +
-                             " runs; they are in " + options.out.string() + "; the same command goes on from there");
-  return interrupt_status();
-}
+
+  void declare(Options& options) override {
+    options.folder({.help = "folder for the results; runs that are in it already are not repeated",
+                    .marker = kCampaignFile,
+                    .required = true,
+                    .opened_by_command = true});
+    add_compare_options(options.group(), compare_, *planners_);
+  }
+
+  void check(const GlobalOptions& global) override { check_compare_options(compare_, global.planners); }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    compare_.out = context.out();
+    SACCADE_TRY(const Comparison comparison, Comparison::create(compare_));
+    if (compare_.list) return list_runs(comparison);
+    SACCADE_CHECK(context.open_folder());
+    const RunFolder& out = *context.folder();
+    SACCADE_TRY(const Campaign campaign, Campaign::open(out / kCampaignFile));
+
+    for (const std::string& choice : comparison.arm_choices()) context.bar().note("arm: " + choice);
+    if (const std::string mixed = mixed_camera(compare_.run); !mixed.empty()) context.bar().note(mixed);
+    SACCADE_TRY(const std::size_t now, run_missing(comparison, campaign, context.executor().threads(), context.bar()));
+    SACCADE_TRY(std::vector<CampaignEntry> runs, comparison.finished(campaign));
+    const std::size_t done = runs.size();
+    const std::size_t planned =
+        comparison.scenes().size() * compare_.noises.size() * compare_.seeds.size() * compare_.strategies.size();
+    const ComparedRuns results = compared(std::move(runs), comparison.budget());
+    SACCADE_CHECK(write_comparison(out.path(), results));
+    std::ostringstream text;
+    print_comparison(text, results);
+    text << "runs      " << now << " done now, " << done - now << " found\n"
+         << "report    " << (out / kReportFile).string() << '\n';
+    Outcome outcome{.result = result_json(comparison, planned, now, results), .text = text.str()};
+    SACCADE_CHECK(server::write_report(out / kReportFile, context.document(outcome.result),
+                                       comparison_details(comparison, results)));
+    if (done < planned) {
+      outcome.cut_short = "interrupted after " + std::to_string(done) + " of " + std::to_string(planned) +
+                          " runs; they are in " + context.out().string() + "; the same command goes on from there";
+    }
+    return outcome;
+  }
+
+ private:
+  const Planners* planners_;
+  CompareOptions compare_;
+};
 
 }  // namespace
 
 void add_compare(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("compare", "strategies in scenes, with means and confidence intervals");
-  auto options = std::make_shared<CompareOptions>();
-  add_compare_options(*command, *options, global.planners);
-  command->callback([options, &global, &action] {
-    check_compare_options(*options, global.planners);
-    action = [options, &global] { return run_compare(*options, global); };
-  });
+  add_command(program, global, action, std::make_shared<Compare>(global.planners));
 }
 
 }  // namespace saccade::cli

@@ -78,12 +78,12 @@ class Jobs {
  private:
   struct SceneTruth {
     std::mutex mutex;  ///< held while it is built
-    std::optional<Truth> truth;
+    std::optional<GroundTruth> truth;
     std::size_t chains_left{0};
   };
 
   void work() {
-    const Executor executor = Executor::with_threads(threads_of_job_);  // its own: nobody waits for another's loop
+    const Executor executor = Executor::with_threads(threads_of_job_);  // its own: no job waits for another's loop
     while (const std::optional<std::size_t> next = take()) {
       const Chain& chain = chains_[*next];
       try {
@@ -127,7 +127,7 @@ class Jobs {
       report(run);
     }
     const Stopwatch stopwatch;
-    SACCADE_TRY(const Truth truth, truth_of(run.scene, executor));
+    SACCADE_TRY(const GroundTruth truth, truth_of(run.scene, executor));
     CampaignEntry entry{comparison_.key_of(run), {}, 0.0, SACCADE_VERSION, {}};
     SACCADE_TRY(entry.run, run_simulated(truth, comparison_.config_of(run), executor, cancel_));
     entry.seconds = 1e-3 * stopwatch.elapsed_ms();
@@ -139,7 +139,7 @@ class Jobs {
     return {};
   }
 
-  /// Of a run that begins. The caller holds mutex_.
+  /// Reports that a run begins. The caller holds mutex_.
   void report(const PlannedRun& run) {
     std::string stage = comparison_.scenes()[run.scene].name + ", " + run.strategy.name;
     if (comparison_.options().noises.size() > 1) stage += ", " + run.noise;
@@ -153,11 +153,11 @@ class Jobs {
   }
 
   /// Built by the first run that needs it; the others wait.
-  Result<Truth> truth_of(std::size_t scene, const Executor& executor) {
+  Result<GroundTruth> truth_of(std::size_t scene, const Executor& executor) {
     SceneTruth& shared = truths_[scene];
     const std::lock_guard lock{shared.mutex};
     if (!shared.truth) {
-      SACCADE_TRY(shared.truth, Truth::build(comparison_.scenes()[scene].rays, kTruthSpacing_m, executor));
+      SACCADE_TRY(shared.truth, GroundTruth::build(comparison_.scenes()[scene].rays, kTruthSpacing_m, executor));
     }
     return *shared.truth;
   }

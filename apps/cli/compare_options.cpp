@@ -96,7 +96,7 @@ std::vector<std::string> noises_of(const CompareOptions& options) {
   if (options.noise_list.empty()) return {noise_key(options.run.run)};
   std::vector<std::string> noises = parts_of("--noise", options.noise_list);
   for (const std::string& noise : noises) {
-    if (!kNoiseNames.find(noise)) usage_error("--noise", "must be " + kNoiseNames.listed() + ", not '" + noise + "'");
+    if (!kNoiseNames.find(noise)) usage_error("--noise", unknown_word(noise, kNoiseNames.words));
   }
   return noises;
 }
@@ -137,9 +137,6 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
   add_value(command, "--strategies", options.strategy_list, "LIST",
             "strategies, separated by commas: " + planners.names());
   add_value(command, "--seeds", options.seed_list, "LIST", "seeds of noise and chance, each makes one run: 1-10,15");
-  add_value(command, "--out", options.out, "DIR",
-            "folder for the results; runs that are in it already are not repeated")
-      ->required();
   add_run_options(command, options.run, min_gain_by_strategy());
   add_foresight_options(command, options.run);
   add_value(command, "--noise", options.noise_list, "LIST",
@@ -147,27 +144,24 @@ void add_compare_options(CLI::App& command, CompareOptions& options, const Plann
       ->excludes("--sensor")
       ->excludes("--no-noise");
   add_value(command, "--robot", options.robot, "ROBOT",
-            "what carries the camera: free, which flies, comau, or a URDF file");
+            "carrier of the camera: free, which flies, comau, or a URDF file");
   add_reading_options(command, options.arm_reading);
-  add_value(command, "--mesh-scale", options.mesh.scale, "METRES", "metres per unit of mesh files");
-  add_choice(command, "--mesh-up", options.mesh.up, kUpAxisNames,
-             "the axis of mesh files that points up (default: z, but y for glTF)");
+  add_mesh_options(command, options.mesh);
   add_value(command, "--jobs", options.jobs, "N",
             "runs at once; they share --threads, and the figures do not depend on it (default: one per thread)")
       ->check(CLI::Range(1, 256));
   command.add_flag("--equal-views", options.equal_views,
-                   "every other strategy gets as many views as sphere took, not --max-views");
-  command.add_flag("--list", options.list, "say what would be run, and run nothing");
-  command.add_flag("--force", options.force, "write into a folder that holds other files");
+                   "give every other strategy as many views as sphere took, instead of --max-views");
+  command.add_flag("--list", options.list, "list the runs, and run nothing");
 }
 
 void check_compare_options(CompareOptions& options, const Planners& planners) {
   options.scenes = scenes_of(options.scene_list);
   options.strategies = strategies_of(options, planners);
-  options.noises = noises_of(options);
   options.seeds = parse_seeds(options.seed_list);
   require_ok(options.mesh.validate(), "--mesh-scale");
   check_run_options(options.run);
+  options.noises = noises_of(options);  // after the camera, whose noise is the default
   check_foresight(options.run, options.robot);
   check_arm_options(options.arm_reading);
   if (options.robot == "free") require_no_reading(options.arm_reading);

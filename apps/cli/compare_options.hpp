@@ -26,12 +26,11 @@ struct CompareOptions {
   RunOptions run;
   ArmOptions arm_reading;     ///< its robot is not used
   std::string robot{"free"};  ///< a built-in arm, a URDF, or free
-  MeshSceneConfig mesh;       ///< of scenes that are mesh files
+  MeshSceneConfig mesh;       ///< how mesh files become scenes
   std::size_t jobs{0};        ///< runs at once; 0: as many as threads
   /// The other strategies get as many views as sphere took with the same scene, noise and seed.
   bool equal_views{false};
   bool list{false};
-  bool force{false};
 
   // As they were given.
   std::string scene_list;

@@ -17,13 +17,6 @@ using nlohmann::json;
 
 constexpr std::string_view kAllScenes{"all scenes"};
 
-json estimate_json(const MeanEstimate& estimate) {
-  return {{"n", estimate.n},
-          {"mean", estimate.n == 0 ? json(nullptr) : json(estimate.mean)},
-          {"low", optional_json(estimate.low())},
-          {"high", optional_json(estimate.high())}};
-}
-
 /// Filled with blanks up to `width` characters; "±" is one of them.
 std::string padded(const std::string& text, std::size_t width) {
   const auto characters = static_cast<std::size_t>(
@@ -96,6 +89,13 @@ void print_gap(std::ostream& out, const StrategyGap& gap, const ComparedRuns& co
 }
 
 }  // namespace
+
+json estimate_json(const MeanEstimate& estimate) {
+  return {{"n", estimate.n},
+          {"mean", estimate.n == 0 ? json(nullptr) : json(estimate.mean)},
+          {"low", optional_json(estimate.low())},
+          {"high", optional_json(estimate.high())}};
+}
 
 ComparedRuns compared(std::vector<CampaignEntry> runs, std::size_t budget) {
   ComparedRuns compared{std::move(runs), budget, {}, {}};
@@ -190,7 +190,7 @@ void print_comparison(std::ostream& out, const ComparedRuns& compared) {
   for (const CampaignSummary& summary : compared.summaries) {
     label = std::max(label, label_of(summary.group, compared).size() + 2);
   }
-  // Of many scenes only what they come to together: the page and the tables have each.
+  // Many scenes: only their joint result is shown here; the page and the tables have each scene.
   constexpr std::size_t kMostLines{24};
   const bool brief = compared.summaries.size() > kMostLines;
   const auto is_told = [&](const CampaignGroup& group) { return !brief || !group.scene; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `saccade compare` makes of finished runs: CSV tables, curves, a summary for people and one for machines.
+// Output of `saccade compare` for finished runs: CSV tables, curves, a summary for people and one for machines.
 
 #include <filesystem>
 #include <nlohmann/json.hpp>
@@ -43,7 +43,7 @@ struct ComparedRuns {
 
 /// Mean and confidence band over the views, a curve per strategy and noise of the scene; nullopt: all scenes.
 [[nodiscard]] Plot coverage_plot(const ComparedRuns& compared, const std::optional<std::string>& scene);
-/// The same of the unknown voxels near the objects, as Fig. 3.17.
+/// As coverage_plot, for the unknown voxels near the objects (Fig. 3.17).
 [[nodiscard]] Plot unknown_plot(const ComparedRuns& compared, const std::optional<std::string>& scene);
 
 /// "coverage-SCENE.svg", where what is neither a letter nor a digit of ASCII, nor one of "._-", becomes a hyphen.
@@ -58,11 +58,14 @@ struct ComparedRuns {
 
 void print_comparison(std::ostream& out, const ComparedRuns& compared);
 
+/// {n, mean, low, high}; null where there is no value or no interval.
+[[nodiscard]] nlohmann::json estimate_json(const MeanEstimate& estimate);
+
 /// {summaries: […], gaps: […]}.
 [[nodiscard]] nlohmann::json comparison_json(const ComparedRuns& compared);
 
-/// "93.1 ± 0.8", as the figure is shown to people, without its unit, without a half width where there is none, and
-/// with "(7 of 10)" where only so many runs have it; empty: none has.
+/// Returns the figure as people read it: "93.1 ± 0.8", without its unit, and without a half width where there is none.
+/// Appends "(7 of 10)" where only 7 of 10 runs have the figure. Returns an empty text where no run has it.
 [[nodiscard]] std::string estimate_text(const RunFigure& figure, const MeanEstimate& estimate, std::size_t of);
 
 }  // namespace saccade::cli

@@ -1,15 +1,15 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The page of `saccade compare`: index.html in the folder of the results.
+// Details of the page of `saccade compare` beyond the result: curves, all paired differences, views run by run.
+
+#include <nlohmann/json.hpp>
 
 #include "compare_output.hpp"
 #include "comparison.hpp"
-#include "saccade/report/comparison_report.hpp"
 
 namespace saccade::cli {
 
-/// @param planned runs of the comparison, finished or not
-[[nodiscard]] ComparisonReport comparison_report(const Comparison& comparison, const ComparedRuns& compared,
-                                                 std::size_t planned);
+/// {measures, gaps, curves, marks, facts}, as web/src/report/compare.ts reads them.
+[[nodiscard]] nlohmann::json comparison_details(const Comparison& comparison, const ComparedRuns& compared);
 
 }  // namespace saccade::cli

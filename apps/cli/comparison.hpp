@@ -42,7 +42,7 @@ class Comparison {
   [[nodiscard]] std::size_t budget() const { return static_cast<std::size_t>(options_.run.run.exploration.max_views); }
   /// "free", or the arm's name.
   [[nodiscard]] std::string robot_name() const { return arm_ ? arm_->name() : "free"; }
-  /// What had to be chosen when the arm was read.
+  /// Choices that were made when the arm was read.
   [[nodiscard]] const std::vector<std::string>& arm_choices() const { return arm_choices_; }
   /// All runs in their order. campaign: nullptr for one that is not there yet.
   [[nodiscard]] Result<std::vector<PlannedRun>> plan(const Campaign* campaign) const;

@@ -18,8 +18,8 @@ enum class ExitStatus : int {
   no_result = 5,    ///< finished, but there is nothing to show for it
 };
 
-/// What a failure of the library means here. Errors of options are found before any work and are `usage`; what the
-/// library calls an invalid argument later came from a file.
+/// Maps an error of the library to an exit status. Wrong options are found before any work and are `usage`; an invalid
+/// argument that the library reports later came from a file.
 [[nodiscard]] ExitStatus exit_status_of(Errc code);
 
 /// "saccade COMMAND: where: what" as one line on standard error.

@@ -1,26 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade explore: a camera looks, fuses and decides where to look next, until a scene is known.
-#include <CLI/CLI.hpp>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
 #include <memory>
 #include <optional>
+#include <sstream>
 
-#include "exit_status.hpp"
+#include "context.hpp"
 #include "explore_report.hpp"
 #include "explore_run.hpp"
 #include "explore_show.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
 #include "saccade/core/angle.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
-#include "saccade/io/files/json_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/io/maps/ternary_export.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/map/mesh.hpp"
+#include "server/report_file.hpp"
 #include "server/show/arm_reading.hpp"
 #include "summary.hpp"
 
@@ -96,61 +92,48 @@ std::string tilts_text(const std::vector<ViewRecord>& views, const ExplorerConfi
          fixed(to_deg(config.oscillation_rad), 0) + "°, " + std::to_string(left_out) + " frames left out";
 }
 
-void print_views(const std::vector<ViewRecord>& views) {
-  for (std::size_t i = 0; i < views.size(); ++i) {
-    const ViewRecord& view = views[i];
-    const double gain = view.gain_predicted;
-    std::cout << "view " << std::setw(2) << i + 1 << "  gain " << std::setw(7)
-              << (std::isfinite(gain) ? fixed(gain, gain == std::floor(gain) ? 0 : 1) : "null");
-    if (std::isfinite(view.gain_observed)) {
-      std::cout << "  kept " << std::setw(3) << fixed(100.0 * view.gain_observed / gain, 0) << " %";
-    }
-    if (view.measures.coverage) std::cout << "  coverage " << 100.0 * *view.measures.coverage << " %";
-    std::cout << "  unknown " << view.measures.unknown_left << '\n';
-  }
-}
-
-void print_measures(const RunRecord& run, bool scanned, const Measures& final) {
+void write_measures(std::ostream& text, const RunRecord& run, bool scanned, const Measures& final) {
   if (final.coverage && scanned) {
-    std::cout << "coverage  " << 100.0 * run.scan.measures.coverage.value_or(0.0) << " % after the scan, "
-              << 100.0 * *final.coverage << " % at the end\n";
+    text << "coverage  " << 100.0 * run.scan.measures.coverage.value_or(0.0) << " % after the scan, "
+         << 100.0 * *final.coverage << " % at the end\n";
   }
   if (final.f_score) {
-    std::cout << "accuracy  " << 1e3 * final.accuracy_m.value_or(0.0) << " mm, Chamfer "
-              << 1e3 * final.chamfer_m.value_or(0.0) << " mm, F-score at 5 mm " << std::setprecision(3)
-              << *final.f_score << '\n';
+    text << "accuracy  " << 1e3 * final.accuracy_m.value_or(0.0) << " mm, Chamfer "
+         << 1e3 * final.chamfer_m.value_or(0.0) << " mm, F-score at 5 mm " << std::setprecision(3) << *final.f_score
+         << '\n';
   }
 }
 
-void print_summary(const ExploreOptions& options, const ExploreRun& explored, const Measures& final) {
+std::string summary_of(const ExploreOptions& options, const ExploreRun& explored, const Measures& final) {
+  std::ostringstream text;
   const RunRecord& run = explored.record();
-  std::cout << std::fixed << std::setprecision(1);
+  text << std::fixed << std::setprecision(1);
   if (options.dry_run) {
-    std::cout << "dry run   nothing has moved; only what the scene's file says is taken to be there\n"
-              << "scan      " << run.scan.views << " of " << run.scan.attempted << " poses can be taken\n";
+    text << "dry run   nothing has moved; only what the scene's file says is taken to be there\n"
+         << "scan      " << run.scan.views << " of " << run.scan.attempted << " poses can be taken\n";
     if (!run.views.empty()) {
       const Eigen::Vector3d p = run.views[0].T_world_camera.translation();
-      std::cout << "view      from (" << fixed(p.x(), 3) << ", " << fixed(p.y(), 3) << ", " << fixed(p.z(), 3)
-                << ") m, after " << fixed(run.views[0].motion_s, 1) << " s of motion\n";
+      text << "view      from (" << fixed(p.x(), 3) << ", " << fixed(p.y(), 3) << ", " << fixed(p.z(), 3)
+           << ") m, after " << fixed(run.views[0].motion_s, 1) << " s of motion\n";
     }
   }
   if (run.scan.refused.total() > 0) {
-    std::cout << "scan      " << run.scan.views << " taken, passed over: " << in_words(run.scan.refused) << '\n';
+    text << "scan      " << run.scan.views << " taken, passed over: " << in_words(run.scan.refused) << '\n';
   }
-  if (!options.dry_run) print_views(run.views);
-  if (!options.dry_run) print_measures(run, explored.scanned(), final);
+  if (!options.dry_run) write_measures(text, run, explored.scanned(), final);
   const std::string refused = refused_in(run.views);
-  if (!refused.empty()) std::cout << "refused   " << refused << '\n';
+  if (!refused.empty()) text << "refused   " << refused << '\n';
   const std::string tilts = tilts_text(run.views, options.run.exploration);
-  if (!tilts.empty()) std::cout << "tilts     " << tilts << '\n';
+  if (!tilts.empty()) text << "tilts     " << tilts << '\n';
   std::string at_end = in_words(run.refused_at_end);
   if (at_end.empty()) at_end = end_text(run, options.run.strategy.gain_unit);
-  std::cout << "time      " << phases_text(phases_to_json(run.views)) << '\n'
-            << "stopped   " << to_string(run.stopped_because) << (at_end.empty() ? "" : ": " + at_end) << '\n'
-            << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
+  text << "time      " << phases_text(phases_to_json(run.views)) << '\n'
+       << "stopped   " << to_string(run.stopped_because) << (at_end.empty() ? "" : ": " + at_end) << '\n'
+       << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
+  return text.str();
 }
 
-json result_json(const ExploreOptions& options, const ExploreCase& subject, const ExploreDevices& devices,
+json result_json(const ExploreOptions& options, const ExploreSetup& subject, const ExploreDevices& devices,
                  const ExploreRun& explored, const Measures& final) {
   const RunRecord& run = explored.record();
   const bool ended = run.stopped_because == StopReason::regions_done && !run.regions.empty();
@@ -159,6 +142,8 @@ json result_json(const ExploreOptions& options, const ExploreCase& subject, cons
           {"robot", options.robot_command.empty() ? options.robot : "external"},
           {"arm_reading", server::arm_reading_to_json(options.arm_reading.urdf)},
           {"strategy", options.run.strategy.name},
+          {"gain_unit", options.run.strategy.gain_unit},
+          {"min_gain", options.run.planner.min_gain},
           {"noise", options.run.noise && options.camera_command.empty()},
           {"sensor", options.camera_command.empty() ? json(to_string(options.run.sensor)) : json(nullptr)},
           {"camera", camera_to_json(devices.intrinsics())},
@@ -191,78 +176,113 @@ Status write_map(const RunFolder& out, const ExploreRun& run, const Box& workspa
   return written ? Status{} : Status{written.error()};
 }
 
-Result<int> run_explore(const ExploreOptions& options, const GlobalOptions& global) {
-  const Stopwatch total;
-  const Executor executor = global.executor();
-  ProgressBar progress{global.quiet};
-  SACCADE_CHECK(check_json_output(global));
-  if (options.cell_problem) return *options.cell_problem;
-  SACCADE_CHECK(check_journal(options));
-  SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(options, &progress));  // before anything is written
-  SACCADE_TRY(const RunFolder out,
-              RunFolder::open(options.out, {}, options.resume ? "journal.json" : "run.json", options.force));
-  SACCADE_CHECK(make_room(options, out));
-  std::optional<SavedExploration> saved;  // read first: a damaged one is said before the scene is prepared
-  if (options.resume) {
-    SACCADE_TRY(saved, load_journal(out.path(), executor));
+/// Why there is no result; empty where there is one.
+std::string without_result(const RunRecord& run) {
+  if (!run.views.empty() || run.stopped_because == StopReason::cancelled) return {};
+  if (run.scan.attempted > 0 && run.scan.views == 0) {
+    return "not one pose of the scan could be taken (" + in_words(run.scan.refused) +
+           "); give the scene or the cell poses that the robot reaches, under scan";
   }
-  SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
-  SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
-  SACCADE_TRY(const std::unique_ptr<ExploreRun> run,
-              ExploreRun::create(options, subject, devices, out, executor, progress));
-  if (saved) SACCADE_CHECK(run->resume(std::move(*saved)));
-
-  std::unique_ptr<ExploreShow> show;
-  if (options.show) {
-    SACCADE_TRY(show, ExploreShow::start(options.serve, global, subject.scene, out.path()));
-    if (options.resume) show->changed();
-  }
-  const auto recorded = [&show] {
-    if (show) show->changed();
-  };
-  const Status ended = run->run(recorded, show ? show->message_sink() : nullptr);
-  if (!ended) return kept(ended.error(), out);
-  const StopReason reason = run->record().stopped_because;
-  const Status written = write_map(out, *run, subject.scene.workspace, executor);
-  if (!written) return kept(written.error(), out);
-  const Measures final = run->measure_now();
-  const json result = result_json(options, subject, devices, *run, final);
-  progress.finish();
-  const json document = json_envelope("explore", global, executor, {{"total", total.elapsed_ms()}}, result);
-  SACCADE_CHECK(write_json(out / "run.json", document));
-  if (options.write_pictures) SACCADE_CHECK(write_report(out, run->record(), final, document, options));
-  SACCADE_CHECK(write_json_output(global, document));
-  if (!global.json_to_stdout()) print_summary(options, *run, final);
-  if (reason != StopReason::cancelled) {
-    SACCADE_CHECK(remove_journal(out.path()));
-    if (show) show->finish();
-    const ScanRecord& scan = run->record().scan;
-    if (run->record().views.empty() && scan.attempted > 0 && scan.views == 0) {
-      print_error("explore", "not one pose of the scan could be taken (" + in_words(scan.refused) +
-                                 "); give the scene or the cell poses that the robot reaches, under scan");
-      return static_cast<int>(ExitStatus::no_result);
-    }
-    if (!run->record().views.empty() || reason != StopReason::no_candidate) return static_cast<int>(ExitStatus::done);
-    print_error("explore", "not one view could be taken (" + in_words(run->record().refused_at_end) +
-                               "); does the robot stand where it should?");
-    return static_cast<int>(ExitStatus::no_result);
-  }
-  print_error("explore", "stopped after " + std::to_string(run->record().views.size()) +
-                             " views; what they gave is in " + options.out.string() +
-                             (has_journal(out.path()) ? "; to go on, add --resume" : ""));
-  return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
+  if (run.stopped_because != StopReason::no_candidate) return {};
+  return "not one view could be taken (" + in_words(run.refused_at_end) + "); does the robot stand where it should?";
 }
+
+class Explore final : public Command {
+ public:
+  explicit Explore(const Planners& planners) : planners_{&planners} {}
+
+  [[nodiscard]] CommandInfo info() const override {
+    return {"explore", "explores a scene with a camera, view by view"};
+  }
+
+  void declare(Options& options) override {
+    options.folder({.value = "RUN",
+                    .help = "folder for the results; made if it is not there",
+                    .document = "run.json",
+                    .required = true,
+                    .opened_by_command = true});
+    folder_ = &options.request();
+    add_explore_options(options.group(), explore_, *planners_);
+  }
+
+  void check(const GlobalOptions& global) override {
+    explore_.out = folder_->path;
+    explore_.force = folder_->force;
+    check_explore_options(explore_, global);
+  }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    if (explore_.cell_problem) return *explore_.cell_problem;
+    const std::string mixed = explore_.camera_command.empty() ? mixed_camera(explore_) : "";
+    if (!mixed.empty()) context.bar().note(mixed);
+    SACCADE_CHECK(check_journal(explore_));
+    SACCADE_TRY(const std::optional<ArmModel> arm, read_arm(explore_, &context.bar()));  // before anything is written
+    SACCADE_CHECK(context.open_folder(explore_.resume ? "journal.json" : "run.json"));
+    const RunFolder& out = *context.folder();
+    SACCADE_CHECK(make_room(explore_, out));
+    std::optional<SavedExploration> saved;  // read first: a damaged one is said before the scene is prepared
+    if (explore_.resume) {
+      SACCADE_TRY(saved, load_journal(out.path(), context.executor()));
+    }
+    SACCADE_TRY(ExploreSetup subject, open_case(explore_, context.executor()));
+    subject_.emplace(std::move(subject));
+    SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(explore_, *subject_, arm, context.executor()));
+    devices_.emplace(std::move(devices));
+    SACCADE_TRY(run_, ExploreRun::create(explore_, *subject_, *devices_, out, context.executor(), context.bar()));
+    if (saved) SACCADE_CHECK(run_->resume(std::move(*saved)));
+    if (explore_.show) {
+      SACCADE_TRY(show_,
+                  ExploreShow::start(explore_.serve, context.global(), subject_->scene, out.path(), context.bar()));
+      if (explore_.resume) show_->changed();
+    }
+    const auto recorded = [this] {
+      if (show_) show_->changed();
+    };
+    const Status ended = run_->run(recorded, show_ ? show_->message_sink() : nullptr);
+    if (!ended) return kept(ended.error(), out);
+    return outcome_of(context);
+  }
+
+ private:
+  /// Writes the map, run.json and the page. The journal is there until all of them are.
+  [[nodiscard]] Status write_results(Context& context, const json& result) const {
+    const RunFolder& out = *context.folder();
+    SACCADE_CHECK(write_map(out, *run_, subject_->scene.workspace, context.executor()));
+    SACCADE_TRY(const json document, context.write_document(result));
+    return explore_.write_pictures ? server::write_report(out / "report.html", document) : Status{};
+  }
+
+  /// Writes the results of the run, and returns its outcome.
+  [[nodiscard]] Result<Outcome> outcome_of(Context& context) {
+    const RunFolder& out = *context.folder();
+    const RunRecord& run = run_->record();
+    const Measures final = run_->measure_now();
+    Outcome outcome{.result = result_json(explore_, *subject_, *devices_, *run_, final),
+                    .text = summary_of(explore_, *run_, final)};
+    if (const Status written = write_results(context, outcome.result); !written) return kept(written.error(), out);
+    if (run.stopped_because == StopReason::cancelled) {
+      outcome.cut_short = "stopped after " + std::to_string(run.views.size()) + " views; what they gave is in " +
+                          context.out().string() + (has_journal(out.path()) ? "; to go on, add --resume" : "");
+      return outcome;
+    }
+    SACCADE_CHECK(remove_journal(out.path()));
+    if (show_) outcome.afterwards = [this] { show_->finish(); };
+    return std::move(outcome).empty_if(!without_result(run).empty(), without_result(run));
+  }
+
+  const Planners* planners_;
+  const FolderRequest* folder_{nullptr};
+  ExploreOptions explore_;
+  std::optional<ExploreSetup> subject_;
+  std::optional<ExploreDevices> devices_;
+  std::unique_ptr<ExploreRun> run_;
+  std::unique_ptr<ExploreShow> show_;  // last: it reads what the others write
+};
 
 }  // namespace
 
 void add_explore(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("explore", "a camera explores a scene, view by view");
-  auto options = std::make_shared<ExploreOptions>();
-  add_explore_options(*command, *options, global.planners);
-  command->callback([options, &global, &action] {
-    check_explore_options(*options, global);
-    action = [options, &global] { return run_explore(*options, global); };
-  });
+  add_command(program, global, action, std::make_shared<Explore>(global.planners));
 }
 
 }  // namespace saccade::cli

@@ -15,7 +15,7 @@ namespace {
 
 bool same_box(const Box& a, const Box& b) { return a.min == b.min && a.max == b.max; }
 
-Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const ExploreCase& subject,
+Result<std::unique_ptr<Robot>> open_robot(const ExploreOptions& options, const ExploreSetup& subject,
                                           const std::optional<ArmModel>& arm) {
   if (!options.robot_command.empty() && options.dry_run) return std::unique_ptr<Robot>{std::make_unique<FreeRobot>()};
   if (!options.robot_command.empty()) {
@@ -62,9 +62,9 @@ Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options, Progress
   return std::optional{std::move(read->arm)};
 }
 
-Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& executor) {
-  SACCADE_TRY(Scene scene, find_scene(options.scene));
-  ExploreCase subject{std::move(scene), std::nullopt, std::nullopt};
+Result<ExploreSetup> open_case(const ExploreOptions& options, const Executor& executor) {
+  SACCADE_TRY(Scene scene, find_scene(options.scene, options.mesh));
+  ExploreSetup subject{std::move(scene), std::nullopt, std::nullopt};
   if (!options.camera_command.empty() && subject.scene.objects.empty()) return subject;
   SACCADE_TRY(subject.rays, RayScene::build(subject.scene));
   const bool has_objects = std::any_of(subject.scene.objects.begin(), subject.scene.objects.end(),
@@ -76,7 +76,7 @@ Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& exe
                  subject.scene.name};
   }
   if (options.knows_truth() && has_objects) {
-    SACCADE_TRY(subject.truth, Truth::build(*subject.rays, kTruthSpacing_m, executor));
+    SACCADE_TRY(subject.truth, GroundTruth::build(*subject.rays, kTruthSpacing_m, executor));
   }
   return subject;
 }
@@ -96,13 +96,13 @@ Result<TsdfMap> map_to_begin_with(const ExploreOptions& options, const Scene& sc
   return TsdfMap{std::move(saved)};
 }
 
-Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const ExploreCase& subject,
+Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const ExploreSetup& subject,
                                             const std::optional<ArmModel>& arm, const Executor& executor) {
   SACCADE_TRY(std::unique_ptr<Robot> robot, open_robot(options, subject, arm));
   const ArmModel* const own = arm ? &*arm : nullptr;
   if (options.camera_command.empty()) {
     SACCADE_TRY(SimulatedCamera camera, simulated_camera(*subject.rays, options.run));
-    SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::move(camera), std::move(robot), own, executor));
+    SACCADE_TRY(MaskedCamera carried, MaskedCamera::create(std::move(camera), std::move(robot), own, executor));
     return ExploreDevices{std::move(carried)};
   }
   SACCADE_TRY(ProgramCamera started,
@@ -112,7 +112,7 @@ Result<ExploreDevices> ExploreDevices::open(const ExploreOptions& options, const
     SACCADE_TRY(camera,
                 rehearsal_camera(std::move(camera), subject.scene, options.cell.fixtures, standing_pose(*robot)));
   }
-  SACCADE_TRY(CarriedCamera carried, CarriedCamera::create(std::move(camera), std::move(robot), own, executor));
+  SACCADE_TRY(MaskedCamera carried, MaskedCamera::create(std::move(camera), std::move(robot), own, executor));
   return ExploreDevices{std::move(carried)};
 }
 

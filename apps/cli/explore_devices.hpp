@@ -10,15 +10,15 @@
 #include "saccade/arm/urdf.hpp"
 #include "saccade/devices/programs.hpp"
 #include "saccade/map/tsdf_map.hpp"
-#include "saccade/trial/carried_camera.hpp"
+#include "saccade/trial/masked_camera.hpp"
 
 namespace saccade::cli {
 
-/// What an exploration works on; a real camera, and a scene of supports alone, have no truth to compare with.
-struct ExploreCase {
+/// Scene that an exploration works on; a real camera, and a scene of supports alone, have no ground truth.
+struct ExploreSetup {
   Scene scene;
-  std::optional<RayScene> rays;  ///< of a scene with objects
-  std::optional<Truth> truth;    ///< for a simulated camera
+  std::optional<RayScene> rays;      ///< where the scene has objects
+  std::optional<GroundTruth> truth;  ///< for a simulated camera
 };
 
 /// Reads the arm that the options name, with its speeds as they say; none where something else carries the camera.
@@ -27,7 +27,7 @@ struct ExploreCase {
 /// Returns the arm alone. `bar` shows what had to be chosen; it may be nullptr.
 [[nodiscard]] Result<std::optional<ArmModel>> read_arm(const ExploreOptions& options, ProgressBar* bar);
 /// The built-in scene or file.
-[[nodiscard]] Result<ExploreCase> open_case(const ExploreOptions& options, const Executor& executor);
+[[nodiscard]] Result<ExploreSetup> open_case(const ExploreOptions& options, const Executor& executor);
 
 /// The map that the options name, or one in which nothing is known, in the scene's workspace. invalid_argument for a
 /// map with another voxel size or workspace; errors of load_map.
@@ -37,16 +37,16 @@ struct ExploreCase {
 class ExploreDevices {
  public:
   /// Starts what has to be started. Errors: those of the camera and the robot.
-  [[nodiscard]] static Result<ExploreDevices> open(const ExploreOptions& options, const ExploreCase& subject,
+  [[nodiscard]] static Result<ExploreDevices> open(const ExploreOptions& options, const ExploreSetup& subject,
                                                    const std::optional<ArmModel>& arm, const Executor& executor);
 
   /// Takes frames without the arm where that stands in its own picture.
-  [[nodiscard]] CarriedCamera& camera() { return camera_; }
+  [[nodiscard]] MaskedCamera& camera() { return camera_; }
   [[nodiscard]] const PinholeCamera& intrinsics() const { return camera_.intrinsics(); }
   [[nodiscard]] Robot& robot() { return camera_.robot(); }
   /// The simulated arm; nullptr: something else carries the camera.
   [[nodiscard]] const PlannedArm* simulated_arm() const { return dynamic_cast<const PlannedArm*>(&camera_.robot()); }
-  /// What a simulated camera sees from now on; the fixtures that an arm keeps clear of stay. Errors: those of
+  /// Changes the scene that a simulated camera sees; the fixtures that an arm keeps clear of stay. Errors: those of
   /// simulated_camera.
   [[nodiscard]] Status change_scene(const RayScene& scene, const SimulatedRunConfig& config);
   /// For a dry run: fuses what an arm's camera sees without moving. false: where the camera is, is not known. Errors:
@@ -60,9 +60,9 @@ class ExploreDevices {
   [[nodiscard]] Status place_arm(const Configuration& q);
 
  private:
-  explicit ExploreDevices(CarriedCamera camera) : camera_{std::move(camera)} {}
+  explicit ExploreDevices(MaskedCamera camera) : camera_{std::move(camera)} {}
 
-  CarriedCamera camera_;
+  MaskedCamera camera_;
 };
 
 }  // namespace saccade::cli

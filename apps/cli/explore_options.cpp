@@ -6,6 +6,7 @@
 
 #include "add_value.hpp"
 #include "cell_options.hpp"
+#include "length_options.hpp"
 #include "robot_options.hpp"
 
 namespace saccade::cli {
@@ -23,19 +24,22 @@ std::string strategy_help(const Planners& planners) {
 void add_arm_options(CLI::App& command, ExploreOptions& options) {
   add_reading_options(command, options.arm_reading);
   add_value(command, "--speed", options.speed, "SHARE", "share of the speeds that the arm's URDF allows");
-  add_value(command, "--joints-command", options.joints_command, "COMMAND",
-            "a program that moves the arm's joints along trajectories that are planned here (docs/processes.md)");
+  add_value(
+      command, "--joints-command", options.joints_command, "COMMAND",
+      "a program that moves the arm's joints along trajectories that are planned here (docs/guides/processes.md)");
   add_value(command, "--fixture", options.fixtures, "X0,Y0,Z0,X1,Y1,Z1",
             "a solid box that the arm keeps clear of, besides those of the scene; may be repeated");
   add_value(command, "--free", options.free, "X0,Y0,Z0,X1,Y1,Z1",
-            "a box that is known to be empty in the beginning; may be repeated. What the arm sweeps in its initial "
-            "scan is taken to be empty anyway");
+            "a box that is known to be empty at the beginning; may be repeated. The volume that the arm sweeps in its "
+            "initial scan counts as empty anyway");
   add_value(command, "--obstacle-cell", options.arm.obstacles.cell_size_m, "METRES",
-            "edge of the cells in which the arm plans, metres; one is an obstacle if any voxel in it is");
+            "edge of the cells in which the arm plans, metres; a cell is an obstacle if any voxel in it is");
   command.add_flag("--unknown-is-free{false}", options.arm.obstacles.unknown_is_obstacle,
                    "let the arm move through space that was never seen");
-  add_value(command, "--planner", options.arm.planner.planner, "NAME", "OMPL's name of the planner that finds paths")
-      ->check(CLI::IsMember(planner_names()));
+  static const std::vector<std::string> planners = planner_names();  // the words outlive the parsing
+  const auto take = [&options](const std::string& name) { options.arm.planner.planner = name; };
+  add_words(command, "--planner", std::vector<std::string_view>{planners.begin(), planners.end()}, take,
+            "planner of paths, by OMPL's name", options.arm.planner.planner);
 }
 
 void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
@@ -43,6 +47,7 @@ void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
   if (!options.has_arm()) require_no_reading(options.arm_reading);
   for (const std::string& text : options.fixtures) {
     options.arm.obstacles.fixtures.push_back(parse_box("--fixture", text));
+    require_near(options.arm.obstacles.fixtures.back(), "--fixture");
   }
   options.arm.planner.seed = global.seed;
   options.arm.ik.numeric.restarts = kNumericRestarts;
@@ -50,9 +55,9 @@ void check_arm_options(ExploreOptions& options, const GlobalOptions& global) {
     usage_error("--joints-command", "needs an arm that plans: give --robot, a URDF");
   if (options.speed && !(*options.speed > 0.0 && *options.speed <= 1.0))
     usage_error("--speed", "is a share of the arm's own speed: above 0, at most 1");
-  require_positive(options.arm.obstacles.cell_size_m, "--obstacle-cell");
+  require_length(options.arm.obstacles.cell_size_m, "--obstacle-cell");
   require_ok(options.arm.validate(), "--obstacle-cell, --fixture");
-  static_cast<void>(options.free_boxes());
+  for (const Box& box : options.free_boxes()) require_near(box, "--free");
 }
 
 std::vector<Box> ExploreOptions::free_boxes() const {
@@ -63,25 +68,22 @@ std::vector<Box> ExploreOptions::free_boxes() const {
 
 void add_device_options(CLI::App& command, ExploreOptions& options) {
   add_value(command, "--robot", options.robot, "ROBOT",
-            "what carries the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
+            "carrier of the camera: comau, a URDF file, or free, which flies; comau by default, but free with "
             "--camera-command");
   add_value(command, "--robot-command", options.robot_command, "COMMAND",
-            "a program that moves a robot, which plans for itself (docs/processes.md)")
+            "a program that moves a robot, which plans for itself (docs/guides/processes.md)")
       ->excludes("--robot");
-  add_value(command, "--camera-command", options.camera_command, "COMMAND",
-            "a program that has a depth camera (docs/processes.md); there is no truth to compare with then");
+  add_value(
+      command, "--camera-command", options.camera_command, "COMMAND",
+      "a program that has a depth camera (docs/guides/processes.md); then there is no ground truth to compare with");
   add_value(command, "--process-timeout", options.process_timeout_s, "SECONDS",
-            "seconds after which such a program that does not answer is given up");
-  command
-      .add_option("--tracking", options.tracking,
-                  "where the poses of frames come from: forced, from the robot; hint, ICP that begins there, or the "
-                  "robot where ICP refuses; icp, ICP alone, and nothing where it refuses (default: forced)")
-      ->transform(CLI::CheckedTransformer(std::map<std::string, TrackingMode>{
-          {"forced", TrackingMode::forced}, {"hint", TrackingMode::hint}, {"icp", TrackingMode::icp}}));
-  command.add_flag(
-      "--truth", options.with_truth,
-      "with a camera's program: it sees the scene's objects, as in a simulated cell; coverage is measured");
-  add_value(command, "--map", options.map, "FILE", "a saved map (.sacmap) to go on from, in place of an unknown one");
+            "seconds after which a program that does not answer is given up");
+  add_choice(command, "--tracking", options.tracking, kTrackingModeNames,
+             "source of the poses of frames: forced, the robot; hint, ICP that begins at the robot's pose, or that "
+             "pose where ICP fails; icp, ICP alone, and frames where it fails are left out (default: forced)");
+  command.add_flag("--truth", options.with_truth,
+                   "the camera's program simulates the scene's objects, as in a simulated cell; coverage is measured");
+  add_value(command, "--map", options.map, "FILE", "start from a saved map (.sacmap) instead of an unknown one");
 }
 
 void add_dry_run_option(CLI::App& command, ExploreOptions& options) {
@@ -105,9 +107,10 @@ void limit_dry_run(ExploreOptions& options) {
 
 void add_explore_options(CLI::App& command, ExploreOptions& options, const Planners& planners) {
   add_value(command, "scene", options.scene, "SCENE",
-            "name of a built-in scene, clutter:SEED, or a YAML file of a scene or a cell (docs/cell.md)")
+            "name of a built-in scene, clutter:SEED, a YAML file of a scene or a cell (docs/reference/cell.md), or a "
+            "mesh file, which is put on a table")
       ->required();
-  add_value(command, "--out", options.out, "RUN", "folder for the results; made if it is not there")->required();
+  add_mesh_options(command, options.mesh);
   add_value(command, "--strategy", options.strategy, "NAME", strategy_help(planners));
   add_saliency_options(command, options.saliency);
   add_run_options(command, options, min_gain_by_strategy());
@@ -123,12 +126,12 @@ void add_explore_options(CLI::App& command, ExploreOptions& options, const Plann
   command.add_flag("--show", options.show, "show the run in the browser while it goes on, and after it until Ctrl-C");
   add_serve_options(command, options.serve);
   add_message_options(command, options.messages);
-  command.add_flag("--force", options.force, "write into a folder that holds other files or an interrupted run");
 }
 
 void check_explore_options(ExploreOptions& options, const GlobalOptions& global) {
   if (options.resume && options.force) usage_error("--resume", "goes on with a run, --force starts it anew: not both");
   if (!options.show && !options.serve.given.empty()) usage_error(options.serve.given, "is for --show");
+  require_ok(options.mesh.validate(), "--mesh-scale");
   check_device_options(options);
   check_run_options(options);
   // No surface is expected of an empty bench: what is unknown is looked at instead.

@@ -19,6 +19,7 @@ namespace saccade::cli {
 
 struct ExploreOptions : RunOptions {
   std::string scene;
+  MeshSceneConfig mesh;  ///< how a mesh file becomes a scene
   std::filesystem::path out;
   ArmOptions arm_reading;  ///< its robot is not used
   std::string robot;       ///< a built-in arm, a URDF, or free; empty: an arm, or free with a camera of one's own
@@ -47,7 +48,7 @@ struct ExploreOptions : RunOptions {
   bool show{false};
   ServeOptions serve;
 
-  /// What each view was chosen from, and the map after it, for saccade show.
+  /// Whether the run keeps the candidates of each view and the map after it, for saccade show.
   [[nodiscard]] bool keeps_views() const { return write_pictures || show; }
   [[nodiscard]] bool has_arm() const { return robot_command.empty() && robot != "free"; }
   bool with_truth{false};  ///< the scene's objects are what a program's camera sees

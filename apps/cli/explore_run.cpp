@@ -1,13 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "explore_run.hpp"
 
-#include <poll.h>
-#include <unistd.h>
-
 #include <algorithm>
 #include <cmath>
-#include <iomanip>
-#include <iostream>
 
 #include "explore_report.hpp"
 #include "interrupt.hpp"
@@ -18,7 +13,9 @@
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/ray_scene.hpp"
 #include "server/show/arm_reading.hpp"
+#include "summary.hpp"
 #include "view_json.hpp"
+#include "view_lines.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -28,7 +25,7 @@ using nlohmann::json;
 constexpr const char* kProgram{"a program"};  ///< its command may be mended before a run goes on
 
 /// All that decides how a run goes on.
-json settings_of(const ExploreOptions& options, const ExploreCase& subject, const PinholeCamera& camera) {
+json settings_of(const ExploreOptions& options, const ExploreSetup& subject, const PinholeCamera& camera) {
   const SimulatedRunConfig& run = options.run;
   json settings{{"scene", subject.scene.name},
                 {"scene_hash", subject.rays ? scene_hash(*subject.rays) : ""},
@@ -76,24 +73,22 @@ PinholeCamera gain_sensor(const SimulatedRunConfig& run, const PinholeCamera& ca
                             run.exploration.oscillation_rad);
 }
 
-/// One line from the terminal; nullopt at its end, or when the user interrupts.
-std::optional<std::string> read_answer() {
-  constexpr int kPoll_ms{100};
-  std::string line;
-  while (!interrupted()) {
-    pollfd input{STDIN_FILENO, POLLIN, 0};
-    if (::poll(&input, 1, kPoll_ms) <= 0) continue;
-    char c = 0;
-    if (::read(STDIN_FILENO, &c, 1) != 1) return std::nullopt;
-    if (c == '\n') return line;
-    line.push_back(c);
-  }
-  return std::nullopt;
+/// Asks for a move, with what a person needs to make it by hand.
+std::string question_of(const RankedView& view) {
+  const Eigen::Vector3d p = view.T_world_camera.translation();
+  const Eigen::Vector3d axis = view.T_world_camera.linear().col(2);
+  // The angle that the image's horizontal makes with the world's.
+  const double roll_rad = std::atan2(view.T_world_camera.linear()(2, 0), -view.T_world_camera.linear()(2, 1));
+  std::string question = "move the camera to (" + fixed(p.x(), 3) + ", " + fixed(p.y(), 3) + ", " + fixed(p.z(), 3) +
+                         ") m, looking along (" + fixed(axis.x(), 3) + ", " + fixed(axis.y(), 3) + ", " +
+                         fixed(axis.z(), 3) + "), rolled " + fixed(to_deg(roll_rad), 0) + " degrees";
+  if (view.gain > 0.0) question += ", gain " + fixed(view.gain, 0);
+  return question + "? [y]es, [s]kip, [q]uit: ";
 }
 
 }  // namespace
 
-ExploreRun::ExploreRun(const ExploreOptions& options, const ExploreCase& subject, ExploreDevices& devices,
+ExploreRun::ExploreRun(const ExploreOptions& options, const ExploreSetup& subject, ExploreDevices& devices,
                        const RunFolder& out, const Executor& executor, ProgressBar& progress, TsdfMap map)
     : options_{options},
       subject_{subject},
@@ -107,7 +102,7 @@ ExploreRun::ExploreRun(const ExploreOptions& options, const ExploreCase& subject
   if (subject.truth) truth_meter_.emplace(*subject.truth, executor);
 }
 
-Result<std::unique_ptr<ExploreRun>> ExploreRun::create(const ExploreOptions& options, const ExploreCase& subject,
+Result<std::unique_ptr<ExploreRun>> ExploreRun::create(const ExploreOptions& options, const ExploreSetup& subject,
                                                        ExploreDevices& devices, const RunFolder& out,
                                                        const Executor& executor, ProgressBar& progress) {
   SACCADE_TRY(TsdfMap map, map_to_begin_with(options, subject.scene, executor));
@@ -138,7 +133,7 @@ Status ExploreRun::resume(SavedExploration saved) {
 
 Status ExploreRun::run(const std::function<void()>& recorded, std::unique_ptr<messages::MessageSink> look_on) {
   recorded_ = recorded;
-  SACCADE_TRY(messages_, run_messages(options_.messages, devices_.intrinsics()));
+  SACCADE_TRY(messages_, run_messages(options_.messages, devices_.intrinsics(), progress_));
   if (look_on) messages_->add(std::move(look_on));
   const Status ended = run_to_end();
   messages_->finish();
@@ -186,18 +181,9 @@ Status ExploreRun::run_to_end() {
 Approval ExploreRun::ask(const RankedView& view) {
   if (interrupted()) return Approval::stop;
   if (!options_.step) return Approval::go;
-  progress_.finish();
-  const Eigen::Vector3d p = view.T_world_camera.translation();
-  const Eigen::Vector3d axis = view.T_world_camera.linear().col(2);
-  // The angle that the image's horizontal makes with the world's.
-  const double roll_rad = std::atan2(view.T_world_camera.linear()(2, 0), -view.T_world_camera.linear()(2, 1));
+  const std::string question = question_of(view);
   for (;;) {
-    std::cerr << std::fixed << std::setprecision(3) << "move the camera to (" << p.x() << ", " << p.y() << ", " << p.z()
-              << ") m, looking along (" << axis.x() << ", " << axis.y() << ", " << axis.z() << "), rolled "
-              << std::setprecision(0) << to_deg(roll_rad) << " degrees";
-    if (view.gain > 0.0) std::cerr << ", gain " << view.gain;
-    std::cerr << "? [y]es, [s]kip, [q]uit: " << std::flush;
-    const std::optional<std::string> answer = read_answer();
+    const std::optional<std::string> answer = progress_.ask(question);
     if (!answer || *answer == "q") return Approval::stop;
     if (*answer == "y") return Approval::go;
     if (*answer == "s") return Approval::skip;
@@ -233,6 +219,7 @@ Status ExploreRun::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<c
   if (truth_meter_) SACCADE_CHECK(truth_meter_->viewed(view, map, frames));
   if (!truth_meter_) view.measures = measure_now();
   const std::size_t number = journal_.run.views.size() + 1;
+  progress_.say(view_line(number, view, options_.run.strategy.gain_unit));
   progress_.update("exploring", number, static_cast<std::size_t>(options_.run.exploration.max_views));
   if (options_.write_pictures) SACCADE_CHECK(draw(view, frames));
   if (options_.keeps_views()) {

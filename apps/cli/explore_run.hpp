@@ -15,7 +15,7 @@ class ExploreRun final : private Recorder {
  public:
   /// A run that has not begun. The arguments outlive it. Errors: those of TsdfMap::create.
   [[nodiscard]] static Result<std::unique_ptr<ExploreRun>> create(const ExploreOptions& options,
-                                                                  const ExploreCase& subject, ExploreDevices& devices,
+                                                                  const ExploreSetup& subject, ExploreDevices& devices,
                                                                   const RunFolder& out, const Executor& executor,
                                                                   ProgressBar& progress);
   /// Takes up what an earlier run left in the folder. invalid_argument when that ran with other settings.
@@ -33,7 +33,7 @@ class ExploreRun final : private Recorder {
   [[nodiscard]] Measures measure_now() const;
 
  private:
-  ExploreRun(const ExploreOptions& options, const ExploreCase& subject, ExploreDevices& devices, const RunFolder& out,
+  ExploreRun(const ExploreOptions& options, const ExploreSetup& subject, ExploreDevices& devices, const RunFolder& out,
              const Executor& executor, ProgressBar& progress, TsdfMap map);
   [[nodiscard]] Status run_to_end();
   [[nodiscard]] Approval ask(const RankedView& view);
@@ -44,7 +44,7 @@ class ExploreRun final : private Recorder {
   [[nodiscard]] Status draw(const ViewRecord& view, std::span<const Frame> frames) const;
 
   const ExploreOptions& options_;
-  const ExploreCase& subject_;
+  const ExploreSetup& subject_;
   ExploreDevices& devices_;
   const RunFolder& out_;
   Executor executor_;
@@ -52,7 +52,7 @@ class ExploreRun final : private Recorder {
   TsdfMap map_;
   TsdfSnapshot before_;  // the map as it was before the view that is being taken
   ExploreJournal journal_;
-  std::optional<TruthMeter> truth_meter_;  // of a scene with a truth
+  std::optional<TruthMeter> truth_meter_;  // where the scene has a truth
   std::function<void()> recorded_;
   std::unique_ptr<RunMessages> messages_;
 };

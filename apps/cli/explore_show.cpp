@@ -2,14 +2,13 @@
 #include "explore_show.hpp"
 
 #include <chrono>
-#include <iostream>
 
 #include "interrupt.hpp"
 
 namespace saccade::cli {
 namespace {
 
-/// What there is to show before the scan is done.
+/// Returns the document that is shown before the scan is done.
 server::SceneDocument first_document(const Scene& scene) {
   server::SceneDocument document;
   document.title = "Exploration of " + scene.name;
@@ -24,21 +23,21 @@ server::SceneDocument first_document(const Scene& scene) {
 }  // namespace
 
 Result<std::unique_ptr<ExploreShow>> ExploreShow::start(const ServeOptions& options, const GlobalOptions& global,
-                                                        const Scene& scene, const std::filesystem::path& folder) {
+                                                        const Scene& scene, const std::filesystem::path& folder,
+                                                        ProgressBar& bar) {
   auto foxglove = std::make_shared<server::FoxgloveHub>();
   SACCADE_TRY(std::unique_ptr<server::HttpServer> server, listen(options, foxglove));
   std::unique_ptr<ExploreShow> show{
-      new ExploreShow{std::move(server), std::move(foxglove), first_document(scene), folder}};
-  show->quiet_ = global.quiet;
+      new ExploreShow{std::move(server), std::move(foxglove), first_document(scene), folder, bar}};
   show->server_->serve(*show->service_);
-  std::cerr << "Foxglove connects to " << show->server_->foxglove_url() << std::endl;
+  announce_foxglove(*show->server_);
   show->page_ = announce(options, global, *show->server_);
   return show;
 }
 
 ExploreShow::ExploreShow(std::unique_ptr<server::HttpServer> server, std::shared_ptr<server::FoxgloveHub> foxglove,
-                         const server::SceneDocument& document, const std::filesystem::path& folder)
-    : server_{std::move(server)}, foxglove_{std::move(foxglove)}, reader_{folder, Executor{}} {
+                         const server::SceneDocument& document, const std::filesystem::path& folder, ProgressBar& bar)
+    : server_{std::move(server)}, foxglove_{std::move(foxglove)}, reader_{folder, Executor{}}, bar_{bar} {
   server::HttpServer* const serving = server_.get();
   const auto post = [serving](std::function<void()> work) { serving->post(std::move(work)); };
   service_ = std::make_unique<server::ViewerService>(*server_, server::ViewerConfig{SACCADE_VERSION, post}, document);
@@ -85,7 +84,7 @@ void ExploreShow::read_and_show() {
 void ExploreShow::finish() {
   constexpr std::chrono::milliseconds kPoll{100};
   wake(Wanted::end);
-  if (!quiet_) std::cerr << "the run is over; it is shown until Ctrl-C" << std::endl;
+  bar_.note("the run is over; it is shown until Ctrl-C");
   while (!interrupted()) std::this_thread::sleep_for(kPoll);
 }
 

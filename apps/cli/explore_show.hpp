@@ -16,14 +16,15 @@
 
 namespace saccade::cli {
 
-/// Reads the run's folder on a thread of its own whenever the run says that there is something new: the run waits for
-/// nobody.
+/// Reads the run's folder on a thread of its own whenever the run says that there is something new; the run does not
+/// wait for it.
 class ExploreShow {
  public:
-  /// Serves the page and says where it is. Errors of listen().
+  /// Serves the page and says where it is. `bar` outlives finish(). Errors: those of listen().
   [[nodiscard]] static Result<std::unique_ptr<ExploreShow>> start(const ServeOptions& options,
                                                                   const GlobalOptions& global, const Scene& scene,
-                                                                  const std::filesystem::path& folder);
+                                                                  const std::filesystem::path& folder,
+                                                                  ProgressBar& bar);
   ~ExploreShow();
 
   /// Takes the run's messages, for Foxglove.
@@ -36,7 +37,7 @@ class ExploreShow {
  private:
   enum class Wanted : std::uint8_t { nothing, live, end, stop };
   ExploreShow(std::unique_ptr<server::HttpServer> server, std::shared_ptr<server::FoxgloveHub> foxglove,
-              const server::SceneDocument& document, const std::filesystem::path& folder);
+              const server::SceneDocument& document, const std::filesystem::path& folder, ProgressBar& bar);
   void wake(Wanted wanted);
   void read_and_show();
 
@@ -45,10 +46,10 @@ class ExploreShow {
   std::shared_ptr<server::FoxgloveHub> foxglove_;
   std::unique_ptr<server::ViewerService> service_;
   server::RunReader reader_;
+  ProgressBar& bar_;
   std::mutex mutex_;
   std::condition_variable woken_;
   Wanted wanted_{Wanted::nothing};
-  bool quiet_{false};
   std::thread thread_;
 };
 

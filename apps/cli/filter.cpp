@@ -1,28 +1,22 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade filter: removes the shadow and veil points of a Kinect v2 from depth images, and shows which.
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <array>
-#include <memory>
 
-#include "exit_status.hpp"
+#include "context.hpp"
 #include "filter.hpp"
-#include "interrupt.hpp"
-#include "progress_bar.hpp"
-#include "run_folder.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/depth_picture.hpp"
 #include "saccade/sensor/mask.hpp"
+#include "server/report_file.hpp"
 
 namespace saccade::cli {
 namespace {
 
 namespace fs = std::filesystem;
 
-constexpr std::string_view kFilterFile{"filter.json"};
+constexpr std::string_view kReportFileName{"report.html"};
 constexpr std::string_view kPictureFolder{"pictures"};
 
 struct InputFrame {
@@ -177,13 +171,12 @@ Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const Fil
   FilterResult result;
   for (std::size_t i = 0; i < frames.size() && !interrupted(); ++i) {
     bar.update("filtering", i, frames.size());
-    const bool with_picture = result.frames.size() < options.pictures;
+    const bool with_picture = options.write_pictures && result.frames.size() < options.pictures;
     auto filtered = filter_frame(frames[i].file, options, out, executor, with_picture);
     if (filtered) {
       result.frames.push_back(std::move(*filtered));
     } else if (is_left_out(frames[i], filtered.error())) {
-      // Images of another kind, such as the colours beside the depth, are no news.
-      if (filtered.error().code != Errc::unsupported) bar.note("left out: " + filtered.error().to_string());
+      if (filtered.error().code == Errc::unsupported) ++result.other_kinds;  // such as the colours beside the depth
       result.left_out.push_back(filtered.error());
     } else {
       return filtered.error();
@@ -192,10 +185,10 @@ Result<FilterResult> filter_all(const std::vector<InputFrame>& frames, const Fil
   return result;
 }
 
-/// What an earlier run left in the folder, by its filter.json: a new one leaves nothing of it.
+/// Removes the files of an earlier run from the folder, as its filter.json lists them.
 Status remove_earlier(const RunFolder& out) {
   constexpr std::uintmax_t kMostBytes{std::uintmax_t{256} << 20U};
-  std::vector<std::string> names{std::string{kFilterFile}};
+  std::vector<std::string> names{std::string{kFilterFile}, std::string{kReportFileName}};
   const auto text = read_text_file(out / kFilterFile, kMostBytes);
   const nlohmann::json earlier = nlohmann::json::parse(text ? *text : "", nullptr, false);
   const nlohmann::json::json_pointer details{"/result/details"};
@@ -209,54 +202,81 @@ Status remove_earlier(const RunFolder& out) {
   return out.remove(std::vector<std::string_view>{names.begin(), names.end()});
 }
 
-/// Why there is not a single frame.
-Error nothing_filtered(const FilterResult& result) {
-  if (interrupted()) return {Errc::cancelled, "interrupted", {}};
-  Error first = result.left_out.front();
-  first.message = "not one of the " + std::to_string(result.left_out.size()) +
-                  " PNG files can be used; the first: " + first.message;
-  return first;
+/// Files that were left out, by their reason: each reason once, with the number of its files and the first of them.
+std::vector<std::string> reasons_of(const std::vector<Error>& left_out) {
+  std::vector<std::pair<std::string, std::size_t>> reasons;
+  std::vector<std::string> firsts;
+  for (const Error& error : left_out) {
+    if (error.code == Errc::unsupported) continue;
+    const auto same = [&error](const auto& reason) { return reason.first == error.message; };
+    const auto found = std::find_if(reasons.begin(), reasons.end(), same);
+    if (found != reasons.end()) {
+      ++found->second;
+    } else {
+      reasons.emplace_back(error.message, 1);
+      firsts.push_back(error.context);
+    }
+  }
+  std::vector<std::string> texts;
+  for (std::size_t i = 0; i < reasons.size(); ++i) {
+    const std::size_t more = reasons[i].second - 1;
+    texts.push_back(firsts[i] + (more > 0 ? " and " + std::to_string(more) + " more" : "") + ": " + reasons[i].first);
+  }
+  return texts;
 }
 
-Result<int> run_filter(const FilterOptions& options, const GlobalOptions& global) {
-  const Stopwatch total;
-  const Executor executor = global.executor();
-  ProgressBar bar{global.quiet};
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(const std::vector<InputFrame> frames, input_frames(options));
-  SACCADE_CHECK(check_names(frames, options.out));
-  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, std::array{kFilterFile}, kFilterFile, options.force));
-  SACCADE_CHECK(remove_earlier(out));
-  SACCADE_TRY(const FilterResult result, filter_all(frames, options, out, executor, bar));
-  bar.finish();
-  if (result.frames.empty()) return nothing_filtered(result);
-  const nlohmann::json document = json_envelope("filter", global, executor, {{"total", total.elapsed_ms()}},
-                                                filter_json(options, result, interrupted()));
-  SACCADE_CHECK(write_json(out / kFilterFile, document));
-  SACCADE_CHECK(write_json_output(global, document));
-  if (result.points() > 0 && !global.json_to_stdout()) print_filter(options, result);
-  if (result.points() == 0 && !interrupted()) {
-    print_error("filter",
-                "no frame has a point within the camera's range: see --min-range, --max-range and --depth-scale");
-    return static_cast<int>(ExitStatus::no_result);
-  }
-  if (!interrupted()) return static_cast<int>(ExitStatus::done);
-  print_error("filter", "interrupted after " + std::to_string(result.frames.size()) + " of " +
-                            std::to_string(frames.size()) + " frames; they are in " + options.out.string());
-  return interrupt_status();
+/// Why there is not a single frame. Depth images that do not fit the camera say more than pictures of another kind.
+Error nothing_filtered(const FilterResult& result) {
+  if (interrupted()) return {Errc::cancelled, "interrupted", {}};
+  const auto is_depth = [](const Error& error) { return error.code != Errc::unsupported; };
+  const auto depth = std::find_if(result.left_out.begin(), result.left_out.end(), is_depth);
+  const Error& first = depth == result.left_out.end() ? result.left_out.front() : *depth;
+  const std::vector<std::string> reasons = reasons_of(result.left_out);
+  const std::string why = reasons.empty() ? first.to_string() : joined(reasons, "; ");
+  return {first.code,
+          "not one of the " + std::to_string(result.left_out.size()) + " PNG files can be filtered: " + why +
+              ". filter is for the depth images of a Kinect v2 and of sensors like it",
+          {}};
 }
+
+class Filter final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"filter", "removes a Kinect v2's shadow and veil points from depth images"};
+  }
+  void declare(Options& options) override { declare_filter(options, filter_); }
+  void check(const GlobalOptions& /*global*/) override { check_filter_options(filter_); }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    SACCADE_TRY(const std::vector<InputFrame> frames, input_frames(filter_));
+    SACCADE_CHECK(check_names(frames, context.out()));
+    SACCADE_CHECK(context.open_folder());
+    const RunFolder& out = *context.folder();
+    SACCADE_CHECK(remove_earlier(out));
+    SACCADE_TRY(const FilterResult result, filter_all(frames, filter_, out, context.executor(), context.bar()));
+    if (result.frames.empty()) return nothing_filtered(result);
+    for (const std::string& reason : reasons_of(result.left_out)) context.bar().note("left out: " + reason);
+    const std::string folder = context.out().string();
+    Outcome outcome{.result = filter_json(filter_, folder, result, interrupted())};
+    SACCADE_CHECK(server::write_report(out / kReportFileName, context.document(outcome.result)));
+    if (result.points() > 0) outcome.text = filter_text(folder, result);
+    if (interrupted()) {
+      outcome.cut_short = "interrupted after " + std::to_string(result.frames.size()) + " of " +
+                          std::to_string(frames.size()) + " frames; they are in " + folder;
+    }
+    return std::move(outcome).empty_if(
+        result.points() == 0,
+        "no frame has a point within the camera's range: see --min-range, --max-range and --depth-scale");
+  }
+
+ private:
+  FilterOptions filter_;
+};
 
 }  // namespace
 
 void add_filter(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command =
-      program.add_subcommand("filter", "removes a Kinect v2's shadow and veil points from depth images");
-  auto options = std::make_shared<FilterOptions>();
-  add_filter_options(*command, *options);
-  command->callback([options, &global, &action] {
-    check_filter_options(*options);
-    action = [options, &global] { return run_filter(*options, global); };
-  });
+  add_command<Filter>(program, global, action);
 }
 
 }  // namespace saccade::cli

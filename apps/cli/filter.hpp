@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `saccade filter` was asked for and what it did, for its output.
+// Request and result of `saccade filter`, for its output.
 
 #include <cstddef>
 #include <filesystem>
+#include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.hpp"
@@ -14,15 +16,18 @@
 
 namespace saccade::cli {
 
+class Options;
+
+constexpr std::string_view kFilterFile{"filter.json"};
+
 struct FilterOptions {
   std::vector<std::filesystem::path> frames;  ///< 16-bit PNG files, and folders of them
-  std::filesystem::path out;
   CameraOptions camera_options;
   PinholeCamera camera;
   DepthEncoding encoding;
   DepthFilterConfig filter;
-  std::size_t pictures{10};  ///< of the first so many frames
-  bool force{false};
+  std::size_t pictures{10};  ///< number of frames, the first ones, of which there is a picture
+  bool write_pictures{true};
 };
 
 struct FilteredFrame {
@@ -31,18 +36,21 @@ struct FilteredFrame {
   std::size_t shadow_points{0};
   std::size_t veil_points{0};
   std::size_t out_of_range{0};
-  double ms{0.0};  ///< of the filter alone
+  double ms{0.0};  ///< time of the filter alone
 };
 
 struct FilterResult {
   std::vector<FilteredFrame> frames;
   std::vector<Error> left_out;  ///< files of folders that cannot be used
+  std::size_t other_kinds{0};   ///< those of them that are images of another kind, such as colours beside the depth
   [[nodiscard]] std::size_t points() const;
 };
 
-void add_filter_options(CLI::App& command, FilterOptions& options);
+void declare_filter(Options& declared, FilterOptions& options);
 void check_filter_options(FilterOptions& options);
-[[nodiscard]] nlohmann::json filter_json(const FilterOptions& options, const FilterResult& result, bool interrupted);
-void print_filter(const FilterOptions& options, const FilterResult& result);
+/// @param out  folder of the results
+[[nodiscard]] nlohmann::json filter_json(const FilterOptions& options, const std::string& out,
+                                         const FilterResult& result, bool interrupted);
+[[nodiscard]] std::string filter_text(const std::string& out, const FilterResult& result);
 
 }  // namespace saccade::cli

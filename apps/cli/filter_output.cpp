@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include <iostream>
+#include <sstream>
 
 #include "filter.hpp"
 #include "saccade/core/statistics.hpp"
@@ -36,12 +36,12 @@ std::string count_and_share(std::size_t count, std::size_t of) {
 
 std::size_t FilterResult::points() const { return sum(*this, &FilteredFrame::points); }
 
-json filter_json(const FilterOptions& options, const FilterResult& result, bool interrupted) {
+json filter_json(const FilterOptions& options, const std::string& out, const FilterResult& result, bool interrupted) {
   json details = json::array();
   for (const FilteredFrame& frame : result.frames) details.push_back(frame_json(frame));
   json left_out = json::array();
   for (const Error& error : result.left_out) left_out.push_back({{"frame", error.context}, {"reason", error.message}});
-  return {{"out", options.out.string()},
+  return {{"out", out},
           {"frames", result.frames.size()},
           {"points", result.points()},
           {"shadow", sum(result, &FilteredFrame::shadow_points)},
@@ -59,9 +59,10 @@ json filter_json(const FilterOptions& options, const FilterResult& result, bool 
           {"details", std::move(details)}};
 }
 
-void print_filter(const FilterOptions& options, const FilterResult& result) {
+std::string filter_text(const std::string& out, const FilterResult& result) {
+  std::ostringstream text;
   const std::size_t points = result.points();
-  Summary summary{std::cout};
+  const Summary summary{text};
   summary.line("frames", std::to_string(result.frames.size()) + " filtered, " + std::to_string(result.left_out.size()) +
                              " left out");
   summary.line("points", std::to_string(points));
@@ -70,7 +71,8 @@ void print_filter(const FilterOptions& options, const FilterResult& result) {
   const std::size_t out_of_range = sum(result, &FilteredFrame::out_of_range);
   if (out_of_range > 0) summary.line("out of range", std::to_string(out_of_range) + " more, removed as well");
   summary.line("per frame", fixed(median_ms(result), 2) + " ms (median, of the filter alone)");
-  summary.line("results", options.out.string());
+  summary.line("results", out);
+  return text.str();
 }
 
 }  // namespace saccade::cli

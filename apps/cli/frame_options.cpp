@@ -2,7 +2,6 @@
 #include "frame_options.hpp"
 
 #include "add_value.hpp"
-#include "exit_status.hpp"
 
 #include <CLI/CLI.hpp>
 #include <cmath>
@@ -10,11 +9,6 @@
 namespace saccade::cli {
 namespace {
 
-constexpr auto kLayoutWords = make_names<RgbdLayout>({{RgbdLayout::automatic, "auto"},
-                                                      {RgbdLayout::seven_scenes, "seven-scenes"},
-                                                      {RgbdLayout::tum, "tum"},
-                                                      {RgbdLayout::princeton, "princeton"},
-                                                      {RgbdLayout::open3d, "open3d"}});
 constexpr auto kEncodingWords =
     make_names<DepthEncoding>({{{1000.0, false}, "mm"}, {{5000.0, false}, "tum"}, {{10000.0, true}, "bit-rotated"}});
 
@@ -29,12 +23,13 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
           },
           "lens distortion (Brown-Conrady), undone on the way in")
       ->type_name("K1,K2,P1,P2,K3");
-  add_choice(command, "--layout", options.folder.layout, kLayoutWords, "how the files are named; auto: recognised");
+  add_choice(command, "--layout", options.folder.layout, kRgbdLayoutWords, "how the files are named; auto: recognised");
   add_choice(command, "--depth-encoding", options.folder.encoding, kEncodingWords,
-             "what depth samples mean (default: the layout's): 1/1000 m, 1/5000 m, 1/10000 m rotated by three bits");
-  add_value(command, "--depth-scale", options.depth_scale, "N", "depth samples per metre, instead of the encoding's");
+             "meaning of depth samples (default: the layout's): 1/1000 m, 1/5000 m, 1/10000 m rotated by three bits");
+  add_value(command, "--depth-scale", options.depth_scale, "N",
+            "depth samples per metre, instead of the folder's or the encoding's");
   add_value(command, "--poses", options.folder.poses_file, "FILE",
-            "camera poses, instead of the folder's (TUM, matrices, JSON)");
+            "camera poses, instead of the folder's (TUM, matrices, KITTI, g2o, JSON)");
   command
       .add_option_function<std::vector<std::string>>(
           "--mask",
@@ -53,11 +48,10 @@ void add_reading_options(CLI::App& command, FrameOptions& options) {
       ->type_name("FILE|POLYGON")
       ->allow_extra_args(false);
   add_value(command, "--fill-gaps", options.fill_gaps_px, "PIXELS",
-            "close gaps of up to so many pixels between similar depths, as registered depth images have them (default: "
-            "2 where they are all over the first frame, else 0)");
-  add_value(command, "--first", options.folder.first, "N", "leave out so many frames at the beginning")
-      ->check(check_whole_number);
-  add_value(command, "--count", options.folder.count, "N", "use at most so many frames")->check(check_whole_number);
+            "close gaps of up to PIXELS pixels between similar depths, as registered depth images have them "
+            "(default: 2 where the first frame is full of such gaps, else 0)");
+  add_value(command, "--first", options.folder.first, "N", "leave out the first N frames")->check(check_whole_number);
+  add_value(command, "--count", options.folder.count, "N", "use at most N frames")->check(check_whole_number);
   add_value(command, "--every", options.folder.every_nth, "N", "use every n-th frame")->check(check_whole_number);
 }
 
@@ -164,9 +158,10 @@ Result<OpenFrames> open_frames(const FrameOptions& options) {
   return frames;
 }
 
-void warn_of_damage(const std::string& command, const std::filesystem::path& frames, const RgbdFolderInfo& info) {
+void warn_of_damage(const std::filesystem::path& frames, const RgbdFolderInfo& info, Outcome& outcome) {
+  for (const std::string& note : info.notes) outcome.warnings.push_back("warning: " + frames.string() + ": " + note);
   if (info.damage.empty()) return;
-  print_error(command, "warning: " + frames.string() + ": " + info.damage + "; what could be read was read");
+  outcome.warnings.push_back("warning: " + frames.string() + ": " + info.damage + "; what could be read was read");
 }
 
 }  // namespace saccade::cli

@@ -7,6 +7,7 @@
 #include <optional>
 #include <string_view>
 
+#include "command.hpp"
 #include "options.hpp"
 #include "saccade/io/bags/bags.hpp"
 #include "saccade/io/frames/rgbd_folder.hpp"
@@ -31,7 +32,7 @@ struct FrameOptions {
 
 /// Adds the options to the subcommand; `options` outlives the parsing.
 void add_frame_options(CLI::App& command, FrameOptions& options);
-/// What only shows when all options are known; throws usage errors. Completes options.folder.
+/// Checks the options together, once all are known; throws usage errors. Completes options.folder.
 void check_frame_options(FrameOptions& options);
 
 /// Fails where a file that is to be written is one of those that are read: a mask, poses, or what lies in the folder.
@@ -47,7 +48,7 @@ struct OpenFrames {
 /// ICP alone needs no poses: a bad one is then no reason to leave a frame out.
 [[nodiscard]] Result<OpenFrames> open_frames(const FrameOptions& options);
 
-/// Says on standard error that a bag is cut or damaged, and was read as far as it goes.
-void warn_of_damage(const std::string& command, const std::filesystem::path& frames, const RgbdFolderInfo& info);
+/// Adds warnings: what was left out of a folder, and that a bag is cut or damaged and was read as far as it goes.
+void warn_of_damage(const std::filesystem::path& frames, const RgbdFolderInfo& info, Outcome& outcome);
 
 }  // namespace saccade::cli

@@ -1,23 +1,17 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade fuse: RGB-D frames → map, mesh, trajectory, figures and pictures.
-#include <CLI/CLI.hpp>
 #include <array>
-#include <iostream>
 #include <memory>
+#include <sstream>
 
-#include "command.hpp"
-#include "exit_status.hpp"
+#include "context.hpp"
 #include "fuse_frames.hpp"
 #include "fuse_measures.hpp"
 #include "fuse_options.hpp"
 #include "fuse_pictures.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "run_folder.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
-#include "saccade/io/files/json_io.hpp"
+#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/maps/sacmap.hpp"
 #include "saccade/map/mesh.hpp"
 #include "summary.hpp"
@@ -27,17 +21,17 @@ namespace {
 
 using nlohmann::json;
 
-constexpr std::array<std::string_view, 8> kRunFiles{"run.json",        "map.sacmap",       "trajectory.txt",
-                                                    "mesh.ply",        "fusion-first.png", "fusion-middle.png",
-                                                    "fusion-last.png", "ternary.png"};
-constexpr std::size_t kNamesAlwaysWritten{3};
+constexpr std::string_view kGravityFile{"gravity-direction.txt"};
+constexpr std::array<std::string_view, 9> kRunFiles{"run.json",          "map.sacmap",      "trajectory.txt",
+                                                    kGravityFile,        "mesh.ply",        "fusion-first.png",
+                                                    "fusion-middle.png", "fusion-last.png", "ternary.png"};
+constexpr std::size_t kFirstRemoved{4};  // those before are always written, or removed by copy_gravity
 
 /// Everything between the command line and the summary.
 struct FuseRun {
   const FuseOptions& options;
-  const GlobalOptions& global;
-  Executor executor;
-  ProgressBar progress;
+  Context& context;
+  std::string out;  ///< folder of the results
   RgbdFolderConfig folder;
   TrackingMode tracking{TrackingMode::icp};
   PinholeCamera camera;
@@ -46,7 +40,6 @@ struct FuseRun {
   std::optional<MapFit> fit;
   std::optional<TrajectoryError> trajectory;
   std::size_t triangles{0};
-  TimingsMs timings_ms;
 };
 
 Result<std::unique_ptr<RgbdFolderSource>> open_frames(FuseRun& run) {
@@ -60,7 +53,7 @@ Result<std::unique_ptr<RgbdFolderSource>> open_frames(FuseRun& run) {
 
 Result<Reconstruction> make_reconstruction(const FuseRun& run) {
   if (run.options.continue_map.empty()) return Reconstruction::create({run.options.map, IcpConfig{}});
-  SACCADE_TRY(TsdfSnapshot map, load_map(run.options.continue_map, run.executor));
+  SACCADE_TRY(TsdfSnapshot map, load_map(run.options.continue_map, run.context.executor()));
   if (run.options.map.workspace) map.config.workspace = run.options.map.workspace;
   return Reconstruction::resume(std::move(map), IcpConfig{});
 }
@@ -84,9 +77,12 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
   };
   const bool tracked = !record.raycast_ms.empty() || !run.fit;
   json result{{"folder", run.options.frames.string()},
-              {"out", run.options.out.string()},
+              {"out", run.out},
               {"layout", run.info.is_bag ? "bag" : to_string(run.info.layout)},
               {"damage", run.info.damage.empty() ? json{} : json(run.info.damage)},
+              {"notes", run.info.notes},
+              {"depth_units_per_m", run.info.encoding.units_per_m},
+              {"depth_units_from", to_string(run.info.units_from)},
               {"camera", camera_to_json(run.camera)},
               {"intrinsics_from", run.info.intrinsics_from},
               {"tracking", to_string(run.tracking)},
@@ -120,9 +116,10 @@ json result_json(const FuseRun& run, const TsdfSnapshot& map) {
   return result;
 }
 
-void print_summary(const FuseRun& run, const TsdfSnapshot& map) {
+std::string fuse_text(const FuseRun& run, const TsdfSnapshot& map) {
+  std::ostringstream text;
   const FuseRecord& record = run.record;
-  Summary summary{std::cout};
+  const Summary summary{text};
   summary.line("frames", std::to_string(record.fused.size()) + " fused, " + std::to_string(record.lost.size()) +
                              " lost, " + std::to_string(record.skipped.size()) + " skipped");
   const std::string source = run.info.is_bag ? "bag" : "folder";
@@ -140,7 +137,8 @@ void print_summary(const FuseRun& run, const TsdfSnapshot& map) {
   summary.line("map", std::to_string(usage.bricks()) + " bricks, " + mebibytes(usage.bytes));
   summary.line("per frame", fixed(median(record.track_ms), 1) + " ms track, " + fixed(median(record.raycast_ms), 1) +
                                 " ms ray cast, " + fixed(median(record.integrate_ms), 1) + " ms integrate (medians)");
-  summary.line("results", run.options.out.string());
+  summary.line("results", run.out);
+  return text.str();
 }
 
 Status write_trajectory(const RunFolder& out, const FuseRecord& record) {
@@ -151,78 +149,104 @@ Status write_trajectory(const RunFolder& out, const FuseRecord& record) {
   return write_tum_trajectory(out / "trajectory.txt", poses);
 }
 
+/// Copies the direction of gravity from the folder of the frames, for saccade show, where the map is in the world of
+/// the folder's poses. Removes that of an earlier run.
+Status copy_gravity(const FuseRun& run, const RunFolder& out) {
+  std::error_code ignored;
+  const std::filesystem::path given = run.options.frames / kGravityFile;
+  if (std::filesystem::equivalent(given, out / kGravityFile, ignored)) return {};
+  SACCADE_CHECK(out.remove(std::array{kGravityFile}));
+  const bool in_given_world = run.tracking != TrackingMode::icp && !run.folder.poses_file;
+  if (!in_given_world || !std::filesystem::is_regular_file(given, ignored)) return {};
+  SACCADE_TRY(const std::string direction, read_text_file(given));
+  return write_file_atomically(out / kGravityFile, direction);
+}
+
 /// The results but run.json, which stands for a complete run: an earlier one goes first, the new one comes last.
 Status write_results(FuseRun& run, const RgbdFolderSource& source, const RunFolder& out, const TsdfSnapshot& map) {
   SACCADE_CHECK(out.remove(std::span{kRunFiles}.first(1)));
-  Stopwatch stopwatch;
-  run.progress.update("saving the map", 0, 0);
-  SACCADE_CHECK(save_map(map, out / "map.sacmap", run.executor));
+  const Executor& executor = run.context.executor();
+  run.context.stage("saving the map");
+  SACCADE_CHECK(save_map(map, out / "map.sacmap", executor));
   SACCADE_CHECK(write_trajectory(out, run.record));
-  SACCADE_CHECK(out.remove(std::span{kRunFiles}.subspan(kNamesAlwaysWritten)));
-  run.timings_ms["save"] = stopwatch.lap_ms();
+  SACCADE_CHECK(out.remove(std::span{kRunFiles}.subspan(kFirstRemoved)));
+  SACCADE_CHECK(copy_gravity(run, out));
+  run.context.lap("save");
   if (run.options.write_mesh) {
-    run.progress.update("extracting the mesh", 0, 0);
-    const TriangleMesh mesh = extract_mesh(map, run.executor);
+    run.context.stage("extracting the mesh");
+    const TriangleMesh mesh = extract_mesh(map, executor);
     run.triangles = mesh.triangles.size();
     SACCADE_CHECK(write_mesh(out / "mesh.ply", mesh));
-    run.timings_ms["mesh"] = stopwatch.lap_ms();
+    run.context.lap("mesh");
   }
   if (run.options.write_pictures && !interrupted()) {
     SACCADE_CHECK(
-        write_fuse_pictures(out, map, run.camera, source, run.folder, run.record, run.executor, run.progress));
-    run.timings_ms["pictures"] = stopwatch.lap_ms();
+        write_fuse_pictures(out, map, run.camera, source, run.folder, run.record, executor, run.context.bar()));
+    run.context.lap("pictures");
   }
   return {};
 }
 
-Result<int> run_fuse(const FuseOptions& options, const GlobalOptions& global) {
-  const Stopwatch total;
-  Stopwatch stopwatch;
-  FuseRun run{options, global, global.executor(), ProgressBar{global.quiet}, {}, {}, {}, {}, {}, {}, {}, 0, {}};
-  SACCADE_TRY(const auto source, open_frames(run));
-  SACCADE_TRY(Reconstruction reconstruction, make_reconstruction(run));
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, kRunFiles, "run.json", options.force));
-  run.timings_ms["open"] = stopwatch.lap_ms();
+class Fuse final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"fuse", "fuses RGB-D frames into a map, with mesh, trajectory, measures and pictures"};
+  }
 
-  std::optional<GapFilling> gaps;
-  if (options.fill_gaps_px) gaps = GapFilling{*options.fill_gaps_px};
-  run.record = fuse_frames(*source, reconstruction, run.tracking, gaps, run.executor, run.progress);
-  run.timings_ms["frames"] = stopwatch.lap_ms();
+  void declare(Options& options) override {
+    options.folder({.value = "RUN",
+                    .help = "folder for the results; made if it is not there",
+                    .files = {kRunFiles.begin(), kRunFiles.end()},
+                    .document = kRunFiles.front(),
+                    .required = true,
+                    .opened_by_command = true});
+    declare_fuse(options, fuse_);
+    command_ = &options.group();
+  }
 
-  const TsdfSnapshot& map = reconstruction.map().content();
-  if (run.record.fused.empty() || map.grid.empty()) return nothing_fused("fuse", run.record, options.frames);
-  if (run.tracking != TrackingMode::forced) run.trajectory = measure_trajectory(run.record);
-  SACCADE_TRY(run.fit, measure_map(map, run.camera, *source, run.folder, run.record, run.executor, run.progress));
-  run.timings_ms["residual"] = stopwatch.lap_ms();
-  SACCADE_CHECK(write_results(run, *source, out, map));
-  run.timings_ms["total"] = total.elapsed_ms();
+  void check(const GlobalOptions& /*global*/) override {
+    fuse_.map_size_given =
+        command_->count("--voxel-size") + command_->count("--truncation") + command_->count("--clearing") > 0;
+    check_fuse_options(fuse_);
+  }
 
-  const json document = json_envelope("fuse", global, run.executor, run.timings_ms, result_json(run, map));
-  SACCADE_CHECK(write_json(out / "run.json", document));
-  run.progress.finish();
-  SACCADE_CHECK(write_json_output(global, document));
-  if (!global.json_to_stdout()) print_summary(run, map);
-  warn_of_left_out("fuse", run.record);
-  warn_of_damage("fuse", options.frames, run.info);
-  if (!interrupted()) return static_cast<int>(ExitStatus::done);
-  print_error("fuse", "interrupted after " + std::to_string(run.record.fused.size()) +
-                          " frames; what they gave is in " + options.out.string());
-  return interrupt_status();
-}
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    FuseRun run{fuse_, context, context.out().string(), {}, {}, {}, {}, {}, {}, {}, 0};
+    SACCADE_TRY(const auto source, open_frames(run));
+    SACCADE_TRY(Reconstruction reconstruction, make_reconstruction(run));
+    SACCADE_CHECK(context.open_folder());
+    context.lap("open");
+    std::optional<GapFilling> gaps;
+    if (fuse_.fill_gaps_px) gaps = GapFilling{*fuse_.fill_gaps_px};
+    run.record = fuse_frames(*source, reconstruction, run.tracking, gaps, context.executor(), context.bar());
+    context.lap("frames");
+
+    const TsdfSnapshot& map = reconstruction.map().content();
+    if (run.record.fused.empty() || map.grid.empty()) return nothing_fused(run.record, fuse_.frames);
+    if (run.tracking != TrackingMode::forced) run.trajectory = measure_trajectory(run.record);
+    SACCADE_TRY(run.fit,
+                measure_map(map, run.camera, *source, run.folder, run.record, context.executor(), context.bar()));
+    context.lap("residual");
+    SACCADE_CHECK(write_results(run, *source, *context.folder(), map));
+    Outcome outcome{.result = result_json(run, map), .text = fuse_text(run, map)};
+    warn_of_left_out(run.record, outcome);
+    warn_of_damage(fuse_.frames, run.info, outcome);
+    if (interrupted()) {
+      outcome.cut_short =
+          "interrupted after " + std::to_string(run.record.fused.size()) + " frames; what they gave is in " + run.out;
+    }
+    return outcome;
+  }
+
+ private:
+  const CLI::App* command_{nullptr};
+  FuseOptions fuse_;
+};
 
 }  // namespace
 
 void add_fuse(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("fuse", "RGB-D frames -> map, mesh, trajectory, figures and pictures");
-  auto options = std::make_shared<FuseOptions>();
-  add_fuse_options(*command, *options);
-  command->callback([options, command, &global, &action] {
-    options->map_size_given =
-        command->count("--voxel-size") + command->count("--truncation") + command->count("--clearing") > 0;
-    check_fuse_options(*options);
-    action = [options, &global] { return run_fuse(*options, global); };
-  });
+  add_command<Fuse>(program, global, action);
 }
 
 }  // namespace saccade::cli

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "fuse_frames.hpp"
 
-#include "exit_status.hpp"
 #include "interrupt.hpp"
 
 namespace saccade::cli {
@@ -81,13 +80,12 @@ FuseRecord fuse_frames(CameraSource& source, Reconstruction& reconstruction, Tra
   });
 }
 
-Result<int> nothing_fused(const std::string& command, const FuseRecord& record, const std::filesystem::path& frames) {
+Result<Outcome> nothing_fused(const FuseRecord& record, const std::filesystem::path& frames) {
   if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
   if (!record.fused.empty()) {
-    print_error(command,
-                "no depth is within the camera's range: see --min-range, --max-range and --depth-scale; "
-                "nothing was written");
-    return static_cast<int>(ExitStatus::no_result);
+    return Outcome{.empty =
+                       "no depth is within the camera's range: see --min-range, --max-range and --depth-scale; "
+                       "nothing was written"};
   }
   if (record.lost.empty()) {
     const LeftOutFrame& first = record.skipped.front();
@@ -96,20 +94,18 @@ Result<int> nothing_fused(const std::string& command, const FuseRecord& record, 
                      first.name + ": " + first.reason,
                  frames.string()};
   }
-  print_error(command, "not one frame could be tracked; the first, " + record.lost.front().name + ": " +
-                           record.lost.front().reason + "; nothing was written");
-  return static_cast<int>(ExitStatus::no_result);
+  return Outcome{.empty = "not one frame could be tracked; the first, " + record.lost.front().name + ": " +
+                          record.lost.front().reason + "; nothing was written"};
 }
 
-void warn_of_left_out(const std::string& command, const FuseRecord& record) {
+void warn_of_left_out(const FuseRecord& record, Outcome& outcome) {
   const std::size_t left_out = record.lost.size() + record.skipped.size();
   if (left_out <= record.fused.size()) return;
   const LeftOutFrame& first = record.lost.empty() ? record.skipped.front() : record.lost.front();
-  print_error(command, "warning: of " + std::to_string(record.fused.size() + left_out) + " frames only " +
-                           std::to_string(record.fused.size()) + " could be used, " +
-                           std::to_string(record.lost.size()) + " are lost and " +
-                           std::to_string(record.skipped.size()) + " skipped; the first, " + first.name + ": " +
-                           first.reason);
+  outcome.warnings.push_back(
+      "warning: of " + std::to_string(record.fused.size() + left_out) + " frames only " +
+      std::to_string(record.fused.size()) + " could be used, " + std::to_string(record.lost.size()) + " are lost and " +
+      std::to_string(record.skipped.size()) + " skipped; the first, " + first.name + ": " + first.reason);
 }
 
 nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames) {

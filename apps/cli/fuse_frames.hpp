@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// process_frames: all frames of a source, and what became of each; fuse_frames: through a Reconstruction; FuseRecord.
+// process_frames: all frames of a source, with a result each; fuse_frames: through a Reconstruction; FuseRecord.
 
 #include <filesystem>
 #include <functional>
@@ -10,6 +10,7 @@
 #include <string_view>
 #include <vector>
 
+#include "command.hpp"
 #include "progress_bar.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/sensor/gap_filling.hpp"
@@ -35,9 +36,9 @@ struct FuseRecord {
   std::vector<FusedFrame> fused;
   std::vector<LeftOutFrame> skipped;  ///< missing, corrupt, or without a good pose
   std::vector<LeftOutFrame> lost;     ///< not found by tracking
-  std::vector<double> raycast_ms;     ///< of the fused frames that were tracked
+  std::vector<double> raycast_ms;     ///< one for each fused frame that was tracked
   std::vector<double> track_ms;
-  std::vector<double> integrate_ms;  ///< of all fused frames
+  std::vector<double> integrate_ms;  ///< one for each fused frame
   GapFilling gaps;                   ///< what was filled
 };
 
@@ -55,12 +56,11 @@ using FrameProcess = std::function<Result<FrameReport>(Frame&)>;
                                      const std::optional<GapFilling>& gaps, const Executor& executor,
                                      ProgressBar& progress);
 
-/// Status of a run without a single fused frame, or with none that shows anything.
-[[nodiscard]] Result<int> nothing_fused(const std::string& command, const FuseRecord& record,
-                                        const std::filesystem::path& frames);
+/// Outcome of a run without a single fused frame, or with none that shows anything.
+[[nodiscard]] Result<Outcome> nothing_fused(const FuseRecord& record, const std::filesystem::path& frames);
 
-/// Says on standard error, whether --quiet or not, that most frames are not in the result, and why.
-void warn_of_left_out(const std::string& command, const FuseRecord& record);
+/// Adds a warning, which --quiet does not silence, that most frames are not in the result, and why.
+void warn_of_left_out(const FuseRecord& record, Outcome& outcome);
 
 /// [{frame, reason}, …]
 [[nodiscard]] nlohmann::json left_out_json(const std::vector<LeftOutFrame>& frames);

@@ -13,22 +13,22 @@ class App;
 
 namespace saccade::cli {
 
+class Options;
+
 struct FuseOptions : FrameOptions {
   /// Recorded poses are not exact: docs/decisions/0021-clearing.md.
   FuseOptions() { map.clearing_percent = 50; }
 
-  std::filesystem::path out;
   TsdfConfig map;
   bool map_size_given{false};
   std::filesystem::path continue_map;
   bool write_mesh{true};
   bool write_pictures{true};
-  bool force{false};
 };
 
-/// Adds the options to the subcommand; `options` outlives the parsing.
-void add_fuse_options(CLI::App& command, FuseOptions& options);
-/// What only shows when all options are known; throws usage errors. Completes options.folder and options.map.
+/// Declares the options; they outlive the parsing.
+void declare_fuse(Options& declared, FuseOptions& options);
+/// Checks the options together, once all are known; throws usage errors. Completes options.folder and options.map.
 void check_fuse_options(FuseOptions& options);
 
 }  // namespace saccade::cli

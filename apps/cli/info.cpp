@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade info: versions, processor and back ends; with a map or a run, what is in it.
+// saccade info: versions, processor and back ends; with a file or folder, what is in it.
 #include <png.h>
 #include <tbb/version.h>
 #include <zlib.h>
@@ -8,19 +8,15 @@
 #include <CLI/CLI.hpp>
 #include <Eigen/Core>
 #include <fstream>
-#include <iostream>
-#include <memory>
+#include <sstream>
 #include <thread>
 
-#include "add_value.hpp"
-#include "command.hpp"
-#include "exit_status.hpp"
-#include "json_output.hpp"
-#include "saccade/core/clock.hpp"
+#include "context.hpp"
+#include "info_files.hpp"
 #include "saccade/core/simd.hpp"
+#include "saccade/core/version.hpp"
+#include "saccade/cuda/device.hpp"
 #include "saccade/devices/programs.hpp"
-#include "saccade/io/files/json_io.hpp"
-#include "saccade/io/maps/sacmap.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -87,6 +83,26 @@ json ros_json() {
   return found;
 }
 
+/// The GPU, or why the CUDA back end cannot be used.
+json cuda_json() {
+  const auto device = cuda_device();
+  if (!device) return {{"absent_because", device.error().message}};
+  return {{"device", device->name},
+          {"memory_bytes", device->memory_bytes},
+          {"compute_capability", std::to_string(device->compute_major) + "." + std::to_string(device->compute_minor)},
+          {"driver_version", device->driver_version},
+          {"ptx_target", device->ptx_target}};
+}
+
+/// "NVIDIA H200, 139.8 GiB, compute capability 9.0, kernels as PTX for sm_70", or "absent: …"
+std::string cuda_text(const json& found) {
+  if (found.contains("absent_because")) return "absent: " + found["absent_because"].get<std::string>();
+  constexpr double kGibibyte{1024.0 * 1024.0 * 1024.0};
+  return found["device"].get<std::string>() + ", " + fixed(found["memory_bytes"].get<double>() / kGibibyte, 1) +
+         " GiB, compute capability " + found["compute_capability"].get<std::string>() + ", kernels as PTX for " +
+         found["ptx_target"].get<std::string>();
+}
+
 json program_json(const Executor& executor) {
   return {{"compiler", compiler()},
           {"processor", processor()},
@@ -94,8 +110,9 @@ json program_json(const Executor& executor) {
           {"simd_target", simd_target()},
           {"simd_targets", simd_targets()},
           {"cores", std::thread::hardware_concurrency()},
-          {"backends", {{"sequential", true}, {"tbb", true}, {"cuda", false}}},
+          {"backends", {{"sequential", true}, {"tbb", true}, {"cuda", cuda_device().ok()}}},
           {"backend", executor.backend_name()},
+          {"cuda", cuda_json()},
           {"ros", ros_json()},
           {"dependencies", dependencies()}};
 }
@@ -115,45 +132,10 @@ std::string ros_text(const json& found) {
   return present + (present.empty() || absent.empty() ? "" : "; ") + missing;
 }
 
-json saved_map_json(const TsdfSnapshot& map) {
-  const TsdfGrid::Usage usage = map.grid.usage();
-  std::size_t occupied = 0;
-  std::size_t known = 0;
-  for (const Index3& key : map.grid.sorted_sectors()) {
-    for (const BrickRef& brick : map.grid.find(key)->bricks) {
-      occupied += static_cast<std::size_t>(brick.occupied_mask().count());
-      known += static_cast<std::size_t>(kBrickVoxels - brick.unknown_mask().count());
-    }
-  }
-  const IndexBox sectors = map.grid.sector_bounds();
-  const double sector_m = kSectorVoxelEdge * map.config.voxel_size_m;
-  const auto corner = [sector_m](const Index3& i) { return json{i.x * sector_m, i.y * sector_m, i.z * sector_m}; };
-  json result{{"voxel_size_m", map.config.voxel_size_m},
-              {"truncation_m", map.config.truncation_m()},
-              {"max_weight", map.config.max_weight},
-              {"free_weight", map.config.free_weight},
-              {"clearing_percent", map.config.clearing_percent},
-              {"color", map.config.color},
-              {"workspace", nullptr},
-              {"bounds_m", {{"min", corner(sectors.lo)}, {"max", corner(sectors.hi)}}},
-              {"sectors", usage.sectors},
-              {"bricks", usage.bricks()},
-              {"constant_free_bricks", usage.constant_free_bricks},
-              {"free_bricks", usage.free_bricks},
-              {"dense_bricks", usage.dense_bricks},
-              {"bytes", usage.bytes},
-              {"occupied_voxels", occupied},
-              {"empty_voxels", known - occupied}};
-  if (const auto& w = map.config.workspace) {
-    result["workspace"] = {{"min", {w->min.x(), w->min.y(), w->min.z()}},
-                           {"max", {w->max.x(), w->max.y(), w->max.z()}}};
-  }
-  return result;
-}
-
-void print_program(const json& about) {
-  const Summary summary{std::cout};
-  summary.line("saccade", SACCADE_VERSION);
+std::string program_text(const json& about) {
+  std::ostringstream text;
+  const Summary summary{text};
+  summary.line("saccade", version());
   summary.line("compiler", about["compiler"].get<std::string>());
   std::string extensions;
   for (const json& name : about["vector_extensions"]) extensions += " " + name.get<std::string>();
@@ -163,92 +145,53 @@ void print_program(const json& about) {
   std::string present;
   std::string absent;
   for (const auto& [name, has] : about["backends"].items()) (has.get<bool>() ? present : absent) += " " + name;
-  summary.line("back ends", present.substr(1) + "; absent:" + absent);
+  summary.line("back ends", present.substr(1) + (absent.empty() ? "" : "; absent:" + absent));
+  summary.line("GPU", cuda_text(about["cuda"]));
   summary.line("devices", ros_text(about["ros"]));
   std::string versions;
   for (const auto& [name, version] : about["dependencies"].items()) {
     versions += (versions.empty() ? "" : ", ") + name + " " + version.get<std::string>();
   }
   summary.line("libraries", versions);
+  return text.str();
 }
 
-std::string corner_text(const json& corner) {
-  return "(" + fixed(corner[0].get<double>(), 2) + ", " + fixed(corner[1].get<double>(), 2) + ", " +
-         fixed(corner[2].get<double>(), 2) + ")";
+std::string text_of(const Description& described) {
+  std::ostringstream text;
+  const Summary summary{text};
+  for (const auto& [name, value] : described.lines) summary.line(name, value);
+  return text.str();
 }
 
-void print_map(const fs::path& path, const json& map) {
-  const Summary summary{std::cout};
-  summary.line("map", path.string());
-  summary.line("voxels", millimetres(map["voxel_size_m"].get<double>()) + ", truncated at " +
-                             millimetres(map["truncation_m"].get<double>()));
-  summary.line("within", corner_text(map["bounds_m"]["min"]) + " to " + corner_text(map["bounds_m"]["max"]) + " m");
-  summary.line("occupied", map["occupied_voxels"].dump() + " voxels");
-  summary.line("empty", map["empty_voxels"].dump() + " voxels");
-  summary.line("bricks", map["bricks"].dump() + ": " + map["dense_bricks"].dump() + " dense, " +
-                             map["free_bricks"].dump() + " free, " + map["constant_free_bricks"].dump() +
-                             " constant free");
-  summary.line("memory", mebibytes(map["bytes"].get<std::size_t>()));
-}
-
-/// run.json as far as people want it; the document itself is in the JSON result.
-Result<json> read_run(const fs::path& path) {
-  SACCADE_TRY(json run, read_json(path));
-  if (run.is_object() && run.value("schema", json{}) == kJsonSchema && run.contains("result")) return run;
-  return Error{Errc::corrupt_data, "is not a result of saccade", path.string()};
-}
-
-void print_run(const json& run) {
-  const Summary summary{std::cout};
-  const json& result = run["result"];
-  summary.line("command", run.value("command", json{}).dump());
-  for (const char* name : {"tracking", "frames", "lost", "depth_residual_m", "trajectory_error_m"}) {
-    if (result.contains(name)) summary.line(name, result[name].dump());
+class Info final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"info", "shows versions, processor and back ends, or the content of a file or folder"};
   }
-}
 
-Result<json> describe(const fs::path& path, const Executor& executor, bool print) {
-  std::error_code ignored;
-  const bool is_run = fs::is_directory(path, ignored);
-  if (is_run && !fs::exists(path / "run.json", ignored) && !fs::exists(path / "map.sacmap", ignored)) {
-    return Error{Errc::not_found, "holds neither run.json nor map.sacmap; name a map or the folder of a run",
-                 path.string()};
+  void declare(Options& options) override {
+    options.value(
+        "subject", subject_, "FILE|FOLDER",
+        "a map, cloud, mesh, array, bag, session, campaign, result, arm, scene, cell or hand's trajectory, or "
+        "the folder of a run or of RGB-D frames");
   }
-  json result = json::object();
-  if (is_run && fs::exists(path / "run.json", ignored)) {
-    SACCADE_TRY(result["run"], read_run(path / "run.json"));
-    if (print) print_run(result["run"]);
-  }
-  const fs::path map_path = is_run ? path / "map.sacmap" : path;
-  SACCADE_TRY(const TsdfSnapshot map, load_map(map_path, executor));
-  result["map"] = saved_map_json(map);
-  if (print) print_map(map_path, result["map"]);
-  return result;
-}
 
-Result<int> run_info(const fs::path& subject, const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  const Executor executor = global.executor();
-  const bool print = !global.json_to_stdout();
-  json result = program_json(executor);
-  if (subject.empty()) {
-    if (print) print_program(result);
-  } else {
-    SACCADE_TRY(const json content, describe(subject, executor, print));
-    result.update(content);
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    json result = program_json(context.executor());
+    if (subject_.empty()) return Outcome{.result = result, .text = program_text(result)};
+    SACCADE_TRY(const Description described, describe_file(subject_, context.executor()));
+    result.update(described.result);
+    return Outcome{.result = std::move(result), .text = text_of(described)};
   }
-  SACCADE_CHECK(write_result("info", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result)));
-  return static_cast<int>(ExitStatus::done);
-}
+
+ private:
+  fs::path subject_;
+};
 
 }  // namespace
 
 void add_info(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("info", "versions, processor and back ends; what is in a map or a run");
-  auto subject = std::make_shared<fs::path>();
-  add_value(*command, "subject", *subject, "MAP|RUN", "a saved map (.sacmap) or the folder of a run");
-  command->callback(
-      [subject, &global, &action] { action = [subject, &global] { return run_info(*subject, global); }; });
+  add_command<Info>(program, global, action);
 }
 
 }  // namespace saccade::cli

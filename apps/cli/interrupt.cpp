@@ -37,11 +37,13 @@ void install_interrupt_handler() {
 
 int interrupt_signal() { return caught.load(); }
 
-CancelOnInterrupt::CancelOnInterrupt(Progress& progress) {
-  cancels.store(&progress);
+CancelOnInterrupt::CancelOnInterrupt(Progress& progress) : earlier_{cancels.exchange(&progress)} {
   if (interrupted()) progress.request_cancel();
 }
 
-CancelOnInterrupt::~CancelOnInterrupt() { cancels.store(nullptr); }
+CancelOnInterrupt::~CancelOnInterrupt() {
+  cancels.store(earlier_);
+  if (earlier_ != nullptr && interrupted()) earlier_->request_cancel();
+}
 
 }  // namespace saccade::cli

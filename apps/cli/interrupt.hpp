@@ -15,13 +15,17 @@ void install_interrupt_handler();
 /// 128 + signal.
 [[nodiscard]] inline int interrupt_status() { return 128 + interrupt_signal(); }
 
-/// While this lives, an interruption cancels the given progress. One at a time.
+/// While this lives, an interruption cancels the given progress. Of several, it cancels the one that was made last; an
+/// earlier one is cancelled as soon as the later ones are gone. They are made and destroyed by one thread.
 class CancelOnInterrupt {
  public:
   explicit CancelOnInterrupt(Progress& progress);
   CancelOnInterrupt(const CancelOnInterrupt&) = delete;
   CancelOnInterrupt& operator=(const CancelOnInterrupt&) = delete;
   ~CancelOnInterrupt();
+
+ private:
+  Progress* earlier_;
 };
 
 }  // namespace saccade::cli

@@ -7,6 +7,7 @@
 #include <filesystem>
 #include <iostream>
 
+#include "saccade/core/version.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 
@@ -15,7 +16,7 @@ namespace saccade::cli {
 nlohmann::json json_envelope(const std::string& command, const GlobalOptions& global, const Executor& executor,
                              const TimingsMs& timings_ms, nlohmann::json result) {
   return {{"schema", kJsonSchema},
-          {"version", SACCADE_VERSION},
+          {"version", version()},
           {"command", command},
           {"backend", executor.backend_name()},
           {"threads", executor.threads()},
@@ -37,7 +38,7 @@ Status check_json_output(const GlobalOptions& global) {
   if (const auto size = std::filesystem::file_size(global.json, ignored); ignored || size == 0) return {};
   const Result<nlohmann::json> existing = read_json(global.json);
   if (!existing || !existing->is_object() || existing->value("schema", nlohmann::json{}) != kJsonSchema) {
-    return Error{Errc::invalid_argument, "holds something else than a result; name another file", global.json};
+    return Error{Errc::invalid_argument, "holds something other than a result; name another file", global.json};
   }
   return {};
 }

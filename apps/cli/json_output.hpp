@@ -23,7 +23,7 @@ using TimingsMs = std::map<std::string, double>;
                                            const Executor& executor, const TimingsMs& timings_ms,
                                            nlohmann::json result);
 
-/// Fails early, before the long work, where --json names a file that cannot be written, or one that is no JSON.
+/// Fails before the long work where --json names a file that cannot be written, or an existing file that is not JSON.
 [[nodiscard]] Status check_json_output(const GlobalOptions& global);
 /// Does what --json asks for; nothing without it.
 [[nodiscard]] Status write_json_output(const GlobalOptions& global, const nlohmann::json& document);

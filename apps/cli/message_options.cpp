@@ -3,13 +3,13 @@
 
 #include <CLI/CLI.hpp>
 #include <charconv>
-#include <iostream>
 
 #include "add_value.hpp"
 #include "options.hpp"
+#include "progress_bar.hpp"
 #include "saccade/io/messages/mcap_writer.hpp"
+#include "serve.hpp"
 #include "server/foxglove/foxglove_hub.hpp"
-#include "server/http_server.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -29,11 +29,7 @@ Result<std::unique_ptr<messages::MessageSink>> foxglove_sink(const FoxglovePlace
   config.foxglove = std::make_shared<server::FoxgloveHub>();
   config.foxglove_only = true;
   SACCADE_TRY(std::unique_ptr<server::HttpServer> server, server::HttpServer::listen(config));
-  const std::string url = server->foxglove_url();
-  std::cerr << "Foxglove connects to " << url << std::endl;
-  if (url.find("?token=") != std::string::npos) {
-    std::cerr << "Anyone who reaches this address and knows the token may look on; nothing is encrypted." << std::endl;
-  }
+  announce_foxglove(*server);
   return std::unique_ptr<messages::MessageSink>{
       std::make_unique<server::FoxgloveSink>(config.foxglove, std::move(server))};
 }
@@ -67,7 +63,7 @@ void add_message_options(CLI::App& command, MessageOptions& options) {
   const auto publish = [&options](const std::vector<std::string>& words) {
     for (const std::string& word : words) {
       const std::optional<RosVersion> version = kRosVersionNames.find(word);
-      if (!version) usage_error("--publish", "must be " + kRosVersionNames.listed() + ", not '" + word + "'");
+      if (!version) usage_error("--publish", unknown_word(word, kRosVersionNames.words));
       options.publish.insert(*version);
     }
   };
@@ -93,11 +89,12 @@ void add_message_options(CLI::App& command, MessageOptions& options) {
       ->type_name("[PORT|HOST:PORT]");
 }
 
-Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options, const PinholeCamera& camera) {
+Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options, const PinholeCamera& camera,
+                                                  ProgressBar& bar) {
   RunMessagesConfig config;
   config.frame_id = options.frame_id;
-  config.failed = [](const Error& error) {
-    std::cerr << "saccade: " << error.to_string() << "; the run goes on without it" << std::endl;
+  config.failed = [&bar](const Error& error) {
+    bar.warn("saccade: " + error.to_string() + "; the run goes on without it");
   };
   auto messages = std::make_unique<RunMessages>(std::move(config), camera);
   if (!options.record.empty()) {

@@ -15,6 +15,8 @@
 
 namespace saccade::cli {
 
+class ProgressBar;
+
 /// Where Foxglove may connect.
 struct FoxglovePlace {
   std::string address{"127.0.0.1"};
@@ -34,9 +36,9 @@ struct MessageOptions {
 /// Adds --record, --publish, --frame-id and --foxglove.
 void add_message_options(CLI::App& command, MessageOptions& options);
 
-/// Opens what the options name, and says on stderr where Foxglove connects; a sink that fails later is said once on
-/// stderr. Errors: those of the sinks.
+/// Opens what the options name, and says on standard error where Foxglove connects. `bar`, which outlives
+/// RunMessages::finish, warns once of a sink that fails later. Errors: those of the sinks.
 [[nodiscard]] Result<std::unique_ptr<RunMessages>> run_messages(const MessageOptions& options,
-                                                                const PinholeCamera& camera);
+                                                                const PinholeCamera& camera, ProgressBar& bar);
 
 }  // namespace saccade::cli

@@ -1,23 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade nbv: ranks view poses by what they would show of a region in a saved map.
-#include <CLI/CLI.hpp>
 #include <array>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
-#include <memory>
 #include <optional>
+#include <sstream>
 
-#include "add_value.hpp"
-#include "command.hpp"
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "options.hpp"
-#include "progress_bar.hpp"
-#include "run_folder.hpp"
+#include "context.hpp"
+#include "length_options.hpp"
 #include "saccade/core/angle.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
@@ -26,6 +17,7 @@
 #include "saccade/views/view_gain.hpp"
 #include "saccade/views/view_sphere.hpp"
 #include "summary.hpp"
+#include "view_backend.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -47,10 +39,9 @@ struct NbvOptions {
   std::optional<Eigen::Vector3d> up;  ///< default: world z
   GainConfig gain;
   std::optional<Box> workspace;
+  ViewBackend backend{ViewBackend::cpu};
   std::size_t top{10};
   bool all{false};
-  std::filesystem::path out;
-  bool force{false};
 
   [[nodiscard]] Region region() const {
     if (box) return *box;
@@ -128,38 +119,40 @@ json result_json(const NbvOptions& options, const Candidates& candidates, const 
           {"unknown_outside", kUnknownOutsideNames.of(options.gain.unknown_outside)},
           {"candidates", candidates.poses.size()},
           {"evaluated", gains.gains.size()},
+          {"backend", gains.backend},
           {"rays_total", gains.rays_total},
           {"rays_cast", gains.rays_cast},
           {"ms", {{"prepare", gains.prepare_ms}, {"evaluate", gains.evaluate_ms}}},
           {"views", std::move(views)}};
 }
 
-void print_table(const NbvOptions& options, const Candidates& candidates, const GainResult& gains,
-                 const std::vector<OrderedView>& ranked, std::size_t shown) {
-  std::cout << "rank      gain  ";
-  if (!candidates.sphere.empty()) std::cout << "longitude  latitude   roll  ";
-  std::cout << "position (m)\n";
+std::string table_of(const NbvOptions& options, const Candidates& candidates, const GainResult& gains,
+                     const std::vector<OrderedView>& ranked, std::size_t shown) {
+  std::ostringstream text;
+  text << "rank      gain  ";
+  if (!candidates.sphere.empty()) text << "longitude  latitude   roll  ";
+  text << "position (m)\n";
   for (std::size_t i = 0; i < shown; ++i) {
     const OrderedView& view = ranked[i];
-    std::cout << std::right << std::setw(4) << i + 1 << std::setw(10) << view.gain << "  ";
+    text << std::right << std::setw(4) << i + 1 << std::setw(10) << view.gain << "  ";
     if (!candidates.sphere.empty()) {
       const ViewCandidate& on_sphere = candidates.sphere[view.index];
-      std::cout << std::setw(8) << fixed(to_deg(on_sphere.longitude_rad), 0) << "°" << std::setw(9)
-                << fixed(to_deg(on_sphere.latitude_rad), 0) << "°" << std::setw(6)
-                << fixed(to_deg(on_sphere.roll_rad), 0) << "°  ";
+      text << std::setw(8) << fixed(to_deg(on_sphere.longitude_rad), 0) << "°" << std::setw(9)
+           << fixed(to_deg(on_sphere.latitude_rad), 0) << "°" << std::setw(6) << fixed(to_deg(on_sphere.roll_rad), 0)
+           << "°  ";
     }
     const Eigen::Vector3d p = view.T_world_camera.translation();
-    for (int axis = 0; axis < 3; ++axis) std::cout << std::setw(8) << fixed(p[axis], 3);
-    std::cout << '\n';
+    for (int axis = 0; axis < 3; ++axis) text << std::setw(8) << fixed(p[axis], 3);
+    text << '\n';
   }
   const char* unit = options.gain.count == GainCount::rays ? "rays" : "distinct voxels";
-  std::cout << "gain: " << unit << " that would end in unknown space of the region; " << gains.gains.size()
-            << " poses in " << fixed(gains.prepare_ms + gains.evaluate_ms, 0) << " ms, " << gains.rays_cast
-            << " rays cast one by one\n";
+  text << "gain: " << unit << " that would end in unknown space of the region; " << gains.gains.size() << " poses in "
+       << fixed(gains.prepare_ms + gains.evaluate_ms, 0) << " ms, " << gains.rays_cast << " rays cast one by one\n";
+  return text.str();
 }
 
-Status write_outputs(const NbvOptions& options, const RunFolder& out, const TsdfSnapshot& map,
-                     const std::vector<OrderedView>& ranked, const json& document, const Executor& executor) {
+Status write_picture(const NbvOptions& options, const RunFolder& out, const TsdfSnapshot& map,
+                     const std::vector<OrderedView>& ranked, const Executor& executor) {
   SACCADE_CHECK(out.remove(std::span{kViewFiles}.first(1)));
   std::vector<ScoredPose> scored;
   for (const OrderedView& view : ranked) scored.push_back({view.T_world_camera, static_cast<double>(view.gain)});
@@ -167,128 +160,99 @@ Status write_outputs(const NbvOptions& options, const RunFolder& out, const Tsdf
   picture.sensor = options.gain.sensor;
   picture.overview.up = options.up.value_or(Eigen::Vector3d::UnitZ());
   picture.gain_unit = kGainCountNames.of(options.gain.count);
-  SACCADE_CHECK(write_png(out / "views.png", view_picture(map, options.region(), scored, executor, picture)));
-  return write_json(out / "views.json", document);
+  return write_png(out / "views.png", view_picture(map, options.region(), scored, executor, picture));
 }
 
-std::string advice_without_gain(const NbvOptions& options) {
-  std::string advice{"no view shows anything unknown of the region: every gain is 0"};
-  if (!options.forget)
-    advice += "; is all of it known (--forget sets it back to unknown), or is it hidden or elsewhere?";
-  return advice;
+/// Says why every gain is 0, and which option helps.
+std::string advice_without_gain(const NbvOptions& options, NoGain reason) {
+  std::string text{"no view shows anything unknown of the region: every gain is 0; "};
+  text += advice(reason);
+  if (reason == NoGain::nothing_unknown && !options.forget) text += " (--forget)";
+  if (reason == NoGain::cameras_in_unknown || reason == NoGain::cameras_blocked) text += " (--workspace)";
+  return text;
 }
 
-Result<int> run_nbv(const NbvOptions& options, const GlobalOptions& global) {
-  const Stopwatch total;
-  Stopwatch stopwatch;
-  TimingsMs timings_ms;
-  const Executor executor = global.executor();
-  ProgressBar bar{global.quiet};
-  SACCADE_TRY(const Candidates candidates, make_candidates(options));
-  bar.update("loading the map", 0, 0);
-  SACCADE_TRY(const TsdfSnapshot map, prepare_map(options, executor));
-  SACCADE_CHECK(check_json_output(global));
-  std::optional<RunFolder> out;
-  if (!options.out.empty()) {
-    SACCADE_TRY(RunFolder opened, RunFolder::open(options.out, kViewFiles, "views.json", options.force));
-    out.emplace(std::move(opened));
+class Nbv final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override { return {"nbv", "ranks view poses for a region in a saved map"}; }
+
+  void declare(Options& options) override {
+    options.value("map", nbv_.map, "MAP", "saved map (.sacmap)").required();
+    declare_region(options);
+    declare_candidates(options);
+    declare_gain(options);
+    options.choice("--backend", nbv_.backend, kViewBackendNames,
+                   "where views are evaluated; a GPU pays where one map is asked often");
+    options.value("--top", nbv_.top, "N", "views to print and to write").whole_number();
+    options.flag("--all", nbv_.all, "print and write all views");
+    options.folder({.help = "folder for views.json and views.png",
+                    .files = {kViewFiles.begin(), kViewFiles.end()},
+                    .document = kViewFiles.front()});
+    options.flag("--no-pictures{false}", pictures_, "draw no picture");
   }
-  timings_ms["load"] = stopwatch.lap_ms();
 
-  Progress progress{
-      [&bar](std::string_view, std::size_t done, std::size_t count) { bar.update("evaluating views", done, count); }};
-  const CancelOnInterrupt cancel{progress};
-  SACCADE_TRY(const GainResult gains,
-              evaluate_views(map, options.region(), candidates.poses, options.gain, executor, progress));
-  const std::vector<OrderedView> ranked = order_views(gains.gains, candidates.poses);
-  timings_ms["evaluate"] = stopwatch.lap_ms();
-
-  const std::size_t shown = options.all ? ranked.size() : std::min(options.top, ranked.size());
-  timings_ms["total"] = total.elapsed_ms();
-  const json document =
-      json_envelope("nbv", global, executor, timings_ms, result_json(options, candidates, gains, ranked, shown));
-  if (out) {
-    bar.update("drawing", 0, 0);
-    SACCADE_CHECK(write_outputs(options, *out, map, ranked, document, executor));
+  void check(const GlobalOptions& /*global*/) override {
+    if (nbv_.poi.has_value() == nbv_.box.has_value()) usage_error("--poi", "give either --poi or --box");
+    if (nbv_.box && nbv_.radius_m) usage_error("--radius", "goes with --poi, not with --box");
+    if (nbv_.radius_m) require_length(*nbv_.radius_m, "--radius");
+    if (nbv_.top == 0) usage_error("--top", "must be at least 1");
+    nbv_.gain.sensor = nbv_.camera.camera(nbv_.gain.sensor);
+    require_ok(nbv_.gain.validate(), "the sensor");
   }
-  bar.finish();
-  SACCADE_CHECK(write_json_output(global, document));
-  if (!global.json_to_stdout()) {
-    print_table(options, candidates, gains, ranked, shown);
-    if (out) std::cout << "results: " << options.out.string() << '\n';
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    SACCADE_TRY(const Candidates candidates, make_candidates(nbv_));
+    context.stage("loading the map");
+    SACCADE_TRY(const TsdfSnapshot map, prepare_map(nbv_, context.executor()));
+    context.lap("load");
+    SACCADE_TRY(const GainResult gains, evaluate_views_on(nbv_.backend, map, nbv_.region(), candidates.poses, nbv_.gain,
+                                                          context.executor(), context.stage("evaluating views")));
+    const std::vector<OrderedView> ranked = order_views(gains.gains, candidates.poses);
+    context.lap("evaluate");
+    const std::size_t shown = nbv_.all ? ranked.size() : std::min(nbv_.top, ranked.size());
+    std::string text = table_of(nbv_, candidates, gains, ranked, shown);
+    if (const RunFolder* out = context.folder()) {
+      context.stage("drawing");
+      if (pictures_) SACCADE_CHECK(write_picture(nbv_, *out, map, ranked, context.executor()));
+      text += "results: " + context.out().string() + "\n";
+    }
+    return Outcome{.result = result_json(nbv_, candidates, gains, ranked, shown), .text = std::move(text)}.empty_if(
+        ranked.front().gain == 0, advice_without_gain(nbv_, gains.no_gain));
   }
-  if (ranked.front().gain > 0) return static_cast<int>(ExitStatus::done);
-  print_error("nbv", advice_without_gain(options));
-  return static_cast<int>(ExitStatus::no_result);
-}
 
-void add_region_options(CLI::App& command, NbvOptions& options) {
-  add_point(command, "--poi", options.poi,
-            "point of interest: the centre of the region and of the view sphere, metres");
-  add_value(command, "--radius", options.radius_m, "METRES",
-            "radius of the region around --poi, metres (default: 0.2)");
-  add_box(command, "--box", options.box, "box region, instead of --poi and --radius");
-  command.add_flag("--forget", options.forget, "set the region back to unknown first (the file stays as it is)");
-  add_box(command, "--workspace", options.workspace,
-          "box outside of which nothing counts as unknown, instead of the map's");
-}
+ private:
+  void declare_region(Options& options) {
+    options.point("--poi", nbv_.poi, "point of interest: the centre of the region and of the view sphere, metres");
+    options.value("--radius", nbv_.radius_m, "METRES", "radius of the region around --poi, metres (default: 0.2)");
+    options.box("--box", nbv_.box, "box region, instead of --poi and --radius");
+    options.flag("--forget", nbv_.forget, "set the region back to unknown first (the file stays as it is)");
+    options.box("--workspace", nbv_.workspace, "box outside of which nothing counts as unknown, instead of the map's");
+  }
 
-void add_candidate_options(CLI::App& command, NbvOptions& options) {
-  add_value(command, "--poses", options.poses_file, "FILE",
-            "candidate poses (TUM, matrices, JSON), instead of the view sphere");
-  add_lengths(command, "--distance", options.sphere.radii_m,
-              "radius of the view sphere, metres; several separated by commas (default: 0.8)");
-  command
-      .add_option_function<std::string>(
-          "--up",
-          [&options](const std::string& text) {
-            const Eigen::Vector3d up = parse_point("--up", text);
-            if (!(up.norm() > 0.0)) usage_error("--up", "needs a direction, not a zero vector");
-            options.up = up.normalized();
-          },
-          "what is up in the map's world: the pole of the view sphere (default: 0,0,1)")
-      ->type_name("X,Y,Z");
-}
+  void declare_candidates(Options& options) {
+    options.value("--poses", nbv_.poses_file, "FILE",
+                  "candidate poses (TUM, matrices, JSON), instead of the view sphere");
+    options.lengths("--distance", nbv_.sphere.radii_m,
+                    "radius of the view sphere, metres; several separated by commas (default: 0.8)");
+    options.direction("--up", nbv_.up, "direction up in the map's world: the pole of the view sphere (default: 0,0,1)");
+  }
 
-void add_gain_options(CLI::App& command, NbvOptions& options) {
-  add_camera_options(command, options.camera, true);
-  add_choice(command, "--count", options.gain.count, kGainCountNames,
-             "what counts: rays, or the distinct voxels they end in");
-  add_choice(command, "--unknown-outside", options.gain.unknown_outside, kUnknownOutsideNames,
-             "what unknown voxels outside the region do to a ray");
-  command
-      .add_option_function<double>(
-          "--tilt", [&options](const double& tilt_deg) { options.gain.tilt_rad = to_rad(tilt_deg); },
-          "the sensor will be tilted up and down by this angle, degrees (default: 0)")
-      ->type_name("DEGREES");
-}
+  void declare_gain(Options& options) {
+    add_camera_options(options.group(), nbv_.camera, true);
+    options.choice("--count", nbv_.gain.count, kGainCountNames, "count rays, or the distinct voxels that they end in");
+    options.choice("--unknown-outside", nbv_.gain.unknown_outside, kUnknownOutsideNames,
+                   "effect of unknown voxels outside the region on a ray");
+    options.angle("--tilt", nbv_.gain.tilt_rad, "the sensor will be tilted up and down by this angle, degrees");
+  }
 
-void check_nbv_options(NbvOptions& options) {
-  if (options.poi.has_value() == options.box.has_value()) usage_error("--poi", "give either --poi or --box");
-  if (options.box && options.radius_m) usage_error("--radius", "goes with --poi, not with --box");
-  if (options.radius_m) require_positive(*options.radius_m, "--radius");
-  if (options.top == 0) usage_error("--top", "must be at least 1");
-  options.gain.sensor = options.camera.camera(options.gain.sensor);
-  require_ok(options.gain.validate(), "the sensor");
-}
+  NbvOptions nbv_;
+  bool pictures_{true};
+};
 
 }  // namespace
 
 void add_nbv(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("nbv", "ranks view poses for a region in a saved map");
-  auto options = std::make_shared<NbvOptions>();
-  add_value(*command, "map", options->map, "MAP", "saved map (.sacmap)")->required();
-  add_region_options(*command, *options);
-  add_candidate_options(*command, *options);
-  add_gain_options(*command, *options);
-  add_value(*command, "--top", options->top, "N", "views to print and to write")->check(check_whole_number);
-  command->add_flag("--all", options->all, "print and write all views");
-  add_value(*command, "--out", options->out, "DIR", "folder for views.json and views.png");
-  command->add_flag("--force", options->force, "write into a folder that holds other files");
-  command->callback([options, &global, &action] {
-    check_nbv_options(*options);
-    action = [options, &global] { return run_nbv(*options, global); };
-  });
+  add_command<Nbv>(program, global, action);
 }
 
 }  // namespace saccade::cli

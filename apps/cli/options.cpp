@@ -6,7 +6,10 @@
 #include <charconv>
 #include <cmath>
 #include <cstdint>
+
 #include "add_value.hpp"
+#include "length_options.hpp"
+#include "saccade/core/nearest_word.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::cli {
@@ -52,11 +55,15 @@ std::string check_whole_number(const std::string& text) {
   return is_one ? "" : "needs a whole number from 0 to 2^64 - 1, not '" + text + "'";
 }
 
+std::string unknown_word(const std::string& word, std::span<const std::string_view> known) {
+  return "must be " + listed(known) + ", not '" + word + "'" + did_you_mean(word, known);
+}
+
 std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count) {
   std::vector<double> numbers;
   for (const std::string& word : split(text, ", ")) {
     const auto value = number_of(word);
-    if (!value) usage_error(option, "'" + word + "' in '" + text + "' is no number");
+    if (!value) usage_error(option, "'" + word + "' in '" + text + "' is not a number");
     numbers.push_back(*value);
   }
   if (numbers.empty() || (count != 0 && numbers.size() != count)) {
@@ -99,7 +106,7 @@ CLI::Option* add_words(CLI::App& command, const std::string& option, std::span<c
   const std::vector<std::string_view> known{words.begin(), words.end()};
   const auto checked = [option, known, take = std::move(take)](const std::string& word) {
     if (std::find(known.begin(), known.end(), word) == known.end()) {
-      usage_error(option, "must be " + listed(known) + ", not '" + word + "'");
+      usage_error(option, unknown_word(word, known));
     }
     take(word);
   };
@@ -115,9 +122,9 @@ void add_point(CLI::App& command, const std::string& option, std::optional<Eigen
 
 void add_lengths(CLI::App& command, const std::string& option, std::vector<double>& lengths_m,
                  const std::string& description) {
-  const auto take = [option, &lengths_m](const std::string& text) {
-    lengths_m = parse_numbers(option, text, 0);
-    for (const double length_m : lengths_m) require_positive(length_m, option);
+  const auto take = [name = option.substr(0, option.find(',')), &lengths_m](const std::string& text) {
+    lengths_m = parse_numbers(name, text, 0);
+    for (const double length_m : lengths_m) require_length(length_m, name);
   };
   command.add_option_function<std::string>(option, take, description)->type_name("METRES");
 }
@@ -160,8 +167,8 @@ void add_clearing_option(CLI::App& command, std::uint8_t& percent) {
   command
       .add_option_function<int>(
           "--clearing", [&percent](int given) { percent = static_cast<std::uint8_t>(given); },
-          "how much it counts against a surface when a ray passes it by: 100 as much as everything else, less where "
-          "poses are not exact (default: " +
+          "weight of rays that pass through a surface, as evidence against it: 100 as much as any other measurement, "
+          "less where poses are inexact (default: " +
               std::to_string(percent) + ")")
       ->check(CLI::Range(1, 100))
       ->type_name("PERCENT");
@@ -173,18 +180,25 @@ void add_camera_options(CLI::App& command, CameraOptions& options, bool with_ima
           "--camera",
           [&options](const std::string& name) {
             const auto preset = camera_preset(name);
-            if (!preset) usage_error("--camera", preset.error().message);
+            if (!preset) {
+              std::vector<std::string_view> known;
+              for (const CameraPreset& one : camera_presets()) known.push_back(one.name);
+              usage_error("--camera", preset.error().message + did_you_mean(name, known));
+            }
             options.preset = *preset;
+            options.preset_name = name;
           },
           "camera preset: " + joined(camera_presets(), ", ", &CameraPreset::name))
       ->type_name("NAME");
   command
       .add_option_function<std::string>(
           "--intrinsics",
-          [&options](const std::string& text) {
+          [&options, with_image_size](const std::string& text) {
             options.intrinsics = parse_numbers("--intrinsics", text, 4);
-            require_positive((*options.intrinsics)[0], "--intrinsics: fx");
-            require_positive((*options.intrinsics)[1], "--intrinsics: fy");
+            const std::vector<double>& n = *options.intrinsics;
+            const bool is_recorded = !with_image_size;  // a negative one mirrors an axis of recorded images
+            require_positive(is_recorded ? std::abs(n[0]) : n[0], "--intrinsics: fx");
+            require_positive(is_recorded ? std::abs(n[1]) : n[1], "--intrinsics: fy");
           },
           "focal lengths and principal point, pixels")
       ->type_name("FX,FY,CX,CY");

@@ -27,11 +27,14 @@ namespace saccade::cli {
 
 /// Throws what CLI11 reports as a usage error of that option.
 [[noreturn]] void usage_error(const std::string& option, const std::string& message);
-/// The same for the errors of a library check on values that came from options.
+/// As usage_error, for the errors of a library check on values that came from options.
 void require_ok(const Status& status, const std::string& option);
 void require_positive(double value, const std::string& option);
 /// For CLI::Option::check: what is wrong with the text, or nothing. CLI11 itself takes -1 for the largest number.
 [[nodiscard]] std::string check_whole_number(const std::string& text);
+
+/// Says that a word is none of those that an option takes, and which one may have been meant.
+[[nodiscard]] std::string unknown_word(const std::string& word, std::span<const std::string_view> known);
 
 /// `count` finite numbers, separated by commas or blanks (any number of them, at least one, for count 0).
 [[nodiscard]] std::vector<double> parse_numbers(const std::string& option, const std::string& text, std::size_t count);
@@ -72,9 +75,10 @@ void add_lengths(CLI::App& command, const std::string& option, std::vector<doubl
 /// Adds an option for a box: X0,Y0,Z0,X1,Y1,Z1.
 void add_box(CLI::App& command, const std::string& option, std::optional<Box>& box, const std::string& description);
 
-/// What the camera options say; everything that they leave open is the caller's.
+/// Camera as the options describe it; the caller chooses what they leave open.
 struct CameraOptions {
   std::optional<PinholeCamera> preset;
+  std::string preset_name{};
   std::optional<std::vector<double>> intrinsics;  ///< fx, fy, cx, cy in pixels
   std::optional<std::pair<int, int>> image_size;
   std::optional<double> min_range_m;

@@ -1,10 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "progress_bar.hpp"
 
+#include <poll.h>
 #include <unistd.h>
 
 #include <algorithm>
 #include <iostream>
+
+#include "interrupt.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -19,7 +22,7 @@ std::string count_text(std::size_t done, std::size_t total) {
 
 }  // namespace
 
-ProgressBar::ProgressBar(bool quiet) : quiet_{quiet}, terminal_{::isatty(STDERR_FILENO) == 1} {}
+ProgressBar::ProgressBar(bool quiet, bool says) : quiet_{quiet}, says_{says}, terminal_{::isatty(STDERR_FILENO) == 1} {}
 
 void ProgressBar::update(std::string_view stage, std::size_t done, std::size_t total) {
   if (quiet_) return;
@@ -56,10 +59,38 @@ void ProgressBar::wipe() {
 }
 
 void ProgressBar::note(std::string_view line) {
-  if (quiet_) return;
+  if (!quiet_) print_line(line);
+}
+
+void ProgressBar::warn(std::string_view line) { print_line(line); }
+
+void ProgressBar::print_line(std::string_view line) {
   const std::lock_guard lock{mutex_};
   wipe();
   std::cerr << std::string{line} + '\n' << std::flush;
+}
+
+std::optional<std::string> ProgressBar::ask(std::string_view question) {
+  constexpr int kPoll_ms{100};
+  finish();
+  std::cerr << question << std::flush;
+  std::string line;
+  while (!interrupted()) {
+    pollfd input{STDIN_FILENO, POLLIN, 0};
+    if (::poll(&input, 1, kPoll_ms) <= 0) continue;
+    char c = 0;
+    if (::read(STDIN_FILENO, &c, 1) != 1) return std::nullopt;
+    if (c == '\n') return line;
+    line.push_back(c);
+  }
+  return std::nullopt;
+}
+
+void ProgressBar::say(std::string_view line) {
+  if (!says_) return note(line);
+  const std::lock_guard lock{mutex_};
+  wipe();
+  std::cout << line << '\n' << std::flush;
 }
 
 void ProgressBar::finish() {

@@ -1,24 +1,19 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade robot check: what a URDF says about an arm, as it is understood here, and what is wrong with it.
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
-#include <memory>
+#include <sstream>
 #include <utility>
 #include <vector>
 
-#include "command.hpp"
-#include "exit_status.hpp"
-#include "json_output.hpp"
+#include "context.hpp"
 #include "robot_options.hpp"
 #include "robot_reach.hpp"
 #include "saccade/arm/inverse_kinematics.hpp"
 #include "saccade/arm/kinematics.hpp"
 #include "saccade/arm/urdf.hpp"
 #include "saccade/core/angle.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "summary.hpp"
 
@@ -105,7 +100,7 @@ std::string camera_text(const ArmModel& arm) {
          ") m from the flange " + arm.description().flange_name;
 }
 
-/// What a pose leaves open.
+/// Names the freedom that a pose leaves to the joints.
 std::string left_open_text(const InverseKinematics& ik) {
   if (ik.redundancy() == IkRedundancy::swivel) return "the swivel of the elbow about the line from shoulder to wrist";
   const bool first = ik.redundancy() == IkRedundancy::first_joint;
@@ -122,7 +117,7 @@ std::string inverse_text(const InverseKinematics& ik) {
   return text;
 }
 
-void print_robot(const UrdfArm& read, const InverseKinematics& ik) {
+std::string robot_text(const UrdfArm& read, const InverseKinematics& ik) {
   const ArmModel& arm = read.arm;
   std::vector<std::pair<std::string, std::string>> lines;
   lines.emplace_back("robot", arm.name() + ", " + std::to_string(arm.dof()) + " joints");
@@ -134,34 +129,49 @@ void print_robot(const UrdfArm& read, const InverseKinematics& ik) {
   for (const std::string& note : read.notes) lines.emplace_back("note", note);
   std::size_t width{0};
   for (const auto& [name, text] : lines) width = std::max(width, name.size() + 2);
-  for (const auto& [name, text] : lines)
-    std::cout << std::left << std::setw(static_cast<int>(width)) << name << text << '\n';
+  std::ostringstream out;
+  for (const auto& [name, text] : lines) {
+    out << std::left << std::setw(static_cast<int>(width)) << name << text << '\n';
+  }
+  return out.str();
 }
 
-Result<int> run_check(const ArmOptions& options, const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(const UrdfArm read, find_robot(options.robot, options.urdf));
-  SACCADE_TRY(const InverseKinematics ik, InverseKinematics::create(read.arm));
-  if (!global.json_to_stdout()) print_robot(read, ik);
-  SACCADE_CHECK(
-      write_result("robot", global, global.executor(), {{"total", stopwatch.elapsed_ms()}}, robot_json(read, ik)));
-  return static_cast<int>(ExitStatus::done);
-}
+class RobotCheck final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {.name = "check",
+            .description = "reads an arm from a URDF, and names the problems of the file",
+            .result_name = "robot"};
+  }
+  void declare(Options& options) override { add_arm_options(options.group(), arm_)->required(); }
+  void check(const GlobalOptions& /*global*/) override { check_arm_options(arm_); }
+  [[nodiscard]] Result<Outcome> run(Context& /*context*/) override {
+    SACCADE_TRY(const UrdfArm read, find_robot(arm_.robot, arm_.urdf));
+    SACCADE_TRY(const InverseKinematics ik, InverseKinematics::create(read.arm));
+    return Outcome{.result = robot_json(read, ik), .text = robot_text(read, ik)};
+  }
+
+ private:
+  ArmOptions arm_;
+};
+
+class Robot final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"robot", "checks descriptions of arms, and draws what they reach"};
+  }
+  [[nodiscard]] std::vector<std::unique_ptr<Command>> parts() const override {
+    std::vector<std::unique_ptr<Command>> parts;
+    parts.push_back(std::make_unique<RobotCheck>());
+    parts.push_back(make_robot_reach());
+    return parts;
+  }
+};
 
 }  // namespace
 
 void add_robot(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("robot", "checks descriptions of arms, and draws what they reach");
-  command->require_subcommand(1);
-  auto options = std::make_shared<ArmOptions>();
-  CLI::App* check = command->add_subcommand("check", "what a URDF says about an arm, and what is wrong with it");
-  add_arm_options(*check, *options)->required();
-  check->callback([options, &global, &action] {
-    check_arm_options(*options);
-    action = [options, &global] { return run_check(*options, global); };
-  });
-  add_robot_reach(*command, global, action);
+  add_command<Robot>(program, global, action);
 }
 
 }  // namespace saccade::cli

@@ -2,8 +2,11 @@
 #include "robot_options.hpp"
 
 #include <CLI/CLI.hpp>
+#include <filesystem>
+#include <sstream>
 
 #include "add_value.hpp"
+#include "interrupt.hpp"
 #include "options.hpp"
 #include "saccade/core/angle.hpp"
 
@@ -16,6 +19,16 @@ void add_package(const std::string& text, UrdfConfig& config) {
   if (equals == std::string::npos || equals == 0 || equals + 1 == text.size())
     usage_error("--package", "wants NAME=FOLDER, not " + text);
   config.packages[text.substr(0, equals)] = text.substr(equals + 1);
+}
+
+/// "DIR[:DIR]".
+void add_package_paths(const std::string& text, UrdfConfig& config) {
+  std::istringstream parts{text};
+  for (std::string folder; std::getline(parts, folder, ':');) {
+    if (folder.empty()) continue;
+    if (!std::filesystem::is_directory(folder)) usage_error("--package-path", "there is no folder " + folder);
+    config.package_paths.emplace_back(folder);
+  }
 }
 
 Pose parse_base(const std::string& text) {
@@ -46,7 +59,11 @@ void add_reading_options(CLI::App& command, ArmOptions& options) {
                  "optical_frame, else the tip"));
   note(
       add_value(command, "--package", options.packages, "NAME=FOLDER", "where package://NAME/… lies; may be repeated"));
-  command.add_flag("--drop-beyond-tip", options.drop_beyond_tip, "leave out what is fixed behind the tip");
+  note(
+      add_value(command, "--package-path", options.package_paths, "DIR[:DIR]",
+                "folders that hold packages, searched where --package and the URDF's own folders have none; then those "
+                "of ROS_PACKAGE_PATH; may be repeated"));
+  command.add_flag("--drop-beyond-tip", options.drop_beyond_tip, "ignore everything that is fixed behind the tip");
 }
 
 CLI::Option* add_arm_options(CLI::App& command, ArmOptions& options) {
@@ -58,7 +75,9 @@ CLI::Option* add_arm_options(CLI::App& command, ArmOptions& options) {
 
 void check_arm_options(ArmOptions& options) {
   for (const std::string& package : options.packages) add_package(package, options.urdf);
+  for (const std::string& paths : options.package_paths) add_package_paths(paths, options.urdf);
   options.urdf.keep_beyond_tip = !options.drop_beyond_tip;
+  options.urdf.cancelled = interrupted;
 }
 
 void require_no_reading(const ArmOptions& options) {

@@ -22,13 +22,15 @@ constexpr int kNumericRestarts{10};
 
 struct ArmOptions {
   std::string robot;  ///< a built-in arm or a URDF file, where a command has this as its subject
-  UrdfConfig urdf;
-  std::vector<std::string> packages;
+  UrdfConfig urdf{};
+  std::vector<std::string> packages{};
+  std::vector<std::string> package_paths{};
   bool drop_beyond_tip{false};
   std::string given{};  ///< the first of the options that was given; empty: none
 };
 
-/// Adds --base, --base-at, --tip, --camera-frame, --package, --drop-beyond-tip: how the description of an arm is read.
+/// Adds --base, --base-at, --tip, --camera-frame, --package, --package-path, --drop-beyond-tip: how the description of
+/// an arm is read.
 void add_reading_options(CLI::App& command, ArmOptions& options);
 /// Adds the robot and these. Returns the option of the robot.
 CLI::Option* add_arm_options(CLI::App& command, ArmOptions& options);

@@ -1,21 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "robot_reach.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <cmath>
-#include <iostream>
-#include <memory>
 
-#include "add_value.hpp"
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "options.hpp"
-#include "progress_bar.hpp"
+#include "context.hpp"
+#include "length_options.hpp"
 #include "robot_reach_output.hpp"
 #include "saccade/core/angle.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/devices/cell.hpp"
 #include "saccade/map/tsdf_map.hpp"
 #include "saccade/scene/scene_yaml.hpp"
@@ -69,7 +61,7 @@ Result<ReachTask> make_task(const ReachOptions& options) {
   SACCADE_TRY(UrdfArm robot, find_robot(options.arm.robot, options.arm.urdf));
   SACCADE_TRY(const Scene scene, find_scene(options.scene));
   SACCADE_TRY(std::vector<FixtureBox> fixtures, fixture_boxes(scene));
-  if (std::filesystem::is_regular_file(options.scene)) {
+  if (std::filesystem::is_regular_file(options.scene) && !is_mesh_file(options.scene)) {
     SACCADE_TRY(const Cell cell, read_cell(options.scene));
     for (const Box& box : cell.fixtures) {
       fixtures.push_back({"fixture " + std::to_string(fixtures.size() + 1), box, true});  // one may be the table
@@ -104,83 +96,79 @@ Result<ObstacleMap> obstacles_of(const ReachTask& task, const Executor& executor
   return ObstacleMap::create(map.snapshot(), obstacles, executor);
 }
 
-int finish(const ReachMap& map) {
-  if (map.points_done < map.points.size()) {
-    print_error("robot", "interrupted after " + std::to_string(map.points_done) + " of " +
-                             std::to_string(map.points.size()) + " points; the results hold those");
-    return interrupt_status();
+class RobotReach final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {.name = "reach",
+            .description = "draws where in a workspace an arm can take view poses",
+            .result_name = "robot"};
   }
-  if (map.total().reachable > 0) return static_cast<int>(ExitStatus::done);
-  print_error("robot", "not one pose can be reached; is the arm where it should be (--base-at), and the radius right?");
-  return static_cast<int>(ExitStatus::no_result);
-}
 
-Result<int> run_reach(const ReachOptions& options, const GlobalOptions& global) {
-  const Stopwatch total;
-  Stopwatch stopwatch;
-  TimingsMs timings_ms;
-  const Executor executor = global.executor();
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(const ReachTask task, make_task(options));
-  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, kReachFiles, "reach.json", options.force));
-  SACCADE_TRY(const ArmCollision collision, ArmCollision::create(task.robot.arm));
-  SACCADE_TRY(const Reachability reachability, Reachability::create(collision, ik_config()));
-  SACCADE_TRY(const ObstacleMap obstacles, obstacles_of(task, executor));
-  timings_ms["prepare"] = stopwatch.lap_ms();
-
-  ProgressBar bar{global.quiet};
-  show_choices(task.robot, bar);
-  if (task.ik.method() == IkMethod::numeric) {
-    bar.note("no closed form for this arm: its inverse kinematics iterates, which takes milliseconds a pose");
+  void declare(Options& options) override {
+    add_arm_options(options.group(), reach_.arm)->capture_default_str();
+    options.value("--scene", reach_.scene, "SCENE",
+                  "scene that gives the workspace and the obstacles (its fixtures and supports, as boxes): a built-in "
+                  "scene, clutter:SEED, "
+                  "a YAML file or a mesh file");
+    options.box("--workspace", reach_.workspace, "box of the points of interest, instead of the scene's workspace");
+    options.value("--height", reach_.height_m, "METRES",
+                  "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)");
+    options.value("--step", reach_.step_m, "METRES",
+                  "distance between points, metres (default: 0.05; 0.1 for arms without a closed form)");
+    options.lengths("--distance,--radius", reach_.radii_m,
+                    "radius of the view sphere around each point, metres; several separated by commas (default: 0.8)");
+    options.folder({.help = "folder for reach.png, reach.csv and reach.json",
+                    .files = {kReachFiles.begin(), kReachFiles.end()},
+                    .document = kReachFiles.front(),
+                    .required = true,
+                    .opened_by_command = true});
+    options.flag("--no-pictures{false}", pictures_, "draw no picture");
   }
-  Progress progress{
-      [&bar](std::string_view stage, std::size_t done, std::size_t all) { bar.update(stage, done, all); }};
-  const CancelOnInterrupt cancel{progress};
-  SACCADE_TRY(const ReachMap map,
-              reach_map(reachability, task.robot.arm.middle(), obstacles, task.config, executor, progress));
-  if (map.points_done == 0) return Error{Errc::cancelled, "no point was done", ""};
-  timings_ms["test"] = stopwatch.lap_ms();
-  timings_ms["total"] = total.elapsed_ms();
-  bar.finish();
-  const nlohmann::json document = json_envelope("robot", global, executor, timings_ms, reach_json(task, map));
-  SACCADE_CHECK(write_reach(out, task, map, document));
-  SACCADE_CHECK(write_json_output(global, document));
-  if (!global.json_to_stdout()) {
-    print_reach(task, map, timings_ms["test"]);
-    std::cout << "\nresults: " << options.out.string() << '\n';
-  }
-  return finish(map);
-}
 
-void add_grid_options(CLI::App& command, ReachOptions& options) {
-  add_value(command, "--scene", options.scene, "SCENE",
-            "gives workspace and obstacles (its fixtures and supports, as boxes): a built-in scene, clutter:SEED or a "
-            "YAML file");
-  add_box(command, "--workspace", options.workspace,
-          "where the points of interest lie, instead of the scene's workspace");
-  add_value(command, "--height", options.height_m, "METRES",
-            "world z of the points (default: 0.1 above the support in the workspace, else above its lower end)");
-  add_value(command, "--step", options.step_m, "METRES",
-            "between points (default: 0.05; 0.1 for arms without a closed form)");
-  add_lengths(command, "--radius", options.radii_m,
-              "of the view sphere around each point; several separated by commas (default: 0.8)");
-}
+  void check(const GlobalOptions& /*global*/) override {
+    check_arm_options(reach_.arm);
+    if (reach_.step_m) require_length(*reach_.step_m, "--step");
+    if (reach_.height_m && !std::isfinite(*reach_.height_m)) usage_error("--height", "must be a number");
+  }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    const Executor& executor = context.executor();
+    SACCADE_TRY(const ReachTask task, make_task(reach_));
+    SACCADE_CHECK(context.open_folder());
+    SACCADE_TRY(const ArmCollision collision, ArmCollision::create(task.robot.arm));
+    SACCADE_TRY(const Reachability reachability, Reachability::create(collision, ik_config()));
+    SACCADE_TRY(const ObstacleMap obstacles, obstacles_of(task, executor));
+    context.lap("prepare");
+    show_choices(task.robot, context.bar());
+    if (task.ik.method() == IkMethod::numeric) {
+      context.bar().note(
+          "no closed form for this arm: its inverse kinematics iterates, which takes milliseconds a pose");
+    }
+    const Stopwatch testing;
+    SACCADE_TRY(const ReachMap map,
+                reach_map(reachability, task.robot.arm.middle(), obstacles, task.config, executor, context.progress()));
+    if (map.points_done == 0) return Error{Errc::cancelled, "no point was done", ""};
+    const double test_ms = testing.elapsed_ms();
+    context.lap("test");
+    SACCADE_CHECK(write_reach(*context.folder(), task, map, pictures_));
+    Outcome outcome{.result = reach_json(task, map),
+                    .text = reach_text(task, map, test_ms) + "\nresults: " + context.out().string() + "\n"};
+    if (map.points_done < map.points.size()) {
+      outcome.cut_short = "interrupted after " + std::to_string(map.points_done) + " of " +
+                          std::to_string(map.points.size()) + " points; the results hold those";
+    }
+    return std::move(outcome).empty_if(
+        map.total().reachable == 0,
+        "not one pose can be reached; is the arm where it should be (--base-at), and the radius right?");
+  }
+
+ private:
+  ReachOptions reach_;
+  bool pictures_{true};
+};
 
 }  // namespace
 
-void add_robot_reach(CLI::App& robot, const GlobalOptions& global, Action& action) {
-  auto options = std::make_shared<ReachOptions>();
-  CLI::App* command = robot.add_subcommand("reach", "draws where in a workspace an arm can take view poses");
-  add_arm_options(*command, options->arm)->capture_default_str();
-  add_grid_options(*command, *options);
-  add_value(*command, "--out", options->out, "DIR", "folder for reach.png, reach.csv and reach.json")->required();
-  command->add_flag("--force", options->force, "write into a folder that holds other files");
-  command->callback([options, &global, &action] {
-    check_arm_options(options->arm);
-    if (options->step_m) require_positive(*options->step_m, "--step");
-    if (options->height_m && !std::isfinite(*options->height_m)) usage_error("--height", "must be a number");
-    action = [options, &global] { return run_reach(*options, global); };
-  });
-}
+std::unique_ptr<Command> make_robot_reach() { return std::make_unique<RobotReach>(); }
 
 }  // namespace saccade::cli

@@ -2,7 +2,7 @@
 #pragma once
 // saccade robot reach: where an arm can bring the camera, as a picture and a table.
 
-#include <filesystem>
+#include <memory>
 #include <optional>
 #include <string>
 #include <vector>
@@ -16,17 +16,15 @@
 namespace saccade::cli {
 
 struct ReachOptions {
-  ArmOptions arm{"comau_smart_six", {}, {}, false};
+  ArmOptions arm{.robot = "comau_smart_six"};
   std::string scene{"tabletop-1"};
   std::optional<Box> workspace;
   std::optional<double> height_m;
   std::optional<double> step_m;
   std::vector<double> radii_m{0.8};
-  std::filesystem::path out;
-  bool force{false};
 };
 
-/// What was asked, with everything that the options left open settled.
+/// Request with the defaults filled in for the options that were not given.
 struct ReachTask {
   UrdfArm robot;
   InverseKinematics ik;
@@ -35,7 +33,6 @@ struct ReachTask {
   ReachMapConfig config;
 };
 
-/// Adds the subcommand to `saccade robot`.
-void add_robot_reach(CLI::App& robot, const GlobalOptions& global, Action& action);
+[[nodiscard]] std::unique_ptr<Command> make_robot_reach();
 
 }  // namespace saccade::cli

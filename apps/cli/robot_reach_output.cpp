@@ -4,7 +4,7 @@
 #include <array>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
+#include <sstream>
 
 #include "json_output.hpp"
 #include "saccade/arm/arm_mesh.hpp"
@@ -55,21 +55,21 @@ std::string names_of(const std::vector<FixtureBox>& fixtures) {
 }
 
 /// A row of the tables by latitude and radius.
-void print_row(const std::string& name, const ReachCounts& counts) {
-  std::cout << std::right << std::setw(8) << name;
+void write_row(std::ostream& text, const std::string& name, const ReachCounts& counts) {
+  text << std::right << std::setw(8) << name;
   const std::size_t all = counts.poses();
   for (const std::size_t part : {counts.reachable, counts.no_ik, counts.outside_limits, counts.goal_in_collision}) {
-    std::cout << std::setw(16) << part_of(part, all);
+    text << std::setw(16) << part_of(part, all);
   }
-  std::cout << '\n';
+  text << '\n';
 }
 
-void print_head(const char* name) {
-  std::cout << '\n' << std::right << std::setw(8) << name;
+void write_head(std::ostream& text, const char* name) {
+  text << '\n' << std::right << std::setw(8) << name;
   for (const char* column : {"reachable", "out of reach", "outside limits", "in collision"}) {
-    std::cout << std::setw(16) << column;
+    text << std::setw(16) << column;
   }
-  std::cout << '\n';
+  text << '\n';
 }
 
 /// From above, with every joint in the middle of its limits: the points of each link's bodies.
@@ -175,8 +175,9 @@ json reach_json(const ReachTask& task, const ReachMap& map) {
           {"by_direction", std::move(directions)}};
 }
 
-void print_reach(const ReachTask& task, const ReachMap& map, double test_ms) {
-  const Summary summary{std::cout};
+std::string reach_text(const ReachTask& task, const ReachMap& map, double test_ms) {
+  std::ostringstream text;
+  const Summary summary{text};
   const ReachCounts total = map.total();
   const InverseKinematics& ik = task.ik;
   summary.line("robot", task.robot.arm.name() + ", inverse kinematics: " + std::string{to_string(ik.method())});
@@ -198,23 +199,24 @@ void print_reach(const ReachTask& task, const ReachMap& map, double test_ms) {
     summary.line("note",
                  "a few starts per pose, one configuration each: somewhat more may be reachable than said here");
   }
-  print_head("latitude");
+  write_head(text, "latitude");
   for (const ReachDirection& band : map.by_latitude()) {
-    print_row(std::to_string(whole_degrees(band.latitude_rad)), band.counts);
+    write_row(text, std::to_string(whole_degrees(band.latitude_rad)), band.counts);
   }
-  print_row("all", total);
-  if (map.by_radius.size() < 2) return;
-  print_head("radius");
+  write_row(text, "all", total);
+  if (map.by_radius.size() < 2) return text.str();
+  write_head(text, "radius");
   for (std::size_t i = 0; i < map.by_radius.size(); ++i) {
-    print_row(fixed(task.config.sphere.radii_m[i], 2), map.by_radius[i]);
+    write_row(text, fixed(task.config.sphere.radii_m[i], 2), map.by_radius[i]);
   }
+  return text.str();
 }
 
-Status write_reach(const RunFolder& out, const ReachTask& task, const ReachMap& map, const json& document) {
+Status write_reach(const RunFolder& out, const ReachTask& task, const ReachMap& map, bool pictures) {
   SACCADE_CHECK(out.remove(std::span{kReachFiles}.first(1)));
   SACCADE_CHECK(write_table(out / "reach.csv", map));
-  SACCADE_CHECK(write_png(out / "reach.png", reach_picture(scene_of(task, map))));
-  return write_json(out / "reach.json", document);
+  if (!pictures) return {};
+  return write_png(out / "reach.png", reach_picture(scene_of(task, map)));
 }
 
 }  // namespace saccade::cli

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What saccade robot reach leaves behind: summary, table, JSON and picture.
+// Output of `saccade robot reach`: summary, table, JSON and picture.
 
 #include <array>
 #include <nlohmann/json.hpp>
@@ -14,10 +14,8 @@ namespace saccade::cli {
 constexpr std::array<std::string_view, 3> kReachFiles{"reach.json", "reach.csv", "reach.png"};
 
 [[nodiscard]] nlohmann::json reach_json(const ReachTask& task, const ReachMap& map);
-/// To standard output.
-void print_reach(const ReachTask& task, const ReachMap& map, double test_ms);
-/// reach.csv, reach.png, and `document` as reach.json, last.
-[[nodiscard]] Status write_reach(const RunFolder& out, const ReachTask& task, const ReachMap& map,
-                                 const nlohmann::json& document);
+[[nodiscard]] std::string reach_text(const ReachTask& task, const ReachMap& map, double test_ms);
+/// Writes reach.csv and, with pictures, reach.png.
+[[nodiscard]] Status write_reach(const RunFolder& out, const ReachTask& task, const ReachMap& map, bool pictures);
 
 }  // namespace saccade::cli

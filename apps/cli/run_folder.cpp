@@ -3,6 +3,7 @@
 
 #include <fcntl.h>
 #include <sys/file.h>
+#include <sys/stat.h>
 #include <unistd.h>
 
 #include <algorithm>
@@ -12,6 +13,7 @@
 #include <vector>
 
 #include "saccade/io/files/file_io.hpp"
+#include "saccade/io/files/leftovers.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -19,23 +21,7 @@ namespace {
 namespace fs = std::filesystem;
 constexpr std::size_t kProbeBytes{std::size_t{1} << 20U};
 
-/// ".NAME.PID-N.tmp": what an atomic write leaves when the program is killed.
-bool is_leftover(std::string_view name) {
-  constexpr std::string_view kEnd{".tmp"};
-  if (!name.starts_with('.') || !name.ends_with(kEnd)) return false;
-  name.remove_suffix(kEnd.size());
-  const auto drop_number = [&name] {
-    const std::size_t digits = name.size() - 1 - name.find_last_not_of("0123456789");
-    name.remove_suffix(digits);
-    return digits > 0;
-  };
-  const auto drop = [&name](char c) {
-    if (!name.ends_with(c)) return false;
-    name.remove_suffix(1);
-    return true;
-  };
-  return drop_number() && drop('-') && drop_number() && drop('.') && name.size() > 1;
-}
+bool is_leftover(std::string_view name) { return parse_temporary_name(name).has_value(); }
 
 bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_files, std::string_view marker) {
   std::error_code ignored;
@@ -48,8 +34,8 @@ bool is_free_to_use(const fs::path& path, std::span<const std::string_view> own_
   return true;
 }
 
-/// Nobody else writes here: the caller holds the lock.
-void remove_leftovers(const fs::path& path) {
+/// Removes the unfinished files of runs that were killed. No other run writes here: the caller holds the lock.
+void sweep(const fs::path& path) {
   std::error_code ignored;
   std::vector<fs::path> leftovers;
   for (const fs::directory_entry& entry : fs::directory_iterator{path, ignored}) {
@@ -87,9 +73,17 @@ Result<RunFolder> RunFolder::open(const fs::path& path, std::span<const std::str
   RunFolder folder{path, !there};
   folder.lock_ = ::open(path.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (folder.lock_ >= 0 && ::flock(folder.lock_, LOCK_EX | LOCK_NB) != 0 && errno == EWOULDBLOCK) {
+    folder.made_ = false;  // it is the other run's
     return Error{Errc::invalid_argument, "another run is writing into this folder; choose another one", path.string()};
   }
-  remove_leftovers(path);
+  struct stat locked {};
+  struct stat named {};
+  if (folder.lock_ >= 0 && ::fstat(folder.lock_, &locked) == 0 &&
+      (::stat(path.c_str(), &named) != 0 || locked.st_ino != named.st_ino)) {
+    folder.made_ = false;
+    return open(path, own_files, marker, force);  // a run that made the folder and wrote nothing has removed it
+  }
+  sweep(path);
   if (Status writable = probe(path); !writable) {
     Error error = writable.error();
     error.context = path.string();
@@ -102,9 +96,9 @@ RunFolder::RunFolder(RunFolder&& other) noexcept
     : path_{std::move(other.path_)}, made_{std::exchange(other.made_, false)}, lock_{std::exchange(other.lock_, -1)} {}
 
 RunFolder::~RunFolder() {
-  if (lock_ >= 0) ::close(lock_);
   std::error_code ignored;
   if (made_) fs::remove(path_, ignored);  // only succeeds when it is empty
+  if (lock_ >= 0) ::close(lock_);
 }
 
 Status RunFolder::remove(std::span<const std::string_view> names) const {

@@ -5,6 +5,7 @@
 #include <algorithm>
 
 #include "add_value.hpp"
+#include "length_options.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
@@ -12,8 +13,9 @@ namespace {
 
 std::vector<double> parse_distances(const std::string& text) {
   const auto count = static_cast<std::size_t>(std::count(text.begin(), text.end(), ',')) + 1;
-  const std::vector<double> distances_m = parse_numbers("--radius", text, count);
-  for (const double distance_m : distances_m) require_positive(distance_m, "--radius");
+  constexpr const char* kOption{"--distance, --radius"};
+  const std::vector<double> distances_m = parse_numbers(kOption, text, count);
+  for (const double distance_m : distances_m) require_length(distance_m, kOption);
   return distances_m;
 }
 
@@ -23,14 +25,14 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
   add_value(command, "--max-views", options.run.exploration.max_views, "N", "views at most, after the initial scan")
       ->check(CLI::Range(0, 1000));
   add_value(command, "--min-gain", options.min_gain, "GAIN",
-            "gain below which a view is not worth going to (default: " + min_gain + ")");
+            "least gain of a view worth taking (default: " + min_gain + ")");
   add_value(command, "--good-enough", options.run.exploration.good_enough, "SHARE",
-            "share of the best view's gain at which another is as good, if the robot is there sooner");
+            "take a view that the robot reaches sooner if it has this share of the best view's gain");
   add_value(command, "--rivals", options.run.planner.rival_share, "SHARE",
-            "attention: the view of most gain is looked for among segments at least so salient, as a share of the most "
-            "salient; 1: of the most salient alone, as in the thesis");
+            "attention: choose the view among segments with at least this share of the greatest saliency; 1: for the "
+            "most salient segment alone, as in the thesis");
   add_value(command, "--least-share", options.run.least_share, "SHARE",
-            "surface: a view that promises less than this share of the surface seen so far is not worth going to");
+            "surface: least gain of a view worth taking, as a share of the surface seen so far");
   command.add_flag(
       "--as-printed", options.run.as_printed,
       "attention, standard, sphere: as in the thesis; of segments the most salient alone, and every promise "
@@ -40,28 +42,37 @@ void add_run_options(CLI::App& command, RunOptions& options, const std::string& 
             "pixels across of the virtual sensor that views are chosen with (default: " +
                 std::to_string(options.run.gain_width_px) + "; update --as-printed: the camera's)")
       ->check(CLI::Range(1, 100000));
-  add_value(command, "--radius", options.distances, "METRES[,METRES...]",
+  add_value(command, "--distance,--radius", options.distances, "METRES[,METRES...]",
             "distances of views from what they look at, metres: radii of the view sphere, and of contour views");
   add_value(command, "--voxel-size", options.run.voxel_size_m, "METRES", "edge of a voxel, metres");
   add_value(command, "--truncation", options.run.truncation_vox, "VOXELS", "truncation distance, voxels");
   add_clearing_option(command, options.run.clearing_percent);
   command.add_flag("--no-noise{false}", options.run.noise, "exact depth instead of that of the sensor");
   add_choice(command, "--sensor", options.run.sensor, kDepthSensorNames,
-             "what the simulated camera's depth is like; a Kinect v2's goes through its filter (the image is "
-             "--camera's)");
+             "noise of the simulated camera's depth; a Kinect v2's depth goes through its filter (default: that of "
+             "--camera, if it has one of its own, else kinect-v1)")
+      ->default_str("")
+      ->each([&options](const std::string&) { options.sensor_given = true; });
   add_camera_options(command, options.camera, true);
 }
 
 void add_foresight_options(CLI::App& command, RunOptions& options) {
-  add_value(command, "--lookahead", options.run.exploration.lookahead, "N",
-            "the next view is one of N that together are expected to show most; they are chosen anew after each")
+  add_value(
+      command, "--lookahead", options.run.exploration.lookahead, "N",
+      "choose the next view as one of N that together are expected to show most; they are chosen again after each view")
       ->check(CLI::Range(1, 100));
-  add_choice(
-      command, "--objective", options.run.exploration.objective, kObjectiveNames,
-      "what a view is chosen by: what it is expected to show, or that for the time of the motion and of looking");
+  add_choice(command, "--objective", options.run.exploration.objective, kObjectiveNames,
+             "criterion for the choice of a view: the surface that it is expected to show, or that surface per second "
+             "of motion and looking");
   add_value(command, "--frame-on-way", options.run.exploration.frame_on_way_s, "SECONDS",
-            "fuse a frame on an arm's way to a view, too, each time that these seconds have passed; what these are "
-            "expected to show counts in the choice of the view (0: none)");
+            "also fuse a frame every SECONDS on an arm's way to a view; the choice of the view counts what these "
+            "frames are expected to show (0: none)");
+}
+
+void add_mesh_options(CLI::App& command, MeshSceneConfig& mesh) {
+  add_value(command, "--mesh-scale", mesh.scale, "METRES", "metres per unit of mesh files");
+  add_choice(command, "--mesh-up", mesh.up, kUpAxisNames,
+             "the axis of mesh files that points up (default: z, but y for glTF)");
 }
 
 void check_foresight(const RunOptions& options, const std::string& robot) {
@@ -77,6 +88,7 @@ void check_run_options(RunOptions& options) {
   options.run.sphere.radii_m = parse_distances(options.distances);
   options.run.contour_views.distances_m = options.run.sphere.radii_m;
   options.run.camera = options.camera.camera(options.run.camera);
+  if (!options.sensor_given && options.camera.preset_name == "kinect-v2") options.run.sensor = DepthSensor::kinect_v2;
   options.run.gain_width_px = options.gain_width_px.value_or(options.run.gain_width_px);
   require_ok(options.run.planner.validate(), "--rivals");
   if (!(options.run.least_share >= 0.0 && options.run.least_share <= 1.0)) {
@@ -100,6 +112,16 @@ void choose_strategy(RunOptions& options, const NamedPlanner& strategy) {
   options.run = options.run.with(strategy);
   if (options.min_gain) options.run.planner.min_gain = *options.min_gain;
   require_ok(options.run.planner.validate(), "--min-gain");
+}
+
+std::string mixed_camera(const RunOptions& options) {
+  const std::string& camera = options.camera.preset_name;
+  if (!options.run.noise || camera.empty()) return {};
+  const bool is_v2 = options.run.sensor == DepthSensor::kinect_v2;
+  const bool fits = is_v2 ? camera == "kinect-v2" : camera == "kinect-v1" || camera == "xtion";
+  if (fits) return {};
+  return "the image and range are those of the camera " + camera + ", the noise is that of a " +
+         noise_name(options.run) + " (--sensor chooses another one, --no-noise leaves it out)";
 }
 
 std::string noise_name(const SimulatedRunConfig& run) {

@@ -1,20 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade scene list|render|export, and sequence: the scenes there are, a picture of one, and its truth for others to
 // check against.
-#include <CLI/CLI.hpp>
 #include <array>
 #include <iomanip>
-#include <iostream>
-#include <memory>
 #include <numeric>
+#include <sstream>
 
-#include "command.hpp"
-#include "exit_status.hpp"
-#include "json_output.hpp"
-#include "options.hpp"
-#include "progress_bar.hpp"
-#include "run_folder.hpp"
-#include "saccade/core/clock.hpp"
+#include "context.hpp"
+#include "length_options.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -32,13 +25,7 @@ using nlohmann::json;
 
 constexpr std::array<std::string_view, 4> kExportFiles{"scene.json", "true_mesh.ply", "surface.ply", "scene.png"};
 
-struct SceneOptions {
-  std::string scene;
-  std::filesystem::path out;
-  double spacing_m{kTruthSpacing_m};
-  std::optional<std::pair<int, int>> image_size;
-  bool force{false};
-};
+constexpr const char* kSceneHelp{"name of a built-in scene, clutter:SEED, a YAML file, or a mesh file"};
 
 json scene_json(const RayScene& rays) {
   json objects = json::array();
@@ -123,121 +110,137 @@ Status write_surface(const std::filesystem::path& path, const SurfaceSamples& sa
   return write_ply(path, table);
 }
 
-Status finish(const GlobalOptions& global, const Executor& executor, const Stopwatch& stopwatch, json result) {
-  return write_result("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, std::move(result));
-}
+class SceneList final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {.name = "list", .description = "the built-in scenes", .result_name = "scene"};
+  }
 
-Result<int> run_list(const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  json scenes = json::array();
-  for (const BuiltinScene& builtin : builtin_scenes()) {
-    SACCADE_TRY(const Scene scene, parse_scene(builtin.yaml));
-    scenes.push_back({{"name", builtin.name}, {"objects", scene.objects.size()}, {"regions", scene.regions.size()}});
-    if (!global.json_to_stdout()) {
-      std::cout << std::left << std::setw(16) << builtin.name << scene.objects.size() << " objects\n";
+  [[nodiscard]] Result<Outcome> run(Context& /*context*/) override {
+    json scenes = json::array();
+    std::ostringstream text;
+    text << std::left;
+    for (const BuiltinScene& builtin : builtin_scenes()) {
+      SACCADE_TRY(const Scene scene, parse_scene(builtin.yaml));
+      scenes.push_back({{"name", builtin.name}, {"objects", scene.objects.size()}, {"regions", scene.regions.size()}});
+      text << std::setw(16) << builtin.name << scene.objects.size() << " objects\n";
+    }
+    for (const std::string_view name : kSurfelScenes) {
+      SACCADE_TRY(const SurfelScene made, surfel_scene(name));
+      const std::size_t segments = SegmentTable{made.scene}.names().size() - 1;
+      scenes.push_back(
+          {{"name", name}, {"objects", made.scene.objects.size()}, {"regions", 0}, {"segments", segments}});
+      text << std::setw(16) << name << segments << " segments, for surfels\n";
+    }
+    text << "clutter:SEED    eight random objects\nFILE            a scene of your own: YAML, or a mesh on a table\n";
+    return Outcome{.result = {{"scenes", std::move(scenes)}}, .text = text.str()};
+  }
+};
+
+class SceneRender final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {.name = "render", .description = "a picture of a scene", .result_name = "scene"};
+  }
+
+  void declare(Options& options) override {
+    options.value("scene", scene_, "SCENE", kSceneHelp).required();
+    options.value("--out", out_, "FILE", "the picture, PNG").required();
+    options.value("--image-size", image_size_, "W,H", "width and height of the picture, pixels").delimiter(',');
+  }
+
+  void check(const GlobalOptions& /*global*/) override {
+    if (!image_size_) return;
+    const auto [width, height] = *image_size_;
+    if (std::min(width, height) < 16 || std::max(width, height) > 8192) {
+      usage_error("--image-size", "sizes are within 16 and 8192 pixels");
     }
   }
-  for (const std::string_view name : kSurfelScenes) {
-    SACCADE_TRY(const SurfelScene made, surfel_scene(name));
-    const std::size_t segments = SegmentTable{made.scene}.names().size() - 1;
-    scenes.push_back({{"name", name}, {"objects", made.scene.objects.size()}, {"regions", 0}, {"segments", segments}});
-    if (!global.json_to_stdout()) {
-      std::cout << std::left << std::setw(16) << name << segments << " segments, for surfels\n";
-    }
-  }
-  if (!global.json_to_stdout())
-    std::cout << "clutter:SEED    eight random objects\nFILE            a scene of your own\n";
-  SACCADE_CHECK(finish(global, global.executor(), stopwatch, {{"scenes", std::move(scenes)}}));
-  return static_cast<int>(ExitStatus::done);
-}
 
-Result<int> run_render(const SceneOptions& options, const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  const Executor executor = global.executor();
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(Scene scene, find_scene(options.scene));
-  SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
-  const auto [width, height] = options.image_size.value_or(std::pair{960, 720});
-  SACCADE_CHECK(write_png(options.out, picture_of(rays, width, height, executor)));
-  SACCADE_CHECK(finish(global, executor, stopwatch, scene_json(rays)));
-  if (!global.json_to_stdout()) std::cout << options.out.string() << '\n';
-  return static_cast<int>(ExitStatus::done);
-}
-
-Result<int> run_export(const SceneOptions& options, const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  const Executor executor = global.executor();
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(Scene scene, find_scene(options.scene));
-  SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
-  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, kExportFiles, "scene.json", options.force));
-  ProgressBar bar{global.quiet};
-  bar.update("sampling the surface", 0, 2);
-  const SurfaceSamples samples = sample_surfaces(rays.meshes(), options.spacing_m, rays.scene().workspace);
-  bar.update("finding what can be seen", 1, 2);
-  const std::vector<std::uint8_t> seen = observable(rays, samples, {}, executor);
-  bar.finish();
-  SACCADE_CHECK(write_true_mesh(out / "true_mesh.ply", rays));
-  SACCADE_CHECK(write_surface(out / "surface.ply", samples, seen));
-  SACCADE_CHECK(write_png(out / "scene.png", picture_of(rays, 960, 720, executor)));
-  json result = scene_json(rays);
-  result["surface"] = {{"spacing_m", options.spacing_m},
-                       {"points", seen.size()},
-                       {"observable", std::accumulate(seen.begin(), seen.end(), std::size_t{0})}};
-  SACCADE_CHECK(write_json(out / "scene.json", result));
-  if (!global.json_to_stdout()) {
-    std::cout << result["surface"]["observable"] << " of " << seen.size() << " surface points can be seen; results in "
-              << options.out.string() << '\n';
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    SACCADE_TRY(Scene scene, find_scene(scene_));
+    SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
+    const auto [width, height] = image_size_.value_or(std::pair{960, 720});
+    SACCADE_CHECK(write_png(out_, picture_of(rays, width, height, context.executor())));
+    return Outcome{.result = scene_json(rays), .text = out_.string() + "\n"};
   }
-  SACCADE_CHECK(finish(global, executor, stopwatch, std::move(result)));
-  return static_cast<int>(ExitStatus::done);
-}
+
+ private:
+  std::string scene_;
+  std::filesystem::path out_;
+  std::optional<std::pair<int, int>> image_size_;
+};
+
+class SceneExport final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {.name = "export",
+            .description = "the true mesh, labels and observable surface, as PLY",
+            .result_name = "scene"};
+  }
+
+  void declare(Options& options) override {
+    options.value("scene", scene_, "SCENE", kSceneHelp).required();
+    options.folder({.help = "folder for the results; made if it is not there",
+                    .files = {kExportFiles.begin(), kExportFiles.end()},
+                    .marker = kExportFiles.front(),
+                    .required = true});
+    options.flag("--no-pictures{false}", pictures_, "draw no picture");
+    options.value("--spacing", spacing_m_, "METRES",
+                  "distance between points of the surface, metres; the default is explore's");
+  }
+
+  void check(const GlobalOptions& /*global*/) override {
+    require_length(spacing_m_, "--spacing");
+    if (spacing_m_ < 1e-4) usage_error("--spacing", "must be 0.0001 at least");
+  }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    const Executor& executor = context.executor();
+    const RunFolder& out = *context.folder();
+    SACCADE_TRY(Scene scene, find_scene(scene_));
+    SACCADE_TRY(const RayScene rays, RayScene::build(std::move(scene)));
+    context.bar().update("sampling the surface", 0, 2);
+    const SurfaceSamples samples = sample_surfaces(rays.meshes(), spacing_m_, rays.scene().workspace);
+    context.bar().update("finding what can be seen", 1, 2);
+    const std::vector<std::uint8_t> seen = observable(rays, samples, {}, executor);
+    SACCADE_CHECK(write_true_mesh(out / "true_mesh.ply", rays));
+    SACCADE_CHECK(write_surface(out / "surface.ply", samples, seen));
+    if (pictures_) SACCADE_CHECK(write_png(out / "scene.png", picture_of(rays, 960, 720, executor)));
+    json result = scene_json(rays);
+    const auto observed = std::accumulate(seen.begin(), seen.end(), std::size_t{0});
+    result["surface"] = {{"spacing_m", spacing_m_}, {"points", seen.size()}, {"observable", observed}};
+    SACCADE_CHECK(write_json(out / "scene.json", result));
+    return Outcome{.result = std::move(result),
+                   .text = std::to_string(observed) + " of " + std::to_string(seen.size()) +
+                           " surface points can be seen; results in " + context.out().string() + "\n"};
+  }
+
+ private:
+  std::string scene_;
+  double spacing_m_{kTruthSpacing_m};
+  bool pictures_{true};
+};
+
+class SceneCommands final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"scene", "lists, draws and exports scenes for simulated cameras"};
+  }
+  [[nodiscard]] std::vector<std::unique_ptr<Command>> parts() const override {
+    std::vector<std::unique_ptr<Command>> parts;
+    parts.push_back(std::make_unique<SceneList>());
+    parts.push_back(std::make_unique<SceneRender>());
+    parts.push_back(make_scene_sequence());
+    parts.push_back(std::make_unique<SceneExport>());
+    return parts;
+  }
+};
 
 }  // namespace
 
 void add_scene(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("scene", "lists, draws and exports scenes for simulated cameras");
-  command->require_subcommand(1);
-  CLI::App* list = command->add_subcommand("list", "the built-in scenes");
-  list->callback([&global, &action] { action = [&global] { return run_list(global); }; });
-
-  auto options = std::make_shared<SceneOptions>();
-  const auto add_common = [&options](CLI::App* sub, const char* out, const char* type) {
-    sub->add_option("scene", options->scene, "name of a built-in scene, clutter:SEED, or a YAML file")
-        ->required()
-        ->type_name("SCENE");
-    sub->add_option("--out", options->out, out)->required()->type_name(type);
-  };
-  CLI::App* render = command->add_subcommand("render", "a picture of a scene");
-  add_common(render, "the picture, PNG", "FILE");
-  render->add_option("--image-size", options->image_size, "width and height of the picture, pixels")
-      ->delimiter(',')
-      ->type_name("W,H");
-  render->callback([options, &global, &action] {
-    if (options->image_size) {
-      const auto [width, height] = *options->image_size;
-      if (std::min(width, height) < 16 || std::max(width, height) > 8192) {
-        usage_error("--image-size", "sizes are within 16 and 8192 pixels");
-      }
-    }
-    action = [options, &global] { return run_render(*options, global); };
-  });
-
-  add_scene_sequence(*command, global, action);
-
-  CLI::App* truth = command->add_subcommand("export", "the true mesh, labels and observable surface, as PLY");
-  add_common(truth, "folder for the results; made if it is not there", "DIR");
-  truth
-      ->add_option("--spacing", options->spacing_m,
-                   "distance between points of the surface, metres; the default is explore's")
-      ->type_name("METRES")
-      ->capture_default_str();
-  truth->add_flag("--force", options->force, "write into a folder that holds other files");
-  truth->callback([options, &global, &action] {
-    require_positive(options->spacing_m, "--spacing");
-    if (options->spacing_m < 1e-4) usage_error("--spacing", "must be 0.0001 at least");
-    action = [options, &global] { return run_export(*options, global); };
-  });
+  add_command<SceneCommands>(program, global, action);
 }
 
 }  // namespace saccade::cli

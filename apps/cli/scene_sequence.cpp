@@ -2,21 +2,12 @@
 // saccade scene sequence: a hand-held camera before a scene for surfels, as a folder of frames with their truth.
 #include "scene_sequence.hpp"
 
-#include <CLI/CLI.hpp>
 #include <algorithm>
 #include <array>
 #include <iomanip>
-#include <iostream>
-#include <memory>
 #include <sstream>
 
-#include "add_value.hpp"
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "options.hpp"
-#include "progress_bar.hpp"
-#include "run_folder.hpp"
+#include "context.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/files/json_io.hpp"
@@ -40,7 +31,6 @@ constexpr int kLargestEdge_px{2048};
 
 struct SequenceOptions {
   std::string scene;
-  std::filesystem::path out;
   std::optional<std::size_t> frames;
   std::string sensor;
   std::optional<std::pair<int, int>> image_size;
@@ -49,7 +39,6 @@ struct SequenceOptions {
   bool color_noise{true};
   std::optional<Vignetting> vignetting;
   std::optional<bool> automatic_gain;
-  bool force{false};
 };
 
 std::string frame_name(std::size_t index) {
@@ -58,7 +47,7 @@ std::string frame_name(std::size_t index) {
   return name.str();
 }
 
-/// What the scene and the options say together.
+/// Sequence that the scene and the options describe together.
 struct Sequence {
   SurfelScene scene;
   std::size_t frames{0};
@@ -70,7 +59,9 @@ Result<Sequence> sequence_of(const SequenceOptions& options, std::uint64_t seed)
   SACCADE_TRY(SurfelScene scene, surfel_scene(options.scene));
   const std::string sensor{options.sensor.empty() ? std::string{scene.sensor} : options.sensor};
   SACCADE_TRY(RenderedSequenceConfig config, surfel_sensor(sensor));
-  config.camera = CameraOptions{{}, {}, options.image_size, {}, {}}.camera(config.camera);
+  CameraOptions size;
+  size.image_size = options.image_size;
+  config.camera = size.camera(config.camera);
   SACCADE_CHECK(config.camera.validate());
   config.color = scene.color;
   config.color.noise = options.color_noise;
@@ -101,7 +92,7 @@ Status remove_earlier(const RunFolder& out) {
   if (!std::filesystem::is_regular_file(out / kDocument, code)) return {};
   SACCADE_TRY(const json earlier, read_json(out / kDocument));
   if (!earlier.is_object() || !earlier.contains("frames") || !earlier.at("frames").is_number_unsigned()) {
-    return Error{Errc::corrupt_data, "is no document of a sequence; remove it, or choose another folder",
+    return Error{Errc::corrupt_data, "does not describe a sequence; remove it, or choose another folder",
                  (out / kDocument).string()};
   }
   // The planned frames, since one that was killed wrote no other number.
@@ -140,104 +131,110 @@ Status write_shots(const RunFolder& out, std::span<const Shot> shots, const Exec
   return {};
 }
 
-json document(const Sequence& sequence, const GlobalOptions& global, const std::vector<std::string>& segments) {
+json document(const Sequence& sequence, std::uint64_t seed, const std::vector<std::string>& segments) {
   json names = json::object();
   for (std::size_t label = 1; label < segments.size(); ++label) names[std::to_string(label)] = segments[label];
-  return {
-      {"scene", sequence.scene.scene.name}, {"frames", sequence.frames},   {"complete", false}, {"seed", global.seed},
-      {"switches", sequence.switches},      {"segments", std::move(names)}};
+  return {{"scene", sequence.scene.scene.name}, {"frames", sequence.frames},   {"complete", false}, {"seed", seed},
+          {"switches", sequence.switches},      {"segments", std::move(names)}};
 }
 
-Result<int> run_sequence(const SequenceOptions& options, const GlobalOptions& global) {
-  const Stopwatch stopwatch;
-  const Executor executor = global.executor();
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(Sequence sequence, sequence_of(options, global.seed));
-  SACCADE_TRY(const RayScene rays, RayScene::build(sequence.scene.scene));
-  SACCADE_TRY(RenderedSequence camera,
-              RenderedSequence::create(rays, hand_held_poses(sequence.scene.path, sequence.frames, global.seed),
-                                       sequence.config, executor));
-  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, kDocument, options.force));
-  SACCADE_CHECK(remove_earlier(out));
-  json written = document(sequence, global, camera.segments().names());
-  SACCADE_CHECK(write_json(out / kDocument, written));
-  SACCADE_CHECK(write_json(out / kCamera, camera_to_json(sequence.config.camera)));
-  ProgressBar bar{global.quiet};
-  std::vector<double> render_ms;
-  std::vector<double> write_ms;
-  std::vector<double> gains;
-  std::vector<Pose> true_poses;
-  const std::size_t at_once = std::max<std::size_t>(1, executor.threads());
-  while (true_poses.size() < sequence.frames && !interrupted()) {
-    std::vector<Shot> shots;
-    const std::size_t wanted = std::min(at_once, sequence.frames - true_poses.size());
-    while (shots.size() < wanted && !interrupted()) {
-      bar.update("rendering", true_poses.size(), sequence.frames);
-      const Stopwatch rendering;
-      SACCADE_TRY(std::optional<Frame> frame, camera.next());
-      render_ms.push_back(rendering.elapsed_ms());
-      shots.push_back({std::move(*frame), camera.truth().label});
-      true_poses.push_back(camera.truth().T_world_camera);
-      gains.push_back(camera.truth().gain);
+class SceneSequence final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {.name = "sequence",
+            .description = "renders frames of a hand-held camera in a scene, with the ground truth of every pixel",
+            .result_name = "scene"};
+  }
+
+  void declare(Options& options) override {
+    options.value("scene", options_.scene, "SCENE", joined(kSurfelScenes)).required();
+    options.folder({.help = "folder for the frames; made if it is not there",
+                    .marker = kDocument,
+                    .required = true,
+                    .opened_by_command = true});
+    options.value("--frames", options_.frames, "N", "number of frames; without it, as many as the thesis' scene has")
+        .range(std::size_t{1}, std::size_t{1000000});
+    const auto take = [this](const std::string& name) { options_.sensor = name; };
+    add_words(options.group(), "--camera", kSurfelSensors, take,
+              "sensor and its noise; without it, that of the thesis' scene");
+    options.value("--image-size", options_.image_size, "W,H", "width and height, pixels; the lens stays the same")
+        .delimiter(',');
+    options.choice("--depth-noise", options_.depth_noise, kOnOff, "noise and flaws of the sensor's depth");
+    options.choice("--pose-noise", options_.pose_noise, kOnOff, "drift and jitter of the written poses");
+    options.choice("--color-noise", options_.color_noise, kOnOff, "noise of colours");
+    options.choice("--vignetting", options_.vignetting, kVignettingNames,
+                   "darker corners; without it, as in the thesis' scene");
+    options.choice("--auto-gain", options_.automatic_gain, kOnOff,
+                   "the gain follows the image's light; without it, as in the thesis' scene");
+  }
+
+  void check(const GlobalOptions& /*global*/) override {
+    if (!options_.image_size) return;
+    const auto [width, height] = *options_.image_size;
+    if (std::min(width, height) < kSmallestEdge_px || std::max(width, height) > kLargestEdge_px) {
+      usage_error("--image-size", "sizes are within 16 and 2048 pixels");
     }
-    const Stopwatch writing;
-    SACCADE_CHECK(write_shots(out, shots, executor));
-    write_ms.push_back(writing.elapsed_ms() / static_cast<double>(std::max<std::size_t>(1, shots.size())));
   }
-  bar.finish();
-  if (!true_poses.empty()) SACCADE_CHECK(write_matrices(out / kTruePoses, true_poses));
-  written["frames"] = true_poses.size();
-  written["complete"] = true_poses.size() == sequence.frames;
-  if (sequence.config.color.automatic_gain) written["gains"] = gains;
-  SACCADE_CHECK(write_json(out / kDocument, written));
-  const json result{
-      {"out", options.out.string()},
-      {"scene", sequence.scene.scene.name},
-      {"switches", sequence.switches},
-      {"frames", true_poses.size()},
-      {"segments", camera.segments().names().size() - 1},
-      {"interrupted", interrupted()},
-      {"ms_per_frame", {{"render", {{"median", median(render_ms)}}}, {"write", {{"median", median(write_ms)}}}}}};
-  SACCADE_CHECK(write_result("scene", global, executor, {{"total", stopwatch.elapsed_ms()}}, result));
-  if (!global.json_to_stdout()) {
-    std::cout << true_poses.size() << " frames with " << result["segments"] << " true segments in "
-              << options.out.string() << '\n';
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    const Executor& executor = context.executor();
+    SACCADE_TRY(Sequence sequence, sequence_of(options_, context.seed()));
+    SACCADE_TRY(const RayScene rays, RayScene::build(sequence.scene.scene));
+    SACCADE_TRY(RenderedSequence camera,
+                RenderedSequence::create(rays, hand_held_poses(sequence.scene.path, sequence.frames, context.seed()),
+                                         sequence.config, executor));
+    SACCADE_CHECK(context.open_folder());
+    const RunFolder& out = *context.folder();
+    SACCADE_CHECK(remove_earlier(out));
+    json written = document(sequence, context.seed(), camera.segments().names());
+    SACCADE_CHECK(write_json(out / kDocument, written));
+    SACCADE_CHECK(write_json(out / kCamera, camera_to_json(sequence.config.camera)));
+    std::vector<double> render_ms;
+    std::vector<double> write_ms;
+    std::vector<double> gains;
+    std::vector<Pose> true_poses;
+    const std::size_t at_once = std::max<std::size_t>(1, executor.threads());
+    while (true_poses.size() < sequence.frames && !interrupted()) {
+      std::vector<Shot> shots;
+      const std::size_t wanted = std::min(at_once, sequence.frames - true_poses.size());
+      while (shots.size() < wanted && !interrupted()) {
+        context.bar().update("rendering", true_poses.size(), sequence.frames);
+        const Stopwatch rendering;
+        SACCADE_TRY(std::optional<Frame> frame, camera.next());
+        render_ms.push_back(rendering.elapsed_ms());
+        shots.push_back({std::move(*frame), camera.truth().label});
+        true_poses.push_back(camera.truth().T_world_camera);
+        gains.push_back(camera.truth().gain);
+      }
+      const Stopwatch writing;
+      SACCADE_CHECK(write_shots(out, shots, executor));
+      write_ms.push_back(writing.elapsed_ms() / static_cast<double>(std::max<std::size_t>(1, shots.size())));
+    }
+    if (!true_poses.empty()) SACCADE_CHECK(write_matrices(out / kTruePoses, true_poses));
+    written["frames"] = true_poses.size();
+    written["complete"] = true_poses.size() == sequence.frames;
+    if (sequence.config.color.automatic_gain) written["gains"] = gains;
+    SACCADE_CHECK(write_json(out / kDocument, written));
+    json result{
+        {"out", context.out().string()},
+        {"scene", sequence.scene.scene.name},
+        {"switches", sequence.switches},
+        {"frames", true_poses.size()},
+        {"segments", camera.segments().names().size() - 1},
+        {"interrupted", interrupted()},
+        {"ms_per_frame", {{"render", {{"median", median(render_ms)}}}, {"write", {{"median", median(write_ms)}}}}}};
+    std::ostringstream text;
+    text << true_poses.size() << " frames with " << result["segments"] << " true segments in " << context.out().string()
+         << '\n';
+    return Outcome{.result = std::move(result), .text = text.str()};
   }
-  return interrupted() ? interrupt_status() : static_cast<int>(ExitStatus::done);
-}
+
+ private:
+  SequenceOptions options_;
+};
 
 }  // namespace
 
-void add_scene_sequence(CLI::App& scene_command, const GlobalOptions& global, Action& action) {
-  CLI::App* command = scene_command.add_subcommand(
-      "sequence", "frames of a hand-held camera before a scene, with the truth of every pixel");
-  auto options = std::make_shared<SequenceOptions>();
-  add_value(*command, "scene", options->scene, "SCENE", joined(kSurfelScenes))->required();
-  add_value(*command, "--out", options->out, "DIR", "folder for the frames; made if it is not there")->required();
-  add_value(*command, "--frames", options->frames, "N",
-            "number of frames; without it, as many as the thesis' scene has")
-      ->check(CLI::Range(std::size_t{1}, std::size_t{1000000}));
-  const auto take = [options](const std::string& name) { options->sensor = name; };
-  add_words(*command, "--camera", kSurfelSensors, take, "sensor and its noise; without it, that of the thesis' scene");
-  add_value(*command, "--image-size", options->image_size, "W,H", "width and height, pixels; the lens stays the same")
-      ->delimiter(',');
-  add_choice(*command, "--depth-noise", options->depth_noise, kOnOff, "noise and flaws of the sensor's depth");
-  add_choice(*command, "--pose-noise", options->pose_noise, kOnOff, "drift and jitter of the written poses");
-  add_choice(*command, "--color-noise", options->color_noise, kOnOff, "noise of colours");
-  add_choice(*command, "--vignetting", options->vignetting, kVignettingNames,
-             "darker corners; without it, as in the thesis' scene");
-  add_choice(*command, "--auto-gain", options->automatic_gain, kOnOff,
-             "the gain follows the image's light; without it, as in the thesis' scene");
-  command->add_flag("--force", options->force, "write into a folder that holds other files");
-  command->callback([options, &global, &action] {
-    if (options->image_size) {
-      const auto [width, height] = *options->image_size;
-      if (std::min(width, height) < kSmallestEdge_px || std::max(width, height) > kLargestEdge_px) {
-        usage_error("--image-size", "sizes are within 16 and 2048 pixels");
-      }
-    }
-    action = [options, &global] { return run_sequence(*options, global); };
-  });
-}
+std::unique_ptr<Command> make_scene_sequence() { return std::make_unique<SceneSequence>(); }
 
 }  // namespace saccade::cli

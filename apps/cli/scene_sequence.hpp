@@ -2,10 +2,12 @@
 #pragma once
 // saccade scene sequence.
 
+#include <memory>
+
 #include "command.hpp"
 
 namespace saccade::cli {
 
-void add_scene_sequence(CLI::App& scene_command, const GlobalOptions& global, Action& action);
+[[nodiscard]] std::unique_ptr<Command> make_scene_sequence();
 
 }  // namespace saccade::cli

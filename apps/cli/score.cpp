@@ -1,20 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade score: how well the labels of clouds match true ones, by overlap of segments and objects, by boundaries, and
 // by BCE.
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
 #include <map>
-#include <memory>
+#include <sstream>
 
-#include "add_value.hpp"
-#include "command.hpp"
-#include "exit_status.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "options.hpp"
-#include "progress_bar.hpp"
-#include "saccade/core/clock.hpp"
+#include "context.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/segment/overlap.hpp"
@@ -175,7 +166,7 @@ Result<ScoredPair> score(const CloudPair& files, const ScoreOptions& options, co
   return scored;
 }
 
-/// Of the numbers that are there.
+/// Mean of the numbers that are known.
 class Mean {
  public:
   void add(const std::optional<double>& number) {
@@ -191,7 +182,7 @@ class Mean {
   std::size_t count_{0};
 };
 
-/// Of one cloud, or means over the clouds in which there is anything to score.
+/// Scores of one cloud, or means over the clouds in which there is anything to score.
 struct Figures {
   std::optional<double> fos, fus, wov, wov_objects, precision, recall, f, bce;
 
@@ -252,72 +243,77 @@ json scores_json(const ScoreOptions& options, const std::vector<ScoredPair>& pai
   return made;
 }
 
-void print_scores(const std::vector<ScoredPair>& pairs) {
-  std::cout << "WOv objects    WOv    F_os    F_us  boundary P       R       F     BCE  cloud\n";
-  const auto row = [](const Figures& figures, const std::string& name) {
-    std::cout << "      " << fixed_or_dash(figures.wov_objects) << "  " << fixed_or_dash(figures.wov) << "   "
-              << fixed_or_dash(figures.fos) << "   " << fixed_or_dash(figures.fus) << "       "
-              << fixed_or_dash(figures.precision) << "   " << fixed_or_dash(figures.recall) << "   "
-              << fixed_or_dash(figures.f) << "   " << fixed_or_dash(figures.bce) << "  " << name << '\n';
+std::string table_of(const std::vector<ScoredPair>& pairs) {
+  std::ostringstream text;
+  text << "WOv objects    WOv    F_os    F_us  boundary P       R       F     BCE  cloud\n";
+  const auto row = [&text](const Figures& figures, const std::string& name) {
+    text << "      " << fixed_or_dash(figures.wov_objects) << "  " << fixed_or_dash(figures.wov) << "   "
+         << fixed_or_dash(figures.fos) << "   " << fixed_or_dash(figures.fus) << "       "
+         << fixed_or_dash(figures.precision) << "   " << fixed_or_dash(figures.recall) << "   "
+         << fixed_or_dash(figures.f) << "   " << fixed_or_dash(figures.bce) << "  " << name << '\n';
   };
   for (const ScoredPair& pair : pairs) row(Figures{pair}, pair.files.predicted.filename().string());
   const auto scored = std::count_if(pairs.begin(), pairs.end(), [](const auto& pair) { return pair.all.objects > 0; });
   if (pairs.size() > 1) row(Figures{pairs}, "mean of " + std::to_string(scored) + " clouds");
+  return text.str();
 }
 
-Result<int> run_score(const ScoreOptions& options, const GlobalOptions& global) {
-  const Stopwatch clock;
-  const Executor executor = global.executor();
-  ProgressBar bar{global.quiet};
-  SACCADE_CHECK(check_json_output(global));
-  SACCADE_TRY(const std::vector<CloudPair> pairs, pairs_of(options));
-  std::vector<ScoredPair> scored;
-  for (const CloudPair& pair : pairs) {
-    if (interrupted()) return Error{Errc::cancelled, "interrupted", {}};
-    bar.update("scoring", scored.size(), pairs.size());
-    SACCADE_TRY(ScoredPair found, score(pair, options, executor, bar));
-    scored.push_back(std::move(found));
-  }
-  bar.finish();
-  SACCADE_CHECK(write_result("score", global, executor, {{"total", clock.elapsed_ms()}}, scores_json(options, scored)));
-  if (!Figures{scored}.wov) {
-    print_error("score", "no point has a true label above 0; there is nothing to score");
-    return static_cast<int>(ExitStatus::no_result);
-  }
-  if (!global.json_to_stdout()) print_scores(scored);
-  return static_cast<int>(ExitStatus::done);
-}
+class Score final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override { return {"score", "scores labels of clouds against true ones"}; }
 
-void check_score_options(const ScoreOptions& options) {
-  if (options.paths.size() % 2 != 0) {
-    usage_error("PREDICTED TRUTH", "needs pairs: each predicted cloud is followed by its true one");
+  void declare(Options& options) override {
+    options
+        .value("clouds", score_.paths, "PREDICTED TRUTH...",
+               "clouds with a field label each, of the same points; two folders: the clouds of the same names")
+        .required();
+    options
+        .value("--objects-from", score_.objects_from, "LABEL",
+               "smallest true label of an object (default: 1; 20 with --merge-tens)")
+        .range(std::uint32_t{1}, kUnlabelled - 1);
+    options.flag("--merge-tens", score_.merge_tens,
+                 "the true labels are mOSD's: 1 to 9 are the table, each ten from 20 on are parts of one object");
+    add_truth_options(options.group(), score_.truth);
+    options.value(
+        "--radius", score_.truth.radius_m, "METRES",
+        "radius of all surfels, metres (default: the cloud's field radius, else from the distance to neighbours)");
   }
-  if (options.merge_tens && options.first_object() % kLabelsPerObject != 0) {
-    usage_error("--objects-from", "must be a multiple of 10 with --merge-tens, which makes ten labels one object");
+
+  void check(const GlobalOptions& /*global*/) override {
+    if (score_.paths.size() % 2 != 0) {
+      usage_error("PREDICTED TRUTH", "needs pairs: each predicted cloud is followed by its true one");
+    }
+    if (score_.merge_tens && score_.first_object() % kLabelsPerObject != 0) {
+      usage_error("--objects-from", "must be a multiple of 10 with --merge-tens, which makes ten labels one object");
+    }
+    check_truth_options(score_.truth);
   }
-  check_truth_options(options.truth);
-}
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    SACCADE_TRY(const std::vector<CloudPair> pairs, pairs_of(score_));
+    std::vector<ScoredPair> scored;
+    for (const CloudPair& pair : pairs) {
+      SACCADE_CHECK(context.stop_if_interrupted());
+      context.bar().update("scoring", scored.size(), pairs.size());
+      SACCADE_TRY(ScoredPair found, score(pair, score_, context.executor(), context.bar()));
+      scored.push_back(std::move(found));
+    }
+    json result = scores_json(score_, scored);
+    if (!Figures{scored}.wov) {
+      return Outcome{.result = std::move(result),
+                     .empty = "no point has a true label above 0; there is nothing to score"};
+    }
+    return Outcome{.result = std::move(result), .text = table_of(scored)};
+  }
+
+ private:
+  ScoreOptions score_;
+};
 
 }  // namespace
 
 void add_score(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("score", "how well labels of clouds match true ones");
-  auto options = std::make_shared<ScoreOptions>();
-  add_value(*command, "clouds", options->paths, "PREDICTED TRUTH...",
-            "clouds with a field label each, of the same points; two folders: the clouds of the same names")
-      ->required();
-  add_value(*command, "--objects-from", options->objects_from, "LABEL",
-            "of the true labels these and larger ones are objects (default: 1, all; 20 with --merge-tens)")
-      ->check(CLI::Range(std::uint32_t{1}, kUnlabelled - 1));
-  command->add_flag("--merge-tens", options->merge_tens,
-                    "the true labels are mOSD's: 1 to 9 are the table, each ten from 20 on are parts of one object");
-  add_truth_options(*command, options->truth);
-  add_value(*command, "--radius", options->truth.radius_m, "METRES",
-            "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)");
-  command->callback([options, &global, &action] {
-    check_score_options(*options);
-    action = [options, &global] { return run_score(*options, global); };
-  });
+  add_command<Score>(program, global, action);
 }
 
 }  // namespace saccade::cli

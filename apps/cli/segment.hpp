@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `saccade segment` was asked for, what it read and what it found, for its output.
+// Request, input and findings of `saccade segment`, for its output.
 
 #include <Eigen/Core>
+#include <array>
 #include <filesystem>
 #include <optional>
 #include <string>
+#include <string_view>
 #include <vector>
 
 #include "command.hpp"
@@ -22,6 +24,7 @@
 
 namespace saccade::cli {
 
+class Options;
 class ProgressBar;
 
 /// How a cloud is cut into segments; sv_lccp and flood_fill as the thesis does it with surfels.
@@ -29,17 +32,26 @@ enum class SegmentMethod { lccp, sv_lccp, flood_fill };
 inline constexpr auto kSegmentMethodNames = make_names<SegmentMethod>(
     {{SegmentMethod::lccp, "lccp"}, {SegmentMethod::sv_lccp, "sv-lccp"}, {SegmentMethod::flood_fill, "flood-fill"}});
 
+/// Files in the folder of --out.
+inline constexpr std::string_view kSegmentCloud{"segments.ply"};
+inline constexpr std::string_view kSegmentPicture{"segments.png"};
+inline constexpr std::string_view kSegmentReport{"report.html"};
+inline constexpr std::string_view kSegmentJson{"segment.json"};
+inline constexpr std::array kSegmentFiles{kSegmentCloud, kSegmentPicture, kSegmentReport, kSegmentJson};
+
 struct SegmentOptions {
   std::filesystem::path input;  ///< a cloud, or a map
   SegmentMethod method{SegmentMethod::lccp};
-  std::filesystem::path out;      ///< empty: no labelled cloud
+  std::filesystem::path out;      ///< file of the labelled cloud; empty: none
   std::filesystem::path picture;  ///< empty: none
+  std::filesystem::path report;   ///< page of the report; empty: none
+  bool write_pictures{true};      ///< into the folder of --out
   SupervoxelConfig supervoxels;
   std::optional<Eigen::Vector3d> viewpoint_m;  ///< default: what the cloud says
   LccpConfig lccp;
   double max_color_difference{SvLccpConfig{}.max_color_difference};
   FloodFillConfig flood_fill;
-  std::optional<double> threshold;    ///< of flood_fill, or the greatest difference of colours
+  std::optional<double> threshold;    ///< flood_fill's threshold, or the greatest difference of colours
   std::size_t list_from{1};           ///< points of the smallest segment in the JSON result
   std::filesystem::path curve_truth;  ///< empty: no curve
   std::vector<double> curve_thresholds;
@@ -50,11 +62,11 @@ struct SegmentOptions {
   [[nodiscard]] bool fills() const { return method == SegmentMethod::flood_fill; }
 };
 
-/// What there is to segment: a cloud with all its fields, or the surface of a map.
+/// Input of the segmentation: a cloud with all its fields, or the surface of a map.
 struct SegmentInput {
   CloudFile file;
   PointCloud cloud;
-  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< of a map's surface
+  std::vector<std::array<std::uint32_t, 3>> triangles;  ///< surface of a map; empty for a cloud
   Eigen::Vector3d viewpoint_m{Eigen::Vector3d::Zero()};
   bool is_map{false};
   Origin radii{Origin::file};
@@ -77,9 +89,12 @@ struct SegmentFindings {
   std::string label_kept_as;  ///< the name of the input's own field "label" in the output; empty: it has none
 };
 
-void add_segment_options(CLI::App& command, SegmentOptions& options);
-/// Throws usage errors, and sets what the method's defaults are.
-void check_segment_options(const CLI::App& command, SegmentOptions& options);
+/// Declares the options; they outlive the parsing.
+void declare_segment(Options& declared, SegmentOptions& options);
+/// Throws usage errors, and sets the defaults of the method. `out`: value of --out.
+void check_segment_options(const CLI::App& command, const std::filesystem::path& out, SegmentOptions& options);
+/// Whether --out names a folder for all results: a name without the ending of a cloud.
+[[nodiscard]] bool is_segment_folder(const std::filesystem::path& out);
 
 /// By its name: .sacmap.
 [[nodiscard]] bool is_map(const std::filesystem::path& input);
@@ -93,9 +108,9 @@ void check_segment_options(const CLI::App& command, SegmentOptions& options);
                                                const SegmentFindings& findings, const Executor& executor,
                                                ProgressBar& bar);
 [[nodiscard]] nlohmann::json curve_json(const SegmentOptions& options, const ScoreCurve& curve);
-void print_curve(const ScoreCurve& curve);
+[[nodiscard]] std::string curve_text(const ScoreCurve& curve);
 
-void print_segments(const SegmentOptions& options, const SegmentFindings& findings);
+[[nodiscard]] std::string segments_text(const SegmentOptions& options, const SegmentFindings& findings);
 [[nodiscard]] ColorImage segment_sheet(const SegmentOptions& options, const SegmentInput& input,
                                        const SegmentFindings& findings, const Executor& executor);
 

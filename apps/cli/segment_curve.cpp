@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The curve of saccade segment: scores at many thresholds against true labels.
 #include <iomanip>
-#include <iostream>
+#include <sstream>
 
 #include "interrupt.hpp"
 #include "progress_bar.hpp"
@@ -43,10 +43,10 @@ json point_json_of(const CurvePoint& point) {
 
 json point_or_null(const std::optional<CurvePoint>& point) { return point ? point_json_of(*point) : json(nullptr); }
 
-void print_row(const CurvePoint& point) {
-  std::cout << std::setw(9) << fixed(point.threshold, 4) << std::setw(10) << point.segments << std::setw(11)
-            << fixed_or_dash(point.score.precision()) << std::setw(8) << fixed_or_dash(point.score.recall())
-            << std::setw(7) << fixed_or_dash(point.score.f()) << std::setw(7) << fixed(point.score.bce, 3) << '\n';
+void write_row(const CurvePoint& point, std::ostream& text) {
+  text << std::setw(9) << fixed(point.threshold, 4) << std::setw(10) << point.segments << std::setw(11)
+       << fixed_or_dash(point.score.precision()) << std::setw(8) << fixed_or_dash(point.score.recall()) << std::setw(7)
+       << fixed_or_dash(point.score.f()) << std::setw(7) << fixed(point.score.bce, 3) << '\n';
 }
 
 }  // namespace
@@ -76,15 +76,17 @@ json curve_json(const SegmentOptions& options, const ScoreCurve& curve) {
           {"least_bce", point_or_null(curve.least_bce())}};
 }
 
-void print_curve(const ScoreCurve& curve) {
-  std::cout << "\nthreshold  segments  precision  recall      F    BCE\n";
-  for (const CurvePoint& point : curve.points) print_row(point);
+std::string curve_text(const ScoreCurve& curve) {
+  std::ostringstream text;
+  text << "\nthreshold  segments  precision  recall      F    BCE\n";
+  for (const CurvePoint& point : curve.points) write_row(point, text);
   const auto best = curve.best_f();
   const auto least = curve.least_bce();
-  std::cout << "area under precision over recall " << fixed(curve.area(), 3);
-  if (best) std::cout << ", greatest F " << fixed(*best->score.f(), 3) << " at " << fixed(best->threshold, 4);
-  if (least) std::cout << ", least BCE " << fixed(least->score.bce, 3) << " at " << fixed(least->threshold, 4);
-  std::cout << '\n';
+  text << "area under precision over recall " << fixed(curve.area(), 3);
+  if (best) text << ", greatest F " << fixed(*best->score.f(), 3) << " at " << fixed(best->threshold, 4);
+  if (least) text << ", least BCE " << fixed(least->score.bce, 3) << " at " << fixed(least->threshold, 4);
+  text << '\n';
+  return text.str();
 }
 
 }  // namespace saccade::cli

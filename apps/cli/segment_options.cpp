@@ -3,13 +3,14 @@
 #include <cmath>
 #include <sstream>
 
-#include "add_value.hpp"
-#include "options.hpp"
+#include "declaration.hpp"
 #include "saccade/core/angle.hpp"
 #include "segment.hpp"
 
 namespace saccade::cli {
 namespace {
+
+namespace fs = std::filesystem;
 
 std::string brief(double number) {
   std::ostringstream text;
@@ -22,15 +23,15 @@ void add_supervoxel_options(CLI::App& command, SegmentOptions& options) {
   add_value(command, "--voxel-size", supervoxels.voxels.voxel_size_m, "METRES",
             "edge of the voxels, metres (sv-lccp: 0.01)");
   add_value(command, "--seed-size", supervoxels.seed_spacing_m, "METRES",
-            "between the seeds of supervoxels, metres (sv-lccp: 0.05)");
+            "distance between the seeds of supervoxels, metres (sv-lccp: 0.05)");
   add_value(command, "--spatial-weight", supervoxels.spatial_weight, "WEIGHT",
-            "of the distance from a supervoxel's centre (sv-lccp: 0.1)");
+            "weight of the distance from a supervoxel's centre (sv-lccp: 0.1)");
   add_value(command, "--normal-weight", supervoxels.normal_weight, "WEIGHT",
-            "of the angle between normals (sv-lccp, flood-fill: 0.5)");
+            "weight of the angle between normals (sv-lccp, flood-fill: 0.5)");
   add_value(command, "--color-weight", supervoxels.color_weight, "WEIGHT",
-            "of the difference of colours, where there are any (sv-lccp, flood-fill: 1)");
+            "weight of the difference in colour, for clouds with colours (sv-lccp, flood-fill: 1)");
   add_value(command, "--rounds", supervoxels.rounds, "COUNT",
-            "of growth; before each but the first, supervoxels move to the means of their voxels (sv-lccp: 5)");
+            "rounds of growth; before each but the first, supervoxels move to the means of their voxels (sv-lccp: 5)");
   command.add_flag("--transform,!--no-transform", supervoxels.voxels.single_camera,
                    "the cloud is one camera's, in its frame (z forwards): voxels grow with depth");
   add_point(command, "--viewpoint", options.viewpoint_m,
@@ -53,12 +54,12 @@ void add_lccp_options(CLI::App& command, LccpConfig& lccp) {
 
 void add_surfel_options(CLI::App& command, SegmentOptions& options) {
   add_value(command, "--threshold", options.threshold, "DIFFERENCE",
-            "flood-fill: surfels that touch and differ by less are of one segment (default: " +
+            "flood-fill: surfels that touch and differ by less join one segment (default: " +
                 brief(FloodFillConfig{}.threshold) +
                 "); sv-lccp: supervoxels whose colours differ by more are kept apart (default: " +
                 brief(SvLccpConfig{}.max_color_difference) + ")");
   add_value(command, "--radius", options.truth.radius_m, "METRES",
-            "of all surfels, metres (default: the cloud's field radius, else by the distance of neighbours)");
+            "radius of all surfels, metres (default: the cloud's field radius, else from the distance to neighbours)");
   add_value(command, "--list-from", options.list_from, "N",
             "points of the smallest segment in the JSON result (default: 1; flood-fill: 10)")
       ->check(check_whole_number);
@@ -68,7 +69,7 @@ void add_surfel_options(CLI::App& command, SegmentOptions& options) {
       .add_option_function<std::string>(
           "--thresholds",
           [&options](const std::string& text) { options.curve_thresholds = parse_numbers("--thresholds", text, 0); },
-          "of the curve (default: 25 from 0.002 to 1)")
+          "thresholds of the curve (default: 25 from 0.002 to 1)")
       ->type_name("A,B,...");
   add_truth_options(command, options.truth);
 }
@@ -88,7 +89,7 @@ void refuse(const CLI::App& command, SegmentMethod method, std::initializer_list
   }
 }
 
-/// What a method is without, and its own defaults for what was not given.
+/// Refuses options that the method has no use for, and sets the method's own defaults.
 void apply_method(const CLI::App& command, SegmentOptions& options) {
   if (options.method == SegmentMethod::lccp) refuse(command, options.method, {"--threshold", "--radius", "--curve"});
   if (options.curve_truth.empty()) {
@@ -123,11 +124,14 @@ void apply_method(const CLI::App& command, SegmentOptions& options) {
   if (options.curve_thresholds.empty()) options.curve_thresholds = default_thresholds();
 }
 
-void check_extensions(const SegmentOptions& options) {
-  const std::filesystem::path extension = options.out.extension();
-  if (!options.out.empty() && extension != ".pcd" && extension != ".ply") {
-    usage_error("--out", "needs a name that ends in .pcd or .ply, not '" + options.out.string() + "'");
+bool is_cloud_name(const fs::path& out) { return out.extension() == ".pcd" || out.extension() == ".ply"; }
+
+void check_outputs(const fs::path& out, const SegmentOptions& options) {
+  std::error_code ignored;
+  if (out.has_extension() && !is_cloud_name(out) && !fs::is_directory(out, ignored)) {
+    usage_error("--out", "needs a folder, or a name that ends in .pcd or .ply, not '" + out.string() + "'");
   }
+  if (!options.write_pictures && !is_segment_folder(out)) usage_error("--no-pictures", "needs a folder with --out");
   if (!options.picture.empty() && options.picture.extension() != ".png") {
     usage_error("--picture", "needs a name that ends in .png, not '" + options.picture.string() + "'");
   }
@@ -135,27 +139,40 @@ void check_extensions(const SegmentOptions& options) {
 
 }  // namespace
 
-void add_segment_options(CLI::App& command, SegmentOptions& options) {
-  add_value(command, "input", options.input, "CLOUD|MAP",
-            "a point cloud (PCD, PLY, text, KITTI .bin), or a saved map (.sacmap)")
-      ->required();
-  add_choice(command, "--method", options.method, kSegmentMethodNames,
-             "how: lccp, supervoxels joined where surfaces bend outwards; sv-lccp, the same kept apart by colours; "
-             "flood-fill, surfels that touch and look alike");
-  add_value(command, "--out", options.out, "FILE",
-            "the cloud with a field label more: 1, 2, ... by segment, 0 for no point; PCD, or PLY by its name");
-  add_value(command, "--picture", options.picture, "FILE", "PNG of the segments and of their saliency");
+bool is_segment_folder(const fs::path& out) {
+  std::error_code ignored;
+  return !out.empty() && (!is_cloud_name(out) || fs::is_directory(out, ignored));
+}
+
+void declare_segment(Options& declared, SegmentOptions& options) {
+  CLI::App& command = declared.group();
+  declared
+      .value("input", options.input, "CLOUD|MAP",
+             "a point cloud (PCD, PLY, text, KITTI .bin), or a saved map (.sacmap)")
+      .required();
+  declared.choice("--method", options.method, kSegmentMethodNames,
+                  "how: lccp, supervoxels joined where surfaces bend outwards; sv-lccp, the same kept apart by "
+                  "colours; flood-fill, surfels that touch and look alike");
+  declared.folder({.value = "DIR|FILE",
+                   .help = "the cloud with a further field label: 1, 2, ... by segment, 0 for no point. FILE.pcd or "
+                           "FILE.ply: this file alone; a folder: segments.ply, segments.png, segment.json and the "
+                           "page report.html",
+                   .files = {kSegmentFiles.begin(), kSegmentFiles.end()},
+                   .document = kSegmentJson,
+                   .opened_by_command = true});
+  declared.value("--picture", options.picture, "FILE", "PNG of the segments and of their saliency");
+  declared.flag("--no-pictures{false}", options.write_pictures, "draw no picture into the folder of --out");
   add_supervoxel_options(command, options);
   add_lccp_options(command, options.lccp);
   add_surfel_options(command, options);
   add_saliency_options(command, options.saliency);
   add_value(command, "--isolation-distance", options.measures.isolation_distance_m, "METRES",
-            "a point is isolated where no other segment is so near, metres");
+            "a point is isolated if no other segment is within this distance, metres");
 }
 
-void check_segment_options(const CLI::App& command, SegmentOptions& options) {
+void check_segment_options(const CLI::App& command, const fs::path& out, SegmentOptions& options) {
   apply_method(command, options);
-  check_extensions(options);
+  check_outputs(out, options);
   require_positive(options.supervoxels.voxels.voxel_size_m, "--voxel-size");
   require_positive(options.supervoxels.seed_spacing_m, "--seed-size");
   require_ok(options.supervoxels.validate(),

@@ -2,10 +2,11 @@
 #include <algorithm>
 #include <cmath>
 #include <iomanip>
-#include <iostream>
 #include <numbers>
 #include <numeric>
+#include <sstream>
 
+#include "saccade/io/clouds/cloud_upright.hpp"
 #include "saccade/report/segment_picture.hpp"
 #include "score_json.hpp"
 #include "segment.hpp"
@@ -85,7 +86,7 @@ std::vector<std::size_t> by_saliency(const SegmentFindings& findings) {
   return order;
 }
 
-/// Of a point's neighbours, by its radius.
+/// Returns the distance between neighbouring surfels, in metres, from the median radius.
 double spacing_of_surfels(const SegmentInput& input, const SegmentFindings& findings) {
   std::vector<float> radii_m;
   for (std::size_t i = 0; i < findings.labels.size(); ++i) {
@@ -96,7 +97,7 @@ double spacing_of_surfels(const SegmentInput& input, const SegmentFindings& find
   return static_cast<double>(*middle) / std::numbers::sqrt2;
 }
 
-/// Of points on a surface that fill its voxels as evenly as these do on average.
+/// Returns the distance, in metres, between points that fill the voxels of a surface as evenly as these on average.
 double spacing_of(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings) {
   if (options.fills()) return spacing_of_surfels(input, findings);
   const double per_voxel = static_cast<double>(findings.points) / static_cast<double>(findings.supervoxels.voxels);
@@ -111,7 +112,7 @@ double spacing_of(const SegmentOptions& options, const SegmentInput& input, cons
   return edge_m / std::sqrt(per_voxel);
 }
 
-/// Of the points, or where they have none of their supervoxels.
+/// Returns the normals of the points; where these have none, those of their supervoxels.
 std::vector<Eigen::Vector3f> normals_of(const SegmentInput& input, const SegmentFindings& findings) {
   if (!input.cloud.normals.empty()) return input.cloud.normals;
   std::vector<Eigen::Vector3f> normals(input.cloud.positions_m.size(), Eigen::Vector3f::Zero());
@@ -143,13 +144,15 @@ json segment_json(const SegmentOptions& options, const SegmentInput& input, cons
               {"out", text_or_null(options.out.string())},
               {"picture", text_or_null(findings.points == 0 ? "" : options.picture.string())},
               {"label_kept_as", text_or_null(findings.label_kept_as)}};
+  result["offset_m"] = point_json(input.cloud.offset_m);
   if (options.fills()) result["radii"] = to_string(input.radii);
   if (findings.curve) result["curve"] = curve_json(options, *findings.curve);
   return result;
 }
 
-void print_segments(const SegmentOptions& options, const SegmentFindings& findings) {
-  const Summary summary{std::cout};
+std::string segments_text(const SegmentOptions& options, const SegmentFindings& findings) {
+  std::ostringstream text;
+  const Summary summary{text};
   summary.line("points", std::to_string(findings.points));
   if (!options.fills()) summary.line("supervoxels", std::to_string(findings.supervoxels.supervoxels.size()));
   summary.line("segments", std::to_string(findings.measures.size()));
@@ -162,17 +165,18 @@ void print_segments(const SegmentOptions& options, const SegmentFindings& findin
   }
   if (!options.out.empty()) summary.line("labels", options.out.string());
   if (!options.picture.empty()) summary.line("picture", options.picture.string());
+  if (!options.report.empty()) summary.line("report", options.report.string());
   constexpr std::size_t kShown{10};
   const std::vector<std::size_t> order = by_saliency(findings);
-  std::cout << "\nsegment   points  saliency  roundness  isolation  why\n";
+  text << "\nsegment   points  saliency  roundness  isolation  why\n";
   for (std::size_t i = 0; i < std::min(kShown, order.size()); ++i) {
     const std::size_t s = order[i];
-    std::cout << std::right << std::setw(7) << s + 1 << std::setw(9) << findings.measures[s].points << std::setw(10)
-              << fixed(findings.saliencies[s].value, 3) << std::setw(11) << fixed(findings.measures[s].roundness, 3)
-              << std::setw(11) << fixed(findings.measures[s].isolation, 3) << "  " << findings.saliencies[s].why
-              << '\n';
+    text << std::right << std::setw(7) << s + 1 << std::setw(9) << findings.measures[s].points << std::setw(10)
+         << fixed(findings.saliencies[s].value, 3) << std::setw(11) << fixed(findings.measures[s].roundness, 3)
+         << std::setw(11) << fixed(findings.measures[s].isolation, 3) << "  " << findings.saliencies[s].why << '\n';
   }
-  if (order.size() > kShown) std::cout << "... and " << order.size() - kShown << " more, all in the JSON result\n";
+  if (order.size() > kShown) text << "... and " << order.size() - kShown << " more, all in the JSON result\n";
+  return text.str();
 }
 
 ColorImage segment_sheet(const SegmentOptions& options, const SegmentInput& input, const SegmentFindings& findings,
@@ -182,13 +186,8 @@ ColorImage segment_sheet(const SegmentOptions& options, const SegmentInput& inpu
                             spacing_of(options, input, findings)};
   constexpr int kWidth_px{800};
   constexpr int kHeight_px{600};
-  OverviewConfig overview;
-  overview.width = kWidth_px;
-  overview.height = kHeight_px;
-  overview.up = options.saliency.height.up;
-  const Viewpoint view = options.supervoxels.voxels.single_camera
-                             ? camera_view_of(input.cloud.positions_m, kWidth_px, kHeight_px)
-                             : overview_of_points(input.cloud.positions_m, overview);
+  const Upright upright = upright_of(input.file, input.cloud.positions_m, options.saliency.up);
+  const Viewpoint view = upright_view_of(input.cloud.positions_m, upright, kWidth_px, kHeight_px);
   std::vector<double> values;
   for (const Saliency& saliency : findings.saliencies) values.push_back(saliency.value);
   const double most = values.empty() ? 1.0 : *std::max_element(values.begin(), values.end());

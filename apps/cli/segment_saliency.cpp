@@ -8,6 +8,7 @@
 
 #include "add_value.hpp"
 #include "options.hpp"
+#include "saccade/core/nearest_word.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -36,7 +37,10 @@ BlendPart parse_part(const std::string& text, const SaliencyOptions& options) {
   const auto found = std::find_if(kHeuristics.begin(), kHeuristics.end(),
                                   [&](const NamedHeuristic& heuristic) { return heuristic.name == name; });
   if (found == kHeuristics.end()) {
-    usage_error("--saliency", "there is no heuristic '" + name + "'; known: " + known_names());
+    std::vector<std::string_view> known;
+    for (const NamedHeuristic& heuristic : kHeuristics) known.emplace_back(heuristic.name);
+    usage_error("--saliency",
+                "there is no heuristic '" + name + "'; known: " + known_names() + did_you_mean(name, known));
   }
   if (name == "region" && !options.region) {
     usage_error("--saliency", "region needs one: give --box or --sphere");
@@ -66,12 +70,14 @@ bool has_part(const std::vector<BlendPart>& parts, const char* name) {
 
 void add_saliency_options(CLI::App& command, SaliencyOptions& options) {
   add_value(command, "--saliency", options.names, "NAME[=WEIGHT],...",
-            "what draws attention: " + known_names() + "; several with weights are blended, as size=2,height=1")
+            "measure of saliency: " + known_names() + "; several with weights are blended, as size=2,height=1")
       ->each([&options](const std::string&) { options.given = true; });
   add_value(command, "--size", options.size.size_m, "METRES",
             "saliency size: longest size of what is looked for, metres");
   add_point(command, "--up", options.up,
-            "saliency height, and pictures: which way is up (default: 0,0,1; 0,-1,0 with --transform)");
+            "direction up, for the saliency height (default: 0,0,1; 0,-1,0 with --transform) and the picture "
+            "(default: guessed "
+            "from the points)");
   command
       .add_option_function<std::string>(
           "--box",

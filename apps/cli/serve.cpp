@@ -12,6 +12,7 @@
 #include <chrono>
 #include <cstdlib>
 #include <cstring>
+#include <future>
 #include <iostream>
 #include <optional>
 #include <string_view>
@@ -81,7 +82,7 @@ Result<std::string> read_token(const std::filesystem::path& file) {
   if (opened.number < 0) return token_file_error(file, errno);
   struct stat about {};
   if (::fstat(opened.number, &about) != 0) return token_file_error(file, errno);
-  if ((about.st_mode & S_IFMT) != S_IFREG) return Error{Errc::invalid_argument, "is no file", file.string()};
+  if ((about.st_mode & S_IFMT) != S_IFREG) return Error{Errc::invalid_argument, "is not a regular file", file.string()};
   if ((about.st_mode & (S_IRWXG | S_IRWXO)) != 0) {
     return Error{Errc::invalid_argument, "others may read this token: chmod 600, or name another file", file.string()};
   }
@@ -160,7 +161,7 @@ std::optional<BrowserPage> announce(const ServeOptions& options, const GlobalOpt
     out << "To open it on another machine, run there: ssh -N -L " << port << ":localhost:" << port << ' ' << login()
         << '\n';
   }
-  if (!is_local) out << "Whoever reaches this address and knows the token may use it; nothing is encrypted.\n";
+  if (!is_local) out << "Anyone who can reach this address and knows the token may use it; nothing is encrypted.\n";
   out << "Ctrl-C ends it." << std::endl;
   if (options.no_browser || !has_display()) return std::nullopt;
   auto page = BrowserPage::open(url);
@@ -170,12 +171,32 @@ std::optional<BrowserPage> announce(const ServeOptions& options, const GlobalOpt
   return std::nullopt;
 }
 
-int serve(const ServeOptions& options, const GlobalOptions& global, server::HttpServer& server,
-          server::Service& service) {
+void announce_foxglove(const server::HttpServer& server) {
+  const std::string url = server.foxglove_url();
+  std::cerr << "Foxglove connects to " << url << '\n';
+  if (!url.starts_with("ws://localhost:")) {
+    std::cerr << "Anyone who reaches this address and knows the token may look on; nothing is encrypted.\n";
+  }
+  std::cerr << std::flush;
+}
+
+Status run_before_page(const std::string& command, server::HttpServer& server, std::function<Status()> work) {
+  auto promised = std::make_shared<std::promise<Status>>();
+  std::future<Status> done = promised->get_future();
+  server.post([promised, work = std::move(work)] { promised->set_value(work()); });
+  while (done.wait_for(kLookEvery) != std::future_status::ready) {
+    if (!interrupted()) continue;
+    print_error(command, "interrupted");
+    std::_Exit(interrupt_status());
+  }
+  return done.get();
+}
+
+void serve(const ServeOptions& options, const GlobalOptions& global, server::HttpServer& server,
+           server::Service& service) {
   server.serve(service);
   const auto page = announce(options, global, server);
   while (!interrupted()) std::this_thread::sleep_for(kLookEvery);
-  return static_cast<int>(ExitStatus::done);
 }
 
 }  // namespace saccade::cli

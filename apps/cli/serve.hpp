@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What `annotate` and `show` share: where the page is to be had, saying so, and waiting for Ctrl-C.
+// Shared by `annotate` and `show`: the options of the page's address, the message that names it, and the wait for
+// Ctrl-C.
 
 #include <cstdint>
 #include <filesystem>
+#include <functional>
 #include <memory>
 #include <optional>
 #include <string>
@@ -38,10 +40,17 @@ void add_serve_options(CLI::App& command, ServeOptions& options);
 [[nodiscard]] std::optional<BrowserPage> announce(const ServeOptions& options, const GlobalOptions& global,
                                                   const server::HttpServer& server);
 
-/// HttpServer::serve, announce, then waits for Ctrl-C or SIGTERM.
-/// @return the exit status: done, as what interrupts serving interrupts no work. The caller ends the server before the
-/// service.
-[[nodiscard]] int serve(const ServeOptions& options, const GlobalOptions& global, server::HttpServer& server,
-                        server::Service& service);
+/// Says on standard error where Foxglove connects, and who else could where that is not this machine alone.
+void announce_foxglove(const server::HttpServer& server);
+
+/// Runs work on the server's thread before there is a page, and waits for it. Ctrl-C ends the program at once, without
+/// waiting for the work: it must keep nothing that is not whole at any time.
+[[nodiscard]] Status run_before_page(const std::string& command, server::HttpServer& server,
+                                     std::function<Status()> work);
+
+/// HttpServer::serve, announce, then waits for Ctrl-C or SIGTERM, which interrupts no work. The caller ends the server
+/// before the service.
+void serve(const ServeOptions& options, const GlobalOptions& global, server::HttpServer& server,
+           server::Service& service);
 
 }  // namespace saccade::cli

@@ -12,6 +12,11 @@ void Summary::line(std::string_view name, std::string_view value) const {
        << value << '\n';
 }
 
+std::string offset_text(const Eigen::Vector3d& offset_m) {
+  return "(" + fixed(offset_m.x(), 0) + ", " + fixed(offset_m.y(), 0) + ", " + fixed(offset_m.z(), 0) +
+         ") is subtracted from the coordinates, which are far from the origin; files keep theirs";
+}
+
 std::string fixed(double value, int decimals) {
   std::ostringstream text;
   text << std::fixed << std::setprecision(decimals) << value;

@@ -2,6 +2,7 @@
 #pragma once
 // Summary: aligned "name  value" lines for people; numbers with their units as text.
 
+#include <Eigen/Core>
 #include <cstddef>
 #include <ostream>
 #include <string>
@@ -18,6 +19,8 @@ class Summary {
   std::ostream& out_;
 };
 
+/// Says that a cloud's coordinates are computed with relative to an offset (PointCloud::offset_m).
+[[nodiscard]] std::string offset_text(const Eigen::Vector3d& offset_m);
 [[nodiscard]] std::string fixed(double value, int decimals);
 [[nodiscard]] std::string millimetres(double value_m);
 [[nodiscard]] std::string percent(double share);

@@ -4,6 +4,7 @@
 #include <CLI/CLI.hpp>
 
 #include "add_value.hpp"
+#include "length_options.hpp"
 #include "options.hpp"
 #include "saccade/cloud/surfel_estimates.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
@@ -34,8 +35,8 @@ void add_truth_options(CLI::App& command, TruthOptions& options) {
 }
 
 void check_truth_options(const TruthOptions& options) {
-  require_positive(options.config.matching.tolerance_m, "--tolerance");
-  if (options.radius_m) require_positive(*options.radius_m, "--radius");
+  require_length(options.config.matching.tolerance_m, "--tolerance");
+  if (options.radius_m) require_length(*options.radius_m, "--radius");
 }
 
 Result<SegmentationTruth> surfel_truth(const ColumnTable& fields, std::span<const std::uint32_t> labels,

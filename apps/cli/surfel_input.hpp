@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What surfels need and a file of points may lack: radii and normals.
+// Radii and normals, which surfels need and a file of points may lack.
 
 #include <Eigen/Core>
 #include <optional>
@@ -31,7 +31,7 @@ Origin complete_normals(PointCloud& cloud, const Eigen::Vector3d& viewpoint_m, c
 /// How a labelled cloud is taken as a truth of surfels.
 struct TruthOptions {
   SegmentationTruthConfig config;
-  std::optional<double> radius_m;  ///< of all surfels
+  std::optional<double> radius_m;  ///< one radius for all surfels
 };
 
 /// Adds --tolerance and --no-split; --radius is the command's own.

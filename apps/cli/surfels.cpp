@@ -1,16 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 // saccade surfels: RGB-D frames → surfel cloud, with or without the mode filter.
-#include <CLI/CLI.hpp>
 #include <algorithm>
-#include <iostream>
-#include <memory>
+#include <sstream>
 
-#include "command.hpp"
-#include "exit_status.hpp"
+#include "context.hpp"
 #include "fuse_frames.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "saccade/core/clock.hpp"
 #include "saccade/core/statistics.hpp"
 #include "saccade/io/clouds/surfel_cloud.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -32,20 +26,19 @@ struct SurfelTimes {
 /// Everything between the command line and the summary.
 struct SurfelsRun {
   const SurfelsOptions& options;
-  Executor executor;
-  ProgressBar progress;
+  const Executor& executor;
+  ProgressBar& progress;
   OpenFrames frames;
   SurfelFusion fusion;
   ModeFilter filter;
   ExposureCompensation exposure;
-  std::vector<ExposureReport> exposures;  ///< of frames with colour
+  std::vector<ExposureReport> exposures;  ///< one for each frame with colour
   FuseRecord record;
   SurfelTimes times;
   std::size_t without_color{0};
   std::size_t evicted_modes{0};
   std::size_t written{0};
   std::size_t uncolored{0};  ///< seen often enough, but by no frame with colour while others were
-  TimingsMs timings_ms;
 
   [[nodiscard]] double min_weight() const { return options.min_weight(record.fused.size()); }
 };
@@ -137,12 +130,11 @@ Status write_clouds(SurfelsRun& run) {
   return run.options.picture.empty() ? Status{} : write_picture(run, winners);
 }
 
-Result<int> nothing_written(const SurfelsRun& run) {
+Outcome nothing_written(const SurfelsRun& run) {
   float most{0.0F};
   for (const SurfelDisc& disc : run.fusion.map().discs) most = std::max(most, disc.weight);
-  print_error("surfels", "no surfel has a confidence of " + fixed(run.min_weight(), 1) + ", the greatest is " +
-                             fixed(double(most), 1) + ": see --min-confidence; nothing was written");
-  return static_cast<int>(ExitStatus::no_result);
+  return Outcome{.empty = "no surfel has a confidence of " + fixed(run.min_weight(), 1) + ", the greatest is " +
+                          fixed(double(most), 1) + ": see --min-confidence; nothing was written"};
 }
 
 /// Gains relative to the first frame; null without compensation.
@@ -195,9 +187,10 @@ json result_json(const SurfelsRun& run) {
           {"peak_rss_bytes", peak_rss_bytes()}};
 }
 
-void print_summary(const SurfelsRun& run) {
+std::string surfels_text(const SurfelsRun& run) {
+  std::ostringstream text;
   const FuseRecord& record = run.record;
-  const Summary summary{std::cout};
+  const Summary summary{text};
   summary.line("frames", std::to_string(record.fused.size()) + " fused, " + std::to_string(record.lost.size()) +
                              " lost, " + std::to_string(record.skipped.size()) + " skipped");
   summary.line("tracking", to_string(run.frames.tracking));
@@ -217,68 +210,78 @@ void print_summary(const SurfelsRun& run) {
   summary.line("cloud", run.options.out.string());
   if (run.options.mode_filter == ModeFilterUse::both) summary.line("average", run.options.average_out().string());
   if (!run.options.picture.empty()) summary.line("picture", run.options.picture.string());
+  return text.str();
 }
 
-Result<int> run_surfels(const SurfelsOptions& options, const GlobalOptions& global) {
-  const Stopwatch total;
-  Stopwatch stopwatch;
-  SACCADE_TRY(OpenFrames frames, open_frames(options));
-  SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(options.fusion));
-  SACCADE_TRY(ModeFilter filter, ModeFilter::create(options.filter));
-  SACCADE_TRY(ExposureCompensation exposure, ExposureCompensation::create());
-  SurfelsRun run{options,
-                 global.executor(),
-                 ProgressBar{global.quiet},
-                 std::move(frames),
-                 std::move(fusion),
-                 std::move(filter),
-                 std::move(exposure),
-                 {},
-                 {},
-                 {},
-                 0,
-                 0,
-                 0,
-                 0,
-                 {}};
-  SACCADE_CHECK(check_color(run));
+/// Fails early where a file that is to be written is one that is read or written besides.
+Status check_outputs(const SurfelsOptions& options, const GlobalOptions& global) {
   const std::filesystem::path json_file = global.json_to_stdout() ? "" : global.json;
   SACCADE_CHECK(check_output(options.out, "--json", {json_file}));
   if (options.mode_filter == ModeFilterUse::both)
     SACCADE_CHECK(check_output(options.average_out(), "--json", {json_file}));
   if (!options.picture.empty()) SACCADE_CHECK(check_output(options.picture, "--picture", {options.out, json_file}));
-  SACCADE_CHECK(check_beside_frames(options, options.picture, "--picture"));
-  SACCADE_CHECK(check_json_output(global));
-  run.timings_ms["open"] = stopwatch.lap_ms();
-  SACCADE_CHECK(fuse_surfels(run));
-  run.timings_ms["frames"] = stopwatch.lap_ms();
-  if (run.fusion.map().size() == 0) return nothing_fused("surfels", run.record, options.frames);
-  SACCADE_CHECK(check_color(run));
-  SACCADE_CHECK(write_clouds(run));
-  if (run.written == 0) return nothing_written(run);
-  run.timings_ms["write"] = stopwatch.lap_ms();
-  run.timings_ms["total"] = total.elapsed_ms();
-  run.progress.finish();
-  SACCADE_CHECK(write_result("surfels", global, run.executor, run.timings_ms, result_json(run)));
-  if (!global.json_to_stdout()) print_summary(run);
-  warn_of_left_out("surfels", run.record);
-  warn_of_damage("surfels", options.frames, run.frames.source->info());
-  if (!interrupted()) return static_cast<int>(ExitStatus::done);
-  print_error("surfels", "interrupted after " + std::to_string(run.record.fused.size()) +
-                             " frames; what they gave is in " + options.out.string());
-  return interrupt_status();
+  return check_beside_frames(options, options.picture, "--picture");
 }
+
+class Surfels final : public Command {
+ public:
+  [[nodiscard]] CommandInfo info() const override {
+    return {"surfels", "fuses RGB-D frames into a cloud of surfels whose edges stay sharp"};
+  }
+  void declare(Options& options) override {
+    command_ = &options.group();
+    add_surfels_options(options.group(), surfels_);
+  }
+  void check(const GlobalOptions& /*global*/) override { check_surfels_options(*command_, surfels_); }
+
+  [[nodiscard]] Result<Outcome> run(Context& context) override {
+    SACCADE_TRY(OpenFrames frames, open_frames(surfels_));
+    SACCADE_TRY(SurfelFusion fusion, SurfelFusion::create(surfels_.fusion));
+    SACCADE_TRY(ModeFilter filter, ModeFilter::create(surfels_.filter));
+    SACCADE_TRY(ExposureCompensation exposure, ExposureCompensation::create());
+    SurfelsRun run{surfels_,
+                   context.executor(),
+                   context.bar(),
+                   std::move(frames),
+                   std::move(fusion),
+                   std::move(filter),
+                   std::move(exposure),
+                   {},
+                   {},
+                   {},
+                   0,
+                   0,
+                   0,
+                   0};
+    SACCADE_CHECK(check_color(run));
+    SACCADE_CHECK(check_outputs(surfels_, context.global()));
+    context.lap("open");
+    SACCADE_CHECK(fuse_surfels(run));
+    context.lap("frames");
+    if (run.fusion.map().size() == 0) return nothing_fused(run.record, surfels_.frames);
+    SACCADE_CHECK(check_color(run));
+    SACCADE_CHECK(write_clouds(run));
+    if (run.written == 0) return nothing_written(run);
+    context.lap("write");
+    Outcome outcome{.result = result_json(run), .text = surfels_text(run)};
+    warn_of_left_out(run.record, outcome);
+    warn_of_damage(surfels_.frames, run.frames.source->info(), outcome);
+    if (interrupted()) {
+      outcome.cut_short = "interrupted after " + std::to_string(run.record.fused.size()) +
+                          " frames; what they gave is in " + surfels_.out.string();
+    }
+    return outcome;
+  }
+
+ private:
+  const CLI::App* command_{nullptr};
+  SurfelsOptions surfels_;
+};
 
 }  // namespace
 
 void add_surfels(CLI::App& program, const GlobalOptions& global, Action& action) {
-  CLI::App* command = program.add_subcommand("surfels", "RGB-D frames -> surfel cloud whose edges stay sharp");
-  auto options = std::make_shared<SurfelsOptions>();
-  add_surfels_options(*command, *options);
-  command->callback([command, options, &global, &action] {
-    check_surfels_options(*command, *options);
-    action = [options, &global] { return run_surfels(*options, global); };
-  });
+  add_command<Surfels>(program, global, action);
 }
 
 }  // namespace saccade::cli

@@ -9,7 +9,7 @@
 namespace saccade::cli {
 namespace {
 
-/// What a run without the mode filter, or with surfels at their averages, does not look at.
+/// Refuses options that a run without the mode filter, or with surfels at their averages, would ignore.
 void check_options_have_effect(const CLI::App& command, const SurfelsOptions& options) {
   if (!options.filtered()) {
     for (const char* name : {"--choice", "--places", "--max-modes", "--max-depth-change"}) {
@@ -32,16 +32,16 @@ void add_surfels_options(CLI::App& command, SurfelsOptions& options) {
              "on: of each surfel's colours one that was seen, not a blend; off: averages; both: averages, too, in "
              "NAME.average.EXT beside --out");
   add_value(command, "--image-sigma", options.fusion.image_sigma, "SIGMA",
-            "how fast pixels lose weight away from the image's centre: smaller for strong vignetting");
+            "width of the weight of pixels around the image's centre: smaller for strong vignetting");
   add_choice(command, "--exposure-compensation", options.exposure_compensation, kOnOff,
              "on: for cameras with automatic gain or exposure: colours of each frame are brought to those of the "
              "first; vignetting must be corrected");
   add_value(command, "--max-modes", options.filter.max_modes, "N", "colours that a surfel remembers, 1 to 32");
   add_choice(command, "--choice", options.choice, kModeChoiceNames,
-             "what a surfel is in the end: the colour that is densest in its place more than around, where its own "
+             "colour of a surfel in the end: the colour that is densest in its place more than around, where its own "
              "colours are densest, or the heaviest one (thesis, eq. 4.11)");
   add_choice(command, "--places", options.places, kSurfelPlacesNames,
-             "where a surfel is: at the average of what was measured, or where its modes are, with depths guided by "
+             "place of a surfel: the average of its measurements, or the place of its modes, with depths guided by "
              "colour as in the thesis (default: average; with --choice heaviest modes)");
   add_value(command, "--max-depth-change", options.filter.max_depth_change_m, "METRES",
             "with --places modes: a depth that the guided filter would move farther stays as it was measured; inf: all "

@@ -56,8 +56,8 @@ struct SurfelsOptions : FrameOptions {
     std::filesystem::path beside = out;
     return beside.replace_extension(".average" + out.extension().string());
   }
-  /// Least w_s of what is written, of so many frames. ElasticFusion shows surfels of a confidence above 10; fewer than
-  /// 200 frames do not see things so often.
+  /// Returns the least w_s that is written after `fused` frames. ElasticFusion shows surfels of a confidence above 10;
+  /// fewer than 200 frames do not see things that often.
   [[nodiscard]] double min_weight(std::size_t fused) const {
     constexpr double kSeenOften{10.0};
     constexpr double kShareOfFrames{0.05};
@@ -67,7 +67,7 @@ struct SurfelsOptions : FrameOptions {
 
 /// Adds the options to the subcommand; `options` outlives the parsing.
 void add_surfels_options(CLI::App& command, SurfelsOptions& options);
-/// What only shows when all options are known, and which of them were given; throws usage errors. Completes
+/// Checks the options together, once all are known, and which of them were given; throws usage errors. Completes
 /// options.fusion and options.filter.
 void check_surfels_options(const CLI::App& command, SurfelsOptions& options);
 

@@ -18,6 +18,9 @@ namespace saccade::cli {
 [[nodiscard]] nlohmann::json region_json(const WatchedTask& task, const UpdateFigures& figures, std::size_t region);
 /// Whether and how the robot came back to its stand-by.
 [[nodiscard]] nlohmann::json return_json(const StandByResult& back);
-void print_update(const UpdateOptions& options, const WatchedTask& task, const nlohmann::json& result);
+/// Returns the summary for people.
+/// @param result  update_json's
+[[nodiscard]] std::string update_text(const UpdateOptions& options, const WatchedTask& task,
+                                      const nlohmann::json& result);
 
 }  // namespace saccade::cli

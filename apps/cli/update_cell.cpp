@@ -4,17 +4,12 @@
 #include <algorithm>
 #include <array>
 #include <atomic>
-#include <iostream>
 #include <memory>
 #include <utility>
 
 #include "cell_options.hpp"
-#include "exit_status.hpp"
+#include "context.hpp"
 #include "explore_devices.hpp"
-#include "interrupt.hpp"
-#include "json_output.hpp"
-#include "progress_bar.hpp"
-#include "run_folder.hpp"
 #include "saccade/attention/task_watcher.hpp"
 #include "saccade/core/clock.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
@@ -25,6 +20,7 @@
 #include "summary.hpp"
 #include "update_cell_report.hpp"
 #include "update_report.hpp"
+#include "view_lines.hpp"
 
 namespace saccade::cli {
 namespace {
@@ -50,15 +46,16 @@ Result<std::unique_ptr<HandTracker>> open_hand(const UpdateOptions& options) {
 /// One cell, from its scan on.
 class CellUpdate {
  public:
-  CellUpdate(const UpdateOptions& options, const GlobalOptions& global, const ExploreCase& subject,
-             ExploreDevices& devices, const RunFolder& out, ProgressBar& bar, TsdfMap map, RunMessages& messages)
+  /// The folder is open.
+  CellUpdate(const UpdateOptions& options, Context& context, const ExploreSetup& subject, ExploreDevices& devices,
+             TsdfMap map, RunMessages& messages)
       : options_{options},
-        global_{global},
-        executor_{global.executor()},
+        context_{context},
+        executor_{context.executor()},
         subject_{subject},
         devices_{devices},
-        out_{out},
-        bar_{bar},
+        out_{*context.folder()},
+        bar_{context.bar()},
         map_{std::move(map)},
         messages_{messages},
         has_scan_{!options.map.empty()} {}
@@ -78,7 +75,7 @@ class CellUpdate {
     scan_.measures.unknown_left = count_unknown(map_.content(), subject_.scene.workspace);
     // A kill while the hand is waited for loses no scan.
     SACCADE_CHECK(save_map(map_.content(), out_ / "map.sacmap", executor_));
-    SACCADE_CHECK(write_json(out_ / "update.json", document(0.0)));
+    SACCADE_CHECK(write_tasks());
     SACCADE_TRY([[maybe_unused]] const StandByResult back, explorer.return_to_stand_by());
     return {};
   }
@@ -92,7 +89,7 @@ class CellUpdate {
     const DetectActions detect = [&](const HandTrajectory& trajectory) -> Result<std::vector<HandAction>> {
       const Stopwatch stopwatch;
       auto findings = detector(trajectory);
-      problem_ = findings ? "" : findings.error().to_string();  // of one task; the next one may be better
+      problem_ = findings ? "" : findings.error().to_string();  // in this task; the next one may be better
       task_ = WatchedTask{trajectory,
                           check_samples(trajectory),
                           findings ? std::move(*findings) : AttentionFindings{},
@@ -141,7 +138,6 @@ class CellUpdate {
     return {};
   }
 
-  [[nodiscard]] std::size_t tasks() const { return tasks_.size(); }
   [[nodiscard]] bool scanned() const { return has_scan_; }
   [[nodiscard]] json result() const {
     return {{"cell", subject_.scene.name},
@@ -152,20 +148,28 @@ class CellUpdate {
             {"initial", scan_to_json(scan_)},
             {"tasks", tasks_}};
   }
-  [[nodiscard]] json document(double total_ms) const {
-    return json_envelope("update", global_, executor_, {{"total", total_ms}}, result());
-  }
-  [[nodiscard]] Status write(double total_ms) {
-    const TsdfSnapshot& map = map_.content();
-    SACCADE_CHECK(save_map(map, out_ / "map.sacmap", executor_));
-    SACCADE_CHECK(write_mesh(out_ / "mesh.ply", extract_mesh(map, executor_)));
-    const json written = document(total_ms);
-    SACCADE_CHECK(write_json(out_ / "update.json", written));
-    if (!options_.write_pictures) return {};
-    return write_cell_page(options_, map, subject_.scene.workspace, devices_, out_, written, executor_);
+  /// Writes the map, the tasks and the page that leads to them, at the end.
+  [[nodiscard]] Status write() {
+    SACCADE_CHECK(write_map());
+    SACCADE_TRY(const json document, context_.write_document(result()));
+    return write_page(document);
   }
 
  private:
+  [[nodiscard]] Status write_map() const {
+    const TsdfSnapshot& map = map_.content();
+    SACCADE_CHECK(save_map(map, out_ / "map.sacmap", executor_));
+    return write_mesh(out_ / "mesh.ply", extract_mesh(map, executor_));
+  }
+  /// Writes update.json as it is so far.
+  [[nodiscard]] Status write_tasks() const {
+    return write_json(out_ / "update.json", context_.document_so_far(result()));
+  }
+  [[nodiscard]] Status write_page(const json& document) const {
+    if (!options_.write_pictures) return {};
+    return write_cell_page(options_, map_.content(), subject_.scene.workspace, devices_, out_, document, executor_);
+  }
+
   [[nodiscard]] Progress shown() {
     return Progress{[this](std::string_view stage, std::size_t done, std::size_t of) { bar_.update(stage, done, of); }};
   }
@@ -192,7 +196,7 @@ class CellUpdate {
     figures.before = figures.forgotten = figures.after = map_.snapshot();
     // A kill while the robot looks loses no region: they are in the file as not begun.
     tasks_.push_back(task_record(options_, task_, figures, subject_.scene.workspace, "interrupted"));
-    SACCADE_CHECK(write_json(out_ / "update.json", document(0.0)));
+    SACCADE_CHECK(write_tasks());
     std::string end{"nothing_to_do"};
     const Status looked = task_.regions.empty() ? Status{} : look_at(folder, figures, end);
     figures.after = map_.snapshot();
@@ -202,15 +206,21 @@ class CellUpdate {
     if (!problem_.empty()) record["problem"] = problem_;
     if (!looked.ok()) record["problem"] = looked.error().to_string();
     tasks_.back() = record;
-    if (looked.ok()) SACCADE_CHECK(write(0.0));
+    if (looked.ok()) SACCADE_CHECK(write_so_far());
     if (options_.write_pictures) SACCADE_CHECK(draw(folder, figures, record));
     return looked;
+  }
+
+  [[nodiscard]] Status write_so_far() const {
+    SACCADE_CHECK(write_map());
+    SACCADE_CHECK(write_tasks());
+    return write_page(context_.document_so_far(result()));
   }
 
   [[nodiscard]] Status draw(const RunFolder& folder, const UpdateFigures& figures, const json& record) const {
     const UpdatePictures pictures{options_, subject_.scene.workspace, task_, devices_, folder, executor_};
     SACCADE_CHECK(pictures.draw_maps(figures));
-    return write_task_page(options_, task_, figures, folder, devices_, document(0.0), record);
+    return write_task_page(options_, task_, folder, devices_, context_.document_so_far(result()), record);
   }
 
   [[nodiscard]] Status look_at(const RunFolder& folder, UpdateFigures& figures, std::string& end) {
@@ -229,7 +239,9 @@ class CellUpdate {
     RegionMeter of_regions{task_.regions};
     UpdatePictures pictures{options_, subject_.scene.workspace, task_, devices_, folder, executor_};
     Recorder silent;
-    Recorders recorders{&meter, &of_regions, options_.write_pictures ? &pictures : &silent, &messages_};
+    ViewLines lines{bar_, static_cast<std::size_t>(options_.run.exploration.max_views),
+                    options_.run.strategy.gain_unit};
+    Recorders recorders{&meter, &of_regions, options_.write_pictures ? &pictures : &silent, &messages_, &lines};
     Explorer explorer = explorer_with(progress, &recorders);
     const Stopwatch stopwatch;
     SACCADE_CHECK(explorer.forget(task_.regions));
@@ -261,9 +273,9 @@ class CellUpdate {
   }
 
   const UpdateOptions& options_;
-  const GlobalOptions& global_;
-  Executor executor_;
-  const ExploreCase& subject_;
+  Context& context_;
+  const Executor& executor_;
+  const ExploreSetup& subject_;
   ExploreDevices& devices_;
   const RunFolder& out_;
   ProgressBar& bar_;
@@ -280,19 +292,33 @@ class CellUpdate {
   std::unique_ptr<TaskWatcher> watcher_;     // last: its thread uses looking_
 };
 
+/// Returns the summary for people.
+std::string cell_text(const UpdateOptions& options, const json& tasks) {
+  return std::string{options.dry_run ? "dry run   nothing has moved\n" : ""} + tasks_text(tasks) + "results   " +
+         (options.write_pictures ? options.out / "report.html" : options.out).string() + '\n';
+}
+
+/// Says why there is no result; empty where there is one.
+std::string without_result(const json& tasks) {
+  const auto has = [&tasks](const char* what) {
+    return std::any_of(tasks.begin(), tasks.end(), [what](const json& task) { return !task.at(what).empty(); });
+  };
+  if (has("views") || (!tasks.empty() && !has("regions"))) return {};
+  return tasks.empty() ? "the hand never came into the workspace; nothing was updated"
+                       : "not one view of a region could be taken; does the arm stand in its own way?";
+}
+
 }  // namespace
 
-Result<int> run_cell_update(const UpdateOptions& given, const GlobalOptions& global) {
+Result<Outcome> update_cell(const UpdateOptions& given, Context& context) {
   UpdateOptions options = given;
-  const Stopwatch total;
-  const Executor executor = global.executor();
-  ProgressBar bar{global.quiet};
-  SACCADE_CHECK(check_json_output(global));
+  const Executor& executor = context.executor();
   if (options.cell_problem) return *options.cell_problem;
-  SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options, &bar));
+  SACCADE_TRY(std::optional<ArmModel> arm, read_arm(options, &context.bar()));
   if (arm && options.fuse_when == FuseWhen::motion) arm = slowed(*arm, kSpeedWhileFusing);
-  SACCADE_TRY(const ExploreCase subject, open_case(options, executor));
-  SACCADE_TRY(const RunFolder out, RunFolder::open(options.out, {}, "update.json", options.force));
+  SACCADE_TRY(const ExploreSetup subject, open_case(options, executor));
+  SACCADE_CHECK(context.open_folder());
+  const RunFolder& out = *context.folder();
   std::optional<json> before;
   if (options.resume) {
     SACCADE_TRY(before, read_json(out / "update.json"));
@@ -302,36 +328,26 @@ Result<int> run_cell_update(const UpdateOptions& given, const GlobalOptions& glo
   SACCADE_TRY(std::unique_ptr<HandTracker> hand, open_hand(options));
   SACCADE_TRY(ExploreDevices devices, ExploreDevices::open(options, subject, arm, executor));
   SACCADE_TRY(TsdfMap map, map_to_begin_with(options, subject.scene, executor));
-  SACCADE_TRY(const std::unique_ptr<RunMessages> messages, run_messages(options.messages, devices.intrinsics()));
-  CellUpdate update{options, global, subject, devices, out, bar, std::move(map), *messages};
+  SACCADE_TRY(const std::unique_ptr<RunMessages> messages,
+              run_messages(options.messages, devices.intrinsics(), context.bar()));
+  CellUpdate update{options, context, subject, devices, std::move(map), *messages};
   if (before) SACCADE_CHECK(update.resume(*before));
   Status ended = update.scan();
   if (ended.ok() && update.scanned()) ended = update.watch(std::move(hand));
   messages->finish();
   const bool stopped = interrupted() || (!ended.ok() && ended.error().code == Errc::cancelled);
-  const Status written = update.write(total.elapsed_ms());  // whatever happened, what was seen is kept
-  bar.finish();
+  const Status written = update.write();  // an end by an error keeps what was seen, too
   if (!written.ok()) return ended.ok() || stopped ? written.error() : ended.error();
   if (!ended.ok() && !stopped) {
     Error error = ended.error();
     error.message += "; what was seen until then is kept, add --resume to go on";
     return error;
   }
-  SACCADE_CHECK(write_result("update", global, executor, {{"total", total.elapsed_ms()}}, update.result()));
-  if (!global.json_to_stdout()) {
-    if (options.dry_run) std::cout << "dry run   nothing has moved\n";
-    print_tasks(update.result().at("tasks"));
-    std::cout << "results   " << (options.write_pictures ? options.out / "report.html" : options.out).string() << '\n';
-  }
-  if (stopped) return interrupt_status();
-  const json tasks = update.result().at("tasks");
-  const auto has = [&tasks](const char* what) {
-    return std::any_of(tasks.begin(), tasks.end(), [what](const json& task) { return !task.at(what).empty(); });
-  };
-  if (has("views") || (!tasks.empty() && !has("regions"))) return static_cast<int>(ExitStatus::done);
-  print_error("update", tasks.empty() ? "the hand never came into the workspace; nothing was updated"
-                                      : "not one view of a region could be taken; does the arm stand in its own way?");
-  return static_cast<int>(ExitStatus::no_result);
+  Outcome outcome{.result = update.result()};
+  const json& tasks = outcome.result.at("tasks");
+  outcome.text = cell_text(options, tasks);
+  if (!stopped) outcome.empty = without_result(tasks);
+  return outcome;
 }
 
 }  // namespace saccade::cli

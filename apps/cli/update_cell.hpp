@@ -6,8 +6,9 @@
 
 namespace saccade::cli {
 
-/// Scans the cell, or begins with a saved map, and waits for tasks until the tracker ends or the user interrupts. The
-/// map and update.json are written after each task. Returns the exit status.
-[[nodiscard]] Result<int> run_cell_update(const UpdateOptions& options, const GlobalOptions& global);
+/// Scans the cell, or begins with a saved map, and waits for tasks until the tracker ends or the user interrupts. Opens
+/// the folder, and writes the map and update.json into it after each task. Errors: those of the cell's file, its
+/// devices and its tracker; what was seen until then is kept.
+[[nodiscard]] Result<Outcome> update_cell(const UpdateOptions& options, Context& context);
 
 }  // namespace saccade::cli

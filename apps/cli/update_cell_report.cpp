@@ -2,15 +2,14 @@
 #include "update_cell_report.hpp"
 
 #include <algorithm>
-#include <iostream>
+#include <sstream>
 
 #include "attend.hpp"
-#include "explore_report.hpp"
-#include "saccade/io/files/file_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/io/runs/run_json.hpp"
 #include "saccade/report/exploration_pictures.hpp"
+#include "server/report_file.hpp"
 #include "summary.hpp"
 #include "update.hpp"
 #include "update_report.hpp"
@@ -23,14 +22,14 @@ using nlohmann::json;
 
 constexpr std::string_view kTaskFolder{"task-"};
 
-std::string hand_of(const UpdateOptions& options) {
-  return options.simulates_hand() ? options.hand_command
-                                  : std::filesystem::path{options.trajectory}.filename().string();
-}
-
-std::string fused_when(const UpdateOptions& options) {
-  return options.fuse_when == FuseWhen::motion ? "at views and in motion (KFOM)" : "at views (KFOVP)";
-}
+/// One line of the summary.
+struct CellTask {
+  std::size_t actions{0};
+  std::size_t regions{0};  ///< with those that an earlier task has left
+  std::size_t complete{0};
+  std::size_t views{0};
+  std::string end;  ///< in words
+};
 
 /// "regions_done" as a reader would say it.
 std::string end_in_words(const std::string& end) {
@@ -42,34 +41,27 @@ std::string end_in_words(const std::string& end) {
   return text;
 }
 
-CellTask cell_task(const json& record, std::size_t number) {
+/// Throws for what is no record of a task.
+CellTask cell_task(const json& record) {
   CellTask task;
-  task.number = number;
-  task.page = task_folder(number) + "/report.html";
-  task.duration_s = record.at("duration_s").get<double>();
   task.actions = record.at("actions").size();
   task.regions = record.at("regions").size();
   task.views = record.at("views").size();
   for (const json& region : record.at("regions")) {
     task.complete += region.at("end") == to_string(RegionStatus::done) ? 1 : 0;
-    const json& unknown = region.at("unknown");
-    if (unknown.empty()) continue;
-    task.unknown_after_task += unknown.front().get<std::size_t>();
-    task.unknown_at_end += unknown.back().get<std::size_t>();
   }
   task.end = end_in_words(record.at("stopped_because").get<std::string>());
   if (record.contains("problem")) task.end = record.at("problem").get<std::string>();
   return task;
 }
 
-/// Facts of the run that every page has.
-std::vector<std::pair<std::string, std::string>> facts_of(const UpdateOptions& options, const ExploreDevices& devices) {
-  std::vector<std::pair<std::string, std::string>> facts{
-      {"voxel size", millimetres(options.run.voxel_size_m)},
-      {"camera", camera_text(camera_to_json(devices.intrinsics()))},
-      {"poses of frames", std::string{to_string(options.run.exploration.tracking)}}};
-  if (options.run.as_printed) facts.emplace_back("views", "chosen as the thesis prints it");
-  return facts;
+/// Adds to a result what all pages of a cell say of the run.
+void add_settings(json& result, const UpdateOptions& options, const ExploreDevices& devices) {
+  result["robot"] = options.robot;
+  result["fuse_when"] = to_string(options.fuse_when);
+  result["voxel_size_m"] = options.run.voxel_size_m;
+  result["min_gain"] = options.run.planner.min_gain;
+  result["camera"] = camera_to_json(devices.intrinsics());
 }
 
 }  // namespace
@@ -113,8 +105,10 @@ json task_record(const UpdateOptions& options, const WatchedTask& task, const Up
 
 Status check_task_record(const json& record) {
   try {
-    static_cast<void>(cell_task(record, 1));
+    static_cast<void>(cell_task(record));
+    static_cast<void>(record.at("duration_s").get<double>());
     for (const json& region : record.at("regions")) {
+      static_cast<void>(region.at("unknown").get<std::vector<std::size_t>>());
       SACCADE_TRY([[maybe_unused]] const RefusalCounts refused, refusals_from_json(region.at("refused")));
     }
   } catch (const json::exception& e) {
@@ -123,12 +117,14 @@ Status check_task_record(const json& record) {
   return {};
 }
 
-void print_tasks(const json& records) {
-  const Summary summary{std::cout};
+std::string tasks_text(const json& records) {
+  std::ostringstream lines;
+  const Summary summary{lines};
   if (records.empty()) summary.line("tasks", "none");
   std::size_t number = 0;
   for (const json& record : records) {
-    const CellTask task = cell_task(record, ++number);
+    const CellTask task = cell_task(record);
+    ++number;
     std::string text = std::to_string(task.actions) + (task.actions == 1 ? " action, " : " actions, ") +
                        std::to_string(task.complete) + " of " + std::to_string(task.regions) + " regions complete, " +
                        std::to_string(task.views) + (task.views == 1 ? " view; " : " views; ") + task.end;
@@ -137,57 +133,30 @@ void print_tasks(const json& records) {
     if (refused.total() > 0) text += "; refused " + in_words(refused);
     summary.line("task " + std::to_string(number), text);
   }
+  return lines.str();
 }
 
-Status write_task_page(const UpdateOptions& options, const WatchedTask& task, const UpdateFigures& figures,
-                       const RunFolder& folder, const ExploreDevices& devices, const json& document,
-                       const json& record) {
-  UpdateReport report;
+Status write_task_page(const UpdateOptions& options, const WatchedTask& task, const RunFolder& folder,
+                       const ExploreDevices& devices, const json& document, const json& record) {
+  json page = document;
   const json& result = document.at("result");
-  report.scene = result.at("cell").get<std::string>();
-  report.title = "Task " + std::to_string(result.at("tasks").size()) + " of " + report.scene;
-  report.hand = hand_of(options);
-  report.method = options.method->name;
-  report.fuse_when = fused_when(options);
-  report.robot = options.robot;
-  report.draws_robot = options.has_arm();
-  report.seed = document.at("seed").get<std::uint64_t>();
-  report.threads = document.at("threads").get<std::size_t>();
-  report.version = document.at("version").get<std::string>();
-  report.facts = facts_of(options, devices);
-  if (const std::string problem = record.value("problem", ""); !problem.empty()) {
-    report.facts.emplace_back("problem", problem);
-  }
-  report.min_gain = options.run.planner.min_gain;
-  report.before.measures.unknown_left = count_unknown(figures.before, figures.before.config.workspace.value());
-  report.links = {{"hand.csv", "the hand's trajectory, for saccade attend"},
-                  {"../report.html", "all tasks"},
-                  {"../map.sacmap", "the map now, for saccade nbv"}};
-  return write_task_report(report, task, figures, folder, record);
+  page["result"] = record;
+  page["result"]["cell"] = result.at("cell");
+  page["result"]["task_number"] = result.at("tasks").size();
+  add_settings(page["result"], options, devices);
+  return server::write_report(folder / "report.html", std::move(page), task_details(task));
 }
 
 Status write_cell_page(const UpdateOptions& options, const TsdfSnapshot& map, const Box& workspace,
                        ExploreDevices& devices, const RunFolder& out, const json& document, const Executor& executor) {
-  const json& result = document.at("result");
-  CellReport report;
-  report.title = "Updates of " + result.at("cell").get<std::string>();
-  report.version = document.at("version").get<std::string>();
-  report.settings = {{"hand", hand_of(options)},
-                     {"actions by", std::string{options.method->name}},
-                     {"fused", fused_when(options)},
-                     {"robot", options.robot}};
-  report.facts = facts_of(options, devices);
-  for (const json& record : result.at("tasks")) report.tasks.push_back(cell_task(record, report.tasks.size() + 1));
   const std::optional<RobotDrawing> robot = drawing_of(devices.arm(), devices.robot().configuration(), {});
   MapPictureConfig config;
   config.robot = robot ? &*robot : nullptr;
   SACCADE_CHECK(write_png(out / "map.png", map_picture(map, workspace, executor, config)));
-  report.pictures = picture_of(out, "map.png", "The map now, unknown in black", "The map from outside", "map");
-  report.unknown_left = count_unknown(map, workspace);
-  report.links = {{"mesh.ply", "the surface, with colours"},
-                  {"map.sacmap", "the map, for saccade nbv"},
-                  {"update.json", "all figures, for programs"}};
-  return write_file_atomically(out / "report.html", cell_report_html(report));
+  json page = document;
+  page["result"]["unknown_left"] = count_unknown(map, workspace);
+  add_settings(page["result"], options, devices);
+  return server::write_report(out / "report.html", std::move(page));
 }
 
 }  // namespace saccade::cli

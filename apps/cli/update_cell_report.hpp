@@ -15,19 +15,18 @@ namespace saccade::cli {
 /// Removes the folders of the tasks of an earlier run. io_failure.
 [[nodiscard]] Status remove_task_folders(const RunFolder& out);
 
-/// What update.json says of a task.
+/// Returns the entry of a task in update.json.
 /// @param end  why the robot looks no more, as in the record of a run, or "hand_came"
 [[nodiscard]] nlohmann::json task_record(const UpdateOptions& options, const WatchedTask& task,
                                          const UpdateFigures& figures, const Box& workspace, std::string_view end);
 
 /// corrupt_data for what is no record that task_record wrote.
 [[nodiscard]] Status check_task_record(const nlohmann::json& record);
-/// A line for each task, from their records.
-void print_tasks(const nlohmann::json& records);
+/// Returns a line for each task, from their records.
+[[nodiscard]] std::string tasks_text(const nlohmann::json& records);
 
 /// A task's report.html, from its pictures and its record, the last one in the document. io_failure.
-[[nodiscard]] Status write_task_page(const UpdateOptions& options, const WatchedTask& task,
-                                     const UpdateFigures& figures, const RunFolder& folder,
+[[nodiscard]] Status write_task_page(const UpdateOptions& options, const WatchedTask& task, const RunFolder& folder,
                                      const ExploreDevices& devices, const nlohmann::json& document,
                                      const nlohmann::json& record);
 

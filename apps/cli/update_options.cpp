@@ -4,15 +4,17 @@
 #include <CLI/CLI.hpp>
 
 #include "add_value.hpp"
+#include "length_options.hpp"
 #include "summary.hpp"
 
 namespace saccade::cli {
 namespace {
 
 void add_hand_options(CLI::App& command, UpdateOptions& options) {
-  add_value(command, "--trajectory", options.trajectory, "FILE|simulated",
-            "how the hand moved in the task: a file (docs/formats.md) or a bag of ROS, in the scene's frame, or "
-            "simulated");
+  add_value(
+      command, "--trajectory", options.trajectory, "FILE|simulated",
+      "how the hand moved in the task: a file (docs/reference/formats.md) or a bag of ROS, in the scene's frame, or "
+      "simulated");
   add_hand_file_options(command, options.hand_file);
   add_method_option(command, options.method);
   options.method = nullptr;  // unless it is named: check_update_options chooses
@@ -20,8 +22,8 @@ void add_hand_options(CLI::App& command, UpdateOptions& options) {
             "radius of what is forgotten around each action of the hand, metres");
 }
 
-/// What --as-printed has in the place of ours, unless it was named: GMM-AS, by the values that give the thesis' own
-/// tables, and a virtual sensor with all pixels of the camera. IncTh stays the same share of its rays.
+/// Applies --as-printed to what was not named: GMM-AS by the values that give the thesis' own tables, and a virtual
+/// sensor with all pixels of the camera. IncTh stays the same share of its rays.
 void follow_the_thesis(UpdateOptions& options) {
   if (options.method == nullptr) options.method = find_attend_method("gmm-as");
   const int usual_px = options.run.gain_width_px;
@@ -59,11 +61,11 @@ UpdateOptions::UpdateOptions() {
 
 void add_update_options(CLI::App& command, UpdateOptions& options) {
   add_value(command, "cell", options.cell_file, "CELL",
-            "a cell's YAML file (docs/cell.md): its hand's tasks are waited for; without it, the task is simulated");
+            "a cell's YAML file (docs/reference/cell.md): its hand's tasks are waited for; without it, the task is "
+            "simulated");
   add_value(command, "--scene", options.scene, "SCENE",
-            "the scene after a simulated task: bottle, jug, another built-in one or a YAML file");
+            "the scene after a simulated task: bottle, jug, another built-in one, a YAML file or a mesh file");
   add_value(command, "--before", options.before, "SCENE", "the scene before the task (default: SCENE-before)");
-  add_value(command, "--out", options.out, "DIR", "folder for the results (default: update-SCENE)");
   add_hand_options(command, options);
   add_choice(command, "--fuse-when", options.fuse_when, kFuseWhenNames,
              "when the camera's frames are fused: at viewpoints alone (the thesis' KFOVP), or also in motion, which is "
@@ -71,7 +73,7 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
   add_run_options(command, options, fixed(kUpdateMinGain, 0));
   add_device_options(command, options);
   add_value(command, "--hand-command", options.hand_command, "COMMAND",
-            "with CELL: a program that tracks the hand (docs/processes.md)");
+            "with CELL: a program that tracks the hand (docs/guides/processes.md)");
   add_arm_options(command, options);
   add_dry_run_option(command, options);
   command.add_flag(
@@ -80,7 +82,6 @@ void add_update_options(CLI::App& command, UpdateOptions& options) {
       "the regions that were left");
   add_message_options(command, options.messages);
   command.add_flag("--no-pictures{false}", options.write_pictures, "draw no pictures, and write no report");
-  command.add_flag("--force", options.force, "write into a folder that holds other files");
 }
 
 void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
@@ -91,7 +92,7 @@ void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
   if (options.min_gain) options.run.planner.min_gain = *options.min_gain;
   require_ok(options.run.planner.validate(), "--min-gain");
   check_arm_options(options, global);
-  require_positive(options.region_radius_m, "--region-radius");
+  require_length(options.region_radius_m, "--region-radius");
   options.run.seed = global.seed;
   if (options.fuse_when == FuseWhen::motion) {
     if (!options.has_arm())
@@ -99,7 +100,6 @@ void check_update_options(UpdateOptions& options, const GlobalOptions& global) {
     options.run.exploration.frame_on_way_s = kFrameOnWay_s;
     options.run.exploration.way_counts = false;  // views are those of the thesis, whenever frames are fused
   }
-  if (options.out.empty()) options.out = "update-" + std::filesystem::path{options.scene}.stem().string();
   limit_dry_run(options);
   if (options.resume && (options.force || options.dry_run || !options.map.empty()))
     usage_error("--resume", "goes on with what is in the folder: it goes with none of --force, --dry-run and --map");

@@ -9,7 +9,7 @@
 
 namespace saccade::cli {
 
-/// Of the exploration's options those of the camera, the robot and the run; `scene` is the one after the task.
+/// Has the exploration's options of the camera, the robot and the run; `scene` is the one after the task.
 struct UpdateOptions : ExploreOptions {
   UpdateOptions();
 

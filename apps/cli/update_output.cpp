@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // The figures of an update as JSON and as a summary.
 #include <algorithm>
-#include <iomanip>
-#include <iostream>
+#include <sstream>
 
 #include "attend.hpp"
 #include "explore_report.hpp"
@@ -46,7 +45,8 @@ std::string_view end_of(const UpdateFigures& update, std::size_t region) {
   return update.unknown_after_task.at(region) == 0 ? "outside_workspace" : to_string(outcomes[region].status);
 }
 
-/// What the mesh has of the surface in a region; nulls where nothing was forgotten, or there is nothing to be seen.
+/// Measures how much of the surface in a region the mesh has; nulls where nothing was forgotten, or there is nothing to
+/// be seen.
 Result<json> coverage_json(const UpdateCase& subject, const UpdateFigures& figures, const Region& region,
                            const MeshDistance* mesh, const Progress& progress, const Executor& executor) {
   RegionCoverage coverage;
@@ -195,8 +195,9 @@ Result<json> update_json(const UpdateOptions& options, const UpdateCase& subject
               {"stopped_because", to_string(figures.run.stopped_because)}};
 }
 
-void print_update(const UpdateOptions& options, const WatchedTask& task, const json& result) {
-  const Summary summary{std::cout};
+std::string update_text(const UpdateOptions& options, const WatchedTask& task, const json& result) {
+  std::ostringstream text;
+  const Summary summary{text};
   const json& scan = result["scan"];
   const std::string refused = in_words(refusals_from_json(scan["refused"]).value());
   summary.line("scan",
@@ -218,6 +219,7 @@ void print_update(const UpdateOptions& options, const WatchedTask& task, const j
   if (options.has_arm()) summary.line("arm", arm_text(result));
   summary.line("stopped", result["stopped_because"].get<std::string>());
   summary.line("results", (options.write_pictures ? options.out / "report.html" : options.out).string());
+  return text.str();
 }
 
 }  // namespace saccade::cli

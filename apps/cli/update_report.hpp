@@ -5,7 +5,6 @@
 #include <nlohmann/json.hpp>
 
 #include "run_folder.hpp"
-#include "saccade/report/update_report.hpp"
 #include "update_run.hpp"
 
 namespace saccade::cli {
@@ -34,21 +33,13 @@ class UpdatePictures final : public Recorder {
   std::vector<Pose> T_world_earlier_;
 };
 
-/// A picture in the folder for a page; none where it was not drawn.
-[[nodiscard]] std::vector<ReportPicture> picture_of(const RunFolder& out, const char* name, const char* caption,
-                                                    const char* alt, const char* kind);
-
-/// What an earlier run drew. io_failure.
+/// Removes the pictures of an earlier run. Answers io_failure.
 [[nodiscard]] Status remove_update_pictures(const RunFolder& out);
 
-/// A task of a cell: report.html in the task's own folder, from its record in update.json and the pictures there.
-/// io_failure.
-[[nodiscard]] Status write_task_report(const UpdateReport& about, const WatchedTask& task, const UpdateFigures& figures,
-                                       const RunFolder& out, const nlohmann::json& record);
+/// Returns what the page of a task shows beyond its record: the speed of the hand.
+[[nodiscard]] nlohmann::json task_details(const WatchedTask& task);
 
-/// report.html from the document that goes to update.json and the pictures in the folder. io_failure.
-[[nodiscard]] Status write_update_report(const UpdateOptions& options, const WatchedTask& task,
-                                         const UpdateFigures& figures, const RunFolder& out,
-                                         const nlohmann::json& document);
+/// Writes report.html for the document that goes to update.json. io_failure.
+[[nodiscard]] Status write_update_report(const WatchedTask& task, const RunFolder& out, const nlohmann::json& document);
 
 }  // namespace saccade::cli

@@ -24,9 +24,9 @@ Status count_contacts_of(const PlannedArm& arm, std::size_t first, std::size_t l
   return {};
 }
 
-Result<ExploreCase> case_of(const std::string& name) {
+Result<ExploreSetup> case_of(const std::string& name) {
   SACCADE_TRY(Scene scene, find_scene(name));
-  ExploreCase subject{std::move(scene), std::nullopt, std::nullopt};
+  ExploreSetup subject{std::move(scene), std::nullopt, std::nullopt};
   SACCADE_TRY(subject.rays, RayScene::build(subject.scene));
   return subject;
 }
@@ -34,8 +34,8 @@ Result<ExploreCase> case_of(const std::string& name) {
 }  // namespace
 
 Result<UpdateCase> open_update_case(const UpdateOptions& options) {
-  SACCADE_TRY(ExploreCase before, case_of(options.before));
-  SACCADE_TRY(ExploreCase after, case_of(options.scene));
+  SACCADE_TRY(ExploreSetup before, case_of(options.before));
+  SACCADE_TRY(ExploreSetup after, case_of(options.scene));
   SACCADE_TRY(std::vector<SceneChange> changes, scene_changes(before.scene, after.scene));
   return UpdateCase{std::move(before), std::move(after), std::move(changes)};
 }

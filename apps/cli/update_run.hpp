@@ -11,20 +11,20 @@ namespace saccade::cli {
 
 /// The scene that a user changes.
 struct UpdateCase {
-  ExploreCase before;
-  ExploreCase after;
+  ExploreSetup before;
+  ExploreSetup after;
   std::vector<SceneChange> changes;
 };
 /// Errors: those of find_scene, RayScene::build and scene_changes.
 [[nodiscard]] Result<UpdateCase> open_update_case(const UpdateOptions& options);
 
-/// What the hand did, as the detector has it.
+/// The hand's task, as the detector has it.
 struct WatchedTask {
   HandTrajectory trajectory;
   SampleReport report;
   AttentionFindings findings;  ///< with the true places of a simulated hand
   std::vector<RegionOfInterest> regions;
-  double ms{0.0};  ///< of the detector
+  double ms{0.0};  ///< time of the detector
 };
 /// Reads or simulates the hand. Errors: those of reader, detector and simulated_hand, and invalid_argument for a region
 /// that no map can hold; a hand without an action has no regions.
@@ -43,10 +43,10 @@ struct UpdateFigures {
   RunRecord run;
   StandByResult back;  ///< without regions the robot came back from the scan
   TsdfSnapshot after;
-  std::optional<Configuration> at_end{};  ///< of an arm; an interrupted one stands elsewhere than at its stand-by
+  std::optional<Configuration> at_end{};  ///< where an arm stands; after an interruption not at its stand-by
   bool interrupted{false};
-  std::size_t instants{0};  ///< of all motions, at which contacts were looked for
-  std::size_t contacts{0};  ///< with what was really there
+  std::size_t instants{0};  ///< instants of all motions at which contacts were looked for
+  std::size_t contacts{0};  ///< instants at which the arm touched what was really there
 };
 
 /// Counts the unknown voxels of the workspace after each view, and keeps the views so far.

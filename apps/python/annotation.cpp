@@ -1,12 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
-// Annotation: labels of a cloud's points from clicks; a simulated annotator who knows the truth.
+// Annotation: labels of a cloud's points from clicks; a simulated annotator who knows the ground truth.
 #include "saccade/annotate/annotation.hpp"
 
 #include <mutex>
 
 #include "arrays.hpp"
 #include "saccade/annotate/annotation_error.hpp"
+#include "saccade/annotate/selection.hpp"
 #include "saccade/annotate/simulated_annotator.hpp"
+#include "saccade/sensor/pinhole_camera.hpp"
 
 namespace saccade::python {
 namespace {
@@ -35,20 +37,69 @@ std::vector<std::uint32_t> indices_of(const py::object& points) {
   return indices;
 }
 
-/// One client's annotation. Python threads may call it at once: they wait for each other.
+/// Maps the world to the clip coordinates of the picture that a pinhole camera takes. What is nearer than 1 mm is not
+/// in view.
+Eigen::Matrix4d clip_of(const PinholeCamera& camera, const Pose& T_world_camera) {
+  constexpr double kNear_m{0.001};
+  Eigen::Matrix4d clip = Eigen::Matrix4d::Zero();
+  clip.row(0) << 2.0 * camera.fx / camera.width, 0.0, (2.0 * camera.cx + 1.0) / camera.width - 1.0, 0.0;
+  clip.row(1) << 0.0, -2.0 * camera.fy / camera.height, 1.0 - (2.0 * camera.cy + 1.0) / camera.height, 0.0;
+  clip.row(2) << 0.0, 0.0, 1.0, -2.0 * kNear_m;
+  clip.row(3) << 0.0, 0.0, 1.0, 0.0;
+  return clip * T_world_camera.inverse().matrix();
+}
+
+std::vector<ScreenPoint> screen_points(const py::object& pixels, const char* name) {
+  std::vector<ScreenPoint> points;
+  for (const auto& row : pixels) {
+    const std::vector<double> pixel = to_numbers(py::reinterpret_borrow<py::object>(row), name);
+    if (pixel.size() != 2) throw py::value_error{std::string{name} + " must be pixels (u, v)"};
+    points.emplace_back(pixel[0], pixel[1]);
+  }
+  return points;
+}
+
+/// The one shape that is not None.
+ScreenShape screen_shape(const py::object& rectangle, const py::object& polygon, const py::object& stroke,
+                         double radius_px) {
+  const int given = static_cast<int>(!rectangle.is_none()) + static_cast<int>(!polygon.is_none()) +
+                    static_cast<int>(!stroke.is_none());
+  if (given != 1) throw py::value_error{"give one of rectangle, polygon and stroke"};
+  if (!polygon.is_none()) return ScreenPolygon{screen_points(polygon, "polygon")};
+  if (!stroke.is_none()) return ScreenStroke{screen_points(stroke, "stroke"), radius_px};
+  const std::vector<ScreenPoint> corners = screen_points(rectangle, "rectangle");
+  if (corners.size() != 2) throw py::value_error{"rectangle must be two opposite corners ((u, v), (u, v))"};
+  return ScreenRectangle{corners[0], corners[1]};
+}
+
+/// Annotation of one client. Python threads may call it concurrently: they wait for each other.
 class PythonAnnotation {
  public:
   PythonAnnotation(const py::object& points, const py::object& normals, const py::object& colors, int neighbours,
                    std::size_t threads, py::object progress)
       : executor_{Executor::with_threads(threads)} {
     CallerProgress told{std::move(progress)};
-    const PointCloud cloud = to_cloud(points, normals, colors, py::none());
+    PointCloud cloud = to_cloud(points, normals, colors, py::none());
     if (cloud.positions_m.empty()) throw py::value_error{"points is empty"};
     annotation_.emplace(std::make_shared<Neighbourhood>(neighbourhood_of(cloud, neighbours, executor_, told)),
                         executor_);
+    positions_m_ = std::move(cloud.positions_m);
+    offset_m_ = cloud.offset_m;
   }
 
-  /// How many points have another label than before; −1: there was nothing to do.
+  /// Place of the origin that the annotation works in, in the points' coordinates.
+  [[nodiscard]] const Eigen::Vector3d& offset_m() const { return offset_m_; }
+
+  [[nodiscard]] std::vector<std::uint32_t> select(const SelectionView& view, const ScreenShape& shape,
+                                                  double below_m) const {
+    const auto find = [&] {
+      const py::gil_scoped_release released;
+      return select_points(positions_m_, view, shape, below_m, executor_);
+    };
+    return take(find());
+  }
+
+  /// Applies a change. Returns the number of points with a new label; −1: there was nothing to do.
   std::int64_t change(AnnotationChange change) {
     const auto apply = [&]() -> Result<std::int64_t> {
       const py::gil_scoped_release released;
@@ -61,7 +112,7 @@ class PythonAnnotation {
     return take(apply());
   }
 
-  /// Calls body(const Annotation&) without the GIL, while nothing changes.
+  /// Calls body(const Annotation&) without the GIL, with changes blocked.
   template <class Body>
   auto read(const Body& body) const {
     const py::gil_scoped_release released;
@@ -73,7 +124,23 @@ class PythonAnnotation {
   mutable std::mutex mutex_;
   Executor executor_;
   std::optional<Annotation> annotation_;
+  std::vector<Eigen::Vector3f> positions_m_;
+  Eigen::Vector3d offset_m_{Eigen::Vector3d::Zero()};
 };
+
+py::array_t<std::uint32_t> select_in_picture(const PythonAnnotation& annotation, const PinholeCamera& camera,
+                                             const py::array& T_world_camera, const py::object& rectangle,
+                                             const py::object& polygon, const py::object& stroke, double radius_px,
+                                             double below_m, int point_size_px) {
+  take(camera.validate());
+  Pose T_cloud_camera = to_pose(T_world_camera);
+  T_cloud_camera.translation() -= annotation.offset_m();
+  const SelectionView view{clip_of(camera, T_cloud_camera), camera.width, camera.height, point_size_px};
+  std::vector<std::uint32_t> found =
+      annotation.select(view, screen_shape(rectangle, polygon, stroke, radius_px), below_m);
+  const auto count = static_cast<py::ssize_t>(found.size());
+  return adopt(std::move(found), {count});
+}
 
 py::array_t<std::uint32_t> labels_of(const PythonAnnotation& annotation) {
   std::vector<std::uint32_t> labels = annotation.read([](const Annotation& state) {
@@ -152,6 +219,15 @@ void bind_annotation(py::module_& module) {
           },
           py::arg("points"), py::arg("label"),
           "Gives these points, by their indices, a label whatever spreads to them; 0: they follow clicks again.")
+      .def(
+          "select", &select_in_picture, py::arg("camera"), py::arg("T_world_camera"), py::kw_only(),
+          py::arg("rectangle") = py::none(), py::arg("polygon") = py::none(), py::arg("stroke") = py::none(),
+          py::arg("radius_px") = 10.0, py::arg("below_m") = kOnSurface_m,
+          py::arg("point_size_px") = SelectionView{}.point_size_px,
+          "Finds the points that a shape contains in the picture of a camera (thesis 4.2.2). `rectangle`: two opposite "
+          "corners; `polygon`: corners of a lasso; `stroke`: a line, `radius_px` wide to either side; each in pixels "
+          "(u, v). `below_m`: metres behind what is seen that are still taken, 0: what is seen alone, inf: however "
+          "deep. `point_size_px`: edge of a drawn point. Returns indices, uint32, ascending, for click and paint.")
       .def(
           "undo", [](PythonAnnotation& annotation) { return annotation.change(UndoAction{}); },
           "Takes back the latest action. -1: there is none.")

@@ -24,7 +24,8 @@ Configuration to_configuration(const py::object& object, Eigen::Index joints, co
   return q;
 }
 
-/// Joints that a Python object moves. It is given the trajectory at even times, and reports positions on the way.
+/// Joints that a Python object moves. It receives the trajectory at even times, and reports positions during the
+/// motion.
 class PythonJoints final : public JointController {
  public:
   PythonJoints(const py::object& joints, Eigen::Index count)

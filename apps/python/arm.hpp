@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// OwnArm: an arm that plans its own way, whose joints a Python object may move.
+// OwnArm: an arm that plans its own motions, whose joints a Python object may move.
 
 #include "convert.hpp"
 #include "saccade/arm/planned_arm.hpp"
@@ -15,7 +15,7 @@ struct OwnArm {
   std::optional<Configuration> start;
   py::object joints;  ///< position() and execute(…); None: they are simulated
 
-  /// The arm in a map that has a workspace.
+  /// Returns the arm in a map that has a workspace.
   [[nodiscard]] std::unique_ptr<PlannedArm> in(const TsdfConfig& map) const;
 };
 

@@ -4,12 +4,14 @@
 #include <algorithm>
 #include <cmath>
 
+#include "saccade/io/clouds/cloud_io.hpp"
+
 namespace saccade::python {
 namespace {
 
 std::string form_of(const py::array& array) { return py::str(array.attr("shape")); }
 
-/// An array of numbers; TypeError for one of anything else.
+/// Returns an array of numbers; raises TypeError for other types.
 py::array numbers_of(const py::object& object, const char* what) {
   const py::array array = py::array::ensure(object);
   if (!array) {
@@ -134,10 +136,33 @@ py::array_t<std::uint8_t> from_color(const ColorImage& color) {
   return adopt(std::move(values), {color.height(), color.width(), 3});
 }
 
+namespace {
+
+/// Sets the cloud's points; of doubles, relative to an offset where they lie far from their origin.
+void set_points(const py::object& points, PointCloud& cloud) {
+  if (!py::isinstance<py::array>(points) || !py::array{points}.dtype().is(py::dtype::of<double>())) {
+    cloud.positions_m = to_vectors_f(points, "points");
+    return;
+  }
+  const std::vector<Eigen::Vector3d> exact_m = to_vectors(points, "points");
+  ColumnTable fields;
+  for (const auto& [axis, name] : {std::pair{0, "x"}, {1, "y"}, {2, "z"}}) {
+    std::vector<double> values;
+    values.reserve(exact_m.size());
+    for (const Eigen::Vector3d& p : exact_m) values.push_back(p[axis]);
+    fields.add<double>(name, std::move(values));
+  }
+  PointCloud placed = take(cloud_from_fields(fields));
+  cloud.positions_m = std::move(placed.positions_m);
+  cloud.offset_m = placed.offset_m;
+}
+
+}  // namespace
+
 PointCloud to_cloud(const py::object& points, const py::object& normals, const py::object& colors,
                     const py::object& radii) {
   PointCloud cloud;
-  cloud.positions_m = to_vectors_f(points, "points");
+  set_points(points, cloud);
   if (!normals.is_none()) cloud.normals = to_vectors_f(normals, "normals");
   if (!colors.is_none()) cloud.colors = to_colors(colors);
   if (!radii.is_none()) {

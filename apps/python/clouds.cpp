@@ -4,6 +4,7 @@
 #include <filesystem>
 
 #include "arrays.hpp"
+#include "convert.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
 
 namespace saccade::python {
@@ -32,6 +33,8 @@ py::dict read_cloud_arrays(const std::string& path) {
   const auto count = static_cast<py::ssize_t>(arrays.cloud.positions_m.size());
   py::dict result;
   result["points"] = from_vectors(arrays.cloud.positions_m);
+  const Eigen::Vector3d& offset_m = arrays.cloud.offset_m;
+  result["offset"] = adopt(std::vector<double>{offset_m.x(), offset_m.y(), offset_m.z()}, {3});
   for (const char* name : {"normals", "colors", "radii", "labels"}) result[name] = py::none();
   if (!arrays.cloud.normals.empty()) result["normals"] = from_vectors(arrays.cloud.normals);
   if (!arrays.cloud.colors.empty()) result["colors"] = from_colors(arrays.cloud.colors);
@@ -40,9 +43,17 @@ py::dict read_cloud_arrays(const std::string& path) {
   return result;
 }
 
+/// Adds three columns; doubles where there is an offset to add.
 void add_columns(ColumnTable& table, const std::array<const char*, 3>& names,
-                 const std::vector<Eigen::Vector3f>& vectors) {
+                 const std::vector<Eigen::Vector3f>& vectors, const Eigen::Vector3d& offset = Eigen::Vector3d::Zero()) {
   for (int axis = 0; axis < 3; ++axis) {
+    if (!offset.isZero(0.0)) {
+      std::vector<double> sums;
+      sums.reserve(vectors.size());
+      for (const Eigen::Vector3f& vector : vectors) sums.push_back(static_cast<double>(vector[axis]) + offset[axis]);
+      table.add<double>(names[static_cast<std::size_t>(axis)], sums);
+      continue;
+    }
     std::vector<float> values;
     values.reserve(vectors.size());
     for (const Eigen::Vector3f& vector : vectors) values.push_back(vector[axis]);
@@ -50,7 +61,7 @@ void add_columns(ColumnTable& table, const std::array<const char*, 3>& names,
   }
 }
 
-/// PLY has a property per channel; PCD and text have what PCL packs them into.
+/// Adds colours: PLY has a property per channel; PCD and text pack them as PCL does.
 void add_color_columns(ColumnTable& table, const std::vector<Eigen::Vector3f>& colors, bool is_ply) {
   std::array<std::vector<std::uint8_t>, 3> channels;
   std::vector<std::uint32_t> packed;
@@ -70,7 +81,9 @@ void add_color_columns(ColumnTable& table, const std::vector<Eigen::Vector3f>& c
 }
 
 void write_cloud_arrays(const std::string& path, const py::object& points, const py::object& normals,
-                        const py::object& colors, const py::object& radii, const py::object& labels) {
+                        const py::object& colors, const py::object& radii, const py::object& labels,
+                        const py::object& offset_object) {
+  const Eigen::Vector3d offset = to_point(offset_object);
   const PointCloud cloud = to_cloud(points, normals, colors, radii);
   std::vector<std::uint32_t> numbers;
   if (!labels.is_none()) {
@@ -85,7 +98,7 @@ void write_cloud_arrays(const std::string& path, const py::object& points, const
     const py::gil_scoped_release released;
     const bool is_ply = std::filesystem::path{path}.extension() == ".ply";
     PcdFile file;
-    add_columns(file.table, {"x", "y", "z"}, cloud.positions_m);
+    add_columns(file.table, {"x", "y", "z"}, cloud.positions_m, offset + cloud.offset_m);
     if (!cloud.normals.empty()) {
       is_ply ? add_columns(file.table, {"nx", "ny", "nz"}, cloud.normals)
              : add_columns(file.table, {"normal_x", "normal_y", "normal_z"}, cloud.normals);
@@ -103,16 +116,19 @@ void write_cloud_arrays(const std::string& path, const py::object& points, const
 }  // namespace
 
 void bind_clouds(py::module_& module) {
-  module.def("read_cloud", &read_cloud_arrays, py::arg("path"),
-             "Reads a point cloud: PCD, PLY, text (.xyz, .txt, .csv, .pts) or a scan of KITTI (.bin). Returns a dict: "
-             "points N x 3 float32, metres; normals N x 3 float32; colors N x 3 uint8; radii N float32, metres; labels "
-             "N uint32, 0: none. None for what the file lacks.");
-  module.def("write_cloud", &write_cloud_arrays, py::arg("path"), py::arg("points"), py::kw_only(),
-             py::arg("normals") = py::none(), py::arg("colors") = py::none(), py::arg("radii") = py::none(),
-             py::arg("labels") = py::none(),
-             "Writes points N x 3, metres: PLY for a name that ends in .ply, text for .xyz, .txt, .csv or .pts, else "
-             "binary PCD. `normals`: N x 3; `colors`: N x 3, uint8 or floats in [0, 1]; `radii`: N metres; `labels`: N "
-             "whole numbers, 0: none.");
+  module.def(
+      "read_cloud", &read_cloud_arrays, py::arg("path"),
+      "Reads a point cloud: PCD, PLY, LAS, an array of NumPy (.npy), text (.xyz, .txt, .csv, .pts, .asc) or a scan of "
+      "KITTI (.bin). Returns a dict: points N x 3 float32, metres; offset 3 float64, to add to points, not zero "
+      "for a cloud far from its origin; normals N x 3 float32; colors N x 3 uint8; radii N float32, metres; labels "
+      "N uint32, 0: none. None for what the file lacks.");
+  module.def(
+      "write_cloud", &write_cloud_arrays, py::arg("path"), py::arg("points"), py::kw_only(),
+      py::arg("normals") = py::none(), py::arg("colors") = py::none(), py::arg("radii") = py::none(),
+      py::arg("labels") = py::none(), py::arg("offset") = py::make_tuple(0.0, 0.0, 0.0),
+      "Writes points N x 3, metres: PLY for a name that ends in .ply, text for .xyz, .txt, .csv, .pts or .asc, else "
+      "binary PCD. `normals`: N x 3; `colors`: N x 3, uint8 or floats in [0, 1]; `radii`: N metres; `labels`: N "
+      "whole numbers, 0: none; `offset`: 3 numbers that are added to the points, as read_cloud gives them.");
 }
 
 }  // namespace saccade::python

@@ -16,7 +16,7 @@ std::string shape_of(const py::array& array) {
 
 std::string dtype_of(const py::array& array) { return py::str(array.dtype()); }
 
-/// Copies an array of any stride into pixels, each made of an element.
+/// Copies an array of any stride into pixels, converting each element.
 template <class T, class Pixel>
 void copy_rows(const py::array& array, Pixel* out, const auto& convert) {
   const auto* row = static_cast<const std::byte*>(array.data());

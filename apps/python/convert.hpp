@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Values of Saccade from those of Python and back: arrays, poses, regions; errors as exceptions; progress.
+// Conversion of values between Saccade and Python: arrays, poses, regions; errors as exceptions; progress.
 
 #include <pybind11/numpy.h>
 #include <pybind11/pybind11.h>
@@ -21,7 +21,7 @@ namespace saccade::python {
 
 namespace py = pybind11;
 
-/// Raises the exception that fits the error, with its words.
+/// Raises the exception for an error, with its message.
 [[noreturn]] void raise(const Error& error);
 
 template <class T>
@@ -33,25 +33,26 @@ inline void take(const Status& status) {
   if (!status) raise(status.error());
 }
 
-/// H×W of any stride: float32 or float64 metres, uint16 millimetres. 0 or NaN: no return; d < 0: seen free up to |d|.
+/// Converts H×W of any stride: float32 or float64 metres, uint16 millimetres. 0 or NaN: no return; d < 0: seen free up
+/// to |d|.
 [[nodiscard]] DepthImage to_depth(const py::array& array);
-/// H×W×3 uint8, sRGB.
+/// Converts H×W×3 uint8, sRGB.
 [[nodiscard]] ColorImage to_color(const py::array& array);
-/// 4×4 or 3×4, camera → world.
+/// Converts 4×4 or 3×4, camera → world.
 [[nodiscard]] Pose to_pose(const py::array& array);
-/// N×4×4 or N×3×4, or a sequence of poses.
+/// Converts N×4×4 or N×3×4, or a sequence of poses.
 [[nodiscard]] std::vector<Pose> to_poses(const py::object& poses);
-/// 4×4 float64.
+/// Returns 4×4 float64.
 [[nodiscard]] py::array_t<double> from_pose(const Pose& pose);
-/// N×4×4 float64.
+/// Returns N×4×4 float64.
 [[nodiscard]] py::array_t<double> from_poses(std::span<const Pose> poses);
-/// A Box, Sphere or Cylinder, or a pair of corners.
+/// Converts a Box, Sphere or Cylinder, or a pair of corners.
 [[nodiscard]] Region to_region(const py::object& object);
 [[nodiscard]] Box to_box(const py::object& object);
 [[nodiscard]] Eigen::Vector3d to_point(const py::object& object);
 [[nodiscard]] py::array_t<double> from_point(const Eigen::Vector3d& point);
 
-/// An array that owns the vector's memory; no copy. The product of `shape` is the vector's length.
+/// Returns an array that owns the vector's memory, without a copy. The product of `shape` must be the vector's length.
 template <class T>
 py::array_t<T> adopt(std::vector<T>&& values, const std::vector<py::ssize_t>& shape) {
   auto* kept = new std::vector<T>{std::move(values)};
@@ -59,13 +60,13 @@ py::array_t<T> adopt(std::vector<T>&& values, const std::vector<py::ssize_t>& sh
   return py::array_t<T>{shape, kept->data(), owner};
 }
 
-/// Tells a Python function of progress, and ends the work on Ctrl-C or when that function raises.
+/// Reports progress to a Python function, and ends the work on Ctrl-C or when that function raises.
 class CallerProgress {
  public:
-  /// @param callback  called with stage, done, total; None: not
+  /// @param callback  called with stage, done, total; may be None
   explicit CallerProgress(py::object callback);
   [[nodiscard]] const Progress& progress() const { return progress_; }
-  /// Raises what the callback raised, or KeyboardInterrupt. Call it once the work is over, holding the GIL.
+  /// Raises the callback's exception, or KeyboardInterrupt. Call it after the work, holding the GIL.
   void rethrow();
 
  private:

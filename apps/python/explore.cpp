@@ -11,7 +11,7 @@
 namespace saccade::python {
 namespace {
 
-/// Settings of planners, from those of a map and a camera.
+/// Returns the settings of planners, from those of a map and a camera.
 SimulatedRunConfig planner_config(const PinholeCamera& camera, const py::object& strategy, int gain_width,
                                   std::optional<double> min_gain, std::optional<std::vector<double>> radii_m,
                                   int max_views) {
@@ -40,7 +40,7 @@ std::vector<Region> regions_to_look_at(const py::object& regions, const TsdfSnap
   return found;
 }
 
-/// An Explorer with all that it works with, and the record of its run.
+/// Explorer with all its parts, and the record of its run.
 class OwnExplorer {
  public:
   OwnExplorer(SharedMap map, const py::object& camera, const py::object& robot, const py::object& strategy,
@@ -92,11 +92,11 @@ class OwnExplorer {
   }
 
  private:
-  /// Puts the camera into the arm's hand: the arm is taken out of its frames.
+  /// Puts the camera into the arm's hand: the arm is masked in its frames.
   void hold(const OwnArm& arm) {
     std::unique_ptr<PlannedArm> planned = arm.in(map_.snapshot().config);
     const ArmModel* model = &planned->arm();
-    held_.emplace(take(CarriedCamera::create(std::move(camera_), std::move(planned), model, map_.executor())));
+    held_.emplace(take(MaskedCamera::create(std::move(camera_), std::move(planned), model, map_.executor())));
   }
   [[nodiscard]] Robot& robot() { return held_ ? held_->robot() : *robot_; }
   [[nodiscard]] const Robot& robot() const { return held_ ? held_->robot() : *robot_; }
@@ -129,7 +129,7 @@ class OwnExplorer {
   SharedMap map_;
   std::unique_ptr<Camera> camera_;
   std::unique_ptr<Robot> robot_;
-  std::optional<CarriedCamera> held_;  ///< camera and arm, in place of both
+  std::optional<MaskedCamera> held_;  ///< camera and arm combined, used instead of both
   std::unique_ptr<Recorder> recorder_;
   std::unique_ptr<Stopping> stopping_;
   std::unique_ptr<Kept> approve_;
@@ -138,7 +138,7 @@ class OwnExplorer {
   RunRecord run_;
 };
 
-/// A ViewPlanner without an explorer around it.
+/// ViewPlanner without an explorer.
 class OwnPlanner {
  public:
   OwnPlanner(const PinholeCamera& camera, const py::object& strategy, py::object regions, int gain_width,

@@ -9,13 +9,7 @@
 namespace saccade::python {
 namespace {
 
-constexpr auto kFrameLayoutWords = make_names<RgbdLayout>({{RgbdLayout::automatic, "auto"},
-                                                           {RgbdLayout::seven_scenes, "seven-scenes"},
-                                                           {RgbdLayout::tum, "tum"},
-                                                           {RgbdLayout::princeton, "princeton"},
-                                                           {RgbdLayout::open3d, "open3d"}});
-
-/// A frame as arrays.
+/// Frame as arrays.
 struct FrameArrays {
   std::size_t index{0};
   std::string name;
@@ -25,7 +19,7 @@ struct FrameArrays {
   py::object T_world_camera;
 };
 
-/// Frames that are read when they are asked for. Python threads may ask at once: they wait for each other.
+/// Frames that are read on request. Python threads may call it concurrently: they wait for each other.
 class FrameFolder {
  public:
   FrameFolder(std::unique_ptr<RgbdFolderSource> source, std::optional<GapFilling> gaps)
@@ -60,7 +54,8 @@ class FrameFolder {
     std::optional<GapFilling> gaps;
   };
 
-  /// The first depth that can be read, whichever frame is asked for first: gaps are filled by it, as by the program.
+  /// Returns the first readable depth, whichever frame is requested first: it determines the gap filling, as in the
+  /// program.
   [[nodiscard]] DepthImage first_depth(const Frame& asked) const {
     for (std::size_t i = 0; i < size(); ++i) {
       auto frame = content_->source->at(i);
@@ -72,7 +67,7 @@ class FrameFolder {
   std::shared_ptr<Content> content_;
 };
 
-/// Goes through the frames; one that cannot be read raises, and the next call goes on behind it.
+/// Iterator over the frames. An unreadable frame raises, and the next call continues after it.
 struct FrameIterator {
   FrameFolder frames;
   std::size_t position{0};
@@ -101,7 +96,7 @@ FrameFolder open_frames(const std::string& path, const std::string& layout, cons
                         bool require_poses, std::size_t first, std::size_t every, std::optional<std::size_t> count,
                         const TopicNames& topics) {
   RgbdFolderConfig config;
-  config.layout = value_of(kFrameLayoutWords, layout, "layout");
+  config.layout = value_of(kRgbdLayoutWords, layout, "layout");
   if (camera) {
     const PinholeCamera& c = *camera;
     config.intrinsics =
@@ -139,7 +134,7 @@ FrameArrays frame_at(const FrameFolder& frames, py::ssize_t index) {
 
 std::string text_of_frames(const FrameFolder& frames) {
   const RgbdFolderInfo& info = frames.source().info();
-  const std::string kind = info.is_bag ? "bag" : std::string{kFrameLayoutWords.of(info.layout)};
+  const std::string kind = info.is_bag ? "bag" : std::string{kRgbdLayoutWords.of(info.layout)};
   return py::str("<saccade.Frames: {} frames, {}, poses: {}, color: {}>")
       .format(frames.size(), kind, info.has_poses, info.has_color);
 }
@@ -192,8 +187,8 @@ void bind_frames(py::module_& module) {
       py::arg("count") = py::none(), py::arg("depth_topic") = "", py::arg("info_topic") = "",
       py::arg("color_topic") = "", py::arg("world_frame") = "",
       "Opens a folder of RGB-D frames, a bag of ROS (.bag) or an MCAP file (.mcap), as saccade fuse does. `layout`: "
-      "auto, seven-scenes, tum, princeton or open3d. `camera`: PinholeCamera in place of the folder's. `poses`: file "
-      "of "
+      "auto, seven-scenes, tum, princeton, open3d, scannet, bundlefusion, rtabmap, replica, bop or icl-nuim. `camera`: "
+      "PinholeCamera in place of the folder's. `poses`: file of "
       "T_world_camera in place of the folder's. `depth_scale`: depth samples per metre. `mask`: PNG (0: ignored) or "
       "JSON polygons. `fill_gaps_px`: close gaps up to this wide; None: 2 where the first frame has them all "
       "over. `require_poses`: where there are poses, a frame without a good one is an error. Topics and `world_frame` "

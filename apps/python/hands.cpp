@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Where a hand acted, by its trajectory: whole ones, and samples as they come.
+// Detection of a hand's actions from its trajectory: whole trajectories, and samples as they arrive.
 #include "arrays.hpp"
 #include "saccade/attention/detector_evaluation.hpp"
 #include "saccade/attention/dip_detector.hpp"

@@ -44,7 +44,7 @@ void expect_countable(const IndexBox& voxels) {
   }
 }
 
-/// Voxels of a volume: those of a box, of the workspace, or all that are known.
+/// Returns the voxels of a volume: those of a box, of the workspace, or all known ones.
 IndexBox volume_of(const TsdfSnapshot& map, const py::object& box) {
   IndexBox voxels = map.grid.known_bounds();
   std::optional<Box> bounds = map.config.workspace;
@@ -58,7 +58,7 @@ IndexBox volume_of(const TsdfSnapshot& map, const py::object& box) {
   return voxels;
 }
 
-/// An array (z, y, x) of what `value` makes of each voxel.
+/// Returns an array (z, y, x) of `value` for each voxel.
 template <class T, class Value>
 py::array_t<T> volume(const SharedMap& map, const py::object& box, const Value& value) {
   const TsdfSnapshot snapshot = map.snapshot();

@@ -11,13 +11,13 @@
 
 namespace saccade::python {
 
-/// A map, and the threads that work on it. Python threads may call it at once: writers wait for each other.
+/// Map with its worker threads. Python threads may call it concurrently: writers wait for each other.
 class SharedMap {
  public:
   SharedMap(TsdfMap map, std::size_t threads)
       : content_{std::make_shared<Content>(std::move(map))}, executor_{Executor::with_threads(threads)} {}
 
-  /// Calls body(TsdfMap&) without the GIL, one caller at a time. ValueError once the map was closed.
+  /// Calls body(TsdfMap&) without the GIL, one caller at a time. Raises ValueError after the map was closed.
   template <class Body>
   auto write(const Body& body) {
     const std::shared_ptr<Content> content = open();
@@ -33,7 +33,7 @@ class SharedMap {
   struct Content {
     explicit Content(TsdfMap m) : map{std::move(m)} {}
     TsdfMap map;
-    std::recursive_mutex mutex;  ///< what a writer calls may write, too
+    std::recursive_mutex mutex;  ///< recursive, because a writer's callees may write too
   };
   [[nodiscard]] std::shared_ptr<Content> open() const {
     if (!content_) throw py::value_error{"the map was closed"};

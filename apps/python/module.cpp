@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The Python module. Its docstrings name shapes, units and frames; docs/guides/python.md leads through it.
+// The Python module. Its docstrings name shapes, units and frames; docs/guides/python.md introduces it.
 #include "convert.hpp"
 
 PYBIND11_MODULE(_saccade, module) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Records of runs as dictionaries of Python.
+// Records of runs as Python dictionaries.
 
 #include "convert.hpp"
 #include "saccade/core/statistics.hpp"
@@ -17,7 +17,7 @@ py::object number_or_none(const std::optional<T>& value) {
 [[nodiscard]] py::dict to_dict(const ScanRecord& scan);
 [[nodiscard]] py::dict to_dict(const ViewRecord& view);
 [[nodiscard]] py::dict to_dict(const RunRecord& run);
-/// mean, low, high, n.
+/// Returns mean, low, high, n.
 [[nodiscard]] py::dict to_dict(const MeanEstimate& estimate);
 
 }  // namespace saccade::python

@@ -13,7 +13,7 @@ std::string type_of(const py::object& object) { return py::str(py::type::of(obje
 
 bool has(const py::object& object, const char* method) { return py::hasattr(object, method); }
 
-/// A camera whose frames come from a function of Python.
+/// Camera whose frames come from a Python function.
 class PythonCamera final : public Camera {
  public:
   PythonCamera(const PinholeCamera& intrinsics, py::object capture)
@@ -56,7 +56,7 @@ class PythonCamera final : public Camera {
   std::size_t frames_{0};
 };
 
-/// A robot that finds its own way.
+/// Robot that plans its own motions.
 class PythonRobot final : public Robot {
  public:
   explicit PythonRobot(const py::object& robot)
@@ -79,10 +79,10 @@ class PythonRobot final : public Robot {
     }
     return refusals;
   }
-  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way) override {
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, MotionKind) override {
     return PlannedMotion{Motion{0, T_world_camera.front(), {}, 0.0}, {}, {}};
   }
-  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay&) override {
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const MotionObserver&) override {
     const py::gil_scoped_acquire gil;
     const py::object said = move_to_.get()(from_pose(motion.T_world_camera));
     if (said.is_none()) return std::optional<Arrival>{};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Seams of the loop whose body is an object of Python: camera, robot, attention, views, gain, recorder, stopping.
-// Each is a function, or an object with a method of the seam's name. docs/guides/python.md.
+// Seams of the loop implemented by Python objects: camera, robot, attention, views, gain, recorder, stopping. Each is a
+// function, or an object with a method of the seam's name. docs/guides/python.md.
 
 #include <memory>
 #include <string>
@@ -15,7 +15,7 @@
 
 namespace saccade::python {
 
-/// An object of Python that C++ keeps, and lets go from any thread.
+/// Python object held by C++, which any thread may release.
 class Kept {
  public:
   explicit Kept(py::object object) : object_{std::move(object)} {}
@@ -31,18 +31,18 @@ class Kept {
   py::object object_;
 };
 
-/// The object's method of that name, or the object itself where it can be called. TypeError for any other.
+/// Returns the object's method of that name, or the object itself if it is callable. Raises TypeError for others.
 [[nodiscard]] py::object body_of(const py::object& object, const char* method);
 
-/// What attention, views and gain may look at.
+/// Input of attention, views and gain.
 struct SeamContext {
   std::shared_ptr<SharedMap> map;
-  std::optional<Region> region;  ///< nullopt: attention is still to say
+  std::optional<Region> region;  ///< nullopt: attention has not chosen yet
   PinholeCamera sensor;
   std::size_t views_taken{0};
 };
 
-/// A base strategy by its name, with parts of the caller's in place of its own.
+/// Base strategy by name, with some parts replaced by the caller's.
 struct Strategy {
   std::string base{"sphere"};
   std::string name;
@@ -51,17 +51,17 @@ struct Strategy {
   std::string gain_unit{"gain"};
 };
 
-/// A strategy's name, or a Strategy, as a planner. ValueError for a name that is not among `planners`.
+/// Converts a strategy's name, or a Strategy, to a planner. Raises ValueError for a name that is not among `planners`.
 [[nodiscard]] NamedPlanner planner_of(const py::object& strategy, const Planners& planners);
 
-/// capture(T_world_camera) returns depth, or (depth, color), or (depth, color, T_world_camera).
+/// Wraps a camera: capture(T_world_camera) returns depth, or (depth, color), or (depth, color, T_world_camera).
 [[nodiscard]] std::unique_ptr<Camera> camera_of(const py::object& camera);
-/// move_to(T_world_camera) returns where the camera is, True for there, None or False where it declines;
-/// reachable(T_world_camera), if there is one, a bool for each of N poses. None: a camera that flies.
+/// Wraps a robot: move_to(T_world_camera) returns the camera's pose, True for the requested one, None or False where it
+/// declines; reachable(T_world_camera), if present, a bool for each of N poses. None: a flying camera.
 [[nodiscard]] std::unique_ptr<Robot> robot_of(const py::object& robot);
-/// scanned(scan, map), viewed(view, map, frames) and ended(run), each if there is one.
+/// Wraps a recorder: scanned(scan, map), viewed(view, map, frames) and ended(run), each if present.
 [[nodiscard]] std::unique_ptr<Recorder> recorder_of(const py::object& recorder);
-/// A function of the run's record: true ends the run.
+/// Wraps a function of the run's record: true ends the run.
 [[nodiscard]] std::unique_ptr<Stopping> stopping_of(const py::object& stopping);
 
 }  // namespace saccade::python

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Segments of clouds and maps, how much they draw attention, and how well they match a truth.
+// Segments of clouds and maps, their saliency, and their agreement with a ground truth.
 #include "arrays.hpp"
 #include "map.hpp"
 #include "saccade/attention/saliency.hpp"
@@ -8,6 +8,7 @@
 #include "saccade/segment/lccp.hpp"
 #include "saccade/segment/live_segments.hpp"
 #include "saccade/segment/overlap.hpp"
+#include "saccade/segment/score_curve.hpp"
 #include "saccade/segment/segmentation_truth.hpp"
 
 namespace saccade::python {
@@ -17,7 +18,7 @@ enum class SegmentWay { lccp, sv_lccp, flood_fill };
 constexpr auto kSegmentWayNames = make_names<SegmentWay>(
     {{SegmentWay::lccp, "lccp"}, {SegmentWay::sv_lccp, "sv-lccp"}, {SegmentWay::flood_fill, "flood-fill"}});
 
-/// What a caller may set; the rest is as of the method.
+/// Settings that a caller may change; others are the method's.
 struct SegmentSettings {
   std::optional<double> voxel_size_m, seed_spacing_m, spatial_weight, normal_weight, color_weight, threshold;
   std::optional<int> rounds;
@@ -65,7 +66,7 @@ Result<std::vector<std::uint32_t>> find_segments(const PointCloud& cloud, Segmen
   return std::move(found.labels);
 }
 
-/// Options that a method has no use for, as those of the program, are errors.
+/// Rejects options that a method does not use, as the program does.
 void check_settings(SegmentWay way, const SegmentSettings& settings) {
   const auto refuse = [&](bool given, const char* name) {
     if (given)
@@ -94,6 +95,7 @@ py::array_t<std::uint32_t> segment(const py::object& points, const std::string& 
   settings.lccp.min_supervoxels = min_supervoxels;
   check_settings(way, settings);
   const PointCloud cloud = to_cloud(points, normals, colors, radii);
+  settings.viewpoint_m -= cloud.offset_m;
   auto labels = [&] {
     const py::gil_scoped_release released;
     return find_segments(cloud, way, settings, Executor::with_threads(threads));
@@ -117,7 +119,7 @@ py::dict segment_surface(const SharedMap& map, double voxel_size_m) {
   return result;
 }
 
-/// H×W×3, NaN where there is no return.
+/// Returns H×W×3, NaN where there is no return.
 py::array_t<float> depth_points(const PinholeCamera& camera, const py::array& depth,
                                 const std::optional<py::array>& T_world_camera) {
   const DepthImage image = to_depth(depth);
@@ -180,6 +182,64 @@ py::dict score_labels(const py::object& labels, const py::object& truth, const p
   return score_dict(all, some, consistency, take(score()));
 }
 
+Result<ScoreCurve> find_curve(PointCloud cloud, const std::vector<std::uint32_t>& objects, SegmentWay way,
+                              const std::vector<double>& thresholds, const SegmentationTruthConfig& config,
+                              const Executor& executor, const Progress& progress) {
+  if (cloud.radii_m.empty()) cloud.radii_m = surfel_radii(cloud.positions_m, executor);
+  SACCADE_TRY(const SegmentationTruth truth, SegmentationTruth::create(cloud, objects, config, executor));
+  if (way == SegmentWay::flood_fill) {
+    if (cloud.normals.empty()) cloud.normals = surfel_normals(cloud.positions_m, Eigen::Vector3d::Zero(), executor);
+    return flood_fill_curve(cloud, truth, thresholds, {}, executor, progress);
+  }
+  const SvLccpConfig sv_lccp;
+  SACCADE_TRY(const SupervoxelResult supervoxels, find_supervoxels(cloud, sv_lccp.supervoxels, executor));
+  return sv_lccp_curve(supervoxels, truth, thresholds, sv_lccp.lccp, executor, progress);
+}
+
+py::dict curve_point(const CurvePoint& point) {
+  py::dict result;
+  result["threshold"] = point.threshold;
+  result["segments"] = point.segments;
+  result["boundary_precision"] = point.score.precision();
+  result["boundary_recall"] = point.score.recall();
+  result["boundary_f"] = point.score.f();
+  result["consistency_error"] = point.score.bce;
+  return result;
+}
+
+py::object point_or_none(const std::optional<CurvePoint>& point) {
+  return point ? py::object{curve_point(*point)} : py::none();
+}
+
+py::dict segment_curve(const py::object& points, const py::object& truth, const py::object& thresholds,
+                       const std::string& method, const py::object& normals, const py::object& colors,
+                       const py::object& radii, double tolerance_m, bool split, std::size_t threads,
+                       py::object progress) {
+  const SegmentWay way = value_of(kSegmentWayNames, method, "method");
+  if (way == SegmentWay::lccp) throw py::value_error{"method lccp has no threshold; sv-lccp and flood-fill have one"};
+  const PointCloud cloud = to_cloud(points, normals, colors, radii);
+  const std::vector<std::uint32_t> objects = to_labels(truth, "truth");
+  const std::vector<double> at = to_numbers(thresholds, "thresholds");
+  SegmentationTruthConfig config;
+  config.matching.tolerance_m = tolerance_m;
+  config.split = split;
+  CallerProgress told{std::move(progress)};
+  auto found = [&] {
+    const py::gil_scoped_release released;
+    return find_curve(cloud, objects, way, at, config, Executor::with_threads(threads), told.progress());
+  }();
+  told.rethrow();
+  const ScoreCurve curve = take(std::move(found));
+  py::list list;
+  for (const CurvePoint& point : curve.points) list.append(curve_point(point));
+  py::dict result;
+  result["points"] = list;
+  result["area"] = curve.area();
+  result["best_f"] = point_or_none(curve.best_f());
+  result["least_consistency_error"] = point_or_none(curve.least_bce());
+  return result;
+}
+
 SaliencyHeuristic heuristic_of(const std::string& name) {
   if (name == "objectness") return objectness();
   if (name == "roundness") return roundness_alone();
@@ -191,7 +251,7 @@ SaliencyHeuristic heuristic_of(const std::string& name) {
 py::array_t<double> segment_saliency(const py::object& points, const py::object& labels, const std::string& heuristic,
                                      std::size_t threads) {
   const SaliencyHeuristic judge = heuristic_of(heuristic);
-  const std::vector<Eigen::Vector3f> positions_m = to_vectors_f(points, "points");
+  const std::vector<Eigen::Vector3f> positions_m = to_cloud(points, py::none(), py::none(), py::none()).positions_m;
   std::vector<std::uint32_t> segments = to_labels(labels, "labels");
   std::uint32_t count{0};
   for (std::uint32_t& label : segments) {
@@ -242,6 +302,16 @@ void bind_segments(py::module_& module) {
              "`objects_from`); consistency_error (bidirectional, thesis 4.1.2); with `points`, N x 3 metres, "
              "boundary_precision, boundary_recall, boundary_f within `tolerance_m`, and the truth is split where its "
              "surfels do not touch, unless `split` is False.");
+  module.def(
+      "segment_curve", &segment_curve, py::arg("points"), py::arg("truth"), py::arg("thresholds"),
+      py::arg("method") = "sv-lccp", py::kw_only(), py::arg("normals") = py::none(), py::arg("colors") = py::none(),
+      py::arg("radii") = py::none(), py::arg("tolerance_m") = 0.02, py::arg("split") = true, py::arg("threads") = 0,
+      py::arg("progress") = py::none(),
+      "Scores segments at many thresholds, of sv-lccp or flood-fill, against true labels (thesis Figs. 4.10 and "
+      "4.11, Table 4.3). Arguments as of segment and segment_scores. Returns a dict: points, one a threshold, each "
+      "with threshold, segments, boundary_precision, boundary_recall, boundary_f, consistency_error; area below "
+      "precision over recall; "
+      "best_f and least_consistency_error, the points that have these.");
   module.def(
       "segment_saliency", &segment_saliency, py::arg("points"), py::arg("labels"), py::arg("heuristic") = "objectness",
       py::kw_only(), py::arg("threads") = 0,

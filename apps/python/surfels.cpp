@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// SurfelMap: coloured discs from frames with poses, as averages or as the modes that win.
+// SurfelMap: coloured discs from frames with poses, as averages or as winning modes.
 #include <mutex>
 
 #include "arrays.hpp"
@@ -13,12 +13,12 @@
 namespace saccade::python {
 namespace {
 
-/// What saccade surfels calls a choice.
+/// Choices as named by saccade surfels.
 enum class SurfelChoice { sharpened, densest, heaviest };
 constexpr auto kSurfelChoiceNames = make_names<SurfelChoice>(
     {{SurfelChoice::sharpened, "sharpened"}, {SurfelChoice::densest, "densest"}, {SurfelChoice::heaviest, "heaviest"}});
 
-/// Fusion and mode filter of the same frames. Python threads may call it at once: they wait for each other.
+/// Fusion and mode filter of one sequence of frames. Python threads may call it concurrently: they wait for each other.
 class PythonSurfels {
  public:
   PythonSurfels(bool mode_filter, const std::string& choice, int max_modes, double image_sigma,
@@ -96,7 +96,7 @@ class PythonSurfels {
   }
 
  private:
-  /// Modes that stand for the surfels; none for averages.
+  /// Returns the modes that represent the surfels; empty for averages.
   [[nodiscard]] std::vector<SurfelMode> winners(bool averages) const {
     if (!filter_ || averages) return {};
     std::vector<SurfelMode> modes = filter_->winners(executor_);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Tracker: a camera that is tracked against a map, and its frames fused.
+// Tracker: tracks a camera against a map, and fuses its frames.
 #include "saccade/tracking/reconstruction.hpp"
 
 #include "convert.hpp"
@@ -21,7 +21,7 @@ py::dict track_dict(const FrameReport& report, bool fused) {
   return result;
 }
 
-/// Reconstruction's loop on a map that Python has, too.
+/// Reconstruction's loop on a map that Python shares.
 class Tracker {
  public:
   Tracker(py::object map, const PinholeCamera& camera, const std::string& mode)
@@ -59,8 +59,8 @@ class Tracker {
   void set_pose(const py::array& T_world_camera) { T_world_last_ = to_pose(T_world_camera); }
 
  private:
-  /// Where the frame was taken: the hint itself, or what ICP makes of hint or last pose. An empty map has nothing to
-  /// align to: the first frame defines the world.
+  /// Finds the pose of a frame: the hint itself, or the result of ICP from hint or last pose. An empty map has nothing
+  /// to align to: the first frame defines the world.
   [[nodiscard]] Result<FrameReport> find(const TsdfSnapshot& map, const Frame& frame, const std::optional<Pose>& hint,
                                          const Pose& last, const Executor& executor) const {
     if (mode_ != TrackingMode::forced && !map.grid.empty()) {

@@ -10,20 +10,20 @@
 namespace saccade::python {
 namespace {
 
-/// A scene whose surface is known.
+/// Scene with known surface.
 struct KnownScene {
   Scene scene;
-  Truth truth;
+  GroundTruth truth;
 };
 
 Result<KnownScene> build_scene(const std::string& name, const Executor& executor) {
   SACCADE_TRY(Scene scene, find_scene(name));
   SACCADE_TRY(const RayScene rays, RayScene::build(scene));
-  SACCADE_TRY(Truth truth, Truth::build(rays, kTruthSpacing_m, executor));
+  SACCADE_TRY(GroundTruth truth, GroundTruth::build(rays, kTruthSpacing_m, executor));
   return KnownScene{std::move(scene), std::move(truth)};
 }
 
-/// Settings that runs share.
+/// Returns settings shared by runs.
 SimulatedRunConfig run_config(int max_views, double voxel_size_m, int width, int gain_width, bool noise) {
   if (width < 1) throw py::value_error{"width must be one pixel at least, not " + std::to_string(width)};
   SimulatedRunConfig config;
@@ -66,7 +66,7 @@ py::dict run(const std::string& scene, const py::object& strategy, const py::obj
   return to_dict(take(std::move(record)));
 }
 
-/// Runs every strategy in every scene with every seed, and says what they come to.
+/// Runs every strategy in every scene with every seed, and summarises the results.
 class Comparer {
  public:
   Comparer(std::vector<NamedPlanner> planners, SimulatedRunConfig config, std::size_t threads)
@@ -120,7 +120,7 @@ class Comparer {
   }
 
  private:
-  CampaignEntry one(const std::string& scene, const Truth& truth, const NamedPlanner& planner, std::uint64_t seed,
+  CampaignEntry one(const std::string& scene, const GroundTruth& truth, const NamedPlanner& planner, std::uint64_t seed,
                     CallerProgress& told) const {
     SimulatedRunConfig config = config_.with(planner);
     config.seed = seed;
@@ -175,7 +175,7 @@ py::dict compare(const py::sequence& strategies, const std::vector<std::string>&
   return comparer.result();
 }
 
-/// A camera in a scene, which measures maps against the scene's surface, too.
+/// Camera in a scene, which also measures maps against the scene's surface.
 class SceneCamera {
  public:
   SceneCamera(const std::string& scene, int width, bool noise, std::uint64_t seed, std::size_t threads)
@@ -251,14 +251,14 @@ void bind_trial(py::module_& module) {
       "Strategy. `gain(context, poses)` returns one number for each pose (N x 4 x 4) in place of the strategy's own "
       "gain; the run ends where no view gains more than `min_gain`, which is then 0 by default. Returns a dict: scan, "
       "views, final (measures of the map), stopped_because.");
-  trial.def("compare", &compare, py::arg("strategies"), py::arg("scenes"), py::arg("seeds"), py::kw_only(),
-            py::arg("max_views") = 12, py::arg("voxel_size_m") = 0.0058, py::arg("width") = 640,
-            py::arg("gain_width") = 160, py::arg("noise") = true, py::arg("threads") = 0,
-            py::arg("progress") = py::none(),
-            "Runs each strategy (a name or a Strategy) in each scene with each seed. Returns a dict: `runs`, as those "
-            "of run() with scene, strategy, seed and seconds; `summary`, a row per scene and strategy with the mean of "
-            "each figure and its confidence interval (low, high), over all scenes where `scene` is None; `gaps`, the "
-            "same for differences from the first strategy in the same scene and seed. Figures: docs/metrics.md.");
+  trial.def(
+      "compare", &compare, py::arg("strategies"), py::arg("scenes"), py::arg("seeds"), py::kw_only(),
+      py::arg("max_views") = 12, py::arg("voxel_size_m") = 0.0058, py::arg("width") = 640, py::arg("gain_width") = 160,
+      py::arg("noise") = true, py::arg("threads") = 0, py::arg("progress") = py::none(),
+      "Runs each strategy (a name or a Strategy) in each scene with each seed. Returns a dict: `runs`, as those "
+      "of run() with scene, strategy, seed and seconds; `summary`, a row per scene and strategy with the mean of "
+      "each figure and its confidence interval (low, high), over all scenes where `scene` is None; `gaps`, the "
+      "same for differences from the first strategy in the same scene and seed. Figures: docs/reference/metrics.md.");
 
   py::class_<SceneCamera>(trial, "SimulatedCamera", "A depth camera in a scene whose surface is known.")
       .def(py::init<const std::string&, int, bool, std::uint64_t, std::size_t>(), py::arg("scene"), py::kw_only(),

@@ -52,7 +52,7 @@ BasicConfig read_config(const ros::NodeHandle& node) {
   return c;
 }
 
-/// What came by topic.
+/// Inputs received by topic.
 struct Inputs {
   Occupancy occupancy;
   std::vector<PlainPose> poses;

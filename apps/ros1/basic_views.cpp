@@ -27,7 +27,7 @@ std::vector<double> angles(const AngleSteps& steps) {
   return all;
 }
 
-/// The voxels between the outermost that are listed; all else is empty.
+/// Voxels within the bounds of the listed ones; all others are empty.
 class States {
  public:
   static Result<States> make(const Occupancy& occupancy, double voxel_m) {

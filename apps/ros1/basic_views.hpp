@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// BasicViews: view poses around a point, and the unknown voxels that each would show. Standard types.
+// BasicViews: view poses around a point, and the number of unknown voxels that each would show. Standard types.
 
 #include <atomic>
 #include <functional>
@@ -9,7 +9,7 @@
 
 namespace saccade::ros1 {
 
-/// From `first` on, in steps, up to `last` included; degrees.
+/// Angles from `first` to `last` inclusive, in steps; degrees.
 struct AngleSteps {
   double first{0.0}, last{0.0}, step{1.0};
 };
@@ -23,7 +23,7 @@ struct BasicConfig {
   double occupied_weight{0.0}, unknown_weight{1.0};
 };
 
-/// Poses around a point that look at it, by latitude, longitude and roll, the last fastest.
+/// Returns poses around a point that look at it, by latitude, longitude and roll, the last fastest.
 std::vector<PlainPose> poses_around(const std::array<double, 3>& point, const BasicConfig& config);
 
 struct BasicFilter {
@@ -37,7 +37,7 @@ using Occupancy = std::vector<std::array<float, 4>>;
 struct BasicCounts {
   std::vector<std::uint32_t> unknown, occupied;  ///< per pose: distinct voxels that its rays meet first
 };
-/// Returns what is wrong.
+/// Returns an error text, or an empty one.
 std::string count_voxels(const Occupancy& occupancy, const std::vector<PlainPose>& poses, const BasicFilter& filter,
                          const BasicConfig& config, const std::atomic<bool>& cancelled,
                          const std::function<void(std::size_t done)>& progress, BasicCounts& counts);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The camera of a ROS robot for Saccade (docs/processes.md).
+// The camera of a ROS robot for Saccade (docs/guides/processes.md).
 //
 //   saccade-ros1 camera TOPIC [--info TOPIC] [--color TOPIC] [--rectified yes|no] [--min-range M] [--max-range M]
 //                       [--reference FRAME [--frame FRAME]] [--skip N] [--timeout S] [--times yes]
@@ -35,22 +35,22 @@ namespace {
 
 using devices::now_s;
 
-constexpr double kTogether_s{0.05};  ///< between depth and the colour that belongs to it
+constexpr double kTogether_s{0.05};  ///< between depth and its colour
 
-/// An image, and when it came.
+/// Image, and its time of arrival.
 struct Received {
   sensor_msgs::ImageConstPtr image;
   double at_s{0.0};  ///< on this machine's steady clock
   ros::Time at{};    ///< on ROS's clock
 
-  /// Whether the stamp can be compared with ROS's clock.
+  /// Tells whether the stamp can be compared with ROS's clock.
   [[nodiscard]] bool follows_clock() const {
     const double old_s = (at - image->header.stamp).toSec();
     return !image->header.stamp.isZero() && !at.isZero() && old_s > -0.05 && old_s < 1.0;
   }
 };
 
-/// The last images of one topic.
+/// Latest images of one topic.
 class Images {
  public:
   void subscribe(ros::NodeHandle& node, const std::string& topic) {
@@ -62,8 +62,8 @@ class Images {
     const std::lock_guard lock{mutex_};
     return count_;
   }
-  /// Calls look(image) for each that came after the first `count`, in order, until it returns true or the time is up;
-  /// count follows.
+  /// Calls look(image) for each image after the first `count`, in order, until it returns true or the time is up;
+  /// updates count.
   template <class Look>
   [[nodiscard]] std::optional<Received> next(std::size_t& count, double until_s, const Look& look) const {
     std::unique_lock lock{mutex_};
@@ -78,7 +78,7 @@ class Images {
       came_.wait_for(lock, std::chrono::duration<double>{std::min(left_s, 0.2)}, [&] { return count_ > count; });
     }
   }
-  /// Says that none came, and when the last one did.
+  /// Describes for an error that no image came, and when the last one did.
   [[nodiscard]] std::string silence(double waited_s) const {
     const std::lock_guard lock{mutex_};
     std::string text = "no image came on " + topic_ + " for " + seconds_text(waited_s) + " s; ";
@@ -106,10 +106,10 @@ class Images {
   mutable std::condition_variable came_;
   std::deque<Received> last_;
   std::size_t count_{0};
-  ros::Subscriber subscriber_;  ///< the last one, so that it ends first
+  ros::Subscriber subscriber_;  ///< last member, so that it ends first
 };
 
-/// The topic of images that a name means.
+/// Returns the topic of images that a name means.
 std::string find_topic(const std::string& name, double wait_s) {
   const std::string full = ros::names::resolve(name);
   std::vector<std::string> there;
@@ -234,7 +234,7 @@ class RosCamera final : public devices::DeviceCamera {
     transforms_.emplace();
   }
 
-  /// The first image that shows what is seen after the request.
+  /// Returns the first image taken after the request.
   [[nodiscard]] Received frame_after(double asked_s, ros::Time asked) {
     std::size_t passed = 0;
     const auto shows = [&](const Received& received) {

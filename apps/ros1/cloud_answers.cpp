@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers that are clouds, meshes and grids of voxels.
+// Answers in the form of clouds, meshes and grids of voxels.
 
 #include <cmath>
 #include <limits>
@@ -26,7 +26,7 @@ void append_normal(PlainCloud& cloud, const Eigen::Vector3f& p, const Eigen::Vec
   append(cloud, {p.x(), p.y(), p.z(), n.x(), n.y(), n.z(), 0.0F});
 }
 
-/// Replaces the points of each cell by their mean; normals get unit length again. Order by first point.
+/// Replaces the points of each cell by their mean; normals get unit length again. Sorted by first point.
 void subsample(PlainCloud& cloud, double cell_m) {
   const std::size_t step = cloud.fields.size();
   const bool normals = step >= 6 && cloud.fields[3] == "normal_x";
@@ -59,8 +59,8 @@ void finish(PlainCloud& cloud) {
   cloud.width = static_cast<std::uint32_t>(cloud.values.size() / cloud.fields.size());
 }
 
-/// Calls visit(brick, its handle) for the bricks with known voxels that may hold some of the filter's, in z-y-x order
-/// of sectors.
+/// Calls visit(brick, its handle) for the bricks with known voxels that the filter may contain, in z-y-x order of
+/// sectors.
 template <class Visit>
 Status for_each_brick(const Source& source, const Filter& filter, const Visit& visit) {
   const IndexBox voxels = filter.voxels(source.map.grid.known_bounds(), source.map.config.voxel_size_m);
@@ -83,7 +83,7 @@ Eigen::Vector3d center(const Source& source, const Index3& brick, int i) {
   return voxel_center(brick * kBrickEdge + child_offset(i), source.map.config.voxel_size_m);
 }
 
-/// Edges of one triangle alone: the mesh ends there.
+/// Returns the edges that belong to only one triangle, where the mesh ends.
 std::vector<std::uint8_t> at_border(const TriangleMesh& mesh) {
   std::unordered_map<std::uint64_t, int> edges;
   for (const auto& triangle : mesh.triangles) {
@@ -103,7 +103,8 @@ constexpr std::array<Index3, 6> kNeighbours{{{1, 0, 0}, {-1, 0, 0}, {0, 1, 0}, {
 
 Eigen::Vector3f direction(const Index3& step) { return {float(step.x), float(step.y), float(step.z)}; }
 
-/// The normal of a frontier voxel, towards unknown space; nullopt where it is none. Zero where that is on all sides.
+/// Returns the normal of a frontier voxel, towards unknown space; nullopt for other voxels. Zero where unknown space is
+/// on all sides.
 std::optional<Eigen::Vector3f> frontier_normal(const VoxelBlock& block, const Index3& i) {
   if (!block.known(i) || block.v(i) <= 0) return std::nullopt;
   bool found{false};
@@ -117,7 +118,7 @@ std::optional<Eigen::Vector3f> frontier_normal(const VoxelBlock& block, const In
   return sum.norm() > 0.0F ? Eigen::Vector3f{sum.normalized()} : sum;
 }
 
-/// The normal of an occupied voxel beside an empty one, towards empty space.
+/// Returns the normal of an occupied voxel beside an empty one, towards empty space.
 std::optional<Eigen::Vector3f> surface_normal(const VoxelBlock& block, const Index3& i) {
   if (!block.known(i) || block.v(i) > 0) return std::nullopt;
   const bool found = std::any_of(kNeighbours.begin(), kNeighbours.end(),
@@ -209,7 +210,7 @@ Result<MapAnswer> known_answer(const Source& source, const MapRequest& request) 
   const Eigen::Affine3d T = request.transformation ? to_affine(*request.transformation) : Eigen::Affine3d::Identity();
   MapAnswer answer;
   answer.cloud.fields = {"x", "y", "z"};
-  const bool moved = request.transformation.has_value();  // the filter is for the points where they end up
+  const bool moved = request.transformation.has_value();  // the filter applies to the transformed points
   MapRequest everywhere;
   SACCADE_CHECK(for_each_brick(source, moved ? Filter{everywhere} : filter,
                                [&](const Index3& brick, const BrickRef& ref) -> Status {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Connection: a device's program as a node of ROS. Transforms: where TF has a frame.
+// Connection: a device's program as a node of ROS. Transforms: look-up of frames in TF.
 
 #include <geometry_msgs/TransformStamped.h>
 #include <ros/ros.h>
@@ -14,11 +14,11 @@
 
 namespace saccade::ros1 {
 
-/// Before all else: names the node, takes remappings (a:=b) out of the arguments, and lets SIGTERM end the program as
-/// the end of its input does.
+/// Names the node, takes remappings (a:=b) out of the arguments, and makes SIGTERM end the program like the end of its
+/// input. Call it first.
 void begin_node(int& argc, char** argv, const std::string& name);
 
-/// A node that is registered at a master, and callbacks in a thread of their own.
+/// Node registered at a master, with callbacks on their own thread.
 class Connection {
  public:
   /// Throws when no master answers in time.
@@ -28,8 +28,8 @@ class Connection {
   ~Connection();
 
   [[nodiscard]] ros::NodeHandle& node() { return *node_; }
-  /// Whether a master was started anew and knows nothing of this node: its subscriptions must be made again. Asks it
-  /// once a second at most.
+  /// Tells whether a master was restarted and does not know this node, so that subscriptions must be renewed. Asks at
+  /// most once a second.
   [[nodiscard]] bool forgotten();
 
  private:
@@ -38,22 +38,22 @@ class Connection {
   double asked_s_{0.0};
 };
 
-/// Returns the topics of a type that someone publishes, sorted.
+/// Returns the published topics of a type, sorted.
 [[nodiscard]] std::vector<std::string> topics_of_type(const std::string& type);
-/// "a, b and c"; "none".
+/// Returns "a, b and c"; "none" for an empty list.
 [[nodiscard]] std::string listed(const std::vector<std::string>& names);
-/// "12.3", seconds.
+/// Returns seconds as "12.3".
 [[nodiscard]] std::string seconds_text(double seconds);
 
 class Transforms {
  public:
   Transforms() { renew(); }
-  /// Begins anew, after the master did.
+  /// Renews everything after a restart of the master.
   void renew();
-  /// Frame in reference at an instant; the latest one there is for time zero. nullopt: TF does not say.
+  /// Returns a frame in a reference at an instant; the latest one for time zero. nullopt: unknown to TF.
   [[nodiscard]] std::optional<geometry_msgs::TransformStamped> find(const std::string& reference,
                                                                     const std::string& frame, ros::Time time) const;
-  /// Waits for it; throws what TF says when the time is up.
+  /// Waits for a transform; throws TF's explanation when the time is up.
   [[nodiscard]] geometry_msgs::TransformStamped need(const std::string& reference, const std::string& frame,
                                                      ros::Time time, double wait_s) const;
   [[nodiscard]] std::vector<std::string> frames() const;

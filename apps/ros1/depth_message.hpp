@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// DepthMessage: the bytes of a depth image as messages have them; to_metres: the same as metres.
+// DepthMessage: the bytes of a depth image in a message. to_metres: conversion to metres.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,7 +9,7 @@
 
 namespace saccade::ros1 {
 
-/// A sensor_msgs/Image, borrowed.
+/// Borrowed sensor_msgs/Image.
 struct DepthMessage {
   std::uint32_t width{0};
   std::uint32_t height{0};
@@ -22,7 +22,7 @@ struct DepthMessage {
 
 /// Converts depth to metres along z: 16UC1 and mono16 are millimetres, 32FC1 metres; 0: no return; negative: seen free
 /// up to there.
-/// @return what is wrong with the message; empty when nothing is.
+/// @return an error text; empty for a sound message.
 [[nodiscard]] std::string to_metres(const DepthMessage& message, std::vector<float>& metres);
 
 }  // namespace saccade::ros1

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// A hand that TF follows, for Saccade (docs/processes.md).
+// A hand that TF follows, for Saccade (docs/guides/processes.md).
 //
 //   saccade-ros1 hand FRAME [--reference FRAME] [--lost S] [--timeout S]
 //
@@ -30,7 +30,7 @@ class RosHand {
     transforms_.emplace();
   }
 
-  /// The next reading, or that the hand is not seen.
+  /// Returns the next reading, or that the hand is not visible.
   [[nodiscard]] json sample(const json& number) {
     for (const double until_s = now_s() + lost_s_; now_s() < until_s;) {
       const auto found = transforms_->find(reference_, frame_, ros::Time{0});

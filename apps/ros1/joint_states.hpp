@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// JointStates: the positions of named joints, from messages that have them in any order, and perhaps not all of them.
+// JointStates: the positions of named joints, from messages that list them in any order and may be incomplete.
 
 #include <sensor_msgs/JointState.h>
 
@@ -19,8 +19,8 @@ namespace saccade::ros1 {
 
 struct JointPositions {
   std::vector<double> q;
-  double time_s{0.0};  ///< stamp of the message that came last
-  double came_s{0.0};  ///< on this machine's steady clock; of its joints, the one that has waited longest
+  double time_s{0.0};  ///< stamp of the latest message
+  double came_s{0.0};  ///< on this machine's steady clock; arrival of the joint that has waited longest
 };
 
 class JointStates {
@@ -41,7 +41,7 @@ class JointStates {
     came_.notify_all();
   }
 
-  /// All of them, if each came after that instant. Throws for a position that is no number.
+  /// Returns all positions, if each came after that instant. Throws for a position that is not a number.
   [[nodiscard]] std::optional<JointPositions> after(double instant_s) const {
     const std::lock_guard lock{mutex_};
     return find(instant_s);
@@ -53,7 +53,7 @@ class JointStates {
     return found;
   }
 
-  /// Says which joints are missing, or that nothing comes.
+  /// Describes for an error which joints are missing, or that nothing arrives.
   [[nodiscard]] std::string silence(const std::string& topic) const {
     const std::lock_guard lock{mutex_};
     if (joints_.empty()) {
@@ -83,7 +83,7 @@ class JointStates {
       const auto found = joints_.find(name);
       if (found == joints_.end() || found->second.came_s <= instant_s) return std::nullopt;
       if (!std::isfinite(found->second.position))
-        throw std::runtime_error{name + " stands at a position that is no number"};
+        throw std::runtime_error{name + " stands at a position that is not a number"};
       all.q.push_back(found->second.position);
       all.came_s = std::min(all.came_s, found->second.came_s);
     }

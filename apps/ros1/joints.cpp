@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The joints of a ROS robot for Saccade (docs/processes.md).
+// The joints of a ROS robot for Saccade (docs/guides/processes.md).
 //
 //   saccade-ros1 joints ACTION [--states TOPIC] [--silence S] [--timeout S]
 //
@@ -27,9 +27,9 @@ using devices::say;
 using nlohmann::json;
 using Client = actionlib::SimpleActionClient<control_msgs::FollowJointTrajectoryAction>;
 
-constexpr double kGone_s{0.5};  ///< connections of a server that was started anew come and go for a moment
+constexpr double kGone_s{0.5};  ///< connections of a restarted server appear and disappear for a moment
 
-/// Says how a goal ended that did not succeed.
+/// Describes how an unsuccessful goal ended.
 std::string end_of_goal(const Client& client) {
   const actionlib::SimpleClientGoalState state = client.getState();
   std::string text = "the controller ended the motion as " + state.toString();
@@ -79,7 +79,7 @@ class RosJoints {
 
   [[nodiscard]] bool moving() const { return moving_; }
 
-  /// Tells a new position on the way, or the end.
+  /// Reports a new position during the motion, or its end.
   void report() {
     const std::optional<JointPositions> at = states_.after(told_s_);
     const bool done = client_->getState().isDone();
@@ -148,7 +148,7 @@ class RosJoints {
     client_->sendGoal(goal);
   }
 
-  /// Answers when no joint has moved for a while.
+  /// Answers when no joint has moved for some time.
   void stop(const json& number) {
     constexpr double kStill_s{0.04};
     constexpr double kStill{5e-4};  // rad or m within that time

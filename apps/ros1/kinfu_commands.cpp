@@ -12,7 +12,7 @@ namespace {
 
 bool holds(const KinfuCommand& command) { return ros::Time::now() <= command.hint_expiration_time; }
 
-/// Clears a region where there are enough numbers for it; returns what is wrong.
+/// Clears a region if there are enough numbers for it; returns an error text.
 template <class MakeRegion>
 std::string clear(KinfuMap& map, const KinfuCommand& command, std::size_t numbers, const MakeRegion& make) {
   if (command.float_data.size() < numbers) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// KinfuCommands: the author's ten commands, and what they leave for the frames that follow. C++17.
+// KinfuCommands: the author's ten commands, and their effect on the following frames. C++17.
 
 #include <kinfu_msgs/KinfuCommand.h>
 #include <ros/ros.h>
@@ -17,16 +17,16 @@ class KinfuCommands {
   KinfuCommands(ros::NodeHandle node, saccade::ros1::KinfuMap& map, const std::string& topic,
                 const std::string& ack_topic, bool running, bool forced_tf, std::function<void()> on_reset);
 
-  /// What the next frame is to be done with.
+  /// Instructions for the next frame.
   struct Turn {
     bool wanted{false};
     bool forced_tf{false};
     saccade::ros1::Hint hint{saccade::ros1::Hint::none};
     saccade::ros1::PlainPose pose;
   };
-  /// Takes the pending hint along.
+  /// Returns the instructions, including the pending hint.
   Turn next_turn();
-  /// Says that a frame was tracked, or lost: acknowledges a trigger.
+  /// Reports that a frame was tracked, or lost: acknowledges a trigger.
   void frame_done(bool ok);
 
  private:
@@ -42,6 +42,6 @@ class KinfuCommands {
   bool running_;
   bool forced_tf_;
   std::optional<std::string> trigger_;
-  std::optional<kinfu_msgs::KinfuCommand> hint_;  ///< until it expires or a frame used it
+  std::optional<kinfu_msgs::KinfuCommand> hint_;  ///< until it expires or a frame uses it
   ros::Subscriber subscriber_;
 };

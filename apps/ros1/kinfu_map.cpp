@@ -46,10 +46,10 @@ struct KinfuMap::State {
   TsdfMap map;
   std::optional<Pose> T_world_last;
   std::optional<Pose> T_world_fused;
-  std::optional<Pose> T_world_start;  ///< where the next frame is tracked from
+  std::optional<Pose> T_world_start;  ///< start of tracking for the next frame
   std::optional<Eigen::Vector3d> volume_center;
   int frames{0};
-  mutable std::mutex reader;  ///< what questions look at beside the map
+  mutable std::mutex reader;  ///< guards the data that questions read besides the map
   std::optional<PlainCamera> camera;
 
   bool moved(const Pose& T_world_camera) const {
@@ -75,7 +75,7 @@ struct KinfuMap::State {
     return track_frame(map.content(), frame, sensor, start.value_or(report.T_world_camera), executor);
   }
 
-  /// Returns how many megabytes were freed.
+  /// Returns the number of megabytes freed.
   double keep_within_limit() {
     if (config.memory_limit_mb <= 0.0 || !volume_center || ++frames % kFramesPerMemoryCheck != 0) return 0.0;
     const double before = static_cast<double>(map.content().grid.usage().bytes) * 1e-6;
@@ -114,7 +114,7 @@ FrameOutcome KinfuMap::process(PlainFrame plain) {
   if (const Status checked = sensor.validate(); !checked) return fail(checked.error());
   if (plain.hint != Hint::none) {
     const Result<Pose> hint = to_pose(plain.pose);
-    if (!hint) return fail({Errc::invalid_argument, "the pose hint is no pose: " + hint.error().message, {}});
+    if (!hint) return fail({Errc::invalid_argument, "the pose hint is not a pose: " + hint.error().message, {}});
     pose = *hint;
   }
   Frame frame;

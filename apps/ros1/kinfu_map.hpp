@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// KinfuMap: the map behind the node kinfu. Frames are tracked and fused by one thread while others ask questions.
+// KinfuMap: the map of the node kinfu. One thread tracks and fuses frames while others answer questions.
 
 #include <atomic>
 #include <memory>
@@ -15,7 +15,7 @@ struct KinfuConfig {
   double truncation{0.0};                ///< 0: 5.12 voxels
   double min_range{0.1}, max_range{4.4};
   bool minimum_motion{true};
-  double memory_limit_mb{0.0};  ///< above it, what lies outside the volume is forgotten; 0: never
+  double memory_limit_mb{0.0};  ///< above it, space outside the volume is forgotten; 0: never
 };
 
 enum class Hint { none, start, forced };
@@ -25,20 +25,20 @@ struct PlainFrame {
   std::vector<float> metres;
   std::vector<std::uint8_t> rgb;  ///< empty, or as large as the camera's image
   Hint hint{Hint::none};
-  PlainPose pose;  ///< what the hint says
+  PlainPose pose;  ///< pose of the hint
 };
 
 struct FrameOutcome {
-  std::string error;  ///< the frame cannot be used; the map is untouched
+  std::string error;  ///< why the frame is unusable; the map is then untouched
   bool lost{false};
   std::string why;    ///< when lost
-  bool fused{false};  ///< tracked frames that moved too little are not
-  PlainPose pose;     ///< the camera at the last frame that was not lost
+  bool fused{false};  ///< false for tracked frames that moved too little
+  PlainPose pose;     ///< camera pose at the last frame that was not lost
   double track_ms{0.0}, fuse_ms{0.0};
   double forgotten_mb{0.0};
 };
 
-/// What is uploaded: TSDF values at points, and voxels that are known, x fastest.
+/// Upload: TSDF values at points, and known voxels, x fastest.
 struct MapUpload {
   std::vector<std::array<float, 4>> points;  ///< x, y, z, value in [-1, 1]
   PlainBox box;
@@ -49,17 +49,18 @@ struct MapUpload {
 
 class KinfuMap {
  public:
-  /// Throws std::invalid_argument, with what is wrong.
+  /// Throws std::invalid_argument with an error text.
   explicit KinfuMap(const KinfuConfig& config);
   ~KinfuMap();
   KinfuMap(const KinfuMap&) = delete;
   KinfuMap& operator=(const KinfuMap&) = delete;
 
-  // Writers wait for each other, so that any thread may call any of these.
+  // Writers wait for each other, so any thread may call these.
   [[nodiscard]] FrameOutcome process(PlainFrame frame);
-  /// Empties the map. The next frame is taken from `start`, or defines the world. Returns what is wrong with the pose.
+  /// Empties the map. The next frame is tracked from `start`, or defines the world. Returns an error text for a bad
+  /// pose.
   std::string reset(const std::optional<PlainPose>& start);
-  /// Sets voxels unknown, or empty; returns what is wrong with the region.
+  /// Sets voxels unknown, or empty; returns an error text for a bad region.
   std::string clear(const PlainSphere& region, bool to_empty);
   std::string clear(const PlainBox& region, bool to_empty);
   std::string clear(const PlainCylinder& region, bool to_empty);
@@ -67,9 +68,9 @@ class KinfuMap {
   void set_minimum_motion(bool on);
   void set_volume_center(const std::array<double, 3>& center);
 
-  /// Answers from the map as it is at the call, while it goes on. Any thread.
+  /// Answers from the map's state at the call, while it continues to change. Any thread.
   [[nodiscard]] MapAnswer answer(const MapRequest& request, const std::atomic<bool>& cancelled) const;
-  /// Camera of the last frame; nothing before.
+  /// Returns the camera of the last frame; nullopt before the first.
   [[nodiscard]] std::optional<PlainCamera> camera() const;
   [[nodiscard]] double voxel_size() const;
 
@@ -78,7 +79,7 @@ class KinfuMap {
   std::unique_ptr<State> state_;
 };
 
-/// Writes a cloud, or a mesh where there are triangles, as PCD or PLY; returns what went wrong.
+/// Writes a cloud, or a mesh where there are triangles, as PCD or PLY; returns an error text.
 std::string write_answer(const std::string& path, const MapAnswer& answer);
 
 }  // namespace saccade::ros1

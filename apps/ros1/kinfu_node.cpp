@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node kinfu: depth images and transforms in, a map that is asked about. A stand-in for the thesis' node
-// (docs/ros.md).
+// The node kinfu: takes depth images and transforms, and answers questions about its map. A replacement for the thesis'
+// node (docs/guides/ros.md).
 
 #include <ros/callback_queue.h>
 #include <ros/ros.h>
@@ -31,7 +31,7 @@ constexpr double kSayEvery_s{10.0};
 constexpr double kTransformWait_s{0.1};
 constexpr std::chrono::milliseconds kViewPeriod{100};
 
-/// Draws what the camera sees of the map, beside the frames.
+/// Renders the camera's view of the map, beside the frames.
 class CurrentView {
  public:
   CurrentView(ros::NodeHandle node, const KinfuMap& map, const std::string& topic)
@@ -77,7 +77,7 @@ class CurrentView {
   std::thread thread_;
 };
 
-/// The queue of what may not wait for anything else: images and the camera's description, on a thread of their own.
+/// The queue holds urgent work: images and the camera's description, on their own thread.
 class KinfuNode {
  public:
   KinfuNode(ros::NodeHandle node, const KinfuParameters& parameters)
@@ -124,7 +124,7 @@ class KinfuNode {
 
   void on_depth(const sensor_msgs::Image::ConstPtr& image) {
     if (info_) return take(*image);
-    // The first image may overtake the first description: it waits.
+    // The first image may arrive before the first description; it then waits.
     if (std::exchange(early_image_, image)) refuse("no camera_info came on " + parameters_.info_topic);
   }
 
@@ -178,7 +178,7 @@ class KinfuNode {
     }
   }
 
-  /// Takes the frame's pose from TF; says once where there is none.
+  /// Takes the frame's pose from TF; reports once where it is missing.
   bool force_pose(const std_msgs::Header& header, PlainFrame& frame) {
     const std::string current =
         parameters_.forced_current.empty() ? without_slash(header.frame_id) : parameters_.forced_current;

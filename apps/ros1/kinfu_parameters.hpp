@@ -24,5 +24,5 @@ struct KinfuParameters {
   static KinfuParameters read(const ros::NodeHandle& node);
 };
 
-/// tf2 knows no names with a slash in front.
+/// Removes a leading slash, which tf2 does not accept.
 std::string without_slash(const std::string& frame);

@@ -14,7 +14,7 @@ using saccade::ros1::Question;
 namespace {
 
 constexpr double kKeep_s{30.0};
-constexpr double kGrace_s{1.0};  ///< from the first subscriber on: a latched message is sent after it connected
+constexpr double kGrace_s{1.0};  ///< after the first subscriber: a latched message is sent after it connected
 constexpr const char* kBusy{"16 requests are being answered already"};
 
 std::string request_name(const kinfu_msgs::KinfuTsdfRequest& request) {

@@ -38,7 +38,7 @@ class KinfuRequests {
     bool seen{false};
   };
 
-  /// The answer, written to a file where it is too large for a message; error is empty where it went well.
+  /// Result: the answer, written to a file where it is too large for a message; error is empty on success.
   struct Outcome {
     kinfu_msgs::RequestResult result;
     std::string error;
@@ -64,5 +64,5 @@ class KinfuRequests {
   ros::Subscriber subscriber_;
   Requests requests_;
   Uploads uploads_;
-  Workers workers_;  ///< the last, so that they end first
+  Workers workers_;  ///< last member, so that they end first
 };

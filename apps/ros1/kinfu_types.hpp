@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the node asks of the map and what it gets, in standard types: C++17 and C++20 files include this.
-// Lengths are metres; "world" is the frame of the first camera pose.
+// Requests of the node to the map and their answers, in standard types, included by C++17 and C++20 files. Lengths are
+// metres; "world" is the frame of the first camera pose.
 
 #include <array>
 #include <cstdint>
@@ -11,7 +11,7 @@
 
 namespace saccade::ros1 {
 
-/// A linear map, row by row, and a translation. Poses map camera coordinates to the world.
+/// Linear map, row by row, and translation. Poses map camera coordinates to the world.
 struct PlainPose {
   std::array<double, 9> linear{1, 0, 0, 0, 1, 0, 0, 0, 1};
   std::array<double, 3> translation{};
@@ -73,16 +73,16 @@ struct MapRequest {
   bool accurate_surface{false};
   std::optional<double> subsample_m;
   std::optional<PlainCamera> camera;
-  double min_range{0.0};  ///< where rays begin, along z
+  double min_range{0.0};  ///< start of rays, along z
   std::optional<double> emitter_x;
   std::optional<std::vector<PlainPose>> views;
   double occupied_weight{0.0}, occupied_distance_weight{0.0};
   double unknown_weight{0.0}, unknown_distance_weight{0.0};
 };
 
-/// The field that the question names is filled.
+/// Answer; only the field of the question is filled.
 struct MapAnswer {
-  std::string error;  ///< empty: answered
+  std::string error;  ///< empty on success
   bool cancelled{false};
   PlainCloud cloud;
   std::vector<std::array<std::uint32_t, 3>> triangles;
@@ -90,7 +90,7 @@ struct MapAnswer {
   std::vector<std::uint8_t> rgb;
   std::vector<float> floats;
   std::vector<std::uint64_t> counts;
-  std::vector<Dimension> dimensions;  ///< how floats or counts are laid out
+  std::vector<Dimension> dimensions;  ///< layout of floats or counts
 };
 
 }  // namespace saccade::ros1

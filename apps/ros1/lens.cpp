@@ -15,7 +15,7 @@ namespace {
 Distortion distortion_of(const CalibratedCamera& camera) {
   const std::vector<double>& D = camera.D;
   if (std::any_of(D.begin(), D.end(), [](double d) { return !std::isfinite(d); })) {
-    throw std::runtime_error{"camera_info has a coefficient of distortion that is no number"};
+    throw std::runtime_error{"camera_info has a coefficient of distortion that is not a number"};
   }
   const auto beyond = D.begin() + static_cast<std::ptrdiff_t>(std::min<std::size_t>(D.size(), 5));
   const bool zero = std::all_of(D.begin(), D.end(), [](double d) { return d == 0.0; });

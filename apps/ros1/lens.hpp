@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Lens: the camera that a CameraInfo describes, and its images without distortion.
+// Lens: the camera of a CameraInfo, and removal of its distortion from images.
 
 #include <array>
 #include <cstdint>
@@ -10,7 +10,7 @@
 
 namespace saccade::ros1 {
 
-/// A sensor_msgs/CameraInfo, as far as it matters here.
+/// The needed fields of a sensor_msgs/CameraInfo.
 struct CalibratedCamera {
   int width{0};
   int height{0};
@@ -22,8 +22,8 @@ struct CalibratedCamera {
 
 class Lens {
  public:
-  /// @param rectified the images were undistorted already: P describes them, where it is given, and not K and D.
-  /// Throws what is wrong.
+  /// @param rectified the images are already undistorted: P describes them, where it is given, instead of K and D.
+  /// Throws an error text.
   Lens(const CalibratedCamera& camera, bool rectified);
   ~Lens();
 
@@ -31,11 +31,11 @@ class Lens {
   [[nodiscard]] double fy() const { return fy_; }
   [[nodiscard]] double cx() const { return cx_; }
   [[nodiscard]] double cy() const { return cy_; }
-  /// Whether images have to be undistorted.
+  /// Tells whether images must be undistorted.
   [[nodiscard]] bool bends() const { return map_ != nullptr; }
-  /// The nearest pixel's depth, so that two surfaces never blend.
+  /// Undistorts depth by the nearest pixel, so that two surfaces never blend.
   void undistort(std::vector<float>& depth) const;
-  /// Bilinear, three bytes a pixel.
+  /// Undistorts colour bilinearly, three bytes per pixel.
   void undistort(std::string& rgb) const;
 
  private:

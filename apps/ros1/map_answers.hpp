@@ -12,7 +12,7 @@
 
 namespace saccade::ros1 {
 
-/// What an answer is made from.
+/// Data for an answer.
 struct Source {
   const TsdfSnapshot& map;
   std::optional<PinholeCamera> sensor;  ///< the camera that took the last frame
@@ -25,7 +25,7 @@ struct Source {
   }
 };
 
-/// Where voxels and points count: in the box and the sphere, where there are such.
+/// Filter of voxels and points: inside the box and the sphere, where given.
 struct Filter {
   std::optional<Box> box;
   std::optional<Sphere> sphere;
@@ -35,7 +35,7 @@ struct Filter {
   [[nodiscard]] bool operator()(const Eigen::Vector3d& p) const {
     return (!box || contains(*box, p)) && (!sphere || contains(*sphere, p));
   }
-  /// Voxels of a box whose centre the filter may contain.
+  /// Returns the voxels of a box whose centre the filter may contain.
   [[nodiscard]] IndexBox voxels(const IndexBox& within, double voxel_size_m) const;
 };
 
@@ -43,11 +43,11 @@ struct Filter {
 [[nodiscard]] Result<MapAnswer> mesh_answer(const Source& source, const MapRequest& request);
 [[nodiscard]] Result<MapAnswer> known_answer(const Source& source, const MapRequest& request);
 [[nodiscard]] Result<MapAnswer> voxelgrid_answer(const Source& source, const MapRequest& request);
-/// Frontier, border and surface points.
+/// Answers with frontier, border and surface points.
 [[nodiscard]] Result<MapAnswer> points_answer(const Source& source, const MapRequest& request);
 [[nodiscard]] Result<MapAnswer> view_answer(const Source& source, const MapRequest& request);
 [[nodiscard]] Result<MapAnswer> view_cloud_answer(const Source& source, const MapRequest& request);
-/// Counts or scores of views; counts of voxels where there are none.
+/// Answers with counts or scores of views, or counts of voxels without views.
 [[nodiscard]] Result<MapAnswer> views_answer(const Source& source, const MapRequest& request);
 
 }  // namespace saccade::ros1

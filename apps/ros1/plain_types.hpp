@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Between the plain types of kinfu_types.hpp and the library's own. C++20.
+// Conversion between the plain types of kinfu_types.hpp and the library's. C++20.
 
 #include "kinfu_types.hpp"
 #include "saccade/core/pose.hpp"
@@ -19,7 +19,7 @@ namespace saccade::ros1 {
   T.translation() = to_vector(pose.translation);
   return T;
 }
-/// invalid_argument unless it is rigid.
+/// Answers invalid_argument unless it is rigid.
 [[nodiscard]] inline Result<Pose> to_pose(const PlainPose& pose) { return pose_from_matrix(to_affine(pose).matrix()); }
 
 [[nodiscard]] inline PlainPose to_plain(const Pose& T) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of Saccade's for ROS 1 (docs/processes.md, Publishers).
+// Messages of Saccade's for ROS 1 (docs/guides/processes.md, Publishers).
 //
 //   saccade-ros1 publish [--timeout S]
 //
@@ -41,7 +41,7 @@ class Publishers {
     topic.publisher.publish(topic.message);
   }
 
-  /// Joins a master that was started anew, and tells it all that is latched.
+  /// Registers at a restarted master, and repeats all latched messages.
   void idle() {
     if (!connection_.forgotten()) return;
     for (auto& [name, topic] : topics_) topic.publisher.shutdown();

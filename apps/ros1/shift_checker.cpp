@@ -12,7 +12,7 @@
 
 namespace {
 
-/// The point that the camera looks at.
+/// Returns the point that the camera looks at.
 std::array<double, 3> target_of(const saccade::ros1::PlainPose& camera, double distance) {
   std::array<double, 3> target = camera.translation;
   for (std::size_t i = 0; i < 3; ++i) target[i] += distance * camera.linear[3 * i + 2];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ShiftChecker: where the centre of the volume belongs that is kept in memory. C++17.
+// ShiftChecker: where the centre of the volume kept in memory should be. C++17.
 
 #include <ros/ros.h>
 
@@ -14,15 +14,15 @@
 
 #include "kinfu_types.hpp"
 
-/// As the parameter shift_checker says: DEFAULT, NEVER, FIXED x y z, or ROSSERVICE seconds service.
+/// Rule given by the parameter shift_checker: DEFAULT, NEVER, FIXED x y z, or ROSSERVICE seconds service.
 class ShiftChecker {
  public:
   /// Throws std::invalid_argument.
   ShiftChecker(ros::NodeHandle node, const std::string& description, double target_distance, double shift_distance);
   ~ShiftChecker();
-  /// Takes the pose of the camera; returns the centre where it changed. Never waits for a service.
+  /// Takes the camera's pose; returns the centre if it changed. Never waits for a service.
   std::optional<std::array<double, 3>> follow(const saccade::ros1::PlainPose& camera);
-  /// The next pose places the volume anew.
+  /// Makes the next pose place the volume anew.
   void reset();
 
  private:

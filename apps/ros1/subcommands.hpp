@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The nodes that saccade-ros1 can be, one source file each. Each returns the program's exit status.
+// Nodes of saccade-ros1, one source file each. Each returns the program's exit status.
 
 int run_kinfu(int argc, char** argv);
 int run_surfel_next_best_view(int argc, char** argv);
@@ -11,5 +11,5 @@ int run_camera_device(int argc, char** argv);
 int run_joints_device(int argc, char** argv);
 int run_hand_device(int argc, char** argv);
 
-/// Publishes what saccade writes into its input (--publish ros).
+/// Publishes messages that saccade writes to its input (--publish ros).
 int run_publish(int argc, char** argv);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The node surfel_next_best_view: what camera poses would show of known and unknown surfels.
+// The node surfel_next_best_view: rates camera poses by the known and unknown surfels that they would show.
 
 #include <actionlib/server/action_server.h>
 #include <ros/ros.h>
@@ -21,7 +21,7 @@ using surfel_next_best_view_msgs::SetPointCloudAction;
 
 namespace {
 
-/// Finds the colour of a point, which may be a float or an integer of four bytes.
+/// Returns the offset of a point's colour, which may be a float or an integer of four bytes.
 int color_offset(const sensor_msgs::PointCloud2& cloud) {
   for (const auto& field : cloud.fields) {
     if ((field.name == "rgba" || field.name == "rgb") && field.offset + 4 <= cloud.point_step)

@@ -40,7 +40,7 @@ Result<InFilter> make_filter(const SurfelFilter& filter, const char* name) {
   return made;
 }
 
-/// The surfels that are there, as the renderer wants them.
+/// Surfels that are present, in the renderer's format.
 struct Discs {
   std::vector<Eigen::Vector3f> positions, normals;
   std::vector<float> radii;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfelScene: known and unknown surfels, and what views show of them. Standard types: C++17 and C++20 files include
-// this.
+// SurfelScene: known and unknown surfels, and scores of views of them. Standard types: included by C++17 and C++20
+// files.
 
 #include <atomic>
 #include <memory>
@@ -18,7 +18,8 @@ struct PlainSurfel {
   bool unknown{false};
 };
 
-/// Nothing, a sphere (centre, radius) or a box (minimum, maximum); it holds a surfel whose centre lies inside.
+/// Filter: nothing, a sphere (centre, radius) or a box (minimum, maximum). It contains a surfel whose centre lies
+/// inside.
 struct SurfelFilter {
   std::uint32_t type{0};
   std::vector<float> data;
@@ -28,23 +29,23 @@ struct SurfelQuestion {
   PlainCamera camera;
   double min_range{0.0}, max_range{0.0};
   double occupied_score{0.0}, unknown_score{0.0}, distance_weight{0.0}, absolute_weight{0.0};
-  SurfelFilter counted;  ///< others still hide what is behind them
-  SurfelFilter present;  ///< others are not there
+  SurfelFilter counted;  ///< other surfels still hide those behind them
+  SurfelFilter present;  ///< other surfels are ignored
   bool with_images{false}, with_color{false}, with_clouds{false}, lighting{false};
 };
 
-/// What one view shows.
+/// Score of one view.
 struct SurfelScore {
   double score{0.0}, occupied{0.0}, unknown{0.0}, out_of_range{0.0};
-  std::vector<std::uint8_t> image;  ///< one byte a pixel, or four with colour
+  std::vector<std::uint8_t> image;  ///< one byte per pixel, or four with colour
   PlainCloud cloud;                 ///< camera frame; intensity: distance, negative for unknown
 };
 
 class SurfelScene {
  public:
-  /// Replaces the surfels; views that are being evaluated keep theirs. Any thread.
+  /// Replaces the surfels; evaluations in progress keep theirs. Any thread.
   void set(std::vector<PlainSurfel> surfels);
-  /// Returns what is wrong with the question; `scores` then is empty.
+  /// Evaluates poses. Returns an error text for a bad question; `scores` then is empty.
   std::string evaluate(const SurfelQuestion& question, const std::vector<PlainPose>& poses,
                        const std::atomic<bool>& cancelled, std::vector<SurfelScore>& scores) const;
 

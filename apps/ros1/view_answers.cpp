@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Answers that look at the map through a camera.
+// Answers that view the map through a camera.
 
 #include <cmath>
 #include <limits>
@@ -15,7 +15,7 @@ namespace {
 
 constexpr std::size_t kMostViews{100'000};
 
-/// Casts rays as one request wants them.
+/// Casts rays according to one request.
 class RayCaster {
  public:
   RayCaster(const Source& source, const MapRequest& request)
@@ -28,7 +28,7 @@ class RayCaster {
     if (request.view_box) view_voxels_ = voxels_with_center_in(to_box(*request.view_box), map_.config.voxel_size_m);
   }
 
-  /// The voxel that stops a pixel's ray and counts; nullopt where there is none.
+  /// Returns the counted voxel that stops a pixel's ray; nullopt where there is none.
   [[nodiscard]] std::optional<VoxelHit> cast(const SensorRays& rays, const PinholeCamera& camera,
                                              const Pose& T_world_camera, int u, int v) const {
     const LatticeRay ray = pixel_ray(rays, camera, u, v);
@@ -73,7 +73,7 @@ class RayCaster {
     return hit;
   }
 
-  /// Whether something stops the light on its way to a voxel.
+  /// Tells whether something blocks the light to a voxel.
   [[nodiscard]] bool in_shadow(const VoxelHit& hit, const PinholeCamera& camera, const Pose& T_world_camera, int u,
                                int v) const {
     const double voxel_m = map_.config.voxel_size_m;
@@ -116,7 +116,7 @@ Result<Pose> pose_for(const MapRequest& request) {
   return request.transformation ? to_pose(*request.transformation) : Result<Pose>{Pose::Identity()};
 }
 
-/// Occupied and unknown pixels of a view, and the sums of their weights.
+/// Numbers of occupied and unknown pixels of a view, and sums of their weights.
 struct ViewSums {
   std::uint64_t occupied{0}, unknown{0};
   double score{0.0};
@@ -155,7 +155,7 @@ Result<ViewSums> sum_view(const Source& source, const MapRequest& request, const
   return total;
 }
 
-/// Counts the voxels of the filter, without any view.
+/// Counts the voxels of the filter, without a view.
 Result<ViewSums> count_voxels(const Source& source, const MapRequest& request) {
   const Filter filter{request};
   if (!filter.any())

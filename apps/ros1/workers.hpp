@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Workers: threads that answer requests, each of which can be cancelled by its name. C++17.
+// Workers: threads that answer requests and can be cancelled by name. C++17.
 
 #include <atomic>
 #include <functional>
@@ -9,11 +9,11 @@
 #include <string>
 #include <thread>
 
-/// Threads that work on one thing each; joined when they are done, or when this ends.
+/// Threads with one task each; joined when they finish, or at the end of this object.
 class Workers {
  public:
   ~Workers();
-  /// Returns false where kMost are at work already.
+  /// Returns false where kMost threads are running already.
   static constexpr std::size_t kMost{16};
   bool start(std::function<void(const std::atomic<bool>& cancelled)> work, const std::string& name);
   void cancel(const std::string& name);

@@ -11,7 +11,7 @@
 namespace saccade::ros2 {
 namespace {
 
-constexpr double kStill{5e-4};  // a joint that moves less, rad or m, stands
+constexpr double kStill{5e-4};  // rad or m: a joint that moves less counts as still
 constexpr int kStateDepth{20};
 constexpr double kNever_s{-std::numeric_limits<double>::infinity()};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ArmStates: where the joints of an arm stand, picked by name from sensor_msgs/JointState.
+// ArmStates: joint positions of an arm, picked by name from sensor_msgs/JointState.
 
 #include <optional>
 #include <string>
@@ -10,24 +10,24 @@
 
 namespace saccade::ros2 {
 
-/// Messages that name some of the joints, or others besides, are merged.
+/// States of the joints. Messages with only some of the joints, or with others besides, are merged.
 class ArmStates {
  public:
   ArmStates(const Node& node, const std::string& topic, std::vector<std::string> joints);
 
-  /// Takes what has come. Returns whether all joints are known and one of them was told anew. Throws for positions that
-  /// are not finite.
+  /// Handles received messages. Returns whether all joints are known and one of them has new data. Throws for positions
+  /// that are not finite.
   bool hear(double longest_s);
 
-  /// In the order of the joints; radians, metres for prismatic ones.
+  /// Returns the positions in the order of the joints; radians, metres for prismatic ones.
   [[nodiscard]] const std::vector<double>& q() const { return q_; }
-  /// The stamp of the latest message, on the robot's clock; nullopt: it has none.
+  /// Returns the stamp of the latest message, on the robot's clock; nullopt where it has none.
   [[nodiscard]] std::optional<double> stamp_s() const { return stamp_s_; }
-  /// How long ago the joint that was told longest ago was told; infinite: never.
+  /// Returns the age of the oldest joint's data; infinite where there is none.
   [[nodiscard]] double age_s() const;
-  /// How long the joints have been standing where they are.
+  /// Returns how long the joints have been still.
   [[nodiscard]] double still_s() const;
-  /// Says what is missing, for an error.
+  /// Describes what is missing, for an error.
   [[nodiscard]] std::string silence() const;
 
  private:
@@ -36,7 +36,7 @@ class ArmStates {
   std::vector<std::string> joints_;
   Reader<messages::JointState> reader_;
   std::vector<double> q_;
-  std::vector<double> heard_s_;  ///< for each joint
+  std::vector<double> heard_s_;  ///< per joint
   std::optional<double> stamp_s_;
   std::vector<double> still_q_;
   double still_since_s_{0.0};

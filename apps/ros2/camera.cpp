@@ -13,11 +13,11 @@ using devices::Shot;
 using messages::CameraInfo;
 using messages::Image;
 
-constexpr int kDepth{5};             // images that may wait
-constexpr double kSameClock_s{2.0};  // stamps that differ by more are of another clock, as in simulations
+constexpr int kDepth{5};             // largest number of waiting images
+constexpr double kSameClock_s{2.0};  // stamps that differ by more belong to another clock, as in simulations
 constexpr double kImagePatience_s{0.02};
 
-/// Seconds since 1970, the clock of nodes.
+/// Returns seconds since 1970, the clock of nodes.
 double ros_now_s() {
   return std::chrono::duration<double>{std::chrono::system_clock::now().time_since_epoch()}.count();
 }
@@ -71,7 +71,7 @@ class TopicCamera final : public devices::DeviceCamera {
     }
   }
 
-  /// Images between requests are dropped.
+  /// Drops images between requests.
   void idle() override {
     waiting_.clear();
     if (!images_.take().empty()) heard_s_ = devices::now_s();
@@ -82,7 +82,8 @@ class TopicCamera final : public devices::DeviceCamera {
   static std::string seconds(double s) { return nlohmann::json(s).dump() + " s"; }
   static bool has_stamp(const Image& image) { return image.header.stamp != messages::Time{}; }
 
-  /// An image's stamp decides, where it is of this machine's clock; else a number of images that came is passed over.
+  /// Tells whether an image was taken after the request: by its stamp, where it follows this machine's clock; otherwise
+  /// after skipping a number of images.
   [[nodiscard]] bool taken_after(const Image& image, double asked_s, int passed) const {
     const double stamp_s = image.header.stamp.seconds();
     if (skip_ || std::abs(ros_now_s() - stamp_s) > kSameClock_s) return passed >= skip_.value_or(2);
@@ -104,7 +105,7 @@ class TopicCamera final : public devices::DeviceCamera {
   }
 
   double min_range_m_, max_range_m_;
-  std::optional<int> skip_;  ///< nullopt: stamps decide, where they can
+  std::optional<int> skip_;  ///< nullopt: stamps decide, where possible
   double timeout_s_;
   Node node_;
   Reader<Image> images_;

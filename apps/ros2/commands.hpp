@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The commands of saccade-ros2. Each runs until its input ends, returns its exit status, and throws what is wrong.
+// Commands of saccade-ros2. Each runs until its input ends, returns its exit status, and throws error texts.
 
 #include "devices/camera_program.hpp"
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Depth images and cameras as ROS describes them, in the words of docs/processes.md: depth_bytes, intrinsics_of.
+// Conversion of ROS depth images and cameras to the terms of docs/guides/processes.md: depth_bytes, intrinsics_of.
 
 #include <string>
 
@@ -8,19 +8,19 @@
 
 namespace saccade::ros2 {
 
-/// "uint16_mm" for 16UC1 and mono16, "float32_m" for 32FC1. Throws for any other encoding.
+/// Returns "uint16_mm" for 16UC1 and mono16, "float32_m" for 32FC1. Throws for any other encoding.
 [[nodiscard]] const char* depth_format(const messages::Image& image);
 
-/// Pixels row by row without padding, the least significant byte first. Throws what is wrong with the image.
+/// Returns pixels row by row without padding, least significant byte first. Throws for a bad image.
 [[nodiscard]] std::string depth_bytes(const messages::Image& image);
 
-/// The pinhole of an image of the given size; pixels have their centres at integers.
+/// Pinhole intrinsics of an image of the given size; pixels have their centres at integers.
 struct Intrinsics {
   double fx, fy, cx, cy;
 };
 
-/// K where there is no distortion; P, the camera of rectified images, where `rectified`. Binning and the region of
-/// interest are applied. Throws for distorted images, and where the size does not fit.
+/// Returns K without distortion, or P, the camera of rectified images, where `rectified`. Applies binning and the
+/// region of interest. Throws for distorted images, and where the size does not fit.
 [[nodiscard]] Intrinsics intrinsics_of(const messages::CameraInfo& info, const messages::Image& image, bool rectified);
 
 }  // namespace saccade::ros2

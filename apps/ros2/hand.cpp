@@ -18,7 +18,7 @@ constexpr int kMovingDepth{100};
 constexpr double kReadingPatience_s{0.02};
 constexpr double kTick_s{1e-4};
 
-/// A frame of /tf as a hand.
+/// Hand tracked as a frame of /tf.
 class FrameHand {
  public:
   explicit FrameHand(const devices::Options& options)
@@ -57,7 +57,7 @@ class FrameHand {
     for (const TFMessage& message : moving_.wait(longest_s)) note(transforms_.add(message, false));
   }
 
-  /// Waits for a newer reading. Without one in time, the hand is not seen.
+  /// Waits for a newer reading. Without one in time, the hand counts as not visible.
   [[nodiscard]] json sample() {
     const double began_s = now_s();
     for (;;) {
@@ -86,7 +86,7 @@ class FrameHand {
   Transforms transforms_;
   std::optional<double> last_s_;  ///< time of the last reading
   double heard_s_{now_s()};
-  double told_s_{0.0};  ///< times that are told increase
+  double told_s_{0.0};  ///< keeps reported times increasing
   std::set<std::string> noted_;
 };
 

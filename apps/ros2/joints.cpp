@@ -28,7 +28,7 @@ messages::Duration duration_of(double s) {
           static_cast<std::uint32_t>(nanoseconds % 1'000'000'000)};
 }
 
-/// A motion that was asked for.
+/// Requested motion.
 struct Motion {
   json number;
   std::vector<JointTrajectoryPoint> points;
@@ -44,7 +44,7 @@ struct Motion {
   }
 };
 
-/// An arm behind a joint_trajectory_controller.
+/// Arm behind a joint_trajectory_controller.
 class ControlledArm {
  public:
   explicit ControlledArm(const devices::Options& options)
@@ -107,7 +107,7 @@ class ControlledArm {
                              " (ROS_DOMAIN_ID); is the joint_trajectory_controller active?"};
   }
 
-  /// Waits for new positions, and for a condition then. Throws when no positions come.
+  /// Waits for new positions that satisfy a condition. Throws when no positions come.
   template <class Condition>
   bool await(const Condition& met, double longest_s) {
     for (const double began_s = now_s(); now_s() - began_s < longest_s;) {
@@ -138,7 +138,7 @@ class ControlledArm {
     told_anew_ = false;
   }
 
-  /// Tells the positions on the way, and once that the arm has arrived.
+  /// Reports the positions during the motion, and its end once.
   void move() {
     if (states_->age_s() > kSilence_s) throw std::runtime_error{states_->silence()};
     const double elapsed_s = motion_->elapsed_s();
@@ -159,7 +159,7 @@ class ControlledArm {
     tell(motion_->number, {{"done", false}, {"t_s", std::min(elapsed_s, motion_->duration_s())}});
   }
 
-  /// Sends the arm to where it is; where nothing has been heard of it for a while, to where it should be.
+  /// Holds the arm at its position; if it has been silent for some time, where it should be.
   void hold() {
     const bool fresh = states_->age_s() < 0.5 * kSilence_s;
     if (!fresh && !motion_) throw std::runtime_error{states_->silence()};
@@ -171,7 +171,7 @@ class ControlledArm {
     send({here});
   }
 
-  /// A stamp of 0 means: now.
+  /// Sends a trajectory. A stamp of 0 means: now.
   void send(const std::vector<JointTrajectoryPoint>& points) {
     JointTrajectory trajectory;
     trajectory.joint_names = names_;
@@ -192,7 +192,7 @@ class ControlledArm {
   std::optional<ArmStates> states_;
   std::optional<RawWriter> controller_;
   std::optional<Motion> motion_;
-  bool told_anew_{false};  ///< positions came that were not told on
+  bool told_anew_{false};  ///< new positions were not reported yet
 };
 
 }  // namespace

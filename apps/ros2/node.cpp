@@ -36,13 +36,13 @@ bool this_machine_alone() {
   return environment("ROS_LOCALHOST_ONLY") == "1" || environment("ROS_AUTOMATIC_DISCOVERY_RANGE") == "LOCALHOST";
 }
 
-/// Returns an entity's handle, or throws what is wrong.
+/// Returns an entity's handle, or throws an error text.
 dds_entity_t made(dds_entity_t handle, const std::string& what) {
   if (handle < 0) throw std::runtime_error{what + ": " + dds_strretcode(handle)};
   return handle;
 }
 
-/// Others on this machine are asked at their ports: multicast need not work on the loopback interface.
+/// Contacts others on this machine at their ports, because multicast may fail on the loopback interface.
 Entity* local_domain(std::uint32_t domain) {
   const std::string config =
       "<CycloneDDS><Domain Id=\"any\"><General><Interfaces><NetworkInterface address=\"127.0.0.1\"/></Interfaces>"

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Topics of ROS 2 over DDS: Node (a participant), Reader and Writer of one topic, Delivery (what a topic promises).
+// Topics of ROS 2 over DDS: Node (a participant), Reader and Writer of one topic, Delivery (the guarantees of a topic).
 
 #include <cstddef>
 #include <cstdint>
@@ -18,14 +18,14 @@ struct ddsi_sertype;
 
 namespace saccade::ros2 {
 
-/// What a reader asks for, and a writer offers.
+/// Guarantee that a reader requests, and a writer offers.
 enum class Delivery {
-  best_effort,  ///< as sensor data: a reader that asks for it hears reliable writers, too
+  best_effort,  ///< as for sensor data: such a reader also receives from reliable writers
   reliable,     ///< ROS 2's default
-  latched       ///< reliable, and the last message is kept for readers that come later (transient local)
+  latched       ///< reliable, and the last message is kept for later readers (transient local)
 };
 
-/// An entity of DDS, which ends with it.
+/// Entity of DDS, which it deletes at its end.
 class Entity {
  public:
   explicit Entity(std::int32_t handle = 0) : handle_{handle} {}
@@ -38,8 +38,8 @@ class Entity {
   std::int32_t handle_;
 };
 
-/// Takes part in the domain that ROS_DOMAIN_ID says, on this machine alone where ROS_LOCALHOST_ONLY=1 or
-/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST say so. Throws what is wrong. Readers and writers must end before it.
+/// Participant in the domain of ROS_DOMAIN_ID, restricted to this machine where ROS_LOCALHOST_ONLY=1 or
+/// ROS_AUTOMATIC_DISCOVERY_RANGE=LOCALHOST is set. Throws an error text. Readers and writers must end before it.
 class Node {
  public:
   Node();
@@ -52,20 +52,20 @@ class Node {
   std::unique_ptr<Entity> participant_;
 };
 
-/// Messages of one topic, as bytes of CDR.
+/// Reader of one topic, as bytes of CDR.
 class RawReader {
  public:
   using Take = std::function<void(std::span<const std::byte>)>;
 
-  /// @param name of ROS, with or without the first slash
+  /// @param name as in ROS, with or without the first slash
   RawReader(const Node& node, const std::string& name, const std::string& dds_type, Delivery delivery, int depth);
-  /// Hands over what has come, the oldest first.
+  /// Passes on received messages, oldest first.
   void take(const Take& take);
-  /// Waits until something has come, no longer than given.
+  /// Waits until a message arrives, at most for the given time.
   void wait(double longest_s) const;
-  /// How many writers there are.
+  /// Returns the number of writers.
   [[nodiscard]] int writers() const;
-  /// Says, for an error, what is known about who publishes.
+  /// Describes, for an error, which publishers are known.
   [[nodiscard]] std::string publishers() const;
 
  private:
@@ -78,11 +78,11 @@ class RawReader {
 class RawWriter {
  public:
   RawWriter(const Node& node, const std::string& name, const std::string& dds_type, Delivery delivery);
-  /// Throws when it cannot be sent, as when a reliable reader takes nothing for 100 ms.
+  /// Throws when sending fails, as when a reliable reader takes nothing for 100 ms.
   void write(std::span<const std::byte> cdr);
-  /// How many readers there are.
+  /// Returns the number of readers.
   [[nodiscard]] int readers() const;
-  /// Waits until reliable readers have it all, no longer than given.
+  /// Waits until reliable readers have everything, at most for the given time.
   void flush(double longest_s) const;
 
  private:
@@ -91,14 +91,14 @@ class RawWriter {
   Entity writer_;
 };
 
-/// Messages of one topic. What cannot be read is passed over, and said once.
+/// Reader of typed messages. Unreadable messages are skipped and reported once.
 template <class Message>
 class Reader {
  public:
   Reader(const Node& node, std::string name, Delivery delivery, int depth = 10)
       : name_{std::move(name)}, reader_{node, name_, messages::type_of<Message>().dds_name(), delivery, depth} {}
 
-  /// Returns what has come, the oldest first.
+  /// Returns received messages, oldest first.
   [[nodiscard]] std::vector<Message> take() {
     std::vector<Message> came;
     reader_.take([&](std::span<const std::byte> cdr) {
@@ -111,7 +111,7 @@ class Reader {
     });
     return came;
   }
-  /// As take(), after waiting for something to come.
+  /// Waits for a message, then works as take().
   [[nodiscard]] std::vector<Message> wait(double longest_s) {
     reader_.wait(longest_s);
     return take();

@@ -10,7 +10,7 @@ namespace {
 
 constexpr double kFlush_s{1.0};  // for readers that have not acknowledged all
 
-/// sensor_msgs::msg::dds_::Image_ for sensor_msgs/Image and for sensor_msgs/msg/Image.
+/// Returns sensor_msgs::msg::dds_::Image_ for sensor_msgs/Image and for sensor_msgs/msg/Image.
 std::string dds_name_of(const std::string& type) {
   const std::size_t first = type.find('/');
   const std::size_t last = type.rfind('/');
@@ -39,7 +39,7 @@ class Publishers {
     }
   }
 
-  /// Waits until readers have it all, no longer than given.
+  /// Waits until readers have everything, at most for the given time.
   void flush(double longest_s) {
     const double until_s = devices::now_s() + longest_s;
     for (const auto& [name, topic] : topics_) topic.writer->flush(until_s - devices::now_s());

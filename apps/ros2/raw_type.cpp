@@ -11,10 +11,10 @@
 namespace saccade::ros2 {
 namespace {
 
-/// Cyclone DDS counts references to it, and sees its first member alone.
+/// Message. Cyclone DDS counts references to it, and sees only its first member.
 struct RawMessage {
   ddsi_serdata common;
-  std::vector<std::byte> bytes;  ///< with the header; the end is padded to a multiple of 4
+  std::vector<std::byte> bytes;  ///< with the header; padded to a multiple of 4
   std::size_t size;              ///< without that padding
 };
 
@@ -27,13 +27,13 @@ RawMessage* new_message(const ddsi_sertype* type, ddsi_serdata_kind kind, std::s
   return message;
 }
 
-// What Cyclone DDS asks of a message.
+// Functions that Cyclone DDS needs of a message.
 
 uint32_t size_of(const ddsi_serdata* message) { return static_cast<uint32_t>(raw(message).size); }
 
 bool equal_keys(const ddsi_serdata* /*a*/, const ddsi_serdata* /*b*/) { return true; }
 
-/// Puts together what came in packets.
+/// Assembles a message from packets.
 ddsi_serdata* from_packets(const ddsi_sertype* type, ddsi_serdata_kind kind, const nn_rdata* fragment,
                            std::size_t size) {
   RawMessage* message = new_message(type, kind, size);
@@ -66,7 +66,7 @@ ddsi_serdata* from_key(const ddsi_sertype* type, const ddsi_keyhash* /*key*/) {
   return &new_message(type, SDK_KEY, 4)->common;
 }
 
-/// Samples are spans of bytes.
+/// Makes a message from a sample, which is a span of bytes.
 ddsi_serdata* from_sample(const ddsi_sertype* type, ddsi_serdata_kind kind, const void* sample) {
   const auto bytes = kind == SDK_DATA ? *static_cast<const std::span<const std::byte>*>(sample)  //
                                       : std::span<const std::byte>{};
@@ -134,7 +134,7 @@ const ddsi_serdata_ops& message_operations() {
   return operations;
 }
 
-// What it asks of a type.
+// Functions that it needs of a type.
 
 void free_type(ddsi_sertype* type) {
   ddsi_sertype_fini(type);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// A DDS type whose messages stay the bytes that they are sent as: new_raw_type, raw_message, bytes_of.
+// DDS type whose messages remain serialised bytes: new_raw_type, raw_message, bytes_of.
 
 #include <dds/dds.h>
 #include <dds/ddsi/ddsi_serdata.h>
@@ -12,14 +12,14 @@
 
 namespace saccade::ros2 {
 
-/// Makes a keyless type by its name. Nothing but the name is compared when readers and writers are matched, and bytes
-/// are not looked at: who reads a message checks it. To be given to dds_create_topic_sertype, or to be unreferenced.
+/// Makes a keyless type by its name. Matching of readers and writers compares only the name, and bytes are not checked:
+/// the reader of a message checks it. Pass it to dds_create_topic_sertype, or unreference it.
 [[nodiscard]] ddsi_sertype* new_raw_type(const std::string& dds_name);
 
-/// Makes a message of CDR bytes with their header of four bytes, which are copied.
+/// Makes a message from a copy of CDR bytes with their header of four bytes.
 [[nodiscard]] ddsi_serdata* raw_message(const ddsi_sertype* type, std::span<const std::byte> cdr);
 
-/// CDR bytes of a message of such a type, with their header; they live as long as the message.
+/// Returns the CDR bytes of such a message, with their header; they live as long as the message.
 [[nodiscard]] std::span<const std::byte> bytes_of(const ddsi_serdata* message);
 
 }  // namespace saccade::ros2

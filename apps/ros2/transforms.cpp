@@ -12,7 +12,7 @@ namespace {
 constexpr double kKept_s{10.0};
 constexpr double kUnitTolerance{0.01};
 
-/// Without the first slash that ROS 1 had.
+/// Removes the leading slash that ROS 1 had.
 std::string frame_name(const std::string& name) { return name.starts_with('/') ? name.substr(1) : name; }
 
 }  // namespace
@@ -29,7 +29,7 @@ std::string Transforms::add(const messages::TFMessage& message, bool fixed) {
     if (!sample.position.allFinite() || !sample.rotation.coeffs().allFinite()) {
       refuse("is not finite");
     } else if (std::abs(sample.rotation.norm() - 1.0) > kUnitTolerance) {
-      refuse("has a quaternion that is no rotation");
+      refuse("has a quaternion that is not a rotation");
     } else if (child.empty() || parent.empty() || child == parent) {
       refuse("lacks a frame");
     } else {
@@ -81,7 +81,7 @@ std::optional<Located> Transforms::find(const std::string& reference, const std:
     return path.empty() ? frame_name(start) : edges_.at(*path.back()).parent;
   };
   if (root(*up, frame) != root(*down, reference)) return std::nullopt;
-  while (!up->empty() && !down->empty() && up->back() == down->back()) {  // what both have in common
+  while (!up->empty() && !down->empty() && up->back() == down->back()) {  // drops the common part of both
     up->pop_back();
     down->pop_back();
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Transforms: the tree of frames that /tf and /tf_static tell of; Located: where one frame is in another.
+// Transforms: the tree of frames from /tf and /tf_static. Located: pose of one frame in another.
 
 #include <Eigen/Geometry>
 #include <map>
@@ -12,22 +12,22 @@
 
 namespace saccade::ros2 {
 
-/// A frame in another one.
+/// Pose of a frame in another one.
 struct Located {
   Eigen::Isometry3d T_reference_frame;
-  std::optional<double> time_s;  ///< nullopt: nothing between the two ever moves
+  std::optional<double> time_s;  ///< nullopt: all transforms between the two are fixed
 };
 
 class Transforms {
  public:
-  /// Takes what came. Returns what is wrong with the transforms that were refused, in words; empty: nothing.
+  /// Adds a message. Returns a description of rejected transforms; empty if there are none.
   std::string add(const messages::TFMessage& message, bool fixed);
 
-  /// Looks up a frame at the latest time for which all moving transforms between the two are known; each is
-  /// interpolated. nullopt: the two are not connected, or not at a common time.
+  /// Finds a frame at the latest time for which all moving transforms between the two are known, interpolating each.
+  /// nullopt: the two are not connected, or share no time.
   [[nodiscard]] std::optional<Located> find(const std::string& reference, const std::string& frame) const;
 
-  /// Names of all frames, for messages.
+  /// Returns the names of all frames, for messages.
   [[nodiscard]] std::string frames() const;
 
  private:
@@ -36,16 +36,16 @@ class Transforms {
     Eigen::Vector3d position;
     Eigen::Quaterniond rotation;
   };
-  /// From a frame to its parent.
+  /// Edge from a frame to its parent.
   struct Edge {
     std::string parent;
     bool fixed{false};
-    std::vector<Sample> samples;  ///< by time; one alone where fixed
+    std::vector<Sample> samples;  ///< by time; a single one where fixed
 
     [[nodiscard]] std::optional<Eigen::Isometry3d> at(double time_s) const;
   };
 
-  /// Edges from a frame up to the root of its tree, by the names of their lower ends; nullopt in a loop.
+  /// Returns the edges from a frame up to the root of its tree, by the names of their lower ends; nullopt in a loop.
   [[nodiscard]] std::optional<std::vector<const std::string*>> to_root(const std::string& frame) const;
 
   std::map<std::string, Edge> edges_;  ///< by the names of their lower ends

@@ -40,7 +40,7 @@ std::optional<std::string> decoded(std::string_view text, bool plus_is_blank) {
   return out;
 }
 
-/// Takes what stands before `separator` off the text.
+/// Removes the part before `separator` from the text, and returns it.
 std::string_view take_until(std::string_view& text, char separator) {
   const std::string_view part = text.substr(0, text.find(separator));
   text.remove_prefix(std::min(part.size() + 1, text.size()));
@@ -54,7 +54,7 @@ bool is_same_host(std::string_view a, std::string_view b) {
 }  // namespace
 
 Result<Target> parse_target(std::string_view target) {
-  const Error broken{Errc::invalid_argument, "this is no path", ""};
+  const Error broken{Errc::invalid_argument, "this is not a path", ""};
   if (target.empty() || target.front() != '/') return broken;
   std::string_view query = target.substr(0, target.find('#'));
   auto path = decoded(take_until(query, '?'), false);
@@ -107,11 +107,13 @@ bool is_foxglove_origin(std::string_view origin) {
   return name == "localhost" || name == "127.0.0.1" || name == "::1";
 }
 
-std::string_view cookie_value(std::string_view header, std::string_view name) {
-  while (!header.empty()) {
-    std::string_view cookie = take_until(header, ';');
-    while (!cookie.empty() && cookie.front() == ' ') cookie.remove_prefix(1);
-    if (take_until(cookie, '=') == name) return cookie;
+std::string_view offered_token(std::string_view subprotocols) {
+  constexpr std::string_view kPrefix{"saccade.token."};
+  while (!subprotocols.empty()) {
+    std::string_view offered = take_until(subprotocols, ',');
+    while (!offered.empty() && offered.front() == ' ') offered.remove_prefix(1);
+    while (!offered.empty() && offered.back() == ' ') offered.remove_suffix(1);
+    if (offered.starts_with(kPrefix)) return offered.substr(kPrefix.size());
   }
   return {};
 }

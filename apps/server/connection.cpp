@@ -12,8 +12,8 @@ constexpr std::uint16_t kInternalError{1011};
 
 }  // namespace
 
-Connection::Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service, Seat seat,
-                       std::function<void()> wake)
+Connection::Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service,
+                       ConnectionSlot seat, std::function<void()> wake)
     : id_{id},
       config_{config},
       thread_{thread},
@@ -134,13 +134,13 @@ void Connection::serve_one() {
   bool is_end{false};
   {
     const std::lock_guard lock{mutex_};
-    if (thread_.hurries()) {  // nobody is told the answers any more
+    if (thread_.hurries()) {  // no client receives the answers any more
       asked_.clear();
       asked_bytes_ = 0;
     }
     if (asked_.empty()) {
       scheduled_ = false;
-      if (!ended_) return;  // it was closed meanwhile
+      if (!ended_) return;  // closed meanwhile
       is_end = end_told_ = true;
     } else {
       message = std::move(asked_.front());

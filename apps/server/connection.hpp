@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Connection: what one WebSocket has asked and what it is to be told, between the network's thread and the service's.
+// Connection: questions and answers of one WebSocket, between the network's thread and the service's.
 
 #include <deque>
 #include <functional>
@@ -15,11 +15,11 @@
 
 namespace saccade::server {
 
-/// Counts while it is held: one of the WebSockets that may be there at once.
-using Seat = std::shared_ptr<const void>;
+/// Slot of a WebSocket, which counts against the limit while it is held.
+using ConnectionSlot = std::shared_ptr<const void>;
 
-/// Holds a connection to its limits. One that has asked too much is not read from; one that is told more than it reads
-/// gets its next answers when it has read those before; one that others tell too much is ended.
+/// Connection with limits. A client that has asked too much is not read from. A client that reads slowly gets its next
+/// answers after it has read the earlier ones; one that receives too many notices is closed.
 class Connection : public std::enable_shared_from_this<Connection> {
  public:
   struct Closing {
@@ -27,15 +27,15 @@ class Connection : public std::enable_shared_from_this<Connection> {
     std::string reason;
     bool urgent{false};  ///< does not wait for a slow reader
   };
-  /// What the network writes next; neither: nothing.
+  /// Next write of the network; neither: nothing.
   struct Next {
     SharedMessage message;
     std::optional<Closing> closing;
   };
 
-  /// `wake` lets the network's thread call woken(), next() and may_read(); any thread calls it.
-  /// `seat` is held as long as the service has something to do for it.
-  Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service, Seat seat,
+  /// `wake` makes the network's thread call woken(), next() and may_read(); any thread may call it. `seat` is held
+  /// while the service has work for the connection.
+  Connection(ConnectionId id, const ServerConfig& config, ServiceThread& thread, Service& service, ConnectionSlot seat,
              std::function<void()> wake);
 
   [[nodiscard]] ConnectionId id() const { return id_; }
@@ -43,22 +43,22 @@ class Connection : public std::enable_shared_from_this<Connection> {
   // The network's thread.
   void open();
   void ask(Message message);
-  /// Answers a wake. Whether the end is urgent.
+  /// Answers a wake. Returns whether the end is urgent.
   [[nodiscard]] bool woken();
   [[nodiscard]] bool may_read();
-  /// The message is under way until written().
+  /// Returns the next message, which is in progress until written().
   [[nodiscard]] Next next();
   void written();
-  /// Nothing comes any more, and nothing is written.
+  /// Ends the connection: nothing more is read or written.
   void end();
 
   // Any thread.
   void send(SharedMessage message);
-  /// Questions that wait are not asked any more.
+  /// Closes the connection; waiting questions are dropped.
   void close(Closing closing);
 
  private:
-  void schedule();  ///< with the mutex held, as all below
+  void schedule();  ///< requires the mutex, as all below
   void wake();
   [[nodiscard]] bool reads_slowly() const { return told_bytes_ > config_.max_waiting_bytes / 8; }
   [[nodiscard]] bool asks_too_much() const;
@@ -70,18 +70,18 @@ class Connection : public std::enable_shared_from_this<Connection> {
   const ServerConfig& config_;
   ServiceThread& thread_;
   Service& service_;
-  const Seat seat_;
+  const ConnectionSlot seat_;
   const std::function<void()> wake_;
 
-  ServiceThread::Account account_;
+  ServiceThread::FairShare account_;
   std::mutex mutex_;
   std::deque<Message> asked_;
   std::size_t asked_bytes_{0};
-  bool scheduled_{false};  ///< serve_one is under way
+  bool scheduled_{false};  ///< serve_one is scheduled
   bool waits_to_read_{false};
   std::deque<SharedMessage> told_;
   std::size_t under_way_bytes_{0};
-  std::size_t told_bytes_{0};  ///< with those under way
+  std::size_t told_bytes_{0};  ///< including those in progress
   std::optional<Closing> closing_;
   bool closing_taken_{false};
   bool ended_{false};

@@ -22,11 +22,12 @@ namespace asio = boost::asio;
 using asio::ip::tcp;
 using boost::system::error_code;
 
-constexpr std::size_t kPlainSockets{64};  ///< besides WebSockets; further ones are closed
+constexpr std::size_t kPlainSockets{
+    64};  ///< besides WebSockets; further ones take the place of those without the token
 constexpr int kPortTries{16};
 constexpr std::chrono::milliseconds kPauseWithoutFiles{100};  ///< when the process has too many files open
 
-/// The name of this machine; "localhost" where it has none.
+/// Returns the name of this machine; "localhost" where it has none.
 std::string machine_name() {
   std::array<char, 256> name{};
   if (::gethostname(name.data(), name.size() - 1) != 0) return "localhost";
@@ -34,7 +35,7 @@ std::string machine_name() {
   return text.empty() ? "localhost" : text;
 }
 
-/// One address that is listened on.
+/// Listener on one address.
 class Listener {
  public:
   Listener(asio::io_context& network, ServerState& state) : state_{state}, acceptor_{network}, pause_{network} {}
@@ -72,7 +73,9 @@ class Listener {
       return;
     }
     accept();
-    if (error || state_.sessions.size() >= state_.config.max_connections + kPlainSockets) return;
+    if (error) return;
+    const bool full = state_.sessions.size() >= state_.config.max_connections + kPlainSockets;
+    if (full && !state_.make_room()) return;
     std::make_shared<HttpSession>(state_, std::move(socket))->run();
   }
 
@@ -109,7 +112,7 @@ class BeastServer final : public HttpServer {
   }
 
  private:
-  [[nodiscard]] std::string host() const;  ///< and its port
+  [[nodiscard]] std::string host() const;  ///< with its port
   [[nodiscard]] Status listen_on(const asio::ip::address& address);
   void run_network();
 
@@ -117,7 +120,7 @@ class BeastServer final : public HttpServer {
   asio::io_context network_{1};
   asio::executor_work_guard<asio::io_context::executor_type> stays_{network_.get_executor()};
   Listener first_;
-  Listener second_;  ///< of loopback's other kind
+  Listener second_;  ///< for the other kind of loopback address
   asio::ip::address address_;
   std::uint16_t port_{0};
   std::atomic<bool> ending_{false};
@@ -133,7 +136,7 @@ BeastServer::~BeastServer() {
     state_.data_waiting.clear();
     first_.close();
     second_.close();
-    const auto sessions = state_.sessions;  // they take themselves off
+    const auto sessions = state_.sessions;  // a copy, because they remove themselves
     for (const auto& [key, session] : sessions) session->stop();
     stays_.reset();
   });
@@ -141,14 +144,14 @@ BeastServer::~BeastServer() {
   state_.service_thread.finish();
 }
 
-/// "localhost" is 127.0.0.1 or ::1, as the browser likes: nobody else may listen on the other one.
+/// Browsers resolve "localhost" to 127.0.0.1 or ::1, so no other program may listen on the other one.
 Status BeastServer::listen_on(const asio::ip::address& address) {
   const bool is_local = address == asio::ip::address_v4::loopback();
   for (int attempt = 1;; ++attempt) {
     error_code error = first_.open({address, state_.config.port});
     if (!error && is_local) {
       error = second_.open({asio::ip::address_v6::loopback(), first_.port()});
-      if (error != asio::error::address_in_use) return {};  // without IPv6 it has nobody
+      if (error != asio::error::address_in_use) return {};  // without IPv6 no program can listen there
       first_.close();
       if (state_.config.port == 0 && attempt < kPortTries) continue;
     }
@@ -165,10 +168,9 @@ Status BeastServer::open() {
   error_code error;
   address_ = state_.config.address == "localhost" ? asio::ip::address{asio::ip::address_v4::loopback()}
                                                   : asio::ip::make_address(state_.config.address, error);
-  if (error) return Error{Errc::invalid_argument, "is no address of IPv4 or IPv6", state_.config.address};
+  if (error) return Error{Errc::invalid_argument, "is not an IPv4 or IPv6 address", state_.config.address};
   SACCADE_CHECK(listen_on(address_));
   port_ = first_.port();
-  state_.cookie = "saccade_" + std::to_string(port_);
   state_.foxglove_is_open = state_.config.foxglove_only && address_.is_loopback();
   if (address_.is_unspecified()) {
     state_.host_names.insert(machine_name());
@@ -187,7 +189,7 @@ void BeastServer::run_network() {
       network_.run();
       return;
     } catch (const std::exception&) {
-      // Whose handler it was has ended with it; the others go on.
+      // The session with the failed handler has ended with it; the others continue.
     }
   }
 }
@@ -207,7 +209,7 @@ std::string BeastServer::host() const {
 Status ServerConfig::validate() const {
   SACCADE_CHECK(check_token(token));
   for (const std::string& name : host_names) {
-    if (host_name(name).empty()) return Error{Errc::invalid_argument, "is no name of a machine", name};
+    if (host_name(name).empty()) return Error{Errc::invalid_argument, "is not a valid host name", name};
   }
   const bool limits = max_connections > 0 && max_message_bytes > 0 && max_waiting_messages > 0 &&
                       max_waiting_bytes > 0 && request_timeout.count() > 0 && idle_timeout.count() > 0;
@@ -217,7 +219,7 @@ Status ServerConfig::validate() const {
 
 std::string make_token() {
   constexpr std::string_view kDigits{"0123456789abcdef"};
-  std::random_device random;  // the system's
+  std::random_device random;  // the system's source
   std::string token;
   for (int word = 0; word < 4; ++word) {
     const unsigned bits = random();

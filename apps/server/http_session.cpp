@@ -33,8 +33,8 @@ std::string address_text(const boost::asio::ip::address& address) {
   return is_mapped ? ip::make_address_v4(ip::v4_mapped, address.to_v6()).to_string() : address.to_string();
 }
 
-/// The page runs nothing but its own files, shows nothing of others, and nobody shows it. Browsers do not agree on
-/// whether 'self' is the WebSocket, too.
+/// Returns the policy: the page runs only its own files, embeds no other site, and is embedded by none. Browsers
+/// disagree on whether 'self' includes the WebSocket.
 std::string content_policy(std::string_view host) {
   std::string policy{
       "default-src 'self'; img-src 'self' blob: data:; object-src 'none'; base-uri 'none'; form-action 'none'; "
@@ -53,6 +53,7 @@ HttpSession::HttpSession(ServerState& state, boost::asio::ip::tcp::socket socket
 }
 
 void HttpSession::run() {
+  rank_.turn = ++state_.turns;
   state_.sessions.emplace(this, shared_from_this());
   guard([this] { read(); });
 }
@@ -67,6 +68,7 @@ void HttpSession::finish() {
 }
 
 void HttpSession::read() {
+  rank_.in_request = false;
   parser_.emplace();
   parser_->header_limit(kMostHeaderBytes);
   stream_.expires_after(state_.config.request_timeout);
@@ -79,13 +81,15 @@ void HttpSession::on_read(ErrorCode error) {
   if (finished_) return;
   stream_.expires_never();
   request_ = {};
+  rank_.in_request = true;
+  rank_.turn = ++state_.turns;
   if (error == http::error::header_limit || error == http::error::buffer_overflow) {
     return refuse(status::request_header_fields_too_large, "The headers are too long.");
   }
   if (error == http::error::body_limit) return refuse(status::payload_too_large, "Requests have no body here.");
   if (error && error.category() == http::make_error_code(http::error::bad_version).category() &&
       error != http::error::end_of_stream && error != http::error::partial_message) {
-    return refuse(status::bad_request, "This is no request.");
+    return refuse(status::bad_request, "This is not a valid request.");
   }
   if (error) return finish();
   const bool has_body = !parser_->is_done();
@@ -102,10 +106,12 @@ bool HttpSession::is_foreign() const {
   return !site.empty() && site != "same-origin" && site != "none";
 }
 
-bool HttpSession::has_token(const Target& target) const {
+std::string_view HttpSession::given_token(const Target& target) const {
   const auto given = target.query.find("token");
-  if (given != target.query.end() && is_same_token(given->second, state_.config.token)) return true;
-  return is_same_token(cookie_value(text_of(request_[field::cookie]), state_.cookie), state_.config.token);
+  if (given != target.query.end()) return given->second;
+  const auto header = request_.find(boost_view(kTokenHeader));
+  if (header != request_.end()) return text_of(header->value());
+  return offered_token(text_of(request_[field::sec_websocket_protocol]));
 }
 
 bool HttpSession::has_own_host() const {
@@ -124,8 +130,8 @@ bool HttpSession::is_for_foxglove(const Target& target) const {
   return target.path == "/foxglove" || (target.path == "/" && state_.config.foxglove_only);
 }
 
-void HttpSession::answer_foxglove(const Target& target) {
-  if (!has_token(target)) {
+void HttpSession::answer_foxglove(bool has_token) {
+  if (!has_token) {
     if (!state_.foxglove_is_open) {
       return refuse(status::forbidden, "Foxglove's address is what the program printed: it ends with its token.");
     }
@@ -143,17 +149,20 @@ void HttpSession::answer_foxglove(const Target& target) {
   if (subprotocol.empty()) {
     return refuse(status::bad_request, "The subprotocol is foxglove.sdk.v1 or foxglove.websocket.v1 here.");
   }
-  Seat seat = state_.take_seat();
+  ConnectionSlot seat = state_.take_seat();
   if (!seat) return refuse(status::service_unavailable, "Too many are connected.");
   const auto session = std::make_shared<FoxgloveSession>(state_, std::move(stream_), std::move(seat), subprotocol);
-  finished_ = true;  // the socket is another's now
+  finished_ = true;  // another session owns the socket now
   state_.sessions.erase(this);
   session->run(std::move(request_));
 }
 
 void HttpSession::answer_request() {
   const auto target = parse_target(text_of(request_.target()));
-  if (target && is_for_foxglove(*target)) return answer_foxglove(*target);
+  const std::string_view given = target ? given_token(*target) : std::string_view{};
+  const bool has_token = is_same_token(given, state_.config.token);
+  rank_.has_token = rank_.has_token || has_token;
+  if (target && is_for_foxglove(*target)) return answer_foxglove(has_token);
   const std::string_view host = text_of(request_[field::host]);
   if (!has_own_host()) {
     return refuse(status::forbidden, "This name is not known here: start the program with --host NAME.");
@@ -163,21 +172,21 @@ void HttpSession::answer_request() {
       return refuse(status::forbidden, "Pages of another origin get nothing here.");
     }
   }
-  if (!target) return refuse(status::bad_request, "This is no path.");
+  if (!target) return refuse(status::bad_request, "This is not a valid path.");
   const std::string path = target->path == "/" ? "index.html" : target->path.substr(1);
-  if (path.starts_with("assets/")) return answer_page(*target, path);
-  if (!has_token(*target)) {
+  const bool to_socket = target->path == "/socket";
+  const bool to_page = !to_socket && !target->path.starts_with(kDataPrefix);
+  if (!has_token && !(to_page && given.empty())) {
     return refuse(status::forbidden, "Open the address that the program printed: it ends with its token.");
   }
-  const bool to_socket = target->path == "/socket";
-  if (!to_socket && !target->path.starts_with(kDataPrefix)) return answer_page(*target, path);
+  if (to_page) return answer_page(path);
   if (is_foreign()) return refuse(status::forbidden, "Pages of another site get nothing here.");
   if (state_.service == nullptr) return refuse(status::service_unavailable, "The program is not ready yet.");
   if (to_socket) return open_socket();
   answer_data(*target);
 }
 
-void HttpSession::answer_page(const Target& target, const std::string& path) {
+void HttpSession::answer_page(const std::string& path) {
   const auto found = state_.files.find(path);
   if (found == state_.files.end()) return refuse(status::not_found, "There is no such file.");
   const CachedFile& cached = found->second;
@@ -186,9 +195,6 @@ void HttpSession::answer_page(const Target& target, const std::string& path) {
   answer.set(field::content_type, boost_view(cached.file.content_type));
   answer.set(field::cache_control, "no-cache");
   answer.set(field::etag, cached.etag);
-  if (target.query.contains("token") && has_token(target)) {
-    answer.set(field::set_cookie, state_.cookie + "=" + state_.config.token + "; Path=/; HttpOnly; SameSite=Strict");
-  }
   const auto content = cached.file.content;
   if (!unchanged) answer.body() = {reinterpret_cast<const char*>(content.data()), content.size()};
   write(std::move(answer));
@@ -198,10 +204,10 @@ void HttpSession::open_socket() {
   if (!beast::websocket::is_upgrade(request_) || request_.method() != http::verb::get) {
     return refuse(status::upgrade_required, "This is the WebSocket's place.");
   }
-  Seat seat = state_.take_seat();
+  ConnectionSlot seat = state_.take_seat();
   if (!seat) return refuse(status::service_unavailable, "Too many pages are open.");
   const auto socket = std::make_shared<SocketSession>(state_, std::move(stream_), std::move(seat));
-  finished_ = true;  // the socket is another's now
+  finished_ = true;  // another session owns the socket now
   state_.sessions.erase(this);
   socket->run(std::move(request_));
 }
@@ -230,7 +236,7 @@ void HttpSession::answer_data(const Target& target) {
   });
 }
 
-/// It counts until it is written, as it takes memory until then.
+/// Ends the answer. It counts until it is written, because it takes memory until then.
 void HttpSession::end_data() {
   if (std::exchange(gives_data_, false)) --state_.data_requests;
 }
@@ -295,6 +301,7 @@ void HttpSession::write_some() {
 }
 
 void HttpSession::linger() {
+  rank_.in_request = false;
   ErrorCode ignored;
   stream_.socket().shutdown(boost::asio::ip::tcp::socket::shutdown_send, ignored);
   stream_.expires_after(state_.config.request_timeout);

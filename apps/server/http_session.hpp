@@ -26,6 +26,7 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   HttpSession(ServerState& state, boost::asio::ip::tcp::socket socket);
   void run();
   void stop() override;
+  [[nodiscard]] Rank rank() const override { return rank_; }
 
  private:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
@@ -35,27 +36,28 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   void read();
   void on_read(ErrorCode error);
   void answer_request();
-  void answer_page(const Target& target, const std::string& path);
+  void answer_page(const std::string& path);
   void answer_data(const Target& target);
   void on_data(HttpAnswer answer);
   void end_data();
   void open_socket();
   [[nodiscard]] bool is_for_foxglove(const Target& target) const;
-  void answer_foxglove(const Target& target);
-  [[nodiscard]] bool has_token(const Target& target) const;
-  /// Whether there is one Host header, and it means this server.
+  void answer_foxglove(bool has_token);
+  /// Returns the token that the request gives: in a header, or as ?token=; empty without one.
+  [[nodiscard]] std::string_view given_token(const Target& target) const;
+  /// Tells whether there is exactly one Host header, and it names this server.
   [[nodiscard]] bool has_own_host() const;
-  /// Whether a client without the token may look on: a program, or Foxglove itself.
+  /// Tells whether a client without the token may watch: a program, or Foxglove itself.
   [[nodiscard]] bool is_foxglove() const;
-  /// Of the browser's own making: another site's page asked.
+  /// Tells, by a header that browsers set themselves, whether another site's page sent the request.
   [[nodiscard]] bool is_foreign() const;
 
-  /// An answer in a line of text; after a refusal the socket is closed.
+  /// Answers with a line of text; after a refusal the socket is closed.
   void refuse(boost::beast::http::status status, std::string_view why);
   [[nodiscard]] boost::beast::http::response<Body> begin_answer(boost::beast::http::status status) const;
   void write(boost::beast::http::response<Body> answer);
   void write_some();
-  /// Lets the client read what it was told before the socket is closed.
+  /// Lets the client read the answer before the socket is closed.
   void linger();
   void discard();
   void finish() override;
@@ -66,12 +68,13 @@ class HttpSession : public Session, public std::enable_shared_from_this<HttpSess
   boost::beast::flat_buffer buffer_;
   std::optional<boost::beast::http::request_parser<boost::beast::http::empty_body>> parser_;
   Request request_;
-  std::string text_;        ///< what is answered, where it is text
-  HttpAnswer data_;         ///< where it is data
-  bool gives_data_{false};  ///< from its question until it is written
+  std::string text_;        ///< answer, where it is text
+  HttpAnswer data_;         ///< answer, where it is data
+  bool gives_data_{false};  ///< from the request until it is written
   boost::beast::http::response<Body> answer_;
   std::optional<boost::beast::http::response_serializer<Body>> serializer_;
   std::size_t discarded_{0};
+  Rank rank_{false, false, 0};
   bool finished_{false};
 };
 

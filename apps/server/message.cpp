@@ -20,8 +20,8 @@ std::size_t padded(std::size_t bytes) { return (bytes + 3) / 4 * 4; }
 }  // namespace
 
 Result<json> parse_object(std::string_view text) {
-  const Error broken{Errc::corrupt_data, "the head is no JSON object", ""};
-  if (text.find('\0') != std::string_view::npos) return broken;  // the parser takes it for the end
+  const Error broken{Errc::corrupt_data, "the head is not a JSON object", ""};
+  if (text.find('\0') != std::string_view::npos) return broken;  // the parser would take it for the end
   bool too_deep{false};
   const auto watch_depth = [&too_deep](int depth, json::parse_event_t event, json& /*parsed*/) {
     const bool goes_down = event == json::parse_event_t::object_start || event == json::parse_event_t::array_start;
@@ -62,7 +62,7 @@ Result<Question> parse_question(std::span<const std::uint8_t> message) {
   const auto request = parsed.head.find("request");
   if (type == parsed.head.end() || !type->is_string()) return Error{Errc::invalid_argument, "has no type", ""};
   if (request == parsed.head.end() || !request->is_number_unsigned() || request->get<std::uint64_t>() == 0) {
-    return Error{Errc::invalid_argument, "has no request, a whole number from 1", ""};
+    return Error{Errc::invalid_argument, "has no request, an integer from 1", ""};
   }
   return Question{type->get<std::string>(), request->get<std::uint64_t>(), std::move(parsed.head)};
 }

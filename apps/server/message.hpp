@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages of the WebSocket: a head of JSON and a body of arrays. docs/protocol.md.
+// Messages of the WebSocket: a head of JSON and a body of arrays. docs/reference/protocol.md.
 
 #include <cstdint>
 #include <nlohmann/json.hpp>
@@ -14,8 +14,8 @@
 
 namespace saccade::server {
 
-/// corrupt_data for what is no JSON object, not UTF-8 or nested deeper than 32. Never throws; takes time and memory in
-/// proportion to the text.
+/// Parses a JSON object. Answers corrupt_data for anything else, for text that is not UTF-8 or nested deeper than 32.
+/// Never throws; takes time and memory in proportion to the text.
 [[nodiscard]] Result<nlohmann::json> parse_object(std::string_view text);
 
 struct ParsedMessage {
@@ -23,15 +23,15 @@ struct ParsedMessage {
   std::span<const std::uint8_t> body;
 };
 
-/// corrupt_data for what is no message: cut short, no JSON object, not UTF-8, nested deeper than 32. Never throws;
-/// takes time and memory in proportion to the message. Padding that nothing follows may be left out.
+/// Parses a message. Answers corrupt_data for a truncated one, a head that is not a JSON object, not UTF-8, or nested
+/// deeper than 32. Never throws; takes time and memory in proportion to the message. Final padding may be missing.
 [[nodiscard]] Result<ParsedMessage> parse_message(std::span<const std::uint8_t> message);
 
-/// Builds a message: a head, then arrays one after the other.
+/// Builder of a message: a head, then consecutive arrays.
 class MessageWriter {
  public:
   explicit MessageWriter(const nlohmann::json& head);
-  /// Of trivially copyable elements; the machine is little-endian.
+  /// Appends an array of trivially copyable elements; the machine is little-endian.
   template <class T>
   void append(std::span<const T> values) {
     const auto bytes = std::as_bytes(values);
@@ -44,14 +44,14 @@ class MessageWriter {
   Message bytes_;
 };
 
-/// What a question asks, before its answer is looked for.
+/// Question before it is answered.
 struct Question {
   std::string type;
   std::uint64_t request{0};
   nlohmann::json head;
 };
 
-/// invalid_argument without a type and a whole, positive request.
+/// Parses a question. Answers invalid_argument without a type and a positive integer request.
 [[nodiscard]] Result<Question> parse_question(std::span<const std::uint8_t> message);
 [[nodiscard]] nlohmann::json answer_head(const Question& question);
 [[nodiscard]] SharedMessage refusal(std::uint64_t request, const Error& error);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "server/server_state.hpp"
 
+#include <algorithm>
 #include <utility>
 
 #include "saccade/core/fnv1a.hpp"
@@ -35,10 +36,19 @@ ServerState::ServerState(ServerConfig server_config)
   }
 }
 
-Seat ServerState::take_seat() {
+ConnectionSlot ServerState::take_seat() {
   if (web_sockets >= config.max_connections) return nullptr;
   ++web_sockets;
   return {&web_sockets, [](std::atomic<std::size_t>* taken) { --*taken; }};
+}
+
+bool ServerState::make_room() {
+  const auto least = std::min_element(sessions.begin(), sessions.end(),
+                                      [](const auto& a, const auto& b) { return a.second->rank() < b.second->rank(); });
+  if (least == sessions.end() || least->second->rank().has_token) return false;
+  const std::shared_ptr<Session> session = least->second;  // it removes itself
+  session->stop();
+  return true;
 }
 
 void ServerState::ask_data(std::function<void()> work) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Service: what stands behind a server. Clients: whom it speaks to.
+// Service: handles a server's requests. Clients: the connections that it answers.
 
 #include <cstdint>
 #include <map>
@@ -17,13 +17,14 @@ using ConnectionId = std::uint64_t;
 using Message = std::vector<std::uint8_t>;
 using SharedMessage = std::shared_ptr<const Message>;
 
-/// Any thread may call.
+/// Connections of a service. Any thread may call.
 class Clients {
  public:
   virtual ~Clients() = default;
-  /// In the order of calls; to a connection that has ended, nothing. One that reads too slowly is ended.
+  /// Sends a message, in the order of calls; ignored after the connection has ended. A client that reads too slowly is
+  /// disconnected.
   virtual void send(ConnectionId to, SharedMessage message) = 0;
-  /// After what was sent before. `code` as of RFC 6455; the reason is short.
+  /// Closes a connection after earlier messages. `code` as in RFC 6455; the reason is short.
   virtual void close(ConnectionId connection, std::uint16_t code, const std::string& reason) = 0;
 };
 
@@ -31,7 +32,7 @@ class Clients {
 struct HttpAnswer {
   int status{200};
   std::string content_type{"application/octet-stream"};
-  std::string file_name;  ///< the browser keeps the answer under this name; empty: it shows it
+  std::string file_name;  ///< name under which the browser saves the answer; empty: it shows it
   std::vector<std::uint8_t> body;
 };
 
@@ -40,15 +41,15 @@ struct HttpRequest {
   std::map<std::string, std::string> query;
 };
 
-/// All of this is called on one thread, which is not that of the network, one call after the other: what a service
-/// keeps needs no locks. Questions of a connection come in their order; whose is next ServiceThread says. A connection
-/// has few messages waiting: whoever sends more is not read from meanwhile.
+/// Service. All methods are called one after the other on one thread, which is not the network's, so its state needs no
+/// locks. Questions of a connection come in order; ServiceThread chooses the next connection. Few messages wait per
+/// connection: a client that sends more is not read from meanwhile.
 class Service {
  public:
   virtual ~Service() = default;
   virtual void opened(ConnectionId connection) = 0;
   virtual void received(ConnectionId connection, std::span<const std::uint8_t> message) = 0;
-  /// After the last message of this connection.
+  /// Called after the last message of this connection.
   virtual void closed(ConnectionId connection) = 0;
   [[nodiscard]] virtual HttpAnswer get(const HttpRequest& request) = 0;
 };

@@ -13,13 +13,13 @@ constexpr std::chrono::duration<double> kRemembered{0.5};
 
 }  // namespace
 
-ServiceThread::Account::Account(ServiceThread& thread) {
+ServiceThread::FairShare::FairShare(ServiceThread& thread) {
   const std::lock_guard lock{thread.mutex_};
   used_ = thread.most_;
 }
 
 void ServiceThread::post(std::function<void()> work) { wait_for({nullptr, std::move(work)}); }
-void ServiceThread::post(Account& account, std::function<void()> work) { wait_for({&account, std::move(work)}); }
+void ServiceThread::post(FairShare& account, std::function<void()> work) { wait_for({&account, std::move(work)}); }
 
 void ServiceThread::wait_for(Turn turn) {
   {
@@ -52,7 +52,7 @@ ServiceThread::Turn ServiceThread::next() {
     return turn;
   }
   const auto least = std::min_element(waiting_.begin(), waiting_.end(), [](const Turn& a, const Turn& b) {
-    return a.account->used_ < b.account->used_;  // of several the first, which waits longest
+    return a.account->used_ < b.account->used_;  // at a tie the first, which waits longest
   });
   turn = std::move(*least);
   waiting_.erase(least);
@@ -60,7 +60,7 @@ ServiceThread::Turn ServiceThread::next() {
   return turn;
 }
 
-void ServiceThread::charge(Account& account, Used took) {
+void ServiceThread::charge(FairShare& account, Used took) {
   const std::lock_guard lock{mutex_};
   account.used_ += std::min(took, kRemembered);
   most_ = std::max(most_, account.used_);

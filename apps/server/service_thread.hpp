@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ServiceThread: does one thing after the other. Account: what one of those who share it has used.
+// ServiceThread: performs work one after the other. FairShare: the time used by one of its clients.
 
 #include <atomic>
 #include <chrono>
@@ -13,15 +13,16 @@
 
 namespace saccade::server {
 
-/// Whoever has used the thread least is next, as in start-time fair queuing (Goyal, Vin and Cheng, 1997): many who ask
-/// much make nobody wait who asks little. Between two accounts no more than half a second is remembered: whoever was
-/// idle does not hold up the others for longer, and nobody waits longer for what it used alone.
+/// Thread with start-time fair queuing (Goyal, Vin and Cheng, 1997). The client that has used the thread least runs
+/// next, so heavy clients never delay light ones. Differences of more than half a second are forgotten: a client that
+/// was idle cannot block the others for longer, and no client waits longer for time that it used alone.
 class ServiceThread {
  public:
-  /// A new one begins as the one that has used most: to leave and come back gains nothing. It outlives its work.
-  class Account {
+  /// Account of a client. A new one starts level with the one that has used most, so reconnecting gains nothing. It
+  /// must outlive its work.
+  class FairShare {
    public:
-    explicit Account(ServiceThread& thread);
+    explicit FairShare(ServiceThread& thread);
 
    private:
     friend class ServiceThread;
@@ -33,35 +34,35 @@ class ServiceThread {
   ServiceThread& operator=(const ServiceThread&) = delete;
   ~ServiceThread() { finish(); }
 
-  /// Any thread may call both. `work` does not throw. After finish() it is not done. That of no account goes before
-  /// that of accounts, in the order of calls; so does that of one account.
+  /// Post work; any thread may call. `work` must not throw. After finish() it is dropped. Work without an account
+  /// precedes work of accounts, in the order of calls; each account's own work keeps its order, too.
   void post(std::function<void()> work);
-  void post(Account& account, std::function<void()> work);
-  /// Says that finish() is near: whoever can leave work undone does. Any thread may call both.
+  void post(FairShare& account, std::function<void()> work);
+  /// Announces finish(): running work should skip whatever it can. Any thread may call both.
   void hurry() { hurries_ = true; }
   [[nodiscard]] bool hurries() const { return hurries_; }
-  /// Does what waits, and what that posts, then ends.
+  /// Performs waiting work, and work posted by it, then ends.
   void finish();
 
  private:
   using Used = std::chrono::duration<double>;
   struct Turn {
-    Account* account{nullptr};  ///< none: of the program itself
+    FairShare* account{nullptr};  ///< null: the program's own work
     std::function<void()> work;
   };
 
   void wait_for(Turn turn);
-  [[nodiscard]] Turn next();  ///< with the mutex held; something waits
-  void charge(Account& account, Used took);
+  [[nodiscard]] Turn next();  ///< requires the mutex and waiting work
+  void charge(FairShare& account, Used took);
   void run();
 
   std::atomic<bool> hurries_{false};
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::deque<Turn> own_;     ///< of no account
-  std::list<Turn> waiting_;  ///< in the order of calls; one of each account, as a rule
-  Used least_{0};            ///< what the next has used, at least: the virtual time
-  Used most_{0};             ///< what any account has used
+  std::deque<Turn> own_;     ///< without an account
+  std::list<Turn> waiting_;  ///< in the order of calls; usually one per account
+  Used least_{0};            ///< smallest time used by the next: the virtual time
+  Used most_{0};             ///< largest time used by any account
   bool finishing_{false};
   bool finished_{false};
   std::thread thread_;

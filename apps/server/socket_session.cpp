@@ -3,6 +3,8 @@
 
 #include <boost/asio/post.hpp>
 
+#include "server/access.hpp"
+
 namespace saccade::server {
 namespace {
 
@@ -10,13 +12,14 @@ namespace websocket = boost::beast::websocket;
 
 constexpr std::uint16_t kGoingAway{1001};
 constexpr std::uint16_t kUnknownData{1003};
-constexpr std::size_t kFragmentBytes{64U << 10U};      // between two of a long message, pings find their way
-constexpr std::chrono::milliseconds kGrace{2000};      // for an urgent end's last words
-constexpr std::chrono::milliseconds kGraceAtEnd{200};  // of the program, whose user waits
+constexpr std::size_t kFragmentBytes{
+    64U << 10U};  // fragment size of a long message, so that pings get through between fragments
+constexpr std::chrono::milliseconds kGrace{2000};      // for the last messages before an urgent end
+constexpr std::chrono::milliseconds kGraceAtEnd{200};  // at the end of the program, whose user waits
 
 }  // namespace
 
-SocketSession::SocketSession(ServerState& state, boost::beast::tcp_stream stream, Seat seat)
+SocketSession::SocketSession(ServerState& state, boost::beast::tcp_stream stream, ConnectionSlot seat)
     : state_{state},
       seat_{std::move(seat)},
       stream_{std::move(stream)},
@@ -29,13 +32,20 @@ void SocketSession::run(boost::beast::http::request<boost::beast::http::empty_bo
 }
 
 void SocketSession::begin(boost::beast::http::request<boost::beast::http::empty_body> request) {
-  boost::beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own
+  const auto offered = request[boost::beast::http::field::sec_websocket_protocol];
+  boost::beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeout
   stream_.set_option(
       websocket::stream_base::timeout{state_.config.request_timeout, state_.config.idle_timeout, /*pings=*/true});
   stream_.read_message_max(state_.config.max_message_bytes);
   stream_.write_buffer_bytes(kFragmentBytes);
   stream_.auto_fragment(true);
   stream_.binary(true);
+  if (!offered_token({offered.data(), offered.size()}).empty()) {
+    stream_.set_option(websocket::stream_base::decorator{[](websocket::response_type& answer) {
+      answer.set(boost::beast::http::field::sec_websocket_protocol,
+                 boost::string_view{kSubprotocol.data(), kSubprotocol.size()});
+    }});
+  }
   const auto kept = std::make_shared<decltype(request)>(std::move(request));
   stream_.async_accept(
       *kept, [self = shared_from_this(), kept](ErrorCode error) { self->guard([&] { self->on_accept(error); }); });

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SocketSession: one WebSocket of the network's thread. What it may do its Connection says.
+// SocketSession: one WebSocket on the network's thread. Its Connection decides what it may do.
 
 #include <utility>  // Boost.Asio 1.74 lacks it
 
@@ -19,7 +19,7 @@ namespace saccade::server {
 
 class SocketSession : public Session, public std::enable_shared_from_this<SocketSession> {
  public:
-  SocketSession(ServerState& state, boost::beast::tcp_stream stream, Seat seat);
+  SocketSession(ServerState& state, boost::beast::tcp_stream stream, ConnectionSlot seat);
   void run(boost::beast::http::request<boost::beast::http::empty_body> request);
   void stop() override;
 
@@ -37,7 +37,7 @@ class SocketSession : public Session, public std::enable_shared_from_this<Socket
   void begin(boost::beast::http::request<boost::beast::http::empty_body> request);
 
   ServerState& state_;
-  const Seat seat_;
+  const ConnectionSlot seat_;
   boost::beast::websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> stream_;
   boost::asio::steady_timer grace_;
   boost::beast::flat_buffer buffer_;

@@ -18,7 +18,7 @@ struct MeanAndDeviation {
   double deviation;
 };
 
-/// Of ten persons; errors are points.
+/// Results of ten persons; errors are points.
 struct StudiedMethod {
   MeanAndDeviation minutes;
   MeanAndDeviation undos_per_minute;
@@ -56,7 +56,7 @@ inline constexpr std::array<Opinion, 5> kTable4_7{{{"Learnability", {8.9, 0.8}, 
 /// Table 4.8: of scenario 1.
 struct AnnotationTimes {
   double graph_ms;
-  double annotation_ms;  ///< from so many control points
+  double annotation_ms;  ///< for this number of control points: kTable4_8ControlPoints
   double addition_ms;
   double deletion_ms;
 };

@@ -14,7 +14,7 @@ constexpr double kBarHeight_m{2.0};
 constexpr double kSensorHeight_m{1.0};
 constexpr double kToBar_m{1.0};
 constexpr double kToWall_m{1.5};
-constexpr double kThickness_m{1.0};  // of walls and tops, whose backs are no planes here
+constexpr double kThickness_m{1.0};  // thickness of walls and tops, so that their backs are no planes here
 constexpr double kFar_m{30.0};
 
 /// `center` is the middle of its lower face; turned about z.
@@ -46,7 +46,7 @@ double distance_from_surface(const Vector3d& half_m, const Vector3d& p) {
 }  // namespace
 
 Result<FilterScene> bar_before_wall(double width_m, double angle_rad) {
-  const double back_m = 0.5 * width_m;  // of the bar, from its axis
+  const double back_m = 0.5 * width_m;  // distance of the bar's back from its axis
   const double wall_m = back_m + kToWall_m;
   const Vector3d axis{0.0, 0.0, kSensorHeight_m};
   const Vector3d camera = axis + (kToBar_m + back_m) * Vector3d{-std::cos(angle_rad), -std::sin(angle_rad), 0.0};

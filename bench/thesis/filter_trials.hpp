@@ -30,7 +30,7 @@ struct FilterScene {
 /// A table with a box and a board, seen from 1.1 m above the table, 35° downwards; the box is about 1 m away.
 [[nodiscard]] Result<FilterScene> planar_table();
 
-/// What became of the points of one image.
+/// Score of the points of one image.
 struct FilterScore {
   std::size_t points{0};
   std::size_t removed{0};

@@ -23,7 +23,7 @@ inline constexpr TaskRates kTable2_2PickAndPlace{{94.5, 98.2}, {97.7, 97.3}};
 
 /// Over all tasks, at another speed or with noise.
 struct ConditionRates {
-  double speed;  ///< so many times the samples
+  double speed;  ///< multiple of the number of samples
   double sigma_m;
   Rates zvc;
   Rates gmm;

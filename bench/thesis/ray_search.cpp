@@ -53,7 +53,7 @@ class FixedStepSearch final : public RaySearch {
   }
 
  private:
-  /// So many steps stay within the volume, whatever the rounding.
+  /// Returns the number of steps that stay within the volume, whatever the rounding.
   [[nodiscard]] int steps_within(const float (&from)[3], const float (&step)[3]) const {
     constexpr float kMargin_vox{1e-3F};
     const float size[3]{static_cast<float>(volume_.size().x), static_cast<float>(volume_.size().y),

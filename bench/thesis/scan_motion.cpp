@@ -56,7 +56,7 @@ Result<std::vector<Pose>> scan_motion(const Scene& scene, const ArmModel& arm, d
   config.obstacles.unknown_is_obstacle = false;
   Scene seen = scene;
   seen.scan = views_at(kCorners.front());
-  // Whoever teaches the arm its way sees the objects, which no map knows yet.
+  // The person who teaches the arm its path sees the objects, which no map holds yet.
   for (SceneObject& object : seen.objects) object.fixture = true;
   const SimulatedRunConfig run;
   SACCADE_TRY(PlannedArm robot, planned_arm(arm, seen, run, config));

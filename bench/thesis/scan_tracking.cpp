@@ -37,7 +37,7 @@ Result<std::vector<Tracker>> make_trackers(const TsdfConfig& map) {
   return trackers;
 }
 
-/// What lies between the camera and where the arm takes it to be.
+/// Difference between the camera's pose and the one assumed by the arm.
 Pose calibration_error(const ScanTrackingConfig& config) {
   const Eigen::Vector3d diagonal = Eigen::Vector3d::Ones().normalized();
   Pose T_camera_reported = Pose::Identity();

@@ -15,11 +15,11 @@ struct ScanTrackingConfig {
   /// Hand-eye calibration is not exact: the camera sits in the arm's hand as far off and turned as much as this.
   double calibration_m{0.001};
   double calibration_rad{0.0017453292519943296};  ///< 0.1°
-  std::size_t frames{0};                          ///< of the motion's beginning; 0: all
+  std::size_t frames{0};                          ///< frames from the motion's beginning; 0: all
   std::uint64_t seed{1};
 };
 
-/// What one way to know the camera's pose came to.
+/// Results of one source of the camera's pose.
 struct ScanTracking {
   bool egomotion{false};    ///< by ICP; else by the arm
   double depth_scale{1.0};  ///< measured / true depth, but for noise
@@ -27,7 +27,7 @@ struct ScanTracking {
   std::vector<double> translation_m;
   std::vector<double> rotation_rad;
   std::size_t lost{0};              ///< frames that ICP could not place; they are not fused
-  std::vector<ObjectShape> errors;  ///< of the objects that could be measured
+  std::vector<ObjectShape> errors;  ///< errors of the objects that could be measured
   std::size_t unmeasured{0};        ///< objects
 };
 

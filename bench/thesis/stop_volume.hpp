@@ -11,7 +11,7 @@
 
 namespace saccade::thesis {
 
-/// What a voxel does to a ray: unknown voxels of the region score, all others that are not empty only block.
+/// Effect of a voxel on a ray: unknown voxels of the region score, all others that are not empty only block.
 enum class Stop : std::uint8_t { no, blocks, scores };
 
 /// The ternary representation (eq. 2.11) that NBV-CPU converts the TSDF volume to. The map's workspace is not heeded:

@@ -94,7 +94,7 @@ Result<SurfelClouds> fuse(RenderedSequence& sequence, bool is_vignetted, std::si
   return clouds;
 }
 
-/// Of the places that the surfels have without enhancement, as the thesis' were annotated.
+/// Returns the true labels at the surfels' positions without enhancement, at which the thesis' were annotated.
 Result<std::vector<std::uint32_t>> true_labels(const PointCloud& cloud, const RayScene& rays,
                                                const Executor& executor) {
   constexpr std::size_t kLookedUpAtOnce{1024};
@@ -243,6 +243,7 @@ Result<SurfelTrial> carry_out_surfel_trial(std::string_view name, const SurfelTr
                       config.placements, trial, executor, progress));
   trial.clouds = std::move(clouds.by_colors);
   trial.mode_positions_m = std::move(clouds.mode_positions_m);
+  trial.true_segments = segments.labels;
   return trial;
 }
 

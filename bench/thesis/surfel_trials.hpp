@@ -20,19 +20,19 @@ struct SurfelTrialConfig {
   std::size_t frames{0};  ///< 0: as many as the thesis' scene has; fewer are as many places along the same way
   int image_width_px{0};  ///< 0: the sensor's
   std::uint64_t seed{1};
-  bool noise{true};                      ///< of depth, colour and poses
-  std::optional<bool> automatic_gain{};  ///< none: as the scene has it
+  bool noise{true};                      ///< noise of depth, colour and poses
+  std::optional<bool> automatic_gain{};  ///< none: as in the scene
   bool exposure_compensation{false};
   ModeFilterConfig mode_filter{};
-  std::size_t placements{16};   ///< of the grid of SV-LCCP's seeds; its figures are those of all together
-  bool places_of_modes{false};  ///< those of the enhanced; else all are where the average is (decision 20)
-  double min_weight{10.0};      ///< surfels that were seen less, w_s, are left out; of fewer frames in proportion
+  std::size_t placements{16};   ///< placements of the grid of SV-LCCP's seeds; its results are pooled over all
+  bool places_of_modes{false};  ///< positions of the modes; false: positions of the averages (decision 20)
+  double min_weight{10.0};      ///< surfels with a smaller weight w_s are ignored; scaled with the number of frames
 };
 
 /// Not enhanced, enhanced, and as a yardstick: surfels that are not enhanced but for their colours, each that of the
 /// thing that it is on, which is the mean of the enhanced ones there.
 enum class SurfelColors { average, modes, truth };
-inline constexpr std::array kSurfelColors{SurfelColors::average, SurfelColors::modes};  ///< of the thesis
+inline constexpr std::array kSurfelColors{SurfelColors::average, SurfelColors::modes};  ///< the two in the thesis
 
 struct SurfelTrial {
   std::string scene;
@@ -40,13 +40,14 @@ struct SurfelTrial {
   std::size_t surfels{0};                ///< that are segmented
   std::size_t segments{0};               ///< true ones, after they were split
   double ms_per_frame{0.0};              ///< fusion and mode filter, median
-  std::vector<double> true_gains;        ///< of frames, relative to the first
+  std::vector<double> true_gains;        ///< gains of frames, relative to the first
   std::vector<double> found_gains;       ///< by exposure compensation
   std::array<ScoreCurve, 3> flood_fill;  ///< by SurfelColors
   std::array<ScoreCurve, 3> sv_lccp;
   std::array<PointCloud, 2> clouds;  ///< by SurfelColors; the same surfels, of the thesis' two
 
-  std::vector<Eigen::Vector3f> mode_positions_m;  ///< of the same, where their modes are
+  std::vector<Eigen::Vector3f> mode_positions_m;  ///< positions of the modes of these surfels
+  std::vector<std::uint32_t> true_segments;       ///< true segment of each surfel; kUnlabelled: none
 
   [[nodiscard]] const ScoreCurve& curve(bool by_flood_fill, SurfelColors colors) const {
     return (by_flood_fill ? flood_fill : sv_lccp)[static_cast<std::size_t>(colors)];

@@ -16,7 +16,7 @@ struct UpdateTask {
   TsdfSnapshot map;               ///< the region forgotten; the workspace is the volume
   Region region;                  ///< S(POI): a sphere of 0.2 m on top of a box
   IndexBox volume_bricks;         ///< 512³ voxels around it, as large as KinFu's
-  PinholeCamera sensor;           ///< of the views
+  PinholeCamera sensor;           ///< sensor of the views
   std::vector<Pose> view_sphere;  ///< the 960 poses of §2.2.3
   PinholeCamera camera;
   Frame next_frame;  ///< a frame of the region, not fused yet

@@ -93,7 +93,7 @@ def build_programs(folder):
              "-DCMAKE_UNITY_BUILD_BATCH_SIZE=16", "-DSACCADE_BUILD_TESTS=OFF", "-DSACCADE_BUILD_EXAMPLES=OFF",
              "-DSACCADE_ROS1=OFF", "-DSACCADE_ROS2=OFF", "-DSACCADE_PYTHON=ON", f"-DPython_EXECUTABLE={sys.executable}"],
             "configuring")
-    run(["cmake", "--build", build, "--target", "saccade", "saccade_python", "-j", str(jobs())], "building")
+    run(["cmake", "--build", build, "--target", "saccade", "saccade-reproduce", "saccade_python", "-j", str(jobs())], "building")
     return build
 
 
@@ -113,9 +113,10 @@ def pack(build, stage, wheel_directory):
     if not any(module.name == f"_saccade{suffix}" for suffix in suffixes):
         raise BuildError(f"{build} has {module.name}, the module for another Python than {sys.executable}")
     (package / "bin").mkdir()
-    shutil.copy2(build / "saccade", package / "bin/saccade")
-    if shutil.which("strip"):
-        run(["strip", package / "bin/saccade"], "stripping the program")
+    for program in ("saccade", "saccade-reproduce"):  # the first starts the second
+        shutil.copy2(build / program, package / "bin" / program)
+        if shutil.which("strip"):
+            run(["strip", package / "bin" / program], f"stripping {program}")
     metadata = Metadata.read(ROOT)
     wheel_directory.mkdir(parents=True, exist_ok=True)
     name = f"{metadata.name}-{metadata.version}-{wheel_tag()}.whl"

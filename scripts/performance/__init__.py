@@ -1,2 +1,2 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What make bench measured, turned into docs/performance.md."""
+"""Turns the results of make bench into docs/results/performance.md."""

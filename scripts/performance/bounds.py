@@ -3,7 +3,7 @@
 from performance.results import figure
 
 PIXELS = 640 * 480
-VOXELS = 512  # of a brick
+VOXELS = 512  # voxels of a brick
 DENSE_BRICK = VOXELS * 4 + 2 * VOXELS // 8  # bytes: value and weight per voxel, two masks
 FREE_BRICK = 3 * VOXELS // 8  # bytes
 CACHE_LINE = 64
@@ -77,8 +77,8 @@ def entries(results):
         names = {name for amounts, _ in parts for name in amounts}
         made.append(("a whole tracked frame", "mapping:tracked_frame/2", 2,
                      {name: sum(amounts.get(name, 0) for amounts, _ in parts) for name in names}, "All three."))
-    for views, what in ((0, "960 poses ray by ray, region just forgotten"), (1, "the same after a view"),
-                        (3, "the same after three")):
+    for views, what in ((0, "960 poses ray by ray, region just forgotten"), (1, "960 poses ray by ray, after a view"),
+                        (3, "960 poses ray by ray, after three views")):
         counter = counters(f"phases:evaluation/views:{views}")
         if counter("rays"):
             made.append((what, f"view_evaluation:all_savings/views:{views}/threads:2", 2, *evaluation(counter)))

@@ -154,7 +154,7 @@ def section(results):
 
 
 def everything(results):
-    """What stands in no other table."""
+    """Returns the rows that no other table has."""
     told = {row[0] for row in ROWS} | {row[2] for row in ROWS}
     elsewhere = ("savings:", "scaling:", "phases:", "machine:")
     lines = ["## Everything else measured", "",

@@ -60,7 +60,7 @@ def ticks(low, high):
 
 
 def exponent(points):
-    """Of the power law through the points, by least squares of the logarithms."""
+    """Returns the exponent of the power law through the points, by least squares of the logarithms."""
     xs, ys = [math.log(x) for x, _ in points], [math.log(y) for _, y in points]
     x_mean, y_mean = sum(xs) / len(xs), sum(ys) / len(ys)
     return (sum((x - x_mean) * (y - y_mean) for x, y in zip(xs, ys)) / sum((x - x_mean)**2 for x in xs))

@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What each saving of view evaluation brings: a table, and a plot of one added after the other."""
+"""Effect of each saving of view evaluation: a table, and a plot of one added after the other."""
 from performance import plots
 from performance.results import figure
 
@@ -19,7 +19,7 @@ SAME = {"only_region_rays": "up_to_region_rays", "only_blocked_camera": "none", 
 
 
 def milliseconds(results, name, views):
-    """Of 960 poses, and whether that was scaled up from fewer; None: not measured."""
+    """Returns the time of 960 poses, and whether it was scaled up from fewer; None: not measured."""
     row = f"savings:{name}/views:{views}"
     if row not in results.times:
         row = f"savings:{SAME.get(name)}/views:{views}"
@@ -58,4 +58,4 @@ def section(results, images):
     together = milliseconds(results, "none", 0), milliseconds(results, "all", 0)
     if all(together):
         lines += ["", f"Together: {together[0][0] / together[1][0]:,.0f} times faster than none of them."]
-    return lines + ["", "![milliseconds, one saving added after the other](images/performance-savings.svg)", ""]
+    return lines + ["", "![milliseconds, one saving added after the other](../images/performance-savings.svg)", ""]

@@ -41,6 +41,6 @@ def section(results, images):
             law = f"{plots.exponent(points):.2f}".replace("-", "−") if len(points) > 1 else "–"
             lines.append(f"| {label} | " + " | ".join(figure(ms) for _, ms in points) + f" | {law} |")
         if plots.lines(images / f"performance-{file}.svg", heading, axis, series):
-            lines += ["", f"![cost against: {axis}](images/performance-{file}.svg)"]
+            lines += ["", f"![cost against: {axis}](../images/performance-{file}.svg)"]
         lines.append("")
     return lines if found else []

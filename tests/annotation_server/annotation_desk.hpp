@@ -30,7 +30,7 @@ struct Received {
   json head;
   std::vector<std::uint8_t> body;
 
-  /// So many elements of the body, from a byte on.
+  /// Returns `count` elements of the body, from a byte on.
   template <class T>
   [[nodiscard]] std::vector<T> array(std::size_t from, std::size_t count) const {
     std::vector<T> values(count);
@@ -57,7 +57,7 @@ class KeptMessages : public server::Clients {
     const std::lock_guard lock{mutex_};
     closed_[connection] = code;
   }
-  /// What has come since the last call.
+  /// Returns the messages received since the last call.
   std::vector<Received> take(ConnectionId of) {
     const std::lock_guard lock{mutex_};
     return std::exchange(messages_[of], {});
@@ -73,7 +73,7 @@ class KeptMessages : public server::Clients {
   std::map<ConnectionId, std::uint16_t> closed_;
 };
 
-/// Work that is posted waits until somebody does it.
+/// Work that is posted waits until a test runs it.
 class PostedWork {
  public:
   void post(std::function<void()> work) {
@@ -100,7 +100,7 @@ class PostedWork {
   std::deque<std::function<void()>> waiting_;
 };
 
-/// What a page knows: it asks, listens to notices and keeps up with them.
+/// State of a page, which asks questions and follows notices.
 class Page {
  public:
   Page(server::AnnotationService& service, KeptMessages& messages, ConnectionId id, std::uint64_t client)
@@ -171,10 +171,10 @@ class Page {
 
   std::map<std::string, std::vector<Received>> notices;
   std::vector<std::uint32_t> order;               ///< points in the order in which they were given
-  std::map<std::uint32_t, std::uint32_t> labels;  ///< of points that are shown
+  std::map<std::uint32_t, std::uint32_t> labels;  ///< labels of points that are shown
   std::map<std::uint32_t, std::pair<std::uint32_t, float>> control_points;  ///< label and start cost
-  std::map<std::uint32_t, std::array<float, 3>> places;                     ///< of control points
-  std::map<std::uint32_t, json> rows;                                       ///< of labels
+  std::map<std::uint32_t, std::array<float, 3>> places;                     ///< positions of control points
+  std::map<std::uint32_t, json> rows;                                       ///< rows of labels
   [[nodiscard]] std::size_t labelled_as(std::uint32_t label) const {
     std::size_t count{0};
     for (const auto& [point, its] : labels) count += its == label ? 1 : 0;
@@ -302,7 +302,7 @@ class AnnotationDesk : public ::testing::Test {
     EXPECT_TRUE(page.act(set(3, kOnBox2)).ok());
     EXPECT_TRUE(page.act(set(4, kOnBox3)).ok());
   }
-  /// What a page has followed is what it is told when it asks anew.
+  /// Checks that the followed state equals the answers to new questions.
   void expect_up_to_date(const Page& page) {
     Page other = connect(999);
     other.hello();

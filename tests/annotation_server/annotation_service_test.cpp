@@ -239,7 +239,7 @@ TEST_F(AnnotationServiceTest, APageThatShowsPartSeesPart) {
   Page part = page(2, kBudget);
   ASSERT_EQ(part.order.size(), kBudget);
   EXPECT_EQ(std::vector(whole.order.begin(), whole.order.begin() + kBudget), part.order);
-  std::map<std::uint32_t, std::size_t> in_cell;  // of 12 equal parts of the table
+  std::map<std::uint32_t, std::size_t> in_cell;  // points in 12 equal parts of the table
   for (const std::uint32_t point : part.order) ++in_cell[point / kColumns / 25 * 3 + point % kColumns / 40];
   ASSERT_EQ(in_cell.size(), 12U);
   for (const auto& [cell, count] : in_cell) EXPECT_NEAR(static_cast<double>(count), 100.0, 40.0) << "cell " << cell;

@@ -16,7 +16,7 @@ class PageSocket {
  public:
   PageSocket(std::uint16_t port, const std::string& token, std::uint64_t client) : client_{port} {
     const auto answer =
-        client_.ask(client_.upgrade_request("Host: " + client_.host() + "\r\n" + RawClient::cookie_of(port, token)));
+        client_.ask(client_.upgrade_request("Host: " + client_.host() + "\r\n" + RawClient::token_line(token)));
     EXPECT_EQ(answer.status, 101);
     EXPECT_TRUE(ask({{"type", "hello"}, {"protocol", 1}, {"client", client}}).value("ok", false));
   }
@@ -85,8 +85,8 @@ class ServedAnnotation {
   nlohmann::json act(nlohmann::json action) { return page_->act(std::move(action)); }
   Answer get(const std::string& target) const {
     RawClient client{port_};
-    return client.ask("GET " + target + " HTTP/1.1\r\nHost: " + client.host() + "\r\n" +
-                      RawClient::cookie_of(port_, token_) + "\r\n");
+    return client.ask("GET " + target + " HTTP/1.1\r\nHost: " + client.host() + "\r\n" + RawClient::token_line(token_) +
+                      "\r\n");
   }
 
  private:

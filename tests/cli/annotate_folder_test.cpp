@@ -96,9 +96,9 @@ TEST_F(AnnotateFolder, SeedsBeginWhatIsNotBegun) {
 
 TEST_F(AnnotateFolder, WhatDoesNotFitIsSaidBeforeTheWork) {
   EXPECT_NE(error_of({"--simulate", path("none")}, 2).find("none"), std::string::npos);
-  EXPECT_NE(error_of({"--simulate", path("clouds/a.txt")}).find("is no folder"), std::string::npos);
+  EXPECT_NE(error_of({"--simulate", path("clouds/a.txt")}).find("is not a folder"), std::string::npos);
   EXPECT_NE(error_of({"--script", write("s.jsonl", four_clicks())}, 2).find("one cloud"), std::string::npos);
-  EXPECT_NE(error_of({"--session", path("none")}).find("is no folder"), std::string::npos);
+  EXPECT_NE(error_of({"--session", path("none")}).find("is not a folder"), std::string::npos);
   fs::create_directory(path("truth"));
   EXPECT_NE(error_of({"--simulate", path("truth")}).find("no labels of a.csv"), std::string::npos);
   EXPECT_NE(error_of({"--simulate", path("clouds"), "--out", path("clouds")}).find("--out"), std::string::npos);

@@ -24,7 +24,7 @@ class AnnotateSession : public AnnotatedBoxes {
     EXPECT_EQ(outcome.out, "");
     return outcome.err;
   }
-  /// What the library makes of the same actions.
+  /// Returns the library's result of these actions.
   [[nodiscard]] std::vector<std::uint32_t> library_labels(const std::string& script) const {
     const auto file = read_cloud(folder_ / "cloud.csv");
     const auto cloud = cloud_from_fields(file->fields());
@@ -87,7 +87,7 @@ TEST_F(AnnotateSession, EveryActionIsThatOfTheLibrary) {
 }
 
 TEST_F(AnnotateSession, TheScriptOfTheDocumentationDoesWhatItSays) {
-  const std::string page = *read_text_file(source_folder() / "docs" / "annotation.md");
+  const std::string page = *read_text_file(source_folder() / "docs/guides/annotation.md");
   const std::string mark{"<!-- script -->\n```\n"};
   const std::size_t begin = page.find(mark) + mark.size();
   const std::string script = page.substr(begin, page.find("```", begin) - begin);
@@ -227,10 +227,10 @@ TEST_F(AnnotateSession, ScriptsThatFailSayWhere) {
   const Arguments session{"--session", path("s.sacann")};
   EXPECT_NE(run(four_clicks() + "set 4", session).find("line 6"), std::string::npos);
   EXPECT_FALSE(fs::exists(path("s.sacann")));
-  EXPECT_NE(
-      run(four_clicks() + "{\"do\": \"move\", \"from\": 4, \"to\": 5}", session)
-          .find("line 6: point 4 is no control point that could be moved; the 4 actions before it are in the session"),
-      std::string::npos);
+  EXPECT_NE(run(four_clicks() + "{\"do\": \"move\", \"from\": 4, \"to\": 5}", session)
+                .find("line 6: point 4 is not a control point, so it cannot be moved; the 4 actions before it are in "
+                      "the session"),
+            std::string::npos);
   EXPECT_EQ(read_journal(path("s.sacann"))->actions.size(), 4U);
 }
 

@@ -55,6 +55,24 @@ TEST_F(Annotate, RectanglesAreAMethodToo) {
   EXPECT_FALSE(result.contains("ms"));
 }
 
+TEST_F(Annotate, ManyLabelsAreCountedButNotAllPrinted) {
+  std::ofstream script{folder_ / "many.jsonl"};
+  constexpr int kMany{45};
+  for (int label = 1; label <= kMany; ++label) {
+    script << "{\"do\": \"set\", \"label\": " << label << ", \"points\": [" << 10 * label << "]}\n";
+  }
+  script.close();
+  const Arguments command{"annotate", path("cloud.csv"), "--script", path("many.jsonl"), "--out", path("many.npy")};
+  const Outcome text = run_program(command);
+  ASSERT_EQ(text.status, 0) << text.err;
+  EXPECT_NE(text.out.find("\n        40 "), std::string::npos) << text.out;
+  EXPECT_EQ(text.out.find("\n        41 "), std::string::npos) << text.out;
+  EXPECT_NE(text.out.find("... and 5 more"), std::string::npos) << text.out;
+  const Outcome document = run_program(command + Arguments{"--json", "-"});
+  ASSERT_EQ(document.status, 0) << document.err;
+  EXPECT_EQ(document.json()["result"]["labels"].size(), std::size_t{kMany});
+}
+
 TEST_F(Annotate, LabelsInTensAreDetectedOrKept) {
   std::ofstream truth{folder_ / "truth.txt"};
   for (std::size_t i = 0; i < points_; ++i) truth << (i % 120 < 60 ? 1 + i % 3 : 20 + i % 7) << '\n';
@@ -79,10 +97,15 @@ TEST_F(Annotate, BadInputIsSaid) {
   EXPECT_NE(error_of(simulate({"--out", path("cloud.csv")}), 3).find("--out"), std::string::npos);
   EXPECT_NE(error_of(simulate({"--out", path("labels.jpg")}), 3).find("labels are written as"), std::string::npos);
   EXPECT_NE(error_of({"--json", path("truth.txt"), "annotate", path("cloud.csv"), "--simulate", path("truth.txt")}, 3)
+                .find("truth.txt: holds something other than a result"),
+            std::string::npos);
+  EXPECT_NE(error_of({"--json", path("a.npy"), "annotate", path("cloud.csv"), "--simulate", path("truth.txt"), "--out",
+                      path("a.npy")},
+                     3)
                 .find("--json"),
             std::string::npos);
   std::ofstream{folder_ / "empty.csv"};
-  EXPECT_NE(error_of({"annotate", path("empty.csv"), "--simulate", path("truth.txt")}, 3).find("no point"),
+  EXPECT_NE(error_of({"annotate", path("empty.csv"), "--simulate", path("truth.txt")}, 3).find("is empty"),
             std::string::npos);
   std::ofstream{folder_ / "truth.txt"} << "1\n2\n";
   EXPECT_NE(error_of(simulate(), 3).find("truth.txt"), std::string::npos);

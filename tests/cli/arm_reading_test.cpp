@@ -82,8 +82,8 @@ TEST(ArmReading, EveryCommandWithAnArmHasTheOptions) {
                                    {"calibrate"}}) {
     const Outcome outcome = run_program(command + Arguments{"--help"});
     EXPECT_EQ(outcome.status, 0);
-    for (const char* option :
-         {"--base LINK", "--base-at X", "--tip LINK", "--camera-frame LINK", "--package NAME", "--drop-beyond-tip"}) {
+    for (const char* option : {"--base LINK", "--base-at X", "--tip LINK", "--camera-frame LINK", "--package NAME",
+                               "--package-path DIR", "--drop-beyond-tip"}) {
       EXPECT_NE(outcome.out.find(option), std::string::npos) << command.back() << ": " << option << "\n" << outcome.out;
     }
   }
@@ -103,7 +103,7 @@ arm: {urdf: arm.urdf)" + keys + "}\n")
   };
   const std::string place =
       ", base: base, base_at: [-0.5, -0.75, 0.4, 30], camera_frame: eye, packages: {p: folder}, "
-      "drop_beyond_tip: true";
+      "package_paths: [folder], drop_beyond_tip: true";
   const Outcome told = check(place + ", tip: flange");
   EXPECT_EQ(told.status, 0) << told.err;
   EXPECT_EQ(told.json().at("result").at("scan").at("reached"), 1) << told.out;

@@ -20,7 +20,7 @@ class Attend : public ::testing::Test {
  protected:
   void SetUp() override {
     for (int i = 0; i < kTasks; ++i) {
-      const MadeUpTask task = made_up_task(static_cast<std::uint64_t>(i) + 10, {.actions = 2});
+      const SyntheticTask task = synthetic_task(static_cast<std::uint64_t>(i) + 10, {.actions = 2});
       ASSERT_TRUE(write_hand_csv(file(i), task.trajectory));
       std::ofstream labels{file(i).string() + ".res"};
       for (const Eigen::Vector3d& p : task.actions_m) labels << p.x() << ' ' << p.y() << ' ' << p.z() << '\n';

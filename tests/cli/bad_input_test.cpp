@@ -58,8 +58,8 @@ TEST_F(BadInput, NoFramesAtAll) {
 TEST_F(BadInput, MissingOrBrokenIntrinsics) {
   fs::remove(frames() / "camera-intrinsics.txt");
   expect_refused(3, {"--intrinsics fx,fy,cx,cy", frames().string()});
-  folder_.write("frames/camera-intrinsics.txt", "131.25 0 79.5\n0 -131.25 59.5\n0 0 1\n");
-  expect_refused(3, {"focal lengths must be positive"});
+  folder_.write("frames/camera-intrinsics.txt", "131.25 0 79.5\n0 0 59.5\n0 0 1\n");
+  expect_refused(3, {"focal lengths must not be 0"});
   folder_.write("frames/camera-intrinsics.txt", "what is this");
   expect_refused(3, {"camera-intrinsics.txt"});
   fs::remove(frames() / "camera-intrinsics.txt");
@@ -72,7 +72,17 @@ TEST_F(BadInput, WrongSizes) {
   ASSERT_TRUE(write_png(folder_ / "mask.png", mask));
   expect_refused(3, {"mask", "40x30"}, {"--mask", (folder_ / "mask.png").string()});
   ASSERT_TRUE(write_png(folder_ / "small.png", ColorImage{80, 60}));
-  expect_skipped(".color.png", text_of(folder_ / "small.png"), "80x60");
+  const std::string small = text_of(folder_ / "small.png");
+  folder_.write("frames/" + name(1) + ".color.png", small);
+  const Outcome one = fused({"--json", "-"});
+  ASSERT_EQ(one.status, 0) << one.err;
+  EXPECT_NE(one.json().at("result").at("skipped").at(0).at("reason").get<std::string>().find("80x60"),
+            std::string::npos);
+  for (int i = 0; i < 4; ++i) folder_.write("frames/" + name(i) + ".color.png", small);
+  const Outcome scaled = fused({"--force"});
+  EXPECT_EQ(scaled.status, 0) << "colours that are all of one size are scaled";
+  EXPECT_NE(scaled.err.find("80x60 are taken for the view of the depth images, 160x120"), std::string::npos)
+      << scaled.err;
 }
 
 TEST_F(BadInput, DepthImagesOfAnotherSize) {
@@ -175,7 +185,8 @@ TEST_F(BadInput, NoDepthWithinTheRange) {
 }
 
 TEST_F(BadInput, CamerasThatSeeTooMuch) {
-  expect_refused(3, {frames().string(), name(0), "too many voxels"}, {"--intrinsics", "1e-6,1e-6,0,0"});
+  expect_refused(3, {frames().string(), name(0), "too many voxels"}, {"--intrinsics", "0.2,0.2,0,0"});
+  expect_refused(3, {"focal lengths must be from"}, {"--intrinsics", "1e-6,1e-6,0,0"});
 }
 
 TEST_F(BadInput, AMapIsNotReplacedByAResult) {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How the browser is sent to the page: by a file that nobody else reads, not by its arguments, which everyone sees.
+// The browser is sent to the page by a file that only the user can read, not by its arguments, which everyone can see.
 #include <sys/stat.h>
 
 #include <cstdlib>
@@ -47,7 +47,7 @@ class BrowserPageTest : public ::testing::Test {
     }
     return count;
   }
-  /// What xdg-open was given.
+  /// Returns the argument of xdg-open.
   [[nodiscard]] fs::path given() const {
     if (!wait_for_file(folder_ / "given")) return {};
     const std::string line = text_of(folder_ / "given");

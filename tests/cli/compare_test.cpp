@@ -4,6 +4,7 @@
 
 #include <algorithm>
 
+#include "report_page.hpp"
 #include "run_program.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/runs/run_json.hpp"
@@ -81,7 +82,13 @@ TEST(CompareCommand, GoesOnWhereItStopped) {
   EXPECT_EQ(lines_of(out / "runs.csv"), 5);
   EXPECT_EQ(lines_of(out / "views.csv"), 9);  // the scan and one view of each run
   EXPECT_EQ(lines_of(out / "summary.csv"), 1 + 2 * (std::ssize(run_figures()) + 3));  // and how promises were kept
-  EXPECT_TRUE(text_of(out / "index.html").starts_with("<!DOCTYPE html>"));
+  const nlohmann::json page = report_in(out / "index.html");
+  EXPECT_EQ(page.at("record").at("result").at("summaries"), result.at("summaries"));
+  const nlohmann::json& details = page.at("details");
+  EXPECT_EQ(details.at("measures").size(), run_figures().size());
+  EXPECT_EQ(details.at("gaps").at(0).at("coverage"), result.at("gaps").at(0).at("coverage"));
+  EXPECT_EQ(details.at("curves").at(0).at("coverage").size(), 2U);
+  EXPECT_EQ(details.at("marks").size(), 4U);
   EXPECT_TRUE(text_of(out / "coverage-clutter-5.svg").starts_with("<svg "));
 
   // Other settings are other runs.
@@ -284,7 +291,7 @@ TEST(CompareCommand, EveryMeshOfAFolderIsAScene) {
   folder.write("meshes/notes.txt", "not a mesh");
   const std::string meshes = (folder / "meshes").string();
   expect_failure(run_program(once(folder / "out", meshes)), 3, "compare",
-                 {"box.obj", "120 x 80 x 150 m", "0.001 (millimetres)"});
+                 {"box.obj", "120 x 80 x 150 m", "0.001 (millimetres)", "--mesh-scale"});
   const Outcome done =
       run_program(once(folder / "out", meshes, {"--mesh-scale", "0.001", "--robot", "comau", "--json", "-"}));
   ASSERT_EQ(done.status, 0) << done.err;

@@ -7,6 +7,7 @@
 #include <functional>
 #include <thread>
 
+#include "report_page.hpp"
 #include "run_program.hpp"
 #include "saccade/arm/urdf.hpp"
 #include "saccade/core/angle.hpp"
@@ -128,7 +129,7 @@ TEST_F(SimulatedCell, ADryRunPlansAndDrawsAndMovesNothing) {
   EXPECT_TRUE(result.at("dry_run").get<bool>());
   EXPECT_EQ(result.at("views").size(), 1U);
   EXPECT_GT(result.at("views")[0].at("motion_s").get<double>(), 0.0);
-  EXPECT_NE(text_of(run() / "report.html").find("Dry run"), std::string::npos);
+  EXPECT_EQ(report_in(run() / "report.html").at("record").at("result").at("dry_run"), true);
   EXPECT_EQ(text_of(folder_ / "log").find("follow"), std::string::npos);
   expect_failure(run_program({"explore", cell().string(), "--dry-run", "--step", "--out", run().string()}), 2,
                  "explore", {"--dry-run"});
@@ -139,7 +140,8 @@ TEST_F(SimulatedCell, WhatWasSeenBeforeAnEarlyFailureIsKept) {
   const std::string works = text_of(cell());
   std::string broken = works;
   const std::string width = "--width 160";
-  broken.replace(broken.find(width), width.size(), width + " --fault error --after 3");  // of the first pose's five
+  broken.replace(broken.find(width), width.size(),
+                 width + " --fault error --after 3");  // out of the first pose's five frames
   std::ofstream{cell()} << broken;
   const Arguments explore{"explore",       cell().string(), "--out",       run().string(),
                           "--voxel-size",  "0.02",          "--max-views", "0",
@@ -196,7 +198,7 @@ std::string hanging_camera(const fs::path& script, int frames) {
   return "python3 -B '" + script.string() + "'";
 }
 
-/// Whether any process runs with the text in its command line.
+/// Tells whether any process runs with the text in its command line.
 bool runs(const std::string& text) {
   for (const auto& entry : fs::directory_iterator{"/proc"}) {
     const std::string name = entry.path().filename().string();

@@ -49,6 +49,25 @@ TEST(ExploreChoices, WhatIsLookedAheadChangesWhatIsChosenAndFramesOnTheWayAreFus
   EXPECT_NE(gains_alone.json().at("result").at("views"), result.at("views"));
 }
 
+TEST(ExploreChoices, AMeshInMillimetresIsScaledOntoTheTable) {
+  const TempFolder folder;
+  const std::string mesh = folder
+                               .write("wedge.obj",
+                                      "v 0 0 0\nv 120 0 0\nv 0 120 0\nv 0 0 150\nf 1 3 2\nf 1 2 4\nf 1 4 3\n"
+                                      "f 2 3 4\n")
+                               .string();
+  const Arguments flying{"--robot", "free", "--max-views", "0"};
+  expect_failure(explore(mesh, folder / "run", flying), 3, "explore", {"120 x 120 x 150 m", "--mesh-scale", "0.001"});
+  expect_failure(explore(mesh, folder / "run", flying + Arguments{"--mesh-scale", "0"}), 2, "explore",
+                 {"--mesh-scale"});
+  const Outcome scaled =
+      explore(mesh, folder / "run", flying + Arguments{"--mesh-scale", "0.001", "--mesh-up", "y", "--json", "-"});
+  ASSERT_EQ(scaled.status, 0) << scaled.err;
+  const nlohmann::json result = scaled.json().at("result");
+  EXPECT_EQ(result.at("scene"), "wedge.obj");
+  EXPECT_GT(result.at("initial").at("coverage").get<double>(), 0.0);
+}
+
 TEST(ExploreChoices, RefuseWhatTheyCannotWeigh) {
   const TempFolder folder;
   const auto refused = [&](const Arguments& options, const std::vector<std::string>& parts) {

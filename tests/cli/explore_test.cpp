@@ -6,6 +6,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "report_page.hpp"
 #include "run_program.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/json_io.hpp"
@@ -38,7 +39,7 @@ TEST(ExploreCommand, TakesAKinectV2) {
   ASSERT_EQ(v1.status, 0) << v1.err;
   EXPECT_EQ(v1.json().at("result").at("sensor"), "kinect-v1");
   EXPECT_NE(v1.json().at("result").at("initial"), v2.json().at("result").at("initial"));
-  EXPECT_NE(text_of(folder / "v2" / "report.html").find("Kinect v2"), std::string::npos);
+  EXPECT_EQ(report_in(folder / "v2" / "report.html").at("record").at("result").at("sensor"), "kinect-v2");
   expect_failure(run_program(explore(folder / "v3", {"--sensor", "kinect-v3"})), 2, "explore",
                  {"--sensor", "kinect-v1 or kinect-v2"});
 }
@@ -94,7 +95,13 @@ TEST(ExploreCommand, GoesFromViewToView) {
   EXPECT_GT(result.at("phases_s").at("robot").get<double>(), 0.0);
   EXPECT_EQ(result.at("initial").at("views"), 1);
   EXPECT_EQ(result.at("initial").at("refused"), (nlohmann::json{{"outside_limits", 1}}));
-  EXPECT_NE(text_of(run / "report.html").find("poses passed over"), std::string::npos);
+  const nlohmann::json page = report_in(run / "report.html");
+  EXPECT_EQ(page.at("schema"), "saccade-report/1");
+  EXPECT_EQ(page.at("record"), nlohmann::json::parse(text_of(run / "run.json")));
+  for (const char* name : {"view-00-map.png", "view-02-seen.png", "mesh.ply", "run.json"}) {
+    const nlohmann::json& files = page.at("files");
+    EXPECT_NE(std::find(files.begin(), files.end(), name), files.end()) << name;
+  }
   const nlohmann::json& final = result.at("final");
   EXPECT_EQ(final.at("unknown_left"), unknown);
   EXPECT_GT(final.at("coverage").get<double>(), result.at("initial").at("coverage").get<double>());
@@ -174,7 +181,7 @@ TEST(ExploreCommand, TheSeedDecidesAndTheThreadsDoNot) {
   EXPECT_NE(first, views("c", "4", "1"));
 }
 
-/// What a run found, without how long it took.
+/// Returns the results of a run without its times.
 nlohmann::json figures(const fs::path& run) {
   nlohmann::json result = nlohmann::json::parse(text_of(run / "run.json")).at("result");
   result.erase("out");

@@ -150,7 +150,8 @@ TEST_F(Filter, LeavesNothingOfAnEarlierRun) {
   std::ofstream{out() / "notes.txt"} << "mine";
   const Arguments one{"filter", frame(1).string(), "--out", out().string(), "--quiet", "--pictures", "0"};
   ASSERT_EQ(run_program(one).status, 0);
-  EXPECT_EQ(names_in(out()), (std::vector<std::string>{name(1), "filter.json", "notes.txt", "pictures"}));
+  EXPECT_EQ(names_in(out()),
+            (std::vector<std::string>{name(1), "filter.json", "notes.txt", "pictures", "report.html"}));
   EXPECT_TRUE(names_in(out() / "pictures").empty());
 }
 
@@ -226,7 +227,7 @@ TEST_F(Filter, KeepsWhatIsDoneWhenInterrupted) {
   const nlohmann::json result = nlohmann::json::parse(text_of(out() / "filter.json")).at("result");
   EXPECT_EQ(result.at("interrupted"), true);
   EXPECT_LT(result.at("frames"), 400);
-  EXPECT_EQ(names_in(out()).size(), result.at("frames").get<std::size_t>() + 2);  // filter.json, pictures
+  EXPECT_EQ(names_in(out()).size(), result.at("frames").get<std::size_t>() + 3);  // filter.json, pictures, report.html
 }
 
 }  // namespace

@@ -98,6 +98,20 @@ TEST_F(Fuse, HintsAndTheDefaultTracking) {
   EXPECT_TRUE(icp.at("trajectory_error_m").is_null());
 }
 
+TEST_F(Fuse, TheDirectionOfGravityGoesAlongWithTheWorldOfThePoses) {
+  const std::string direction{"0.1 0 -0.9\n"};
+  std::ofstream{frames() / "gravity-direction.txt"} << direction;
+  const Arguments brief{"--no-pictures", "--no-mesh", "--count", "3"};
+  static_cast<void>(fused(Arguments{"--tracking", "forced"} + brief));
+  EXPECT_EQ(text_of(run() / "gravity-direction.txt"), direction);
+  // ICP alone begins a world of its own; the earlier run's direction would be wrong in it.
+  static_cast<void>(fused(Arguments{"--tracking", "icp"} + brief));
+  EXPECT_EQ(names_in(run()), (std::vector<std::string>{"map.sacmap", "run.json", "trajectory.txt"}));
+  // Among the frames the file is the user's.
+  const Outcome beside = run_program(fuse(frames(), frames(), Arguments{"--tracking", "icp", "--force"} + brief));
+  EXPECT_EQ(text_of(frames() / "gravity-direction.txt"), direction) << beside.err;
+}
+
 TEST_F(Fuse, PrintsASummaryForPeople) {
   const Outcome outcome = run_program(fuse(frames(), run(), {"--no-pictures"}));
   EXPECT_EQ(outcome.status, 0) << outcome.err;

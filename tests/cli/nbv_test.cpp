@@ -158,7 +158,7 @@ TEST_F(Nbv, RefusesBadFiles) {
     return run_program(Arguments{"nbv", file.string()} + poi + more);
   };
   expect_failure(nbv_of(folder_ / "none.sacmap"), 3, "nbv", {"none.sacmap"});
-  expect_failure(nbv_of(folder_.write("other.sacmap", "something else")), 3, "nbv", {"no Saccade map"});
+  expect_failure(nbv_of(folder_.write("other.sacmap", "something else")), 3, "nbv", {"not a Saccade map"});
   const std::string whole = text_of(map());
   expect_failure(nbv_of(folder_.write("cut.sacmap", whole.substr(0, whole.size() / 2))), 3, "nbv",
                  {"cut.sacmap", "byte"});
@@ -174,12 +174,30 @@ TEST_F(Nbv, RefusesBadFiles) {
   expect_failure(nbv_of(map(), {"--out", below_file.string()}), 3, "nbv", {below_file.string()});
 }
 
+TEST_F(Nbv, TheBackEndIsChosenOrItsLackIsSaid) {
+  const Arguments region{"--poi", "0,0,0.05", "--forget", "--json", "-"};
+  const Outcome on_cpu = run_program(nbv(region + Arguments{"--backend", "cpu"}));
+  const Outcome automatic = run_program(nbv(region + Arguments{"--backend", "auto"}));
+  ASSERT_EQ(automatic.status, 0) << automatic.err;
+  EXPECT_EQ(automatic.json().at("result").at("views"), on_cpu.json().at("result").at("views"));
+  const Outcome info = run_program({"info", "--json", "-"});
+  const Outcome on_gpu = run_program(nbv(region + Arguments{"--backend", "cuda"}));
+  if (info.json().at("result").at("backends").at("cuda")) {
+    EXPECT_EQ(on_gpu.json().at("result").at("views"), on_cpu.json().at("result").at("views"));
+    return;
+  }
+  const std::string why = info.json().at("result").at("cuda").at("absent_because");
+  expect_failure(on_gpu, 4, "nbv", {why});
+  EXPECT_NE(run_program({"info"}).out.find("absent: " + why), std::string::npos);
+}
+
 TEST_F(Nbv, InfoDescribesTheProgramTheMapAndTheRun) {
   const Outcome program = run_program({"info", "--json", "-"});
   ASSERT_EQ(program.status, 0) << program.err;
   expect_envelope(program.json(), "info");
   EXPECT_TRUE(program.json().at("result").at("backends").at("sequential"));
-  EXPECT_FALSE(program.json().at("result").at("backends").at("cuda"));
+  const bool has_gpu = program.json().at("result").at("backends").at("cuda");
+  EXPECT_EQ(program.json().at("result").at("cuda").contains("absent_because"), !has_gpu);
   EXPECT_NE(run_program({"info"}).out.find("eigen 3."), std::string::npos);
   const Outcome of_map = run_program({"info", map().string(), "--json", "-"});
   ASSERT_EQ(of_map.status, 0) << of_map.err;
@@ -187,7 +205,10 @@ TEST_F(Nbv, InfoDescribesTheProgramTheMapAndTheRun) {
   const Outcome of_run = run_program({"info", (folder_ / "run").string()});
   EXPECT_EQ(of_run.status, 0) << of_run.err;
   EXPECT_NE(of_run.out.find("10.00 mm"), std::string::npos) << of_run.out;
-  expect_failure(run_program({"info", (folder_ / "frames").string()}), 3, "info", {"frames"});
+  const Outcome of_frames = run_program({"info", (folder_ / "frames").string(), "--json", "-"});
+  ASSERT_EQ(of_frames.status, 0) << of_frames.err;
+  EXPECT_EQ(of_frames.json().at("result").at("kind"), "frames");
+  EXPECT_EQ(of_frames.json().at("result").at("frames").at("layout"), "seven_scenes");
 }
 
 TEST(Sample, IsSeededAndKeepsOtherFiles) {

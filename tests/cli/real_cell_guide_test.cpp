@@ -24,7 +24,7 @@ std::vector<std::string> commands_of_guide() {
   return commands;
 }
 
-/// What the calibration prints goes into the cell's file, as the guide says.
+/// The output of the calibration goes into the cell's file, as the guide says.
 void enter_calibration(const fs::path& cell, const std::string& printed) {
   std::string text = text_of(cell);
   const auto after = [&](const std::string& key, const std::string& lines) {

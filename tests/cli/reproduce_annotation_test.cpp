@@ -49,7 +49,7 @@ TEST_F(ReproduceAnnotation, StandsBesideTheUserStudy) {
   for (const nlohmann::json& table : tables) {
     EXPECT_EQ(table.at("clouds"), 2);
     EXPECT_EQ(table.at("rows").size(), 2U + 2U * 4U);
-    EXPECT_NE(table.at("notes").at(0).get<std::string>().find("Nobody annotates here"), std::string::npos);
+    EXPECT_NE(table.at("notes").at(0).get<std::string>().find("No person annotates here"), std::string::npos);
     for (const nlohmann::json& row : table.at("rows")) {
       if (row.at("annotator") == "people") continue;
       ASSERT_EQ(row.at("clouds").size(), 2U);
@@ -73,7 +73,7 @@ TEST_F(ReproduceAnnotation, StandsBesideTheUserStudy) {
 }
 
 TEST_F(ReproduceAnnotation, NoLabelCountsAsTheBackground) {
-  constexpr int kGroups{80};  // more than there are actions; no path leads from one to another
+  constexpr int kGroups{80};  // more groups than actions; no path leads from one to another
   std::ofstream cloud{folder_ / "clouds" / "a.csv", std::ios::app};
   std::ofstream truth{folder_ / "clouds" / "a.txt", std::ios::app};
   for (int i = 0; i < 12 * kGroups; ++i) {
@@ -143,7 +143,7 @@ TEST_F(ReproduceAnnotation, ParametersAndTheQuestionnaireAreQuoted) {
 TEST_F(ReproduceAnnotation, BadInputIsOneLine) {
   expect_failure(run_program({"reproduce", "4.5", "--clouds", path("none")}), 2, "reproduce", {"--clouds", "none"});
   fs::create_directories(folder_ / "empty");
-  expect_failure(run_program({"reproduce", "4.5", "--clouds", path("empty")}), 3, "reproduce", {"empty"});
+  expect_failure(run_program({"reproduce", "4.5", "--quiet", "--clouds", path("empty")}), 3, "reproduce", {"empty"});
   fs::remove(folder_ / "clouds" / "b.txt");
   expect_failure(run_program({"reproduce", "4.8", "--quiet", "--clouds", path("clouds")}), 3, "reproduce", {"b.csv"});
   std::ofstream{folder_ / "clouds" / "b.txt"} << "1\n2\n";

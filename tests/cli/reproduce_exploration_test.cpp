@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
-// saccade reproduce 3.1, 3.2, 3.3 and 3.17, with small images.
+// saccade reproduce 3.1 to 3.3 and 3.16 to 3.22, with small images.
 #include <gtest/gtest.h>
+
+#include <limits>
 
 #include "run_program.hpp"
 #include "support/effort.hpp"
@@ -30,11 +32,24 @@ void expect_experiments(const nlohmann::json& experiments) {
   EXPECT_GT(views, 24U);
 }
 
+/// Each view leaves less unknown near the objects than the one before it.
+void expect_views(const nlohmann::json& figure) {
+  ASSERT_GT(figure.at("rows").size(), 2U);
+  std::size_t before = std::numeric_limits<std::size_t>::max();
+  for (const nlohmann::json& row : figure.at("rows")) {
+    EXPECT_LE(row.at("unknown_near_objects").get<std::size_t>(), before);
+    before = row.at("unknown_near_objects").get<std::size_t>();
+    EXPECT_GT(row.at("coverage").get<double>(), 0.0);
+  }
+}
+
 TEST(ReproduceExploration, SegmentsOfObjectsComeBeforeTheTable) {
   if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; explore_test runs one";
-  const Outcome outcome = reproduce({"3.2"});
+  const TempFolder folder;
+  const Outcome outcome = reproduce({"3.2", "3.16", "3.18"}, {"--out", folder.path().string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const nlohmann::json table = outcome.json().at("result").at("tables").at(0);
+  const nlohmann::json tables = outcome.json().at("result").at("tables");
+  const nlohmann::json& table = tables.at(0);
   const nlohmann::json& rows = table.at("rows");
   ASSERT_GT(rows.size(), 1U);
   std::size_t of_objects{0};
@@ -47,6 +62,28 @@ TEST(ReproduceExploration, SegmentsOfObjectsComeBeforeTheTable) {
   }
   EXPECT_EQ(table.at("of_objects"), of_objects);
   EXPECT_GT(table.at("candidates").get<std::size_t>(), of_objects);
+
+  // The exploration is the one of Table 3.2, carried out once.
+  const nlohmann::json& candidates = tables.at(1).at("rows");
+  EXPECT_EQ(candidates.at(0).at("here"), table.at("candidates"));
+  EXPECT_EQ(candidates.at(1).at("here"), table.at("of_chosen"));
+  EXPECT_EQ(candidates.at(0).at("thesis"), 91960);
+  expect_views(tables.at(2));
+  EXPECT_EQ(names_in(folder.path()), (std::vector<std::string>{"fig-3-16.png", "fig-3-18.png", "report.html"}));
+  EXPECT_LT(outcome.json().at("timings_ms").at("table 3.18").get<double>(), 1000.0);
+}
+
+TEST(ReproduceExplorationEvidence, ViewsAndMapsOfBothStrategies) {
+  if (kSanitized) GTEST_SKIP() << "explorations take long under sanitizers; explore_test runs one";
+  const TempFolder folder;
+  const Outcome outcome = reproduce({"3.19", "3.20", "3.21", "3.22"}, {"--out", folder.path().string()});
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const nlohmann::json tables = outcome.json().at("result").at("tables");
+  for (std::size_t i = 0; i < 3; ++i) expect_views(tables.at(i));
+  ASSERT_EQ(tables.at(3).at("rows").size(), 8U);
+  for (const nlohmann::json& row : tables.at(3).at("rows")) EXPECT_GT(row.at("coverage").get<double>(), 0.3) << row;
+  EXPECT_EQ(names_in(folder.path()),
+            (std::vector<std::string>{"fig-3-19.png", "fig-3-20.png", "fig-3-21.png", "fig-3-22.png", "report.html"}));
 }
 
 TEST(ReproduceExplorationEvidence, PhasesMarksAndCurvesOfFourScenes) {

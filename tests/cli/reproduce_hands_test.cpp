@@ -26,7 +26,7 @@ class ReproduceHands : public ::testing::Test {
       const int actions = i < 3 ? 1 : 2;
       write(i < 3 ? "placements_removals" : "pick_and_place",
             "user" + std::to_string(1 + i % 2) + "_cup" + std::to_string(i),
-            made_up_task(static_cast<std::uint64_t>(i) + 10, {.actions = actions}));
+            synthetic_task(static_cast<std::uint64_t>(i) + 10, {.actions = actions}));
     }
     std::ofstream{hands() + "/pick_and_place/user2_cup5.traj.res", std::ios::app} << "9 9 9\n";
   }
@@ -42,7 +42,7 @@ class ReproduceHands : public ::testing::Test {
   TempFolder folder_;
 
  private:
-  void write(const std::string& kind, const std::string& name, const MadeUpTask& task) const {
+  void write(const std::string& kind, const std::string& name, const SyntheticTask& task) const {
     const fs::path file = fs::path{hands()} / kind / (name + ".traj");
     fs::create_directories(file.parent_path());
     std::ofstream matrices{file};
@@ -154,7 +154,7 @@ TEST_F(ReproduceHands, MarkdownHasWhatIsOnStandardOutput) {
         reproduce({"2.6", "2.2"}, {"--markdown", file.string(), "--json", (folder_ / "a").string()});
     ASSERT_EQ(outcome.status, 0) << outcome.err;
     std::string text = text_of(file);
-    ASSERT_TRUE(text.starts_with("# Tables of the thesis, ours beside theirs\n")) << text;
+    ASSERT_TRUE(text.starts_with("# Tables of the thesis beside those of Saccade\n")) << text;
     const std::size_t first = text.find("\n## Table 2.6");
     const std::size_t second = text.find("\n## Table 2.2");
     ASSERT_NE(first, std::string::npos);

@@ -86,7 +86,7 @@ TEST(ReproduceSurfelsEvidence, ScenesErrorsAndCurvesOfAFewFrames) {
     EXPECT_LT(row.at("true_colors").at("least_bce"), row.at("enhanced").at("least_bce")) << row.at("scene");
   }
   const std::vector<std::string> plots = names_in(out);
-  EXPECT_EQ(plots.size(), 2 * kScenes + 5);
+  EXPECT_EQ(plots.size(), 2 * kScenes + 6);
   EXPECT_EQ(plots.front(), "fig-4-10-desk.svg");
   for (std::size_t i = 4; i < 8; ++i) expect_close_up(tables.at(i), out / ("fig-4-" + std::to_string(i + 1) + ".png"));
   const ColorImage positions = read_color(out / "fig-4-9.png").value();

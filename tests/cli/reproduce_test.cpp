@@ -34,9 +34,12 @@ TEST(Reproduce, RefusesWhatItDoesNotKnow) {
 
 TEST(ReproduceEvidence, UpdatesStandBesideTheThesis) {
   if (kSanitized) GTEST_SKIP() << "four updates take long under sanitizers; update_test runs them";
-  const Outcome outcome = run_program({"reproduce", "2.7", "--image-width", "80", "--quiet", "--json", "-"});
+  const TempFolder folder;
+  const Outcome outcome = run_program({"reproduce", "2.7", "2.16", "2.17", "2.18", "2.19", "2.20", "--image-width",
+                                       "80", "--quiet", "--json", "-", "--out", folder.path().string()});
   ASSERT_EQ(outcome.status, 0) << outcome.err;
-  const nlohmann::json table = outcome.json().at("result").at("tables").at(0);
+  const nlohmann::json tables = outcome.json().at("result").at("tables");
+  const nlohmann::json& table = tables.at(0);
   ASSERT_EQ(table.at("rows").size(), 4U);
   for (const nlohmann::json& row : table.at("rows")) {
     EXPECT_GT(row.at("views").get<int>(), 0);
@@ -52,6 +55,23 @@ TEST(ReproduceEvidence, UpdatesStandBesideTheThesis) {
   EXPECT_EQ(table.at("as_printed"), false);
   EXPECT_EQ(table.at("rows").at(3).at("thesis").at("views"), 3);
   EXPECT_NE(table.at("notes").dump().find("80 pixels wide"), std::string::npos);
+
+  EXPECT_EQ(tables.at(1).at("rows").size(), 2U) << "one hand for each experiment";
+  for (const nlohmann::json& row : tables.at(1).at("rows")) {
+    for (const nlohmann::json& off_m : row.at("distance_m")) EXPECT_LT(off_m.get<double>(), 0.2);
+  }
+  for (const std::size_t figure : {2U, 3U}) {
+    const nlohmann::json& views = tables.at(figure).at("rows");
+    ASSERT_EQ(views.size(), table.at("rows").at(figure == 2 ? 0 : 2).at("views").get<std::size_t>());
+    for (const nlohmann::json& view : views) {
+      EXPECT_LT(view.at("unknown_after").get<int>(), view.at("unknown_before").get<int>()) << view;
+    }
+  }
+  EXPECT_EQ(tables.at(4).at("rows").size(), 4U);
+  for (const nlohmann::json& row : tables.at(5).at("rows")) {
+    EXPECT_LT(row.at("unknown").back().get<int>(), row.at("unknown").front().get<int>()) << row;
+  }
+  EXPECT_EQ(names_in(folder.path()).size(), 9U) << "four pictures, four plots and their page";
 }
 
 TEST(Reproduce, SaysWhereAsPrintedChangesNothing) {
@@ -119,7 +139,7 @@ TEST(Reproduce, FiltersOfDepthStandBesideTheThesis) {
     EXPECT_GT(row.at("thesis").at("removed").get<int>(), 1000);
   }
   EXPECT_GE(tables.at(1).at("within_8_points").at("emitter_14_cm").get<int>(), 12);
-  EXPECT_EQ(names_in(plots), (std::vector<std::string>{"table-3-5.svg"}));
+  EXPECT_EQ(names_in(plots), (std::vector<std::string>{"report.html", "table-3-5.svg"}));
 }
 
 /// One run for both, with few poses.

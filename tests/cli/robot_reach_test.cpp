@@ -157,7 +157,7 @@ TEST(RobotReach, SaysWhatIsWrong) {
   refused({"--step", "nan"}, 2, {"--step"});
   refused({"--step", "3"}, 3, {"larger than the workspace"});
   refused({"--step", "0.0001"}, 3, {"million poses", "larger step"});
-  refused({"--radius", "-1"}, 2, {"--radius"});
+  refused({"--radius", "-1"}, 2, {"--distance"});  // the name of before
   refused({"--workspace", "0,0,0,0,1,1"}, 2, {"--workspace"});
   refused({"--height", "2"}, 3, {"--height", "outside the workspace"});
   refused({"--base-at", "1,2"}, 2, {"--base-at", "X,Y,Z"});

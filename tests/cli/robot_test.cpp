@@ -66,13 +66,16 @@ TEST(RobotCommand, SaysWhatIsWrong) {
                  {"eye: there is no such link to be the camera's frame"});
   expect_failure(run_program({"robot", "check", "hal"}), 3, "robot", {"no such robot; there are comau_smart_six"});
   expect_failure(run_program({"robot", "check", "comau_smart_six", "--package", "a"}), 2, "robot", {"NAME=FOLDER"});
-  expect_failure(run_program({"robot"}), 2, "robot", {"subcommand"});
+  expect_failure(
+      run_program({"robot", "check", "comau_smart_six", "--package-path", folder.path().string() + ":/nowhere"}), 2,
+      "robot", {"--package-path", "there is no folder /nowhere"});
+  expect_failure(run_program({"robot"}), 2, "robot", {"name what to do: check or reach"});
   const Outcome fine = run_program({"robot", "check", file(with_axis("1")), "--json", "-"});
   EXPECT_EQ(fine.status, 0) << fine.err;
   EXPECT_EQ(fine.err, "");
   EXPECT_EQ(fine.json().at("result").at("inverse_kinematics"), "numeric");
   EXPECT_TRUE(fine.json().at("result").at("joints").at(0).at("upper").is_null());
-  EXPECT_EQ(fine.json().at("result").at("notes").size(), 3U) << fine.out;
+  EXPECT_EQ(fine.json().at("result").at("notes").size(), 4U) << fine.out;
 }
 
 }  // namespace

@@ -45,10 +45,11 @@ class RunningProgram {
  public:
   /// file_bytes > 0: writing a larger file fails in the program, as on a full disk.
   /// `input` is what stands on its standard input.
-  explicit RunningProgram(const Arguments& arguments, rlim_t file_bytes = 0, const std::string& input = "") {
+  explicit RunningProgram(const Arguments& arguments, rlim_t file_bytes = 0, const std::string& input = "",
+                          const char* program = saccade_program()) {
     std::ofstream{folder_ / "in"} << input;
     const std::string in = (folder_ / "in").string();
-    std::vector<char*> argv{const_cast<char*>(saccade_program())};
+    std::vector<char*> argv{const_cast<char*>(program)};
     for (const std::string& argument : arguments) argv.push_back(const_cast<char*>(argument.c_str()));
     argv.push_back(nullptr);
     const std::string out = (folder_ / "out").string();
@@ -76,14 +77,15 @@ class RunningProgram {
   [[nodiscard]] std::string err() const { return text_of(folder_ / "err"); }
   void send(int signal) const { ::kill(pid_, signal); }
   [[nodiscard]] pid_t id() const { return pid_; }
-  /// Of all its threads, so far: unlike the time on the wall, it does not grow with other work on the machine.
+  /// Returns the processor time of all its threads so far. Unlike wall time, it does not grow with other work on the
+  /// machine.
   [[nodiscard]] double processor_ms() const {
     clockid_t clock{};
     timespec used{};
     if (::clock_getcpuclockid(pid_, &clock) != 0 || ::clock_gettime(clock, &used) != 0) return 0.0;
     return 1e3 * static_cast<double>(used.tv_sec) + 1e-6 * static_cast<double>(used.tv_nsec);
   }
-  /// Whether the text shows up on standard error within 120 s.
+  /// Tells whether the text shows up on standard error within 120 s.
   [[nodiscard]] bool wait_for(const std::string& text) const {
     for (int i = 0; i < 24000; ++i) {
       if (err().find(text) != std::string::npos) return true;
@@ -107,7 +109,7 @@ inline Outcome run_program(const Arguments& arguments, rlim_t file_bytes = 0, co
   return RunningProgram{arguments, file_bytes, input}.finish();
 }
 
-/// Whether the file appears within 60 s.
+/// Tells whether the file appears within 60 s.
 inline bool wait_for_file(const fs::path& path) {
   for (int i = 0; i < 12000 && !fs::exists(path); ++i) std::this_thread::sleep_for(std::chrono::milliseconds{5});
   return fs::exists(path);

@@ -192,7 +192,7 @@ TEST_F(SceneSequence, RefusesWhatItCannotDo) {
   EXPECT_EQ(run("mine", {"--frames", "1", "--force"}).status, 0);
   EXPECT_EQ(text_of(folder_ / "mine" / "letter.txt"), "dear");
   (void)folder_.write("mine/sequence.json", "[1]");
-  expect_failure(run("mine", {"--frames", "1"}), 3, "scene", {"no document of a sequence"});
+  expect_failure(run("mine", {"--frames", "1"}), 3, "scene", {"does not describe a sequence"});
 }
 
 }  // namespace

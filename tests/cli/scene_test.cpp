@@ -64,14 +64,20 @@ TEST(SceneCommand, RefusesWhatItCannotDo) {
     EXPECT_NE(outcome.err.find(part), std::string::npos) << outcome.err;
     EXPECT_EQ(std::count(outcome.err.begin(), outcome.err.end(), '\n'), 1) << outcome.err;
   };
-  refused({"scene"}, 2, "subcommand");
+  refused({"scene"}, 2, "name what to do: export, list, render or sequence");
   refused({"scene", "render", "atrium", "--out", out}, 3, "atrium: no such scene; there are bottle");
   refused({"scene", "render", "jug"}, 2, "--out");
   refused({"scene", "render", "jug", "--out", out, "--image-size", "0,5"}, 2, "--image-size");
   refused({"scene", "export", "jug", "--out", out, "--spacing", "-1"}, 2, "--spacing");
+  refused({"scene", "render", "bottel", "--out", out}, 3, "did you mean bottle?");
   const fs::path typo = folder.write("typo.yaml", "scene: a\nworkspce: 3\n");
   refused({"scene", "render", typo.string(), "--out", out}, 3,
-          "typo.yaml, line 1, column 1: a scene needs the key workspace");
+          "typo.yaml, line 2, column 1: unknown key workspce in a scene; known here: ");
+  refused({"scene", "render", typo.string(), "--out", out}, 3, "; did you mean workspace?");
+  const fs::path missing = folder.write("missing.yaml", "scene: a\n");
+  refused({"scene", "render", missing.string(), "--out", out}, 3, "a scene needs the key workspace");
+  const fs::path map = folder.write("map.sacmap", std::string("SACMAP\0\1", 8));
+  refused({"scene", "render", map.string(), "--out", out}, 3, "map.sacmap: is a saved map, not a text in YAML");
   EXPECT_FALSE(fs::exists(out));
 }
 

@@ -27,8 +27,8 @@ class Score : public ::testing::Test {
     expect_envelope(outcome.json(), "score");
     return outcome.json().at("result");
   }
-  /// Segments the first recorded clouds and scores them by the commands of docs/segmentation.md. Returns null where
-  /// there is no cloud, or the program is sanitized.
+  /// Segments the first recorded clouds and scores them by the commands of docs/guides/segmentation.md. Returns null
+  /// where there is no cloud, or the program is sanitized.
   [[nodiscard]] nlohmann::json score_of_recorded_clouds(std::size_t at_most) const {
     const fs::path recorded = shared_data() / "mosd_labelled" / "learn";
     if (!fs::is_directory(recorded) || kSanitized) return nullptr;
@@ -56,7 +56,7 @@ TEST_F(Score, IsWhatCanBeWorkedOutByHand) {
   const fs::path truth = cloud("truth.pcd", truth_);
   const nlohmann::json result = result_of({predicted.string(), truth.string(), "--objects-from", "20"});
   EXPECT_NEAR(result.at("fos"), 1.0 - (8.0 + 2.0 + 2.0) / 14.0, 1e-12);
-  EXPECT_NEAR(result.at("fus"), (2.0 + 8.0) / 14.0, 1e-12);  // of two equal overlaps that of the lower label
+  EXPECT_NEAR(result.at("fus"), (2.0 + 8.0) / 14.0, 1e-12);  // at equal overlaps the lower label is the best
   EXPECT_NEAR(result.at("wov"), (8.0 * 0.8 + 4.0 * 0.5 + 2.0 * 1.0) / 14.0, 1e-12);
   EXPECT_NEAR(result.at("wov_objects"), (4.0 * 0.5 + 2.0 * 1.0) / 6.0, 1e-12);
   ASSERT_EQ(result.at("clouds").size(), 1U);
@@ -107,7 +107,7 @@ TEST_F(Score, OfRealLabelledClouds) {
 
 using ScoreEvidence = Score;
 
-/// The measures of mOSD's clouds in docs/segmentation.md, by the commands that it names.
+/// The measures of mOSD's clouds in docs/guides/segmentation.md, by the commands that it names.
 TEST_F(ScoreEvidence, OfRealLabelledClouds) {
   const nlohmann::json result = score_of_recorded_clouds(100);
   if (result.is_null()) GTEST_SKIP() << "no recorded clouds";

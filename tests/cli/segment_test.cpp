@@ -5,6 +5,7 @@
 #include <cmath>
 #include <numeric>
 
+#include "cli/report_page.hpp"
 #include "cli/run_program.hpp"
 #include "saccade/io/clouds/cloud_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
@@ -216,7 +217,7 @@ TEST_F(Segment, NothingToSegmentIsNoCrash) {
   const Outcome one = with_rows({0.5F});
   EXPECT_EQ(one.status, 0) << one.err;
   EXPECT_EQ(nlohmann::json::parse(text_of(folder_ / "none.json")).at("result").at("segments").at(0).at("points"), 1);
-  EXPECT_EQ(with_rows(std::vector<float>(3000, 0.25F)).status, 0);  // one place, many times
+  EXPECT_EQ(with_rows(std::vector<float>(300, 0.25F)).status, 0);  // one place, many times
   const Outcome before = run_program({"segment", cloud().string(), "--quiet", "--transform"});
   EXPECT_EQ(before.status, 0) << before.err;
 
@@ -262,10 +263,49 @@ TEST_F(Segment, NeverReplacesItsInput) {
   EXPECT_FALSE(fs::exists(out()));
 }
 
+TEST_F(Segment, AFolderTakesEverythingAndAPage) {
+  const fs::path run = folder_ / "run";
+  const Outcome outcome = run_program(segment({"--out", run.string(), "--json", "-"}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  EXPECT_EQ(names_in(run), (std::vector<std::string>{"report.html", "segment.json", "segments.ply", "segments.png"}));
+  const nlohmann::json page = report_in(run / "report.html");
+  ASSERT_TRUE(page.is_object());
+  EXPECT_EQ(page.at("record"), outcome.json());
+  EXPECT_EQ(page.at("record"), nlohmann::json::parse(text_of(run / "segment.json")));
+  EXPECT_NE(page.at("files").dump().find("segments.png"), std::string::npos);
+  EXPECT_EQ(read_ply(run / "segments.ply").value().find("vertex")->table.rows, fields_.rows);
+  EXPECT_EQ(page.at("record").at("result").at("found"), page.at("record").at("result").at("segments").size());
+
+  // A second run replaces the first, its picture included, and nothing else.
+  const Outcome again = run_program(segment({"--out", run.string(), "--no-pictures"}));
+  ASSERT_EQ(again.status, 0) << again.err;
+  EXPECT_NE(again.out.find((run / "report.html").string()), std::string::npos) << again.out;
+  EXPECT_EQ(names_in(run), (std::vector<std::string>{"report.html", "segment.json", "segments.ply"}));
+  EXPECT_EQ(report_in(run / "report.html").at("files").dump().find(".png"), std::string::npos);
+  const fs::path other = folder_ / "other";
+  fs::create_directory(other);
+  std::ofstream{other / "notes.txt"} << "mine";
+  expect_failure(run_program(segment({"--out", other.string()})), 3, "segment", {other.string(), "--force"});
+  EXPECT_EQ(run_program(segment({"--out", other.string(), "--force"})).status, 0);
+  EXPECT_EQ(text_of(other / "notes.txt"), "mine");
+}
+
+TEST_F(Segment, AFolderNeverLosesTheInput) {
+  const fs::path run = folder_ / "run";
+  ASSERT_EQ(run_program(segment({"--out", run.string()})).status, 0);
+  const std::string before = text_of(run / "segments.ply");
+  const Outcome outcome = run_program({"segment", (run / "segments.ply").string(), "--out", run.string(), "--quiet"});
+  expect_failure(outcome, 3, "segment", {"segments.ply", "--out"});
+  EXPECT_TRUE(text_of(run / "segments.ply") == before);
+  EXPECT_EQ(names_in(run).size(), 4U);
+}
+
 TEST_F(Segment, UsageErrorsAreOneLine) {
   expect_failure(run_program({"segment"}), 2, "segment", {"input is required"});
   expect_failure(run_program(segment({"--method", "slic"})), 2, "segment", {"--method", "lccp"});
-  expect_failure(run_program(segment({"--out", "labels.txt"})), 2, "segment", {".pcd or .ply"});
+  expect_failure(run_program(segment({"--out", "labels.txt"})), 2, "segment", {".pcd or .ply", "folder"});
+  expect_failure(run_program(segment({"--no-pictures"})), 2, "segment", {"--no-pictures", "--out"});
+  expect_failure(run_program(segment({"--out", "labels.ply", "--no-pictures"})), 2, "segment", {"--no-pictures"});
   expect_failure(run_program(segment({"--picture", "picture.jpg"})), 2, "segment", {"--picture", ".png"});
   expect_failure(run_program(segment({"--voxel-size", "0"})), 2, "segment", {"--voxel-size"});
   expect_failure(run_program(segment({"--voxel-size", "0.1"})), 2, "segment", {"--seed-size"});

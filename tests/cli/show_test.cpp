@@ -77,7 +77,7 @@ TEST(ShowCommand, ShowsAnExplorationViewByView) {
   ASSERT_EQ(older.at("steps").size(), 3U);
   EXPECT_EQ(layers_of(older, "Surface", 1), 0U);
   EXPECT_EQ(layers_of(older, "Arm", 1), 1U);
-  EXPECT_EQ(layers_of(older, "Surface", 99), 1U);  // of no step
+  EXPECT_EQ(layers_of(older, "Surface", 99), 1U);  // belongs to no step
 }
 
 TEST(ShowCommand, ShowsARunWhileItGoesOn) {

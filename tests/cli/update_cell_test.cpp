@@ -2,8 +2,10 @@
 // saccade update with a cell whose camera, joints and hand are programs of their own.
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <fstream>
 
+#include "report_page.hpp"
 #include "run_program.hpp"
 #include "saccade/io/files/json_io.hpp"
 #include "support/places.hpp"
@@ -50,7 +52,7 @@ class UpdateCell : public ::testing::Test {
                      "--quiet", "--json",        "-"} +
            more;
   }
-  /// Whether the arm was ever told to move.
+  /// Tells whether the arm was ever told to move.
   [[nodiscard]] bool moved() const { return text_of(folder_ / "log").find("follow") != std::string::npos; }
   TempFolder folder_;
 };
@@ -78,13 +80,16 @@ TEST_F(UpdateCell, TheRobotLooksAgainWhereTheHandHasPutSomethingDown) {
                            "task-1/regions.png", "task-1/view-01-map.png"}) {
     EXPECT_TRUE(fs::exists(folder_ / "run" / file)) << file;
   }
-  const std::string page = text_of(folder_ / "run/report.html");
-  EXPECT_NE(page.find("href=\"task-1/report.html\""), std::string::npos);
-  EXPECT_NE(page.find("The hand came 1 time"), std::string::npos);
-  const std::string of_task = text_of(folder_ / "run/task-1/report.html");
-  for (const char* part : {"Task 1 of bottle-before", "and where it acted", "Speed of the hand", "id=\"view-1\""}) {
-    EXPECT_NE(of_task.find(part), std::string::npos) << part;
-  }
+  const json page = report_in(folder_ / "run/report.html");
+  ASSERT_EQ(page.at("record").at("result").at("tasks").size(), 1U);
+  EXPECT_EQ(page.at("record").at("result").at("tasks")[0], task);
+  const json& files = page.at("files");
+  EXPECT_NE(std::find(files.begin(), files.end(), "task-1/view-01-map.png"), files.end());
+  const json of_task = report_in(folder_ / "run/task-1/report.html");
+  EXPECT_EQ(of_task.at("record").at("result").at("cell"), "bottle-before");
+  EXPECT_EQ(of_task.at("record").at("result").at("task_number"), 1);
+  EXPECT_EQ(of_task.at("record").at("result").at("views"), task.at("views"));
+  EXPECT_GT(of_task.at("details").at("speed").at("time_s").size(), 1U);
 }
 
 TEST_F(UpdateCell, ARecordingStandsInForTheTracker) {

@@ -9,6 +9,7 @@
 #include <csignal>
 #include <fstream>
 
+#include "cli/report_page.hpp"
 #include "cli/run_program.hpp"
 #include "support/effort.hpp"
 
@@ -37,7 +38,7 @@ json result_of(const Outcome& outcome) {
   return document.at("result");
 }
 
-/// What every update is held to.
+/// Checks that every update must pass.
 void expect_complete(const json& result) {
   for (const json& region : result.at("regions")) {
     EXPECT_EQ(region.at("end"), "done");
@@ -81,8 +82,13 @@ TEST(UpdateCommand, LooksAgainWhereABottleWasPutDown) {
                                      "view-01-choice.png", "view-01-map.png", "view-01-seen.png"});
   }
   for (const std::string& name : expected) EXPECT_TRUE(fs::exists(folder / "run" / name)) << name;
+  if (!kSanitized) {
+    const json page = report_in(folder / "run/report.html");
+    EXPECT_EQ(page.at("record").at("result"), result);
+    EXPECT_GT(page.at("details").at("speed").at("speed_m_s").size(), 1U);
+  }
 
-  // The same hand from a file, and other threads, give the same.
+  // Equal results with this hand from a file, and with other threads.
   if (kSanitized) return;
   Arguments again = update(folder / "again", {"--scene", "bottle", "--no-pictures", "--threads", "1"});
   const json same = result_of(run_program(again + Arguments{"--trajectory", (folder / "run/hand.csv").string()}));
@@ -221,7 +227,7 @@ TEST(UpdateCommand, SaysWhichRegionsAreOutOfReach) {
   if (kSanitized) GTEST_SKIP() << "the bottle's update and an interrupted one are enough under sanitizers";
   const TempFolder folder;
   write_hand(folder / "hand.csv", {0.0, 0.0, 0.1}, 30);
-  // Nobody reaches view poses so far away.
+  // View poses so far away are out of reach.
   const Outcome outcome =
       run_program(update(folder / "run", kSmallest + Arguments{"--no-pictures", "--scene", "bottle", "--radius", "3",
                                                                "--trajectory", (folder / "hand.csv").string()}));
@@ -245,12 +251,22 @@ TEST(UpdateCommand, RefusesWhatMakesNoSense) {
   refused(2, {"--scene", "bottle", "--fuse-when", "never"}, {"--fuse-when"});
   refused(2, {"--scene", "bottle", "--fuse-when", "motion", "--robot", "free"}, {"--fuse-when", "arm"});
   refused(2, {"--scene", "bottle", "--region-radius", "0"}, {"--region-radius"});
-  refused(3, {"--scene", "bottle", "--region-radius", "1e6"}, {"regions of the hand", "within 1000 m"});
+  refused(2, {"--scene", "bottle", "--region-radius", "1e6"}, {"--region-radius", "1000 m"});
   refused(2, {"--scene", "after.yaml"}, {"--before"});
   refused(3, {"--scene", "tabletop-1"}, {"tabletop-1-before", "no such scene"});
   refused(3, {"--scene", "bottle", "--before", "bottle"}, {"bottle"});
   refused(3, {"--scene", "bottle", "--trajectory", "nowhere.csv"}, {"nowhere.csv", "no such file"});
   refused(3, {"--scene", "bottle", "--robot", "nowhere.urdf"}, {"nowhere.urdf"});
+}
+
+TEST(UpdateCommand, ItsFolderIsNamedAfterTheSceneUnlessItIsGiven) {
+  const TempFolder folder;
+  folder.write("update-bottle", "a file, into which nothing can go");
+  const fs::path before = fs::current_path();
+  fs::current_path(folder.path());
+  const Outcome outcome = run_program({"update", "--scene", "bottle", "--robot", "free", "--quiet"});
+  fs::current_path(before);
+  expect_failure(outcome, 3, "update", {"update-bottle", "the results need a folder"});
 }
 
 TEST(UpdateCommand, AnInterruptedUpdateKeepsWhatItHas) {

@@ -33,7 +33,7 @@ inline std::optional<ProgramCamera> started(const std::string& command) {
   return std::nullopt;
 }
 
-/// What a camera that cannot be started says.
+/// Returns the error of a camera that cannot be started.
 inline std::string refusal(const std::string& command) {
   const auto camera = ProgramCamera::start({command});
   return camera ? "it started" : camera.error().to_string();

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// docs/defaults.md says what the code does: each row named here is looked up in the table and compared.
+// docs/reference/defaults.md says what the code does: each row named here is looked up in the table and compared.
 #include <gtest/gtest.h>
 
 #include <cstdlib>
@@ -48,7 +48,7 @@ namespace {
 
 /// The cell "default" of the row whose cell "in the code" is `name`; empty without such a row.
 std::string documented(const std::string& name) {
-  std::ifstream file{test::source_folder() / "docs/defaults.md"};
+  std::ifstream file{test::source_folder() / "docs/reference/defaults.md"};
   for (std::string line; std::getline(file, line);) {
     std::vector<std::string> cells;
     std::istringstream row{line};
@@ -63,7 +63,7 @@ void expect_documented(const std::string& name, const std::vector<double>& value
   for (const double value : values) {
     double shown = 0.0;
     cell >> shown;
-    EXPECT_TRUE(cell) << name << " has too few values in docs/defaults.md";
+    EXPECT_TRUE(cell) << name << " has too few values in docs/reference/defaults.md";
     EXPECT_NEAR(shown, value, 1e-9) << name;
     cell.ignore(1, ',');
   }
@@ -89,6 +89,7 @@ TEST(Defaults, OfArmsAreDocumented) {
   expect_documented("NumericIkConfig::iterations", {static_cast<double>(ik.numeric.iterations)});
   expect_documented("UrdfConfig::default_speed", {UrdfConfig{}.default_speed});
   expect_documented("UrdfConfig::acceleration_time_s", {UrdfConfig{}.acceleration_time_s});
+  expect_documented("UrdfConfig::xacro_timeout_s", {UrdfConfig{}.xacro_timeout_s});
   const ArmSilhouetteConfig silhouette;
   expect_documented("ArmSilhouetteConfig::margin_m", {silhouette.margin_m});
   expect_documented("ArmSilhouetteConfig::border_px", {silhouette.border_px});

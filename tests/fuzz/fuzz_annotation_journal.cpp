@@ -26,7 +26,7 @@ std::uint32_t number_at(const Bytes& file, std::size_t offset) {
   return number;
 }
 
-/// The checksum of so many bytes, right behind them.
+/// Writes the checksum of `size` bytes right behind them.
 void repair(Bytes& file, std::size_t offset, std::size_t size) {
   const std::uint32_t crc = saccade::crc32(std::span{file}.subspan(offset, size));
   std::memcpy(&file[offset + size], &crc, sizeof crc);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Feeds what reads the parts of HTTP requests: target, host, origin and cookies, a line each.
+// Feeds what reads the parts of HTTP requests: target, host, origin and subprotocols, a line each.
 #include <algorithm>
 #include <array>
 #include <cstdint>
@@ -25,7 +25,7 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
     line = rest.substr(0, rest.find('\n'));
     rest.remove_prefix(std::min(line.size() + 1, rest.size()));
   }
-  const auto& [target, host, origin, cookies] = lines;
+  const auto& [target, host, origin, subprotocols] = lines;
   if (const auto parsed = saccade::server::parse_target(target)) {
     require(parsed->path.starts_with('/') && std::none_of(parsed->path.begin(), parsed->path.end(), is_control));
     const std::string header = saccade::server::attachment(parsed->path);
@@ -34,8 +34,8 @@ extern "C" int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size
   const std::string name = saccade::server::host_name(host);
   require(name.size() <= host.size() && name.find_first_of("/@ \r\"") == std::string::npos);
   if (saccade::server::is_origin_of(origin, host)) require(origin.size() > host.size());
-  const std::string_view value = saccade::server::cookie_value(cookies, "saccade_1");
-  require(value.empty() || (value.data() >= cookies.data() && value.size() < cookies.size()));
+  const std::string_view value = saccade::server::offered_token(subprotocols);
+  require(value.empty() || (value.data() >= subprotocols.data() && value.size() < subprotocols.size()));
   require(!saccade::server::is_same_token(host, target) || host == target);
   return 0;
 }

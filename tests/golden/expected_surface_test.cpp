@@ -18,7 +18,7 @@ std::vector<double> shown_over_expected(const std::vector<std::string>& scenes) 
   std::vector<double> ratios;
   for (const std::string& name : scenes) {
     const RayScene scene = RayScene::build(find_scene(name).value()).value();
-    const Truth truth = Truth::build(scene, kTruthSpacing_m, executor).value();
+    const GroundTruth truth = GroundTruth::build(scene, kTruthSpacing_m, executor).value();
     const double all_cm2 =
         static_cast<double>(truth.observable_points().size()) * truth.spacing_m() * truth.spacing_m() * 1e4;
     SimulatedRunConfig config;

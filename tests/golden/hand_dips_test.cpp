@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Both dip detectors on the recorded hands, whole trajectories with a mislabelled place left out (docs/dip-detector.md
-// has the figures for all conditions and twenty seeds).
+// Both dip detectors on the recorded hands, whole trajectories with a mislabelled place left out
+// (docs/design/dip-detector.md has the figures for all conditions and twenty seeds).
 
 #include <gtest/gtest.h>
 

@@ -14,7 +14,7 @@ import rooms
 
 ARROWS = "tests/layers/arrows.json"
 FOLDERS = ["lib", "apps", "tests", "bench", "examples"]
-MAY_INCLUDE_INTERNAL = {"tests", "bench"}
+MAY_INCLUDE_INTERNAL = {"tests", "bench", "cuda"}
 SOURCES = {".hpp", ".cpp", ".cu", ".cuh"}
 MIN_FILES = 5
 INCLUDE = re.compile(r'^\s*#\s*include\s*[<"](saccade/[^>"]+)[>"]', re.MULTILINE)

@@ -10,7 +10,7 @@ import sys
 
 import rooms
 
-# What each room may include: the rooms named here and what those may include, itself, and core (docs/architecture.md).
+# Rooms that each room may include: those named here and what those may include, itself, and core (docs/design/architecture.md).
 TABLE = {
     "core": [],
     "io/files": [],
@@ -36,8 +36,8 @@ TABLE = {
     "trial": ["scene", "arm", "io/runs"],
     "annotate": ["cloud"],
     "io/sessions": ["io/files", "annotate"],
-    "report": ["io/frames", "surfel", "views", "arm", "attention", "explore"],
-    "cuda": ["map", "surfel", "views"],
+    "report": ["io/frames", "surfel", "views", "arm", "attention"],
+    "cuda": ["map", "tracking", "views"],
 }
 
 
@@ -51,7 +51,7 @@ def closure(room):
 
 ALLOWED = {room: closure(room) for room in TABLE}
 
-# What an embedder of the loop builds: these rooms need nothing but the libraries below.
+# Rooms that embed the loop: they need only the libraries below.
 CORE_ROOMS = {"core", "sensor", "cloud", "map", "tracking", "surfel", "segment", "attention", "views", "robot", "explore",
               "annotate"}
 CORE_LIBRARIES = {"Eigen", "oneapi", "tbb", "hwy", "zstd.h", "malloc.h"}  # first part of the path in <…>
@@ -167,16 +167,16 @@ def check_text(name, path, text):
 
 
 def check_page(root):
-    """Compares the table of docs/architecture.md with TABLE."""
-    page = root / "docs" / "architecture.md"
+    """Compares the table of docs/design/architecture.md with TABLE."""
+    page = root / "docs/design/architecture.md"
     rows = re.findall(r"^\| `([a-z/]+)` \|.*\| ([a-z/, –]+) \|$", page.read_text(), re.MULTILINE) if page.exists() else []
     for room, below in rows:
         below = [] if below == "–" else below.split(", ")
         if room not in TABLE or below != TABLE[room]:
-            yield f"docs/architecture.md: {room} may include {below}; the layer test says {TABLE.get(room, 'nothing of it')}"
+            yield f"docs/design/architecture.md: {room} may include {below}; the layer test says {TABLE.get(room, 'nothing of it')}"
     built = {room for room in TABLE if (root / "lib" / "saccade" / room / "CMakeLists.txt").exists()}
     for room in sorted(built - {room for room, _ in rows} if page.exists() else []):
-        yield f"docs/architecture.md: {room} is not in the table of rooms"
+        yield f"docs/design/architecture.md: {room} is not in the table of rooms"
 
 
 def check(root):

@@ -64,10 +64,10 @@ class CheckLayers(unittest.TestCase):
 
     def test_page_differs(self):
         page = "| room | what | may include |\n|---|---|---|\n| `core` | a | – |\n| `map` | b | {} |\n| `io/maps` | c | io/files, map |\n"
-        self.assertEqual(self.violations({"docs/architecture.md": page.format("sensor")}), [])
-        found = self.violations({"docs/architecture.md": page.format("surfel").replace("| `io/maps`", "| io/maps")})
-        self.assertEqual(found, ["docs/architecture.md: map may include ['surfel']; the layer test says ['sensor']",
-                                 "docs/architecture.md: io/maps is not in the table of rooms"])
+        self.assertEqual(self.violations({"docs/design/architecture.md": page.format("sensor")}), [])
+        found = self.violations({"docs/design/architecture.md": page.format("surfel").replace("| `io/maps`", "| io/maps")})
+        self.assertEqual(found, ["docs/design/architecture.md: map may include ['surfel']; the layer test says ['sensor']",
+                                 "docs/design/architecture.md: io/maps is not in the table of rooms"])
 
     def test_unknown_room(self):
         found = self.violations({"lib/saccade/utils/u.hpp": SPDX + "#pragma once\n"})

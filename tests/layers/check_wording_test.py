@@ -86,6 +86,18 @@ class CheckWording(unittest.TestCase):
     def test_the_same(self):
         self.expect("The same", CORE, "core", "/// Adds the same.\n/// The same for many poses.\n", 2)
 
+    def test_what(self):
+        self.expect("What", CORE, "core", "/// What a frame holds.\nint a;  // What is it?\nint b;  // see what\n", 1)
+
+    def test_somebody(self):
+        self.expect("somebody", CORE, "core", "/// Waits until somebody asks.\n", 1)
+
+    def test_is_no(self):
+        self.expect("is no", CLI, "apps/cli", 'auto a = "is no number";\nauto b = "there is no path";\n', 1)
+
+    def test_riddles(self):
+        self.expect("riddle", CORE, "core", "/// Points that hang together.\n/// Views worth going to.\n", 1, 2)
+
     def test_other_languages(self):
         self.expect("whoever, nobody", "scripts/run.sh", "scripts",
                     "echo nobody ${x#nobody}\n# nobody\nx=1 # nobody\n", 2, 3)

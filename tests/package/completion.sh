@@ -3,7 +3,7 @@
 # Completion and manual pages that the program makes: each shell parses and uses its file, checkers find no fault.
 # Usage: completion.sh PROGRAM WORK
 set -euo pipefail
-program="$1" work="$2"
+program="$1" work="$2" here="$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)"
 rm -rf "$work"
 mkdir -p "$work/folder"
 cd "$work"
@@ -29,6 +29,7 @@ expect() {
 complete_in_bash() {
   bash -c 'compopt() { :; }; source saccade.bash; COMP_WORDS=("$@"); COMP_CWORD=$(($# - 1)); _saccade; printf "%s\n" "${COMPREPLY[@]}"' bash "$@"
 }
+complete_in_zsh() { zsh -f "$here/complete.zsh" "$*"; }
 complete_in_fish() { HOME="$work" fish --no-config -c 'source saccade.fish; complete -C "$argv"' "$*" | cut -f 1; }
 
 check_completion() {
@@ -48,6 +49,9 @@ if command -v zsh >/dev/null; then
   # _arguments reads each list of options when completion runs; a stand-in shows that the functions reach it.
   zsh -f -c 'compdef() { :; }; _arguments() { print -rl -- "$@"; state=""; }; source ./saccade.zsh; _saccade_explore' >zsh.txt
   grep -qF -- '--sensor[' zsh.txt || { echo "zsh: no --sensor" >&2; failed=1; }
+  expect zsh saccade expl -- explore
+  expect zsh saccade explore --sens -- --sensor
+  expect zsh saccade robot re -- reach
 fi
 if command -v fish >/dev/null; then
   fish -n saccade.fish

@@ -38,7 +38,7 @@ if [[ -z ${SACCADE_CLEAN_ROOT:-} ]]; then
 fi
 
 echo "== installed, used, removed"
-# What the packages need is there before them, so that what they bring themselves can be told, and nothing is downloaded later.
+# Dependencies are installed first, so that what they bring themselves can be told, and nothing is downloaded later.
 needed="$(for package in "$packages"/saccade_*.deb "$packages"/python3-saccade_*.deb; do dpkg-deb -f "$package" Depends; done |
   tr ',' '\n' | sed 's/(.*//; s/ //g' | sort -u | paste -s -d ,)"
 suite="$(. /etc/os-release && echo "$VERSION_CODENAME")"

@@ -20,7 +20,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kNear_m{0.05};             ///< of contact
+constexpr double kNear_m{0.05};             ///< distance that counts as nearly a contact
 constexpr std::size_t kDistanceEvery{512};  ///< distances to meshes take FCL long
 
 int cases() {
@@ -31,7 +31,7 @@ int cases() {
 /// One set of configurations.
 struct ContactTally {
   int free{0};        ///< by FCL
-  int called{0};      ///< of these, contacts by ours
+  int called{0};      ///< contacts by ours among these
   int collisions{0};  ///< by FCL
 
   [[nodiscard]] int all() const { return free + collisions; }

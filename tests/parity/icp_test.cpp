@@ -111,7 +111,7 @@ class RandomIcpStep {
   PointImage image(int width, int height) {
     PointImage made{Image<float>{width, height}, Image<float>{width, height}, Image<float>{width, height},
                     Image<float>{width, height}};
-    const int holes = 2 + whole(20);  // one in so many pixels
+    const int holes = 2 + whole(20);  // one hole in this number of pixels
     for (int v = 0; v < height; ++v) {
       for (int u = 0; u < width; ++u) {
         if (whole(holes) == 0) continue;

@@ -21,7 +21,7 @@
 namespace saccade::test {
 namespace {
 
-/// What the motions of one arm came to.
+/// Results of the motions of one arm.
 struct MotionFigures {
   std::size_t motions{0};
   std::size_t detours{0};  ///< not straight in joint space

@@ -18,8 +18,8 @@ namespace {
 
 constexpr double kStep_m{0.002};  ///< no point of the arm moves farther between two configurations that FCL looks at
 constexpr double kStep_s{0.002};
-/// Every so many pairs go to a view by any of its configurations, mostly straight; the others to one configuration
-/// whose straight motion is not free.
+/// Every kAnyEvery-th pair goes to a view by any of its configurations, mostly straight; the others to one
+/// configuration whose straight motion is not free.
 constexpr std::size_t kAnyEvery{4};
 constexpr int kDraws{200};
 
@@ -32,10 +32,10 @@ struct PlanTally {
   std::size_t pairs{0};
   std::size_t solved{0};
   std::size_t straight{0};
-  std::size_t searched{0};  ///< of the solved ones
+  std::size_t searched{0};  ///< searched among the solved ones
   std::size_t out_of_time{0};
   std::size_t looked_at{0};   ///< configurations
-  std::size_t collisions{0};  ///< of these
+  std::size_t collisions{0};  ///< collisions among these
   std::size_t touching_plans{0};
   std::size_t grazing_plans{0};  ///< by our own check, at other configurations than when it was planned
   std::vector<double> straight_ms;

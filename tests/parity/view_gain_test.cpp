@@ -59,7 +59,7 @@ class RandomCase {
   Eigen::Vector3d point(double reach) { return {real(-reach, reach), real(-reach, reach), real(-reach, reach)}; }
 
   void fill_map() {
-    const int clutter = chance(3) ? 40 : 400;  // one in so many bricks is not plainly free
+    const int clutter = chance(3) ? 40 : 400;  // one in this number of bricks is not plainly free
     for (int s = 0; s < 64; ++s) {
       if (chance(40)) continue;
       Sector& sector = map.grid.writable({s % 4 - 2, s / 4 % 4 - 2, s / 16 - 2});

@@ -108,7 +108,7 @@ void expect_same(const Annotation& annotation, const PlainState& plain, Shortest
   ASSERT_EQ(annotation.label_table().defined(), plain.definitions);
 }
 
-/// What an action says to have changed is what has another value than before.
+/// Checks that an action reports exactly the values that changed.
 void expect_reported(const Applied& applied, std::vector<std::uint32_t>& labels, const Annotation& annotation) {
   std::vector<std::uint32_t> reported{applied.points.begin(), applied.points.end()};
   std::sort(reported.begin(), reported.end());

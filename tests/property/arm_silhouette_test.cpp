@@ -72,7 +72,7 @@ struct PosedTriangles {
     return nearest;
   }
 
-  /// The same, unless rays close by meet something else.
+  /// As cast, unless rays close by meet something else.
   [[nodiscard]] std::optional<double> cast_surely(const PinholeCamera& camera, int u, int v) const {
     constexpr double kBeside_px{1e-3};
     const double z = cast(camera.ray(u, v));
@@ -144,7 +144,7 @@ TEST(ArmSilhouetteProperty, WhatLiesWithinTheMarginIsMasked) {
         const auto u = static_cast<int>(std::lround(at.x()));
         const auto v = static_cast<int>(std::lround(at.y()));
         if (u < 0 || v < 0 || u >= camera.width || v >= camera.height) continue;
-        if (triangles.cast(on_body) == 0.0) continue;  // of faces seen from within, or less widened
+        if (triangles.cast(on_body) == 0.0) continue;  // a face seen from inside, or less enlarged
         ++points;
         missed += depth(u, v) == 0.0F ? 0 : 1;
       }

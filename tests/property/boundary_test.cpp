@@ -57,7 +57,8 @@ TEST(BoundaryProperty, IsThatOfTheEquationForEveryThreadCount) {
   EXPECT_GT(near, 20 * compared);
 }
 
-/// Of all points of a and b: as many pairs within the tolerance as can be, and the least sum of their distances.
+/// Returns the optimal assignment by brute force: as many pairs within the tolerance as possible, with the smallest sum
+/// of distances.
 std::pair<std::size_t, double> least_of_all(const std::vector<Eigen::Vector3f>& places,
                                             const std::vector<std::uint32_t>& a, const std::vector<std::uint32_t>& b,
                                             double tolerance_m) {

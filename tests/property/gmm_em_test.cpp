@@ -20,7 +20,7 @@ namespace {
 using MixtureInput = std::vector<Eigen::Vector4d>;
 
 MixtureInput task_samples(std::uint64_t seed) {
-  const MadeUpTask task = made_up_task(seed, {.actions = 1 + static_cast<int>(seed % 3)});
+  const SyntheticTask task = synthetic_task(seed, {.actions = 1 + static_cast<int>(seed % 3)});
   return test::augmented_samples(with_noise(task.trajectory, 0.002, seed).value());
 }
 
@@ -140,7 +140,7 @@ TEST(GmmEm, DegenerateSamplesGiveSoundMixtures) {
 
 TEST(GmmEm, ManySamplesGiveASoundMixture) {
   MixtureInput samples;
-  const MadeUpTask task = made_up_task(3);
+  const SyntheticTask task = synthetic_task(3);
   const double count = test::scaled_cases(100000);
   const HandTrajectory slow = at_speed(task.trajectory, count / static_cast<double>(task.trajectory.size())).value();
   const GmmEm em = GmmEm::create(test::augmented_samples(slow)).value();

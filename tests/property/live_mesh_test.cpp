@@ -185,7 +185,7 @@ void expect_extraction_anew_after_every_change(int runs) {
 }
 
 TEST(LiveMeshProperty, EqualsExtractionAnewAfterEveryChange) {
-  expect_extraction_anew_after_every_change((kMeshRuns + 2) / 3);
+  expect_extraction_anew_after_every_change((kMeshRuns + 5) / 6);
 }
 TEST(LiveMeshPropertyEvidence, EqualsExtractionAnewAfterEveryChange) {
   expect_extraction_anew_after_every_change(kMeshRuns);

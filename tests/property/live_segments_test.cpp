@@ -73,7 +73,7 @@ class Followers {
     voxels_ += expected.supervoxels.voxels;
     return expected.points.positions_m.size();
   }
-  /// Of the voxels that there were, those that were labelled anew.
+  /// Returns the share of the voxels that were labelled anew.
   [[nodiscard]] double labelled_share() const { return static_cast<double>(labelled_) / static_cast<double>(voxels_); }
 
  private:

@@ -1,6 +1,6 @@
 #!/usr/bin/python3
 # SPDX-License-Identifier: Apache-2.0
-"""Runs the Python of README.md and of docs/guides/python.md, block after block."""
+"""Runs the Python of README.md and of the guides, block after block."""
 import pathlib
 import re
 
@@ -17,7 +17,9 @@ def run(page, least):
     return names
 
 
-runs = run("README.md", 1)["result"]["runs"]
+view = run("README.md", 1)["view"]
+assert view["gain"] > 100 and view["T_world_camera"].shape == (4, 4) and view["T_world_camera"][2, 3] > 0
+runs = run("docs/guides/compare-your-planner.md", 1)["result"]["runs"]
 assert [r["strategy"] for r in runs] == ["sphere", "low-first"] * 2 and all(r["final"]["coverage"] > 0.5 for r in runs)
 names = run("docs/guides/python.md", 5)
 assert names["states"].shape == (60, 100, 100) and names["gains"].shape == (960,)

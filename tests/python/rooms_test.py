@@ -139,6 +139,10 @@ class Frames(Folder):
                                    np.array(said["views"][0]["T_world_camera"])[:, [0, 3]], atol=1e-6)
         with self.assertRaisesRegex(FileNotFoundError, "/nothing"):
             saccade.open_frames(str(bag), depth_topic="/nothing")
+        _, positions_m = saccade.read_hand(str(bag), hand="/saccade/next_view")
+        np.testing.assert_allclose(positions_m, [np.array(said["views"][0]["T_world_camera"])[:3, 3]], atol=1e-6)
+        with self.assertRaisesRegex(FileNotFoundError, "/glove is neither a topic .* nor a frame of TF"):
+            saccade.read_hand(str(bag), hand="/glove")
 
     def test_frames_are_chosen_and_read_again(self):
         path = rendered(self.folder / "frames")
@@ -186,6 +190,13 @@ class Clouds(Folder):
             for key, array in (("points", points), ("normals", normals), ("radii", radii), ("labels", labels)):
                 np.testing.assert_array_equal(read[key], array, f"{key} of {name}")
             np.testing.assert_array_equal(read["colors"], colors, name)
+            np.testing.assert_array_equal(read["offset"], np.zeros(3))
+        offset = np.array([461200.0, 5263500.0, 500.0])
+        saccade.write_cloud(path, points, offset=offset)
+        far = saccade.read_cloud(path)
+        np.testing.assert_allclose(far["points"] + (far["offset"] - offset), points, atol=1e-6)
+        saccade.write_cloud(path, points.astype(np.float64) + offset)  # doubles keep what floats would cut
+        np.testing.assert_allclose(saccade.read_cloud(path)["points"], far["points"], atol=1e-6)
         saccade.write_cloud(path, points.astype(np.float64)[::2])
         read = saccade.read_cloud(path)
         np.testing.assert_array_equal(read["points"], points[::2])
@@ -203,7 +214,7 @@ class Clouds(Folder):
                 (TypeError, "whole", lambda: saccade.write_cloud(path, points, labels=np.zeros(4))),
                 (ValueError, "0, 1", lambda: saccade.write_cloud(path, points, colors=points + 2.0)),
                 (FileNotFoundError, "", lambda: saccade.read_cloud("/nowhere.ply")),
-                (ValueError, "no point cloud", lambda: saccade.read_cloud(str(text)))):
+                (ValueError, "not a point cloud", lambda: saccade.read_cloud(str(text)))):
             with self.assertRaisesRegex(error, words):
                 call()
 

@@ -72,6 +72,16 @@ class Segments(Folder):
             self.assertGreater(scores["weighted_overlap"], least)
             self.assertEqual(scores["objects"], 3)
 
+    def test_doubles_far_from_the_origin_keep_their_places(self):
+        place = np.array((461200.0, 5263500.0, 500.0))
+        far = POINTS.astype(np.float64) + place
+        near = saccade.segment(POINTS, "lccp", colors=COLORS, viewpoint=(0, 0, 2))
+        labels = saccade.segment(far, "lccp", colors=COLORS, viewpoint=place + (0, 0, 2))
+        self.assertGreater(np.mean(labels == near), 0.99)  # doubles there differ by a billionth of a metre
+        scores = saccade.segment_scores(labels, TRUTH, points=far)
+        self.assertGreater(scores["weighted_overlap"], 0.8)
+        self.assertEqual(len(np.unique(saccade.segment_saliency(far, labels) >= 0)), 1)
+
     def test_scores_of_what_is_right_and_of_what_is_one(self):
         right = saccade.segment_scores(TRUTH, TRUTH, points=POINTS)
         self.assertEqual((right["weighted_overlap"], right["over_segmentation"], right["under_segmentation"]), (1, 0, 0))
@@ -80,6 +90,24 @@ class Segments(Folder):
         shares = np.bincount(TRUTH)[1:] / len(TRUTH)
         self.assertAlmostEqual(one["weighted_overlap"], (shares**2).sum())
         self.assertIsNone(one["boundary_f"])
+
+    def test_a_curve_is_that_of_the_program(self):
+        file, thresholds = self.folder / "cloud.ply", (0.02, 0.1, 0.4)
+        saccade.write_cloud(str(file), POINTS, colors=COLORS, labels=TRUTH)
+        stages = []
+        for method in ("sv-lccp", "flood-fill"):
+            curve = saccade.segment_curve(POINTS, TRUTH, thresholds, method, colors=COLORS,
+                                          progress=lambda stage, done, total: stages.append((stage, done, total)))
+            theirs = program("segment", file, "--method", method, "--curve", file, "--thresholds",
+                             ",".join(map(str, thresholds)))["curve"]
+            self.assertEqual([point["threshold"] for point in curve["points"]], list(thresholds))
+            for name, key in (("segments", "segments"), ("boundary_precision", "boundary_precision"),
+                              ("boundary_recall", "boundary_recall"), ("boundary_f", "boundary_f"),
+                              ("consistency_error", "bce")):
+                self.assertEqual([point[name] for point in curve["points"]], [point[key] for point in theirs["points"]])
+            self.assertEqual(curve["area"], theirs["area"])
+            self.assertEqual(curve["best_f"]["threshold"], theirs["best_f"]["threshold"])
+        self.assertTrue(stages)
 
     def test_saliency_is_that_of_the_program(self):
         file = self.folder / "cloud.ply"
@@ -127,6 +155,8 @@ class Segments(Folder):
                 (ValueError, "", lambda: saccade.segment(POINTS, colors=COLORS[:5])),
                 (TypeError, "uint8", lambda: saccade.segment(POINTS, colors=COLORS.astype(np.int32))),
                 (ValueError, "", lambda: saccade.segment_scores(TRUTH, TRUTH[:9])),
+                (ValueError, "has no threshold", lambda: saccade.segment_curve(POINTS, TRUTH, [0.1], "lccp")),
+                (ValueError, "", lambda: saccade.segment_curve(POINTS, TRUTH[:9], [0.1])),
                 (ValueError, "gaps", lambda: saccade.segment_saliency(POINTS[:3], [1, 2, 99])),
                 (ValueError, "objectness", lambda: saccade.segment_saliency(POINTS, TRUTH, "beauty")),
                 (ValueError, "size", lambda: saccade.depth_points(camera, np.ones((5, 5), np.float32)))):
@@ -162,6 +192,33 @@ class Annotations(unittest.TestCase):
         self.assertEqual(annotation.labels()[[7, 8]].tolist(), [9, 9])
         annotation.remove(box)
         self.assertNotIn(2, annotation.counts)
+
+    def test_shapes_in_a_picture_take_what_is_seen_in_them(self):
+        annotation = saccade.Annotation(POINTS)
+        camera = saccade.PinholeCamera(320, 240, fx=262.5, fy=262.5)
+        pose = saccade.look_at((0.0, 0.0, 1.2), (0.0, 0.0, 0.0))
+        in_camera = (POINTS - pose[:3, 3]) @ pose[:3, :3]
+        pixels = in_camera[:, :2] / in_camera[:, 2:] * (camera.fx, camera.fy) + (camera.cx, camera.cy)
+        corners = ((60.0, 70.0), (140.0, 170.0))
+        inside = np.flatnonzero(((pixels + 0.5 >= corners[0]) & (pixels + 0.5 < corners[1])).all(axis=1))
+        deep = annotation.select(camera, pose, rectangle=corners, below_m=np.inf)
+        # A point is in the rectangle where its pixel is: those within a pixel of the border may go either way.
+        self.assertLess(len(np.setxor1d(deep, inside)), 0.03 * len(inside))
+        u0, v0, u1, v1 = (*corners[0], *corners[1])
+        lasso = annotation.select(camera, pose, polygon=((u0, v0), (u1, v0), (u1, v1), (u0, v1)), below_m=np.inf)
+        np.testing.assert_array_equal(lasso, deep)
+        seen = annotation.select(camera, pose, rectangle=corners, below_m=0.01)
+        self.assertLess(len(seen), len(deep))                    # the sides of the box are below its top
+        self.assertTrue(set(seen) <= set(deep))
+        stroke = annotation.select(camera, pose, stroke=((65, 120), (135, 120)), radius_px=3, below_m=np.inf)
+        self.assertTrue(np.all(np.abs(pixels[stroke, 1] - 120) < 4.5))
+        self.assertEqual(annotation.paint(seen, 5), len(seen))
+        np.testing.assert_array_equal(np.flatnonzero(annotation.labels() == 5), seen)
+        for words, shape in (("one of rectangle", {}), ("two opposite", {"rectangle": ((1, 2),)}),
+                             ("pixels .u, v.", {"stroke": ((1, 2, 3),)}), ("", {"polygon": ((1, 2), (3, 4))}),
+                             ("", {"rectangle": corners, "below_m": -1.0})):
+            with self.assertRaisesRegex(ValueError, words):
+                annotation.select(camera, pose, **shape)
 
     def test_a_simulated_annotator_gets_better(self):
         clicks = saccade.simulate_annotation(POINTS, TRUTH, colors=COLORS, clicks=8)

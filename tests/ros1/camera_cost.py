@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What a frame's way through `saccade-ros1 camera` costs: from the callback to the last byte at Saccade's end.
+"""Cost of a frame's path through `saccade-ros1 camera` costs: from the callback to the last byte at Saccade's end.
 
 camera_cost.py SACCADE_ROS1 PYTHON_MESSAGES [16UC1|32FC1] [K1]: 640 x 480 at 30 Hz, 200 frames; K1 is the lens' distortion."""
 import json

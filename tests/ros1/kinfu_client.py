@@ -1,5 +1,5 @@
 # SPDX-License-Identifier: Apache-2.0
-"""What the tests of the node kinfu send, and how they wait for its answers."""
+"""Messages of the tests to the node kinfu, and waiting for its answers."""
 import time
 import unittest
 

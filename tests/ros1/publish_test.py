@@ -149,7 +149,7 @@ class Publish(unittest.TestCase):
         began = time.time()
         run = Run(self.session.folder, "run", 2)
         self.wait_for_topics(OF_A_SCAN)
-        time.sleep(0.3)  # the messages of the scan are out before anybody subscribes
+        time.sleep(0.3)  # the messages of the scan are out before any client subscribes
         heard = Heard(TOPICS)
         self.wait_to_hear(heard, OF_A_SCAN)  # since they are latched
         self.assertFalse(heard.has(["/saccade/next_view"]))

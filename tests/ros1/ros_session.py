@@ -42,7 +42,7 @@ class Session:
         self.start_master()
 
     def start_master(self):
-        """What roscore starts: its own children would outlive it."""
+        """Processes started by roscore: its children would outlive it."""
         self.core = self.start(["rosmaster", "--core", "-p", str(self.port)], "rosmaster")
         self.until(self.has_master, 20, "rosmaster did not start")
 

@@ -26,7 +26,7 @@ namespace saccade::test {
 
 namespace fdds = eprosima::fastdds::dds;
 
-/// What a topic promises; the two are independent in ROS 2, too.
+/// Guarantees of a topic; the two are independent in ROS 2, too.
 struct FastQos {
   bool reliable{true};
   bool latched{false};

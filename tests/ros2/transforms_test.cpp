@@ -52,7 +52,7 @@ TEST(Ros2Transforms, WhatIsNotConnectedNotInTimeOrNoRotationIsNotFound) {
   EXPECT_NE(tree.add(tf("world", "hand", 1.0, std::numeric_limits<double>::quiet_NaN()), false), "");
   messages::TFMessage flat = tf("world", "hand", 1.0, 0.0);
   flat.transforms[0].transform.orientation.w = 0.0;
-  EXPECT_NE(tree.add(flat, false).find("no rotation"), std::string::npos);
+  EXPECT_NE(tree.add(flat, false).find("not a rotation"), std::string::npos);
   EXPECT_NE(tree.add(tf("hand", "hand", 1.0, 0.0), false), "");
   EXPECT_EQ(tree.frames(), "none");
   EXPECT_EQ(tree.add(tf("a", "b", 1.0, 0.0), false), "");

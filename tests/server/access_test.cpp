@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What HTTP requests say: targets, hosts, origins, cookies.
+// Parts of HTTP requests: targets, hosts, origins, tokens.
 #include "server/access.hpp"
 
 #include <gtest/gtest.h>
@@ -38,10 +38,12 @@ TEST(Access, Origins) {
   }
 }
 
-TEST(Access, CookiesAndTokens) {
-  EXPECT_EQ(server::cookie_value("a=1; bb=2;b=3=4; c", "b"), "3=4");
-  EXPECT_EQ(server::cookie_value("ab=1; xb=2", "b"), "");
-  EXPECT_EQ(server::cookie_value(";;; ;", "b"), "");
+TEST(Access, Tokens) {
+  EXPECT_EQ(server::offered_token("saccade.v1, saccade.token.0-aB_ ,saccade.token.x"), "0-aB_");
+  EXPECT_EQ(server::offered_token("saccade.token.x"), "x");
+  for (const std::string_view none : {"", ", ,", "saccade.v1", "saccade.token.", "saccade.v1 saccade.token.x"}) {
+    EXPECT_EQ(server::offered_token(none), "") << none;
+  }
   EXPECT_TRUE(server::is_same_token("0123456789abcdef", "0123456789abcdef"));
   for (const std::string_view wrong : {"", "0", "0123456789abcdeF", "0123456789abcdef0", "0123456789abcde"}) {
     EXPECT_FALSE(server::is_same_token(wrong, "0123456789abcdef")) << wrong;

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whose turn it is: who asks little does not wait for all who ask much, and nobody gains by idling or by coming anew.
+// Order of work: a light client does not wait for all heavy ones, and no client gains by idling or reconnecting.
 #include <algorithm>
 #include <iostream>
 
@@ -12,7 +12,7 @@ namespace {
 using server::ServiceThread;
 using std::chrono::milliseconds;
 
-/// What was done in which order. Work begins when everything is posted.
+/// Records the order of work, which begins when everything is posted.
 class Turns : public ::testing::Test {
  protected:
   void TearDown() override { thread_.finish(); }
@@ -22,7 +22,7 @@ class Turns : public ::testing::Test {
       while (held_) std::this_thread::sleep_for(milliseconds{1});
     });
   }
-  void post(ServiceThread::Account& account, char name, int count, milliseconds took) {
+  void post(ServiceThread::FairShare& account, char name, int count, milliseconds took) {
     for (int i = 0; i < count; ++i) {
       thread_.post(account, [this, name, took] {
         std::this_thread::sleep_for(took);
@@ -43,13 +43,13 @@ class Turns : public ::testing::Test {
 
   ServiceThread thread_;
   std::atomic<bool> held_{false};
-  std::string done_;  ///< of the thread, and ours when all is done
+  std::string done_;  ///< written by the thread, and by the test after it is done
   std::atomic<std::size_t> count_{0};
 };
 
 TEST_F(Turns, ThatOfTheProgramIsFirstAndTheLeastUsedNext) {
-  ServiceThread::Account much{thread_};
-  ServiceThread::Account little{thread_};
+  ServiceThread::FairShare much{thread_};
+  ServiceThread::FairShare little{thread_};
   hold();
   post(much, 'm', 4, milliseconds{30});
   post(little, 'l', 6, milliseconds{0});
@@ -58,10 +58,10 @@ TEST_F(Turns, ThatOfTheProgramIsFirstAndTheLeastUsedNext) {
 }
 
 TEST_F(Turns, ToComeAnewGainsNothing) {
-  ServiceThread::Account there{thread_};
+  ServiceThread::FairShare there{thread_};
   post(there, 't', 5, milliseconds{20});
   EXPECT_EQ(all_done(5), "ttttt");
-  ServiceThread::Account fresh{thread_};
+  ServiceThread::FairShare fresh{thread_};
   hold();
   post(there, 't', 3, milliseconds{20});
   post(fresh, 'f', 3, milliseconds{20});
@@ -71,8 +71,8 @@ TEST_F(Turns, ToComeAnewGainsNothing) {
 }
 
 TEST_F(Turns, ToIdleGainsHalfASecondAtMost) {
-  ServiceThread::Account idle{thread_};
-  ServiceThread::Account busy{thread_};
+  ServiceThread::FairShare idle{thread_};
+  ServiceThread::FairShare busy{thread_};
   post(busy, 'b', 20, milliseconds{60});
   EXPECT_EQ(all_done(20), std::string(20, 'b'));
   hold();
@@ -107,7 +107,7 @@ TEST_F(Fair, WhoAsksLittleWaitsForAboutOneQuestion) {
   }
   EXPECT_TRUE(eventually([&slow] { return slow >= 2 * kCrowd; }, kPatience)) << "each has had its turn";
   const int before = slow;
-  std::vector<int> waited;  // for so many questions of others
+  std::vector<int> waited;  // number of other clients' questions during each wait
   // On a busy machine the others ask again late: we go on until they were served as well.
   const auto both_served = [&] {
     const int begin = slow;

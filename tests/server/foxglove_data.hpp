@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What clients of the Foxglove WebSocket protocol say and are sent.
+// Messages from and to clients of the Foxglove WebSocket protocol.
 
 #include <cstdint>
 #include <cstring>
@@ -15,7 +15,7 @@ inline std::string subscribe_text(const nlohmann::json& subscriptions) {
   return nlohmann::json{{"op", "subscribe"}, {"subscriptions", subscriptions}}.dump();
 }
 
-/// What a message of binary data says; nothing for any other frame.
+/// Returns the content of a message of binary data; nullopt for any other frame.
 struct FoxgloveData {
   std::uint32_t subscription{0};
   std::uint64_t time_ns{0};

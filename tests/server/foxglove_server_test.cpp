@@ -151,7 +151,8 @@ TEST_F(FoxgloveServer, TheHandshake) {
   EXPECT_EQ(status_of(""), 400) << "none at all";
   RawClient plain{server_->port()};
   EXPECT_EQ(plain.get("/foxglove").status, 426);
-  EXPECT_EQ(status_of(offers(kFoxglove), "/other"), 403);
+  EXPECT_EQ(status_of(offers(kFoxglove), "/other"), 404);
+  EXPECT_EQ(status_of(offers(kFoxglove), "/data/other"), 403);
   EXPECT_EQ(status_of(offers(kFoxglove), "/other?token=" + std::string{kToken}), 404);
 }
 

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 // Those who mean no good, or whose network does not: each is refused or bounded, and a good client is served after it.
+#include <algorithm>
+
 #include "server/served_page.hpp"
 
 namespace saccade::test {
@@ -34,11 +36,13 @@ class Hostile : public ServedPage {
     EXPECT_LT(resident_mib() - before_mib_, 150.0);
     ServedPage::TearDown();
   }
-  [[nodiscard]] std::string cookie(std::string_view token = kToken) const {
-    return RawClient::cookie_of(server_->port(), token);
-  }
+  [[nodiscard]] static std::string shown(std::string_view token = kToken) { return RawClient::token_line(token); }
   [[nodiscard]] std::string port() const { return ":" + std::to_string(server_->port()); }
-  /// Of a whole head of headers.
+  /// The header line with which a page shows the token.
+  [[nodiscard]] static std::string offered(std::string_view token) {
+    return "Sec-WebSocket-Protocol: saccade.v1, saccade.token." + std::string{token} + "\r\n";
+  }
+  /// Returns the status for a complete head of headers.
   [[nodiscard]] int status_of(const std::string& target, const std::string& headers) const {
     return client().ask("GET " + target + " HTTP/1.1\r\n" + headers + "\r\n").status;
   }
@@ -55,39 +59,87 @@ TEST_F(Hostile, WithoutTheTokenThereIsNothing) {
   const std::string token{kToken};
   std::string other{token};
   other.back() = '!';
-  for (const std::string& wrong :
-       {std::string{}, std::string{"x"}, token.substr(1), token + "x", token + token, other}) {
-    EXPECT_EQ(status_of("/", host + cookie(wrong)), 403) << wrong;
+  for (const std::string& wrong : {std::string{"x"}, token.substr(1), token + "x", token + token, other}) {
+    EXPECT_EQ(status_of("/", host + shown(wrong)), 403) << wrong;
     EXPECT_EQ(status_of("/?token=" + wrong, host), 403) << wrong;
-    EXPECT_EQ(status_of("/data/labels", host + cookie(wrong)), 403) << wrong;
-    EXPECT_EQ(upgrade_status(host + cookie(wrong)), 403) << wrong;
+    EXPECT_EQ(status_of("/data/labels", host + shown(wrong)), 403) << wrong;
+    EXPECT_EQ(upgrade_status(host + shown(wrong)), 403) << wrong;
+    EXPECT_EQ(upgrade_status(host + offered(wrong)), 403) << wrong;
   }
-  EXPECT_EQ(status_of("/", host), 403);
-  EXPECT_EQ(status_of("/index.html", host), 403);
-  EXPECT_EQ(status_of("/", host + "Cookie: saccade_1=" + token + "\r\n"), 403) << "of another port";
-  EXPECT_EQ(status_of("/", host + "Cookie: ;;=;saccade_\r\n"), 403);
-  EXPECT_EQ(upgrade_status(host), 403);
-  EXPECT_EQ(upgrade_status(host + cookie()), 101);
-  EXPECT_EQ(status_of("/", host + "Cookie: a=b; saccade_" + port().substr(1) + "=" + token + "\r\n"), 200);
+  const std::string cookies = "Cookie: token=" + token + "; saccade_" + port().substr(1) + "=" + token + "\r\n";
+  for (const std::string& none : {std::string{}, shown(""), offered(""), cookies}) {
+    EXPECT_EQ(status_of("/data/labels", host + none), 403) << none;
+    EXPECT_EQ(upgrade_status(host + none), 403) << none;
+  }
+  EXPECT_EQ(status_of("/data/labels", host + shown()), 404);
+  EXPECT_EQ(status_of("/data/labels?token=" + token, host), 404);
+  EXPECT_EQ(upgrade_status(host + shown()), 101);
+  EXPECT_EQ(upgrade_status(host + offered(token)), 101);
+}
+
+TEST_F(Hostile, PageFilesAreNoSecret) {
+  const std::string host = "Host: localhost" + port() + "\r\n";
+  for (const std::string target : {"/", "/index.html", "/report.html", "/assets/index.js"}) {
+    RawClient asks = client();
+    const Answer answer = asks.ask("GET " + target + " HTTP/1.1\r\n" + host + "\r\n");
+    EXPECT_EQ(answer.status, 200) << target;
+    EXPECT_EQ(answer.head.find("Set-Cookie"), std::string::npos) << target;
+    EXPECT_EQ((answer.head + answer.body).find(kToken), std::string::npos) << target;
+  }
+}
+
+TEST_F(Hostile, SocketsWithoutTheTokenGiveWay) {
+  constexpr std::size_t kMany{400};  // more than three times the table
+  RawClient page = socket();
+  RawClient loads = client();
+  EXPECT_EQ(loads.get("/").status, 200);
+  std::vector<RawClient> silent;
+  for (std::size_t i = 0; i < kMany; ++i) {
+    silent.push_back(client());
+    if (i % 3 == 1) silent.back().send("GET / HT");
+    if (i % 3 == 2) silent.back().send("GET / HTTP/1.1\r\nHost: localhost\r\n\r\n");
+  }
+  expect_that_a_good_client_is_answered();
+  EXPECT_EQ(loads.get("/assets/index.js").status, 200) << "it has shown the token";
+  page.send_message("still here");
+  const auto echoed = page.read_message();
+  ASSERT_TRUE(echoed);
+  EXPECT_EQ(echoed->payload, "still here");
+  EXPECT_TRUE(eventually([&silent] {
+    return std::count_if(silent.begin(), silent.end(), [](RawClient& one) { return one.is_ended(); }) > 250;
+  })) << "the oldest are ended";
+  EXPECT_FALSE(silent.back().is_ended()) << "the latest is not";
+}
+
+TEST_F(Hostile, SocketsWithTheTokenDoNotGiveWay) {
+  std::vector<RawClient> good;
+  for (int i = 0; i < 128; ++i) {
+    good.push_back(client());
+    ASSERT_EQ(good.back().get("/").status, 200);
+  }
+  EXPECT_EQ(client().get("/").status, 0) << "there is no room";
+  for (RawClient& one : good) EXPECT_EQ(one.get("/").status, 200);
+  good.clear();
+  EXPECT_TRUE(eventually([this] { return client().get("/").status == 200; }));
 }
 
 TEST_F(Hostile, ForeignHostsAreRefused) {
   for (const std::string host :
        {"evil.example", "localhost.evil.example", "evil.example#localhost", "localhost@evil.example", "127.0.0.2",
         "0.0.0.0", "[::]", "[::1", "localhost:80:80", "localhost:x", "", " ", "lab-8.example"}) {
-    EXPECT_EQ(status_of("/", "Host: " + host + "\r\n" + cookie()), 403) << host;
+    EXPECT_EQ(status_of("/", "Host: " + host + "\r\n" + shown()), 403) << host;
     EXPECT_EQ(status_of("/assets/index.js", "Host: " + host + "\r\n"), 403) << host;
-    EXPECT_EQ(upgrade_status("Host: " + host + "\r\n" + cookie()), 403) << host;
+    EXPECT_EQ(upgrade_status("Host: " + host + "\r\n" + shown()), 403) << host;
   }
-  EXPECT_EQ(status_of("/", cookie()), 403) << "none at all";
-  EXPECT_EQ(status_of("/", "Host: localhost\r\nHost: localhost\r\n" + cookie()), 403) << "two of them";
+  EXPECT_EQ(status_of("/", shown()), 403) << "none at all";
+  EXPECT_EQ(status_of("/", "Host: localhost\r\nHost: localhost\r\n" + shown()), 403) << "two of them";
   for (const std::string host : {"localhost:1", "LOCALHOST", "127.0.0.1:80", "[::1]:8080", "lab-7.example:99"}) {
-    EXPECT_EQ(status_of("/", "Host: " + host + "\r\n" + cookie()), 200) << host;
+    EXPECT_EQ(status_of("/", "Host: " + host + "\r\n" + shown()), 200) << host;
   }
 }
 
 TEST_F(Hostile, ForeignOriginsAreRefused) {
-  const std::string headers = "Host: localhost" + port() + "\r\n" + cookie();
+  const std::string headers = "Host: localhost" + port() + "\r\n" + shown();
   for (const std::string origin : {"http://evil.example", "null", "http://localhost", "http://localhost:1",
                                    "http://localhost.evil.example", "ftp://localhost", "", "file://"}) {
     EXPECT_EQ(upgrade_status(headers + "Origin: " + origin + "\r\n"), 403) << origin;
@@ -105,7 +157,7 @@ TEST_F(Hostile, ForeignOriginsAreRefused) {
 
 TEST_F(Hostile, NoPathLeadsOut) {
   using namespace std::string_literals;
-  const std::string headers = "Host: localhost" + port() + "\r\n" + cookie();
+  const std::string headers = "Host: localhost" + port() + "\r\n" + shown();
   for (const std::string& target :
        {"/assets/../index.html"s, "/../../etc/passwd"s, "/assets/%2e%2e/%2e%2e/etc/passwd"s, "/assets/..%2findex.html"s,
         "/assets/....//etc/passwd"s, "//etc/passwd"s, "/assets//index.js"s, "/assets/"s, "/assets\\..\\index.html"s,
@@ -134,7 +186,7 @@ TEST_F(Hostile, WhatIsNoRequestIsRefused) {
 }
 
 TEST_F(Hostile, LongHeadersAndBodiesAreRefused) {
-  const std::string start = "GET / HTTP/1.1\r\nHost: localhost\r\n" + cookie();
+  const std::string start = "GET / HTTP/1.1\r\nHost: localhost\r\n" + shown();
   EXPECT_EQ(client().ask(start + "X: " + std::string(17U << 10U, 'a') + "\r\n\r\n").status, 431);
   std::string many = start;
   while (many.size() < (20U << 10U)) many += "A: b\r\n";
@@ -161,7 +213,7 @@ TEST_F(Hostile, HalfARequestIsNotWaitedFor) {
   drips.join();
   RawClient silent = client();
   EXPECT_FALSE(silent.receive(std::chrono::seconds{3}));
-  RawClient half = client();  // of a handshake
+  RawClient half = client();  // sends half a handshake
   half.send(half.upgrade_request("Host: localhost\r\n").substr(0, 60));
   EXPECT_FALSE(half.receive(std::chrono::seconds{3}));
 }

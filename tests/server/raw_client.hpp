@@ -31,7 +31,7 @@ struct Frame {
   bool last{true};
   std::string payload;
 
-  /// Of a frame that closes; 0 without one.
+  /// Returns the code of a closing frame; 0 without one.
   [[nodiscard]] int close_code() const {
     if (opcode != Opcode::close || payload.size() < 2) return 0;
     return static_cast<unsigned char>(payload[0]) * 256 + static_cast<unsigned char>(payload[1]);
@@ -122,14 +122,23 @@ class RawClient {
     return true;
   }
 
-  [[nodiscard]] std::string host() const { return "localhost:" + std::to_string(port_); }
-  [[nodiscard]] static std::string cookie_of(std::uint16_t port, std::string_view token = kToken) {
-    return "Cookie: saccade_" + std::to_string(port) + "=" + std::string{token} + "\r\n";
+  /// Tells whether the server has ended the socket, after everything that it sent.
+  [[nodiscard]] bool is_ended() {
+    while (receive(std::chrono::milliseconds{0})) {
+    }
+    pollfd waits{socket_, POLLIN, 0};
+    return ::poll(&waits, 1, 0) > 0;
   }
 
-  /// Whole header lines besides Host; the token comes as a cookie.
+  [[nodiscard]] std::string host() const { return "localhost:" + std::to_string(port_); }
+  /// The header line with which a client shows the token.
+  [[nodiscard]] static std::string token_line(std::string_view token = kToken) {
+    return "Saccade-Token: " + std::string{token} + "\r\n";
+  }
+
+  /// Whole header lines besides Host and the token's.
   Answer get(const std::string& target, const std::string& headers = "") {
-    return ask("GET " + target + " HTTP/1.1\r\nHost: " + host() + "\r\n" + cookie_of(port_) + headers + "\r\n");
+    return ask("GET " + target + " HTTP/1.1\r\nHost: " + host() + "\r\n" + token_line() + headers + "\r\n");
   }
   Answer ask(const std::string& request) {
     send(request);
@@ -160,7 +169,7 @@ class RawClient {
            headers + "\r\n";
   }
   /// 101, or why not.
-  int upgrade() { return ask(upgrade_request("Host: " + host() + "\r\n" + cookie_of(port_))).status; }
+  int upgrade() { return ask(upgrade_request("Host: " + host() + "\r\n" + token_line())).status; }
 
   bool send_message(std::string_view payload) const { return send(frame(Opcode::binary, payload)); }
   /// Nothing at the server's end.

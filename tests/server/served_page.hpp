@@ -74,7 +74,7 @@ class EchoService : public server::Service {
   std::atomic<int> calls_{0};
 };
 
-/// Of this process, MiB; 0 under sanitizers, which take memory of their own.
+/// Returns the memory of this process, MiB; 0 under sanitizers, which need memory of their own.
 inline double resident_mib() {
   if (kSanitized) return 0.0;
   std::ifstream pages{"/proc/self/statm"};
@@ -84,7 +84,7 @@ inline double resident_mib() {
   return resident * static_cast<double>(::sysconf(_SC_PAGESIZE)) / (1024.0 * 1024.0);
 }
 
-/// Whether it comes true, on a machine however busy.
+/// Tells whether it comes true, on a machine however busy.
 inline bool eventually(const std::function<bool()>& condition,
                        std::chrono::seconds patience = std::chrono::seconds{30}) {
   const auto end = std::chrono::steady_clock::now() + patience;

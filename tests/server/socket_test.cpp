@@ -180,7 +180,7 @@ TEST_F(Socket, ConnectionsTakeTurns) {
   std::vector<RawClient> readers;
   for (int i = 0; i < 10; ++i) readers.push_back(client());
   for (const RawClient& reader : readers) {
-    reader.send(request_line("/data/a", reader.host(), RawClient::cookie_of(server_->port())));
+    reader.send(request_line("/data/a", reader.host(), RawClient::token_line()));
   }
   std::this_thread::sleep_for(std::chrono::milliseconds{200});
   RawClient good = socket();

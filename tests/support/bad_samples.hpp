@@ -11,9 +11,9 @@
 namespace saccade::test {
 
 struct BadSamples {
-  double outlier_share{0.0};      ///< of the samples, moved by up to 0.5 m along each axis
+  double outlier_share{0.0};      ///< share of samples moved by up to 0.5 m along each axis
   bool farthest_outliers{false};  ///< all outliers by 0.5 m along each axis
-  double repeat_share{0.0};       ///< of the samples, replaced by the one before; last
+  double repeat_share{0.0};       ///< share of samples replaced by the previous one; applied last
 
   [[nodiscard]] bool any() const { return outlier_share > 0.0 || repeat_share > 0.0; }
 };

@@ -62,7 +62,7 @@ inline Bytes packed(std::string_view packing, const Bytes& bytes) {
   throw std::runtime_error{"no library packs so"};
 }
 
-/// What both formats are given.
+/// Content for both formats.
 struct WrittenMessage {
   std::string topic;
   std::string type;

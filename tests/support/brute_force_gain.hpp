@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// brute_force_gain: eq. 2.10 read aloud: every pixel, voxel by voxel, no savings. What evaluate_views is held to.
+// brute_force_gain: eq. 2.10 read aloud: every pixel, voxel by voxel, no savings. Reference for evaluate_views.
 
 #include <limits>
 #include <set>
@@ -35,7 +35,7 @@ class BruteForceGain {
     return config_.count == GainCount::rays ? hits : voxels.size();
   }
 
-  /// Of a single ray.
+  /// Tells whether a single ray scores.
   [[nodiscard]] bool scores(const LatticeRay& ray) const {
     Index3 voxel;
     return scores(ray, voxel);

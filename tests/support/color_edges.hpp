@@ -15,8 +15,9 @@ namespace saccade::test {
 
 /// Parameters of find_color_edges.
 struct ColorEdgesConfig {
-  double quantile{0.95};         ///< of an image's gradients: edges are steeper than so large a share of the pixels
-  int margin_px{5};              ///< around an edge: all is inside the image, has depth, and no step in depth
+  double quantile{0.95};         ///< share of an image's gradients below those of edges
+  int margin_px{5};              ///< around an edge: within it all pixels are inside the image and have depth without a
+                                 ///< step
   double max_depth_step{0.025};  ///< between neighbours, relative to depth
 };
 
@@ -34,7 +35,7 @@ struct EdgeSharpness {
   /// The steepest rise across the edge, within kEdgeSearch_px of it, since what is rendered may be displaced; luminance
   /// per pixel, over two pixels.
   double across{0.0};
-  /// The same of rises along the edge, where there is none to be found: what noise alone gives.
+  /// Rise along the edge per pixel, over two pixels, where none is expected: the effect of noise alone.
   double along{0.0};
 };
 constexpr int kEdgeSearch_px{2};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a DipStream reports of a trajectory, and how soon.
+// Reports of a DipStream about a trajectory, and their delays.
 
 #include <algorithm>
 #include <vector>

@@ -4,7 +4,7 @@
 
 namespace saccade::test {
 
-#if defined(__has_feature)  // of clang; g++ has macros
+#if defined(__has_feature)  // clang; g++ has macros
 #if __has_feature(address_sanitizer)
 #define SACCADE_TEST_SANITIZES_ADDRESSES
 #endif

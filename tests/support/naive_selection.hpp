@@ -98,7 +98,7 @@ inline std::vector<NaivePosition> naive_positions(const SelectionView& view,
   return positions;
 }
 
-/// What a pixel shows; infinite: nothing.
+/// Returns the depth shown by a pixel; infinite: nothing.
 inline float naive_depth_m(const std::vector<NaivePosition>& positions, double half_px, int u, int v) {
   float nearest = std::numeric_limits<float>::infinity();
   for (const NaivePosition& at : positions) {

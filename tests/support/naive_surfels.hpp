@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the thesis says of surfels, word by word and slowly: eq. (4.13), (4.14) and (4.16).
+// Surfels by the thesis' definitions, implemented literally and slowly: eq. (4.13), (4.14) and (4.16).
 
 #include <Eigen/Core>
 #include <cmath>
@@ -18,7 +18,8 @@ inline bool naive_touch(const PointCloud& cloud, std::size_t i, std::size_t k) {
   return between_m.squaredNorm() < std::pow(double{cloud.radii_m[i]} + double{cloud.radii_m[k]}, 2.0);
 }
 
-/// Labels of what hangs together by edges (i, k), from 0 in the order of first points, which are those that are finite.
+/// Returns labels of the components connected by edges (i, k), from 0 in the order of first points, which are those
+/// that are finite.
 template <class Edge>
 std::vector<std::uint32_t> naive_components(const PointCloud& cloud, const Edge& edge) {
   std::vector<std::uint32_t> labels(cloud.positions_m.size(), kUnlabelled);

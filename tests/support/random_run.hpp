@@ -30,7 +30,7 @@ class RandomRun {
     camera_.max_range_m = uniform(1.0, 4.0) * extent();
   }
 
-  /// Of the same draws, with any clearing share; every third has that of eq. 2.2.
+  /// Makes a run from these draws, with any clearing share; every third has that of eq. 2.2.
   [[nodiscard]] static RandomRun with_clearing(std::uint32_t seed) {
     RandomRun run{seed};
     if (seed % 3 != 0) run.config_.clearing_percent = static_cast<std::uint8_t>(1 + seed * 37 % 100);

@@ -49,7 +49,7 @@ inline Result<UrdfArm> shared_panda() {
   return read_urdf(shared_robots() / "franka_panda" / "robots" / "panda_arm.urdf");
 }
 
-/// The same with its hand, the camera at the tool's frame.
+/// Reads the arm with its hand, the camera at the tool's frame.
 inline Result<UrdfArm> shared_panda_hand() {
   UrdfConfig config;
   config.tip = "panda_link8";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What every trajectory must be, looked at piece by piece and sample by sample.
+// Checks of trajectories, piece by piece and sample by sample.
 
 #include <gtest/gtest.h>
 

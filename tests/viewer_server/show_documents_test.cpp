@@ -64,7 +64,7 @@ TEST(ShowDocuments, ACloudHasItsColoursAndLabels) {
   EXPECT_EQ(cloud->kind, DocumentKind::cloud);
   ASSERT_EQ(cloud->layers.size(), 2U);
   const Layer& points = cloud->layers[0];
-  EXPECT_EQ(points.count, 3U);  // of which the one that is not finite is none
+  EXPECT_EQ(points.count, 3U);  // without the point that is not finite
   const std::vector<std::uint8_t>& bytes = points.buffer->bytes;
   ASSERT_EQ(bytes.size(), 3U * 16);
   EXPECT_EQ((std::vector<std::uint8_t>{bytes.begin() + 36, bytes.begin() + 40}),

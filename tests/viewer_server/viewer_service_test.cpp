@@ -200,7 +200,7 @@ TEST_F(ViewerServiceTest, TellsThoseWhoGreetedOfAnotherDocument) {
   EXPECT_EQ(after["title"], "another");
   EXPECT_NE(after["layers"][0]["buffer"], before["layers"][0]["buffer"]);
   EXPECT_EQ(after["layers"][1]["buffer"], before["layers"][1]["buffer"]);  // the same content
-  // Who still reads the document before goes on; of the one before that nobody does.
+  // Clients may finish reading the previous document, but not the one before.
   const json old{{"type", "buffer"}, {"name", before["layers"][0]["buffer"]}, {"from", 0}, {"bytes", 100}};
   EXPECT_TRUE(ask(old).head.at("ok"));
   service_.update(some_document(picture_));
@@ -253,6 +253,31 @@ TEST_F(ViewerServiceTest, GivesPicturesOfTheDocumentAlone) {
   EXPECT_EQ(service_.get({"picture/seen.png", {{"name", "seen.png"}}}).status, 404);
   std::filesystem::remove(picture_);
   EXPECT_EQ(service_.get({"picture", {{"name", "seen.png"}}}).status, 404);
+}
+
+TEST_F(ViewerServiceTest, ServesTheReportOfARunAndItsPictures) {
+  EXPECT_EQ(service_.get({"report", {}}).status, 404) << "a mesh has none";
+  const json record{{"command", "explore"}, {"result", {{"scene", "</script>"}}}};
+  folder_.write("secret.txt", "no picture");
+  SceneDocument document = some_document(picture_);
+  document.record = record;
+  document.folder = folder_.path();
+  document.live = true;
+  service_.update(document);
+  ASSERT_EQ(posted_.size(), 1U);
+  posted_[0]();
+  const HttpAnswer answer = service_.get({"report", {}});
+  EXPECT_EQ(answer.status, 200);
+  EXPECT_EQ(answer.content_type, "application/json");
+  const json report = json::parse(answer.body);
+  EXPECT_EQ(report["schema"], "saccade-report/1");
+  EXPECT_EQ(report["record"], record);
+  EXPECT_EQ(report["live"], true);
+  EXPECT_EQ(report["files"], json::array({"secret.txt", "seen.png"}));
+  EXPECT_EQ(service_.get({"file", {{"name", "seen.png"}}}).content_type, "image/png");
+  for (const char* name : {"secret.txt", "../seen.png", "./seen.png", "", "none.png"}) {
+    EXPECT_EQ(service_.get({"file", {{"name", name}}}).status, 404) << name;
+  }
 }
 
 }  // namespace

@@ -2,20 +2,10 @@
 // The 3-D view without a program: a made cloud, for the tests and for trying things. `npx vite`, then /dev/view.html.
 import type { CloudInfo, PointChunk, Rgb, Viewer } from "../src/view/types";
 import { createViewer } from "../src/view/viewer";
+import { random } from "./random";
 
 const kChunk = 1 << 18;
 export const kLabelColors: readonly Rgb[] = [[0, 0, 0], [230, 60, 60], [40, 120, 230], [250, 190, 40], [60, 180, 90]];
-
-/** Numbers from 0 to 1 that are the same every time. */
-export function random(seed: number): () => number {
-  let state = seed >>> 0;
-  return () => {
-    state = (state + 0x6d2b79f5) >>> 0;
-    let t = Math.imul(state ^ (state >>> 15), 1 | state);
-    t = (t + Math.imul(t ^ (t >>> 7), 61 | t)) ^ t;
-    return ((t ^ (t >>> 14)) >>> 0) / 4294967296;
-  };
-}
 
 export interface MadeCloud {
   info: CloudInfo;

@@ -1,13 +1,14 @@
 // SPDX-License-Identifier: Apache-2.0
 // The WebSocket to the program: questions and their answers, notices, and coming back after the connection ended.
 import { type Message, Refusal, decode, encode } from "./protocol";
+import { fetchFile, subprotocols, token } from "./token";
 
 export type Hello = Record<string, unknown> & { mode: string; title: string; version: string };
 
 /** closed: the program does not let this page in any more. */
 export type ConnectionState = "connecting" | "connected" | "reconnecting" | "closed";
 
-/** Of questions whose answer will never come. What they asked for may have been done. */
+/** Error of a request whose answer was lost with the connection. The program may have carried out the request. */
 export class Disconnected extends Error {}
 
 const kProtocol = 1;
@@ -44,6 +45,7 @@ export class Connection {
   /** Resolves with the first answer to hello. */
   start(): Promise<Hello> {
     return new Promise((resolve) => {
+      if (token() === "") return this.become("closed");
       const stop = this.watch((state) => {
         if (state !== "connected" || !this.hello) return;
         stop();
@@ -78,7 +80,7 @@ export class Connection {
     clearTimeout(this.timer);
     const address = new URL("socket", document.baseURI);
     address.protocol = address.protocol === "https:" ? "wss:" : "ws:";
-    const socket = new WebSocket(address);
+    const socket = new WebSocket(address, subprotocols());
     socket.binaryType = "arraybuffer";
     this.socket = socket;
     socket.addEventListener("open", () => void this.greet(socket));
@@ -142,10 +144,10 @@ export class Connection {
   }
 }
 
-/** Whether somebody answers there, and says no: the token is not theirs. */
+/** Whether a program answers at the address and refuses the token: it is another one. */
 async function isRefused(): Promise<boolean> {
   try {
-    return (await fetch(new URL(".", document.baseURI), { method: "HEAD", cache: "no-store" })).status === 403;
+    return (await fetchFile(".", { method: "HEAD", cache: "no-store" })).status === 403;
   } catch {
     return false;
   }

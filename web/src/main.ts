@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The page: takes the token out of the address, asks the program what it is for, and becomes that.
+// The page: asks the program what it is for, and becomes that.
 import { Connection, ownClient } from "./connection";
 import { fill, h } from "./ui/dom";
 import "./ui/style";
@@ -11,11 +11,6 @@ function say(title: string, text: string): void {
 }
 
 async function main(): Promise<void> {
-  const address = new URL(location.href);
-  if (address.searchParams.has("token")) {
-    address.searchParams.delete("token");
-    history.replaceState(null, "", address);
-  }
   const patience = window.setTimeout(() => say("Connecting …", "The program has not answered yet."), 800);
   const connection = new Connection(await ownClient());
   const stop = connection.watch((state) => {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Messages of the WebSocket: a head of JSON and a body of arrays. docs/protocol.md.
+// Messages of the WebSocket: a head of JSON and a body of arrays. docs/reference/protocol.md.
 
 export interface Message {
   head: Record<string, unknown> & { type: string; request?: number };
@@ -24,7 +24,7 @@ export interface ControlPoint {
   position: readonly [number, number, number];
 }
 
-/** Of a question that the program refused. */
+/** Error of a request that the program refused. */
 export class Refusal extends Error {
   constructor(
     readonly code: string,

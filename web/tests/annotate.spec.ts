@@ -73,7 +73,7 @@ test("a whole annotation", async ({ desk }) => {
   });
 
   await test.step("delete by a click anywhere in the tree", async () => {
-    await annotator.choose("Action", "Del");
+    await annotator.choose("Action", "Delete");
     await expect(page.getByLabel("Anywhere in its tree")).toBeChecked();
     await annotator.click([kTops[kBox]![0] - 0.06, kTops[kBox]![1] + 0.05, kTops[kBox]![2]]);
     await annotator.expectLabel(kBox, { empty: true });
@@ -117,7 +117,7 @@ test("a whole annotation", async ({ desk }) => {
     }
     expect(labelsOfText(await annotator.export("Text"))).toEqual(labels);
     expect(labelsOfKitti(await annotator.export("SemanticKITTI")).length).toBe(labels.length);
-    const names = JSON.stringify(JSON.parse(String(await annotator.export("What labels are called, JSON"))));
+    const names = JSON.stringify(JSON.parse(String(await annotator.export("Names of labels, JSON"))));
     expect(names).toContain("Tea box");
     expect(names).toContain("Tin");
 

@@ -147,7 +147,7 @@ test("lasso, polyline, brush, and their removal", async ({ desk }) => {
   });
 
   await test.step("paint comes off in a rectangle", async () => {
-    await annotator.choose("Action", "Del");
+    await annotator.choose("Action", "Delete");
     await annotator.choose("Tool", "Rectangle");
     await annotator.choose("What is taken away", "Paint");
     await annotator.choose("Depth", "Deep rectangle");

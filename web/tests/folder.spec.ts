@@ -48,7 +48,7 @@ test("a folder of three clouds", async ({ desk }) => {
   await shows(0);
   await annotator.expectLabel(kBox, { controls: 1 });
   await annotator.expectLabel(kCylinder, { empty: true });
-  await page.keyboard.press("Control+z"); // of this cloud
+  await page.keyboard.press("Control+z"); // undoes in this cloud
   await annotator.expectLabel(kBox, { empty: true });
   await page.keyboard.press("Control+Shift+z");
   await annotator.expectLabel(kBox, { controls: 1 });

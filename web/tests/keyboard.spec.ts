@@ -18,7 +18,7 @@ test("keys", async ({ desk }) => {
   const isChosen = (group: string, name: string) => expect(annotator.radio(group, name)).toHaveAttribute("aria-checked", "true");
 
   await test.step("actions and tools", async () => {
-    for (const [key, name] of [["c", "Set"], ["x", "Del"], ["i", "Pick"], ["n", "None"], ["c", "Set"]] as const) {
+    for (const [key, name] of [["c", "Set"], ["x", "Delete"], ["i", "Pick"], ["n", "Navigate"], ["c", "Set"]] as const) {
       await press(key);
       await isChosen("Action", name);
     }
@@ -41,7 +41,7 @@ test("keys", async ({ desk }) => {
     await press("p");
     await isChosen("Tool", "Point");
     await press("Escape");
-    await isChosen("Action", "None");
+    await isChosen("Action", "Navigate");
   });
 
   await test.step("labels", async () => {
@@ -55,7 +55,7 @@ test("keys", async ({ desk }) => {
     await expect(page.getByLabel("Name of the label")).toBeFocused();
     await page.keyboard.type("xcb"); // no shortcuts meanwhile
     await press("Enter");
-    await isChosen("Action", "None");
+    await isChosen("Action", "Navigate");
     await annotator.expectLabel(kBox, { name: "xcb", empty: true });
     await press("h");
     await expect(page.getByText("1 label is hidden")).toBeVisible();

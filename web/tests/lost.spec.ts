@@ -118,13 +118,13 @@ for (const lost of ["question", "answer"] as const) {
   });
 }
 
-/** Of a message of the WebSocket (docs/protocol.md). */
+/** Returns the head of a message of the WebSocket (docs/reference/protocol.md). */
 function headOf(message: string | Buffer): Record<string, unknown> {
   const bytes = Buffer.from(message);
   return JSON.parse(bytes.toString("utf8", 4, 4 + bytes.readUInt32LE(0))) as Record<string, unknown>;
 }
 
-/** What the program finds in a session. */
+/** Counts the actions and control points that the program finds in a session. */
 function actionsIn(cloud: string, session: string): { actions: number; control_points: number } {
   const text = runProgram(["--json", "-", "annotate", cloud, "--session", session]);
   return (JSON.parse(text) as { result: { actions: number; control_points: number } }).result;

@@ -86,10 +86,11 @@ test("300,000 points: from a click to the labels that it gives", async ({ desk }
   // The program alone: a page of its own that only asks.
   const asking = await page.context().newPage();
   const origin = new URL(program.url).origin;
+  const token = new URL(program.url).searchParams.get("token")!;
   await asking.goto(`${origin}/assets/licenses.txt`);
   const askOften = () => asking.evaluate(
-    async ({ origin, times, point }) => {
-      const socket = new WebSocket(`${origin.replace("http", "ws")}/socket`);
+    async ({ origin, token, times, point }) => {
+      const socket = new WebSocket(`${origin.replace("http", "ws")}/socket`, ["saccade.v1", `saccade.token.${token}`]);
       socket.binaryType = "arraybuffer";
       await new Promise((resolve, reject) => {
         socket.onopen = resolve;
@@ -119,7 +120,7 @@ test("300,000 points: from a click to the labels that it gives", async ({ desk }
       for (let i = 0; i < times; ++i) answers.push(await ask({ type: "action", action: { do: "set", label: 4 + (i % 2), points: [point] } }));
       return answers;
     },
-    { origin, times: 2 * kTimes, point: cloud.truth.indexOf(kBox) + 100 },
+    { origin, token, times: 2 * kTimes, point: cloud.truth.indexOf(kBox) + 100 },
   );
   const mostAnswer_ms = Math.max(kMostAnswer_ms, redraw / kAnswersPerRedraw);
   let answers = await askOften();

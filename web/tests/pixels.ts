@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the 3-D view shows, as numbers of pixels.
+// Counts pixels of the 3-D view.
 import { expect, type Page } from "@playwright/test";
 import { complete } from "./support/picture";
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
-// Other pages in the same browser cannot reach the program, though the browser would send them its cookie.
-import { type Server, createServer, request as httpRequest } from "node:http";
+// Other pages and other servers of this machine, in the same browser: they cannot reach the program, and learn nothing of it.
+import { type IncomingMessage, type Server, createServer, request as httpRequest } from "node:http";
 import type { AddressInfo } from "node:net";
 import { join } from "node:path";
 import { makeTable } from "./support/clouds";
@@ -8,11 +8,15 @@ import { expect, test } from "./support/desk";
 
 let foreign: Server;
 let foreignUrl = "";
+const heard: IncomingMessage[] = []; // requests to the foreign server
 
 test.beforeAll(async () => {
-  foreign = createServer((_, answer) => answer.setHeader("Content-Type", "text/html").end("<!doctype html><title>foreign</title>"));
+  foreign = createServer((asked, answer) => {
+    heard.push(asked);
+    answer.setHeader("Content-Type", "text/html").end("<!doctype html><title>foreign</title>");
+  });
   await new Promise<void>((resolve) => foreign.listen(0, "127.0.0.1", resolve));
-  // Of the same site as http://localhost:PORT of the program, so that cookies go along.
+  // localhost makes this the same site as the program's, so that the browser sends the cookies along.
   foreignUrl = `http://localhost:${(foreign.address() as AddressInfo).port}/`;
 });
 test.afterAll(() => void foreign.close());
@@ -36,34 +40,39 @@ function statusOf(port: number, path: string, headers: Record<string, string>): 
 test("a foreign page can neither read nor open the socket nor frame the page", async ({ desk, context }) => {
   const cloud = makeTable(join(desk.folder, "table.pcd"), { spacing_m: 0.02 });
   const program = await desk.start("annotate", cloud.file);
-  await desk.open(program, cloud); // this browser has the cookie now
+  await desk.open(program, cloud); // this browser knows the token now
   const origin = new URL(program.url).origin;
+  const token = new URL(program.url).searchParams.get("token")!;
 
-  /** What any page can try. */
-  const attempts = async (at: string) => {
+  /** Tries everything that a page of any origin can try. */
+  const attempts = async (at: string, token: string) => {
     const page = await context.newPage();
     await page.goto(at);
-    const result = await page.evaluate(async (program) => {
+    const result = await page.evaluate(async ([program, token]) => {
       const fetched = async (path: string) => {
         try {
-          return (await fetch(program + path, { credentials: "include" })).status;
+          return (await fetch(program + path, { credentials: "include", headers: token === "" ? {} : { "Saccade-Token": token } })).status;
         } catch {
           return "refused";
         }
       };
       const socket = await new Promise<string>((resolve) => {
-        const tried = new WebSocket(`${program.replace("http", "ws")}/socket`);
+        const tried = new WebSocket(`${program.replace("http", "ws")}/socket`, token === "" ? [] : ["saccade.v1", `saccade.token.${token}`]);
         tried.onopen = () => resolve("open");
         tried.onerror = () => resolve("refused");
       });
       return { page: await fetched("/"), labels: await fetched("/data/labels?cloud=0&format=npy"), socket };
-    }, origin);
+    }, [origin, token] as const);
     await page.close();
     return result;
   };
-  expect(await attempts(foreignUrl)).toEqual({ page: "refused", labels: "refused", socket: "refused" });
-  // The same from the program's own origin, so that it is known what was refused.
-  expect(await attempts(`${origin}/assets/licenses.txt`)).toEqual({ page: 200, labels: 200, socket: "open" });
+  const nothing = { page: "refused", labels: "refused", socket: "refused" };
+  expect(await attempts(foreignUrl, "")).toEqual(nothing);
+  expect(await attempts(foreignUrl, token)).toEqual(nothing);
+  // The attempts succeed from the program's own origin, so the refusals above are due to the origin.
+  const own = `${origin}/assets/licenses.txt`;
+  expect(await attempts(own, token)).toEqual({ page: 200, labels: 200, socket: "open" });
+  expect(await attempts(own, "")).toEqual({ page: 200, labels: 403, socket: "refused" });
 
   const framing = await context.newPage();
   await framing.goto(foreignUrl);
@@ -95,8 +104,11 @@ test("without the token, or in another's name, everything is forbidden", async (
   const wrong = `token=${token.replace(/./g, (c) => (c === "0" ? "1" : "0"))}`;
   const status = (path: string, headers: Record<string, string> = {}) => statusOf(program.port, path, { Host, ...headers });
 
+  expect(await status("/")).toBe(200); // the page holds no secret, and knows nothing without the token
+  expect(await status(labels)).toBe(403);
+  expect(await status(labels, { Cookie: `token=${token}; saccade_${program.port}=${token}` })).toBe(403);
+  expect(await status(labels, { "Saccade-Token": token })).toBe(200);
   for (const path of ["/", labels]) {
-    expect(await status(path), path).toBe(403);
     const more = path.includes("?") ? "&" : "?";
     expect(await status(`${path}${more}${wrong}`), path).toBe(403);
     expect(await status(`${path}${more}${good}`), path).toBeLessThan(400);
@@ -114,18 +126,41 @@ test("without the token, or in another's name, everything is forbidden", async (
   }
 
   const stranger = await browser.newPage();
-  const answer = await stranger.goto(`http://localhost:${program.port}/`);
-  expect(answer?.status()).toBe(403);
+  await stranger.goto(`http://localhost:${program.port}/`);
+  await expect(stranger.getByRole("status")).toContainText("does not let this page in");
   await stranger.close();
 });
 
-test("the token leaves the address, and the cookie is for the program alone", async ({ desk, context }) => {
+test("no other server of this machine learns the token", async ({ desk, context }) => {
+  desk.expects(/Content Security Policy/);
   const cloud = makeTable(join(desk.folder, "table.pcd"), { spacing_m: 0.02 });
   const program = await desk.start("annotate", cloud.file);
+  const token = new URL(program.url).searchParams.get("token")!;
   const { page } = await desk.open(program, cloud);
-  expect(page.url()).toBe(`http://localhost:${program.port}/`);
-  const cookies = await context.cookies();
-  expect(cookies.length).toBe(1);
-  expect(cookies[0]).toMatchObject({ httpOnly: true, sameSite: "Strict", domain: "localhost" });
-  expect(await page.evaluate(() => document.cookie)).toBe("");
+  expect(page.url()).toBe(`http://localhost:${program.port}/`); // the token has left the address
+  expect(await context.cookies()).toEqual([]);
+  expect(await page.evaluate(() => document.cookie + JSON.stringify({ ...localStorage }))).not.toContain(token);
+
+  heard.length = 0;
+  await page.evaluate(async (address) => {
+    await fetch(`${address}fetched`, { mode: "no-cors", credentials: "include" }).catch(() => undefined);
+    window.open(`${address}opened`);
+  }, foreignUrl);
+  await page.goto(foreignUrl); // in the tab of the program's page
+  await expect.poll(() => heard.map((asked) => asked.url)).toEqual(expect.arrayContaining(["/", "/opened"]));
+  for (const asked of heard) expect(`${asked.url} ${JSON.stringify(asked.headers)}`).not.toContain(token);
+  expect(await page.evaluate(() => JSON.stringify({ ...sessionStorage, ...localStorage }) + document.cookie + document.referrer)).not.toContain(token);
+});
+
+test("the page is loaded again, and opens in a second tab from the address that was printed", async ({ desk, context }) => {
+  const cloud = makeTable(join(desk.folder, "table.pcd"), { spacing_m: 0.02 });
+  const program = await desk.start("annotate", cloud.file);
+  const annotator = await desk.open(program, cloud);
+  await annotator.page.reload();
+  await annotator.ready();
+  const second = await desk.open(program, cloud);
+  expect(second.page.url()).toBe(annotator.page.url());
+  const stranger = await context.newPage(); // without the token, beside tabs that have it
+  await stranger.goto(annotator.page.url());
+  await expect(stranger.getByRole("status")).toContainText("does not let this page in");
 });

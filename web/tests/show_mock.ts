@@ -145,11 +145,12 @@ export function mockRun(count = 4, live = false, finer = 81): Mock {
 }
 
 /** Serves a mock to a page. What it returns changes the document, or breaks the connection. */
-export async function serveMock(page: Page, first: Mock): Promise<{ update: (mock: Mock) => void; drop: () => Promise<void>; asked: string[] }> {
+export async function serveMock(page: Page, first: Mock): Promise<{ update: (mock: Mock) => void; drop: () => Promise<void>; asked: string[]; pictures: string[] }> {
   let mock = first;
   let revision = 1;
   let socket: WebSocketRoute | undefined;
   const asked: string[] = []; // names of buffers
+  const pictures: string[] = []; // fetched with the token
   const send = (ws: WebSocketRoute, head: object, body: Uint8Array = new Uint8Array(0)): void => ws.send(Buffer.concat([Buffer.from(encode(head)), body]));
   await page.routeWebSocket(/\/socket/, (ws) => {
     socket = ws;
@@ -168,8 +169,10 @@ export async function serveMock(page: Page, first: Mock): Promise<{ update: (moc
       }
     });
   });
+  await page.addInitScript(() => sessionStorage.setItem("saccade.token", "a-token-for-tests"));
   await page.route(/\/data\/picture/, (route) => {
     const name = new URL(route.request().url()).searchParams.get("name") ?? "";
+    if (route.request().headers()["saccade-token"] === "a-token-for-tests") pictures.push(name);
     const hue = (name.charCodeAt(5) * 67) % 360;
     return route.fulfill({
       contentType: "image/svg+xml",
@@ -183,6 +186,7 @@ export async function serveMock(page: Page, first: Mock): Promise<{ update: (moc
     },
     drop: async () => void (await socket?.close({ code: 1012, reason: "test" })),
     asked,
+    pictures,
   };
 }
 

@@ -294,7 +294,7 @@ test("layers of every kind", async ({ page }) => {
   await settled(page);
   const eye = await page.evaluate(() => window.dev.viewer.camera.poseRows().map((row) => row[3]!));
   const away = Math.hypot(eye[0]!, eye[1]!, eye[2]! - 0.3);
-  expect(away).toBeGreaterThan(0.295);
+  expect(away).toBeGreaterThan(0.27); // a slow page looks for the point under the cursor again between two turns
   expect(away).toBeLessThan(0.33);
   expect(picked.added).toEqual([true, true, true, true, true, true, false]);
   expect(picked.ids).toEqual(["mesh", "map", "cloud", "rays", "views", "unknown"]);

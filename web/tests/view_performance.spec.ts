@@ -90,3 +90,42 @@ test("a million points are drawn in steps", async ({ page }) => {
   expect(Math.max(...result.moving)).toBeLessThan(1_000_000);
   await picture(page, "million");
 });
+
+test("large layers are drawn in steps, too, shaded or not", async ({ page }) => {
+  await open(page, 0);
+  const results = await page.evaluate(async () => {
+    const { viewer, makeCloud } = window.dev;
+    const count = 1_000_000;
+    const cloud = makeCloud(count);
+    const places = new Float32Array(3 * count);
+    cloud.chunks.reduce((at, { positions }) => (places.set(positions, at), at + positions.length), 0);
+    viewer.setBounds(cloud.info.bounds, cloud.info.up);
+    viewer.layers.add({ id: "cloud", kind: "points", count, color: "#9aa4b2" }, places.buffer);
+    const whole = async () => {
+      while (viewer.element.dataset["picture"] === undefined || viewer.stats.vertices < count) await new Promise((done) => setTimeout(done, 20));
+    };
+    const measured: { most: number; end: number; moves_ms: number }[] = [];
+    for (const shaded of [false, true]) {
+      viewer.setShading(shaded);
+      viewer.camera.fit();
+      await whole();
+      const began = performance.now();
+      let most = 0;
+      for (let i = 0; i < 20; ++i) {
+        const { frames } = viewer.stats;
+        viewer.camera.fit([Math.sin(0.1 * i), -Math.cos(0.1 * i), 1]);
+        while (viewer.stats.frames === frames) await new Promise((done) => setTimeout(done, 2));
+        most = Math.max(most, viewer.stats.vertices);
+      }
+      const moves_ms = performance.now() - began;
+      await whole();
+      measured.push({ most, end: viewer.stats.vertices, moves_ms });
+    }
+    return measured;
+  });
+  console.log(results);
+  for (const { most, end } of results) {
+    expect(most).toBeLessThan(1_000_000); // while it moves, a sample is enough
+    expect(end).toBe(1_000_000);
+  }
+});

@@ -24,6 +24,8 @@ class Annotation:
         """Makes points control points no more."""
     def paint(self, points: Any, label: int) -> int:
         """Gives these points, by their indices, a label whatever spreads to them; 0: they follow clicks again."""
+    def select(self, camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, *, rectangle: Any = ..., polygon: Any = ..., stroke: Any = ..., radius_px: float = ..., below_m: float = ..., point_size_px: int = ...) -> numpy.typing.NDArray[numpy.uint32]:
+        """Finds the points that a shape contains in the picture of a camera (thesis 4.2.2). `rectangle`: two opposite corners; `polygon`: corners of a lasso; `stroke`: a line, `radius_px` wide to either side; each in pixels (u, v). `below_m`: metres behind what is seen that are still taken, 0: what is seen alone, inf: however deep. `point_size_px`: edge of a drawn point. Returns indices, uint32, ascending, for click and paint."""
     def undo(self) -> int:
         """Takes back the latest action. -1: there is none."""
     def redo(self) -> int:
@@ -289,10 +291,10 @@ def look_at(position: Any, target: Any, up: Any = ..., roll_rad: float = ...) ->
     """T_world_camera, 4 x 4, of a camera at `position` whose optical axis points at `target`."""
 
 def open_frames(path: str, layout: str = ..., *, camera: Optional[PinholeCamera] = ..., poses: Optional[str] = ..., depth_scale: Optional[float] = ..., mask: Optional[str] = ..., min_range_m: Optional[float] = ..., max_range_m: Optional[float] = ..., fill_gaps_px: Optional[int] = ..., color: bool = ..., require_poses: bool = ..., first: int = ..., every: int = ..., count: Optional[int] = ..., depth_topic: str = ..., info_topic: str = ..., color_topic: str = ..., world_frame: str = ...) -> Frames:
-    """Opens a folder of RGB-D frames, a bag of ROS (.bag) or an MCAP file (.mcap), as saccade fuse does. `layout`: auto, seven-scenes, tum, princeton or open3d. `camera`: PinholeCamera in place of the folder's. `poses`: file of T_world_camera in place of the folder's. `depth_scale`: depth samples per metre. `mask`: PNG (0: ignored) or JSON polygons. `fill_gaps_px`: close gaps up to this wide; None: 2 where the first frame has them all over. `require_poses`: where there are poses, a frame without a good one is an error. Topics and `world_frame` are of bags. Returns Frames."""
+    """Opens a folder of RGB-D frames, a bag of ROS (.bag) or an MCAP file (.mcap), as saccade fuse does. `layout`: auto, seven-scenes, tum, princeton, open3d, scannet, bundlefusion, rtabmap, replica, bop or icl-nuim. `camera`: PinholeCamera in place of the folder's. `poses`: file of T_world_camera in place of the folder's. `depth_scale`: depth samples per metre. `mask`: PNG (0: ignored) or JSON polygons. `fill_gaps_px`: close gaps up to this wide; None: 2 where the first frame has them all over. `require_poses`: where there are poses, a frame without a good one is an error. Topics and `world_frame` are of bags. Returns Frames."""
 
 def read_cloud(path: str) -> dict:
-    """Reads a point cloud: PCD, PLY, text (.xyz, .txt, .csv, .pts) or a scan of KITTI (.bin). Returns a dict: points N x 3 float32, metres; normals N x 3 float32; colors N x 3 uint8; radii N float32, metres; labels N uint32, 0: none. None for what the file lacks."""
+    """Reads a point cloud: PCD, PLY, LAS, an array of NumPy (.npy), text (.xyz, .txt, .csv, .pts, .asc) or a scan of KITTI (.bin). Returns a dict: points N x 3 float32, metres; offset 3 float64, to add to points, not zero for a cloud far from its origin; normals N x 3 float32; colors N x 3 uint8; radii N float32, metres; labels N uint32, 0: none. None for what the file lacks."""
 
 def read_hand(path: str, *, hand: str = ..., world_frame: str = ...) -> tuple:
     """Reads the motion of a hand: .traj, .csv, .tum or .txt, or a bag (.bag, .mcap) with a topic or TF frame `hand`. Returns times_s (N seconds) and positions_m (N x 3 metres); bad samples are left out."""
@@ -302,6 +304,9 @@ def score_actions(actions: List[dict], labels_m: Any, *, match_radius_m: float =
 
 def segment(points: Any, method: str = ..., *, normals: Any = ..., colors: Any = ..., radii: Any = ..., voxel_size_m: Optional[float] = ..., seed_spacing_m: Optional[float] = ..., threshold: Optional[float] = ..., spatial_weight: Optional[float] = ..., normal_weight: Optional[float] = ..., color_weight: Optional[float] = ..., rounds: Optional[int] = ..., concavity_deg: float = ..., min_supervoxels: int = ..., single_camera: bool = ..., viewpoint: Any = ..., threads: int = ...) -> numpy.typing.NDArray[numpy.uint32]:
     """Divides points, N x 3 metres, into segments. `method`: lccp (supervoxels joined where surfaces bend outwards), sv-lccp (these kept apart by colours) or flood-fill (surfels that touch and look alike; thesis 4.1.2). `normals`: N x 3; `colors`: N x 3, uint8 or floats in [0, 1]; `radii`: N metres; what is None is estimated, normals towards `viewpoint`, or left out. `single_camera`: points are in a camera's frame, and voxels grow with depth. None stands for the method's own value. Returns N uint32: 1, 2, ... by segment, 0 where a point is not finite."""
+
+def segment_curve(points: Any, truth: Any, thresholds: Any, method: str = ..., *, normals: Any = ..., colors: Any = ..., radii: Any = ..., tolerance_m: float = ..., split: bool = ..., threads: int = ..., progress: Any = ...) -> dict:
+    """Scores segments at many thresholds, of sv-lccp or flood-fill, against true labels (thesis Figs. 4.10 and 4.11, Table 4.3). Arguments as of segment and segment_scores. Returns a dict: points, one a threshold, each with threshold, segments, boundary_precision, boundary_recall, boundary_f, consistency_error; area below precision over recall; best_f and least_consistency_error, the points that have these."""
 
 def segment_map(map: TsdfMap, *, voxel_size_m: float = ...) -> dict:
     """Divides the surface of a TsdfMap into segments. Returns a dict: points N x 3 float32, metres, world frame; normals N x 3 float32; labels N uint32 from 1."""
@@ -321,5 +326,5 @@ def view_gains(map: TsdfMap, region: Any, T_world_camera: Any, camera: PinholeCa
 def view_sphere(center: Any, *, radii_m: List[float] = ..., longitude_step_deg: float = ..., latitude_step_deg: float = ..., roll_step_deg: float = ..., latitude_min_deg: float = ..., latitude_max_deg: float = ...) -> numpy.typing.NDArray[numpy.float64]:
     """T_world_camera, N x 4 x 4, of views around `center` that look at it; 960 by default (thesis 2.2.3)."""
 
-def write_cloud(path: str, points: Any, *, normals: Any = ..., colors: Any = ..., radii: Any = ..., labels: Any = ...) -> None:
-    """Writes points N x 3, metres: PLY for a name that ends in .ply, text for .xyz, .txt, .csv or .pts, else binary PCD. `normals`: N x 3; `colors`: N x 3, uint8 or floats in [0, 1]; `radii`: N metres; `labels`: N whole numbers, 0: none."""
+def write_cloud(path: str, points: Any, *, normals: Any = ..., colors: Any = ..., radii: Any = ..., labels: Any = ..., offset: Any = ...) -> None:
+    """Writes points N x 3, metres: PLY for a name that ends in .ply, text for .xyz, .txt, .csv, .pts or .asc, else binary PCD. `normals`: N x 3; `colors`: N x 3, uint8 or floats in [0, 1]; `radii`: N metres; `labels`: N whole numbers, 0: none; `offset`: 3 numbers that are added to the points, as read_cloud gives them."""

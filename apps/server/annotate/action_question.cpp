@@ -12,14 +12,14 @@
 namespace saccade::server {
 namespace {
 
-constexpr std::ptrdiff_t kMostPlaces{64};       // each is looked for among all points
-constexpr double kMostPixels{7680.0 * 4320.0};  // of a view
-constexpr double kMostBrushed_px{4e9};          // of all parts of a brush together
-constexpr double kMostBallLine_px{20'000.0};    // of a brush whose radius is in metres
+constexpr std::ptrdiff_t kMostPlaces{64};       // limit, since each is searched among all points
+constexpr double kMostPixels{7680.0 * 4320.0};  // limit of a view
+constexpr double kMostBrushed_px{4e9};          // limit over all parts of a brush
+constexpr double kMostBallLine_px{20'000.0};    // limit of a brush with a radius in metres
 
 Error too_much(std::string what) { return {Errc::invalid_argument, std::move(what), "action"}; }
 
-/// What one message may ask for is little; what it would take to do it should be, too.
+/// Limits the work that a brush takes; a short message could otherwise demand much.
 Status check_brush(const ScreenStroke& stroke, const ScriptedSelection& selection) {
   double length_px{0.0};
   double brushed_px{0.0};
@@ -53,7 +53,7 @@ Status check_work(const ScriptedAction& scripted) {
   return stroke == nullptr ? Status{} : check_brush(*stroke, *scripted.selection);
 }
 
-/// The control points whose trees points are in.
+/// Returns the control points whose trees contain the points.
 Result<AnnotationAction> roots_of(const std::vector<std::uint32_t>& points, const Annotation& annotation,
                                   std::uint64_t client) {
   std::vector<std::uint32_t> roots;
@@ -65,7 +65,7 @@ Result<AnnotationAction> roots_of(const std::vector<std::uint32_t>& points, cons
   }
   std::sort(roots.begin(), roots.end());
   roots.erase(std::unique(roots.begin(), roots.end()), roots.end());
-  if (roots.empty()) return Error{Errc::invalid_argument, "no control point reaches so far", "action"};
+  if (roots.empty()) return Error{Errc::invalid_argument, "no control point reaches these points", "action"};
   return AnnotationAction{client, RemoveControlPoints{std::move(roots)}};
 }
 
@@ -87,7 +87,7 @@ Result<bool> asks_for_trees(const nlohmann::json& head) {
   return trees->get<bool>();
 }
 
-/// In ascending order.
+/// Returns the hidden labels in ascending order.
 Result<std::vector<std::uint32_t>> hidden_labels(const nlohmann::json& head) {
   std::vector<std::uint32_t> hidden;
   const auto list = head.find("hidden");
@@ -102,7 +102,7 @@ Result<std::vector<std::uint32_t>> hidden_labels(const nlohmann::json& head) {
   return hidden;
 }
 
-/// Points with hidden labels are nowhere: they are not selected, and hide nothing.
+/// Removes points with hidden labels: they are not selected, and hide nothing.
 std::vector<Eigen::Vector3f> without_hidden(std::span<const Eigen::Vector3f> positions_m, const Annotation& annotation,
                                             const std::vector<std::uint32_t>& hidden) {
   std::vector<Eigen::Vector3f> shown_m(positions_m.begin(), positions_m.end());
@@ -129,7 +129,7 @@ Result<AnnotationAction> asked_action(const nlohmann::json& head, std::span<cons
   };
   const bool removes = std::holds_alternative<RemoveControlPoints>(scripted.change);
   if (trees && !removes) return too_much("trees goes with remove");
-  if (trees) scripted.change = PaintPoints{};  // of which all points count, not control points alone
+  if (trees) scripted.change = PaintPoints{};  // all selected points count, not only control points
   const double max_path = annotation.forest().neighbourhood().config().max_path;
   if (const Status fits = check_script({&scripted, 1}, positions_m.size(), max_path); !fits) {
     return in_action(fits.error());

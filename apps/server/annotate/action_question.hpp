@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// asked_action: the action that a page asks for, on the cloud that it has open.
+// asked_action: the action that a page requests on its open cloud.
 
 #include <nlohmann/json.hpp>
 #include <span>
@@ -10,8 +10,9 @@
 
 namespace saccade::server {
 
-/// @param head  of the question: `action`, as in a line of an annotation script without `client`, `trees` and `hidden`.
-/// @return invalid_argument for what is no such action, what takes too much work (docs/protocol.md), and as
+/// @param head  head of the question: `action`, as in a line of an annotation script without `client`, `trees` and
+/// `hidden`.
+/// @return invalid_argument for an invalid action, one that takes too much work (docs/reference/protocol.md), and as
 /// resolve_action. It may still not fit the annotation (Annotation::validate).
 [[nodiscard]] Result<AnnotationAction> asked_action(const nlohmann::json& head,
                                                     std::span<const Eigen::Vector3f> positions_m,

@@ -18,19 +18,6 @@ Result<LoadedCloud> load_cloud(const std::filesystem::path& path) {
   return cloud;
 }
 
-bool is_in_camera_frame(std::span<const Eigen::Vector3f> positions_m) {
-  constexpr float kLeastCosine{0.5F};
-  constexpr double kMost{0.99};
-  std::size_t finite{0};
-  std::size_t ahead{0};
-  for (const Eigen::Vector3f& p : positions_m) {
-    if (!p.allFinite()) continue;
-    ++finite;
-    ahead += p.z() > kLeastCosine * p.norm() ? 1 : 0;
-  }
-  return static_cast<double>(ahead) >= kMost * static_cast<double>(finite);
-}
-
 std::size_t LabelledPoints::labelled() const {
   std::size_t count{0};
   for (const LabelRow& row : rows) count += row.label.points;

@@ -9,6 +9,8 @@
 #include <string>
 #include <unordered_map>
 
+#include "saccade/io/clouds/scalar_fields.hpp"
+
 namespace saccade::server {
 namespace {
 
@@ -24,12 +26,12 @@ Rgba rgba_of(const Eigen::Vector3f& color) {
   return {byte(color.x()), byte(color.y()), byte(color.z()), 255};
 }
 
-/// Gathers points by their label.
+/// Grouping of points by label.
 class Grouping {
  public:
   explicit Grouping(std::span<const std::uint32_t> labels) : labels_{labels} {}
 
-  /// Those that follow each other and have one label at once, as most do.
+  /// Adds consecutive points of one label together, since most are.
   void add(std::span<const std::uint32_t> points) {
     for (std::size_t end{0}; !points.empty(); points = points.subspan(end)) {
       const std::uint32_t label = labels_[points.front()];
@@ -62,7 +64,7 @@ class Grouping {
     return groups_[found->second].points;
   }
 
-  std::span<const std::uint32_t> labels_;  ///< of the cloud
+  std::span<const std::uint32_t> labels_;  ///< labels of the cloud
   std::vector<Group> groups_;
   std::unordered_map<std::uint32_t, std::size_t> place_of_;
 };
@@ -77,21 +79,28 @@ json cloud_json(const OpenCloud& cloud, std::size_t index, std::size_t shown) {
   const CloudFacts& facts = cloud.facts();
   const Eigen::Vector3f& a = facts.least_m;
   const Eigen::Vector3f& b = facts.greatest_m;
-  // Before a camera down is +y.
-  const json up = facts.camera_frame ? json{0.0, -1.0, 0.0} : json{0.0, 0.0, 1.0};
-  return {{"index", index},
-          {"name", cloud.cloud().path.filename().string()},
-          {"points", cloud.cloud().points.positions_m.size()},
-          {"finite", facts.finite},
-          {"shown", shown},
-          {"bounds", {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}},
-          {"spacing_m", facts.spacing_m},
-          {"has_colors", !cloud.cloud().points.colors.empty()},
-          {"up", up},
-          {"graph", graph_json(cloud.graph_config())}};
+  const Eigen::Vector3d& up = facts.upright.up;
+  const Eigen::Vector3d& offset_m = cloud.cloud().points.offset_m;
+  json out{{"index", index},
+           {"name", cloud.cloud().path.filename().string()},
+           {"points", cloud.cloud().points.positions_m.size()},
+           {"finite", facts.finite},
+           {"shown", shown},
+           {"bounds", {a.x(), a.y(), a.z(), b.x(), b.y(), b.z()}},
+           {"spacing_m", facts.spacing_m},
+           {"has_colors", !cloud.cloud().points.colors.empty()},
+           {"fields", scalar_field_names(cloud.cloud().file.fields())},
+           {"has_normals", !cloud.cloud().points.normals.empty()},
+           {"up", {up.x(), up.y(), up.z()}},
+           {"offset", {offset_m.x(), offset_m.y(), offset_m.z()}},
+           {"graph", graph_json(cloud.graph_config())}};
+  if (const auto& towards = facts.upright.towards_viewer) {
+    out["towards_viewer"] = {towards->x(), towards->y(), towards->z()};
+  }
+  return out;
 }
 
-/// Label and start cost are of a control point there; none: it is none any more.
+/// Returns a row with label and start cost of a control point; nullopt: it was removed.
 ControlPointRow row_of(std::uint32_t point, const std::optional<ControlPoint>& control, const OpenCloud& cloud) {
   const Eigen::Vector3f& p = cloud.cloud().points.positions_m[point];
   ControlPointRow row{point, kNoLabel, 0.0F, {p.x(), p.y(), p.z()}};
@@ -133,7 +142,7 @@ std::vector<ControlPointRow> control_points_now(std::span<const std::uint32_t> p
 
 LabelGroups groups_of(std::span<const std::uint32_t> points, const OpenCloud& cloud, std::size_t shown) {
   Grouping grouping{cloud.annotation().labels()};
-  if (shown == cloud.order().size()) {  // none that is not finite has ever had a label
+  if (shown == cloud.order().size()) {  // points that are not finite never have labels
     grouping.add(points);
   } else {
     std::vector<std::uint32_t> there;
@@ -205,6 +214,26 @@ SharedMessage points_message(json head, const OpenCloud& cloud, std::size_t from
   message.append(chosen);
   message.append(std::span<const Rgba>{colors});
   message.append(std::span<const std::uint32_t>{labels});
+  return std::move(message).finish();
+}
+
+SharedMessage field_message(json head, const OpenCloud& cloud, std::string_view name, std::size_t from,
+                            std::size_t count) {
+  std::vector<float> shown;
+  const std::span<const std::uint32_t> chosen = cloud.order().points(from, count);
+  if (name == kNormalField) {
+    for (const std::uint32_t point : chosen) {
+      const Eigen::Vector3f& normal = cloud.cloud().points.normals[point];
+      shown.insert(shown.end(), normal.data(), normal.data() + 3);
+    }
+  } else {
+    const Column& column = *cloud.cloud().file.fields().find(name);
+    for (const std::uint32_t point : chosen) shown.push_back(static_cast<float>(column.value(point)));
+  }
+  head["from"] = from;
+  head["count"] = count;
+  MessageWriter message{head};
+  message.append(std::span<const float>{shown});
   return std::move(message).finish();
 }
 

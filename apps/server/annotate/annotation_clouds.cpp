@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The clouds of an AnnotationService, and its notices.
+// Clouds of an AnnotationService, and its notices.
 #include <algorithm>
 #include <utility>
 
@@ -40,8 +40,8 @@ Result<OpenCloud*> AnnotationService::opened_cloud(std::size_t index, Page* page
   return &cloud;
 }
 
-/// Drops clouds that nobody has open, but for the last one used.
-/// @return how many points are open then.
+/// Drops clouds that no page has open, except the last one used.
+/// @return the number of points then open.
 std::size_t AnnotationService::drop_unused() {
   std::erase_if(clouds_, [&](const auto& open) { return open.first != last_used_ && pages_of(open.first).empty(); });
   std::size_t points{0};
@@ -49,7 +49,7 @@ std::size_t AnnotationService::drop_unused() {
   return points;
 }
 
-/// First the last one used gives way, then the one that the page leaves.
+/// Makes room: first the last one used is dropped, then the one that the page leaves.
 Status AnnotationService::make_room(std::size_t index, const OpenCloud& cloud, Page* page) {
   const std::size_t wanted = cloud.cloud().points.positions_m.size();
   const auto fits = [&] { return drop_unused() + wanted <= config_.most_open_points || clouds_.empty(); };
@@ -73,13 +73,13 @@ void AnnotationService::build(std::size_t index, OpenCloud& cloud) {
   const auto finished = [this, index, &cloud](std::shared_ptr<Result<OpenCloud::Built>> made) {
     post_([this, index, &cloud, made = std::move(made)] { built(index, &cloud, *made); });
   };
-  // With threads of its own, so that an action on another cloud need not wait for it.
+  // With separate threads, so that an action on another cloud need not wait.
   cloud.build_apart(Executor::with_threads(config_.threads), report, finished);
 }
 
 void AnnotationService::built(std::size_t index, const OpenCloud* cloud, const Result<OpenCloud::Built>& built) {
   const auto there = clouds_.find(index);
-  if (there == clouds_.end() || there->second.get() != cloud) return;  // nobody waits for it any more
+  if (there == clouds_.end() || there->second.get() != cloud) return;  // no page waits for it any more
   if (!built) {
     there->second->fail(built.error());
     send_read_only(index, built.error().to_string());

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "saccade/annotate/annotation_margin.hpp"
+#include "saccade/io/clouds/scalar_fields.hpp"
 #include "server/annotate/action_question.hpp"
 #include "server/annotate/annotation_answers.hpp"
 #include "server/annotate/label_export.hpp"
@@ -18,7 +19,7 @@ namespace fs = std::filesystem;
 using nlohmann::json;
 
 constexpr std::uint64_t kProtocol{1};
-constexpr std::uint64_t kMostClient{(std::uint64_t{1} << 53U) - 1};  // that a page's numbers hold
+constexpr std::uint64_t kMostClient{(std::uint64_t{1} << 53U) - 1};  // largest number that a page represents exactly
 constexpr std::uint64_t kMostAtOnce{262'144};                        // points
 constexpr std::uint64_t kMost32{std::numeric_limits<std::uint32_t>::max()};
 constexpr std::uint16_t kBadData{1007};
@@ -59,7 +60,8 @@ AnnotationService::Handler AnnotationService::handler_of(const std::string& type
       {"points", &AnnotationService::points},   {"action", &AnnotationService::action},
       {"root", &AnnotationService::root},       {"tree", &AnnotationService::tree},
       {"margins", &AnnotationService::margins}, {"next_best_click", &AnnotationService::next_click},
-      {"save", &AnnotationService::save},       {"new", &AnnotationService::begin_anew}};
+      {"save", &AnnotationService::save},       {"new", &AnnotationService::begin_anew},
+      {"field", &AnnotationService::field}};
   const auto found = handlers.find(type);
   return found == handlers.end() ? nullptr : found->second;
 }
@@ -89,12 +91,12 @@ Status AnnotationService::answer(Page& page, const Question& question) {
   }
   const bool is_hello = question.type == "hello";
   if (page.client == 0 && !is_hello) return Error{Errc::invalid_argument, "the first question is hello", "type"};
-  if (page.client != 0 && is_hello) return Error{Errc::invalid_argument, "hello was said already", "type"};
+  if (page.client != 0 && is_hello) return Error{Errc::invalid_argument, "hello was received already", "type"};
   return (this->*handler)(page, question);
 }
 
-/// After an exception, of which there ought to be none: an action that is half done in memory is whole, or not at all,
-/// on the disk. So everyone opens the cloud again.
+/// Handles an unexpected exception. An action that is half done in memory is either complete or absent on the disk, so
+/// every page must open the cloud again.
 void AnnotationService::abandon(Page& page) {
   if (!page.cloud) return;
   const std::size_t index = *page.cloud;
@@ -148,6 +150,22 @@ Status AnnotationService::points(Page& page, const Question& question) {
   SACCADE_TRY(const std::uint64_t asked, whole_number(question.head, "count", 0, kMostAtOnce));
   const std::size_t count = std::min<std::size_t>(asked, page.shown - from);
   clients_.send(page.id, points_message(answer_head(question), *cloud, from, count));
+  return {};
+}
+
+Status AnnotationService::field(Page& page, const Question& question) {
+  SACCADE_TRY(const OpenCloud* const cloud, cloud_of(page));
+  const auto found = question.head.find("name");
+  const std::string name = found != question.head.end() && found->is_string() ? found->get<std::string>() : "";
+  const std::vector<std::string> known = scalar_field_names(cloud->cloud().file.fields());
+  const bool is_normal = name == kNormalField && !cloud->cloud().points.normals.empty();
+  if (!is_normal && std::find(known.begin(), known.end(), name) == known.end()) {
+    return Error{Errc::not_found, "the cloud has no field of this name; `open` lists those it has", name};
+  }
+  SACCADE_TRY(const std::uint64_t from, whole_number(question.head, "from", 0, page.shown));
+  SACCADE_TRY(const std::uint64_t asked, whole_number(question.head, "count", 0, kMostAtOnce));
+  const std::size_t count = std::min<std::size_t>(asked, page.shown - from);
+  clients_.send(page.id, field_message(answer_head(question), *cloud, name, from, count));
   return {};
 }
 
@@ -268,7 +286,7 @@ Status AnnotationService::begin_anew(Page& page, const Question& question) {
   SACCADE_TRY(const fs::path kept, cloud->begin_anew());
   for (Page* other : pages_of(index)) {
     if (other->id == page.id) continue;
-    other->cloud.reset();  // its questions are about what is no more, until it opens the cloud again
+    other->cloud.reset();  // its questions refer to a dropped cloud until it opens it again
     clients_.send(other->id, MessageWriter{json{{"type", "reset"}}}.finish());
   }
   json head = answer_head(question);

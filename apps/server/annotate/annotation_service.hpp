@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// AnnotationService: what stands behind the page of saccade annotate. docs/protocol.md.
+// AnnotationService: serves the page of saccade annotate. docs/reference/protocol.md.
 
 #include <cstdint>
 #include <functional>
@@ -21,26 +21,27 @@ namespace saccade::server {
 struct AnnotationServiceConfig {
   std::string title;
   std::string version;
-  std::vector<ServedCloud> clouds;  ///< at least one; no two share a file that is written
+  std::vector<ServedCloud> clouds;  ///< at least one; no two share a file to be written
   SessionStart start;
-  std::size_t threads{0};                     ///< as of Executor
-  std::size_t graph_at_once_points{300'000};  ///< of more points the graph is built apart from questions
-  std::size_t most_open_points{40'000'000};   ///< of all open clouds together; one alone may have more
-  std::size_t most_shown_points{12'000'000};  ///< to a page, whatever its budget
-  std::uintmax_t most_session_bytes{std::uintmax_t{2} << 30U};  ///< then it takes no more; in memory it has four times
+  std::size_t threads{0};                     ///< as in Executor
+  std::size_t graph_at_once_points{300'000};  ///< clouds with more points build their graph in the background
+  std::size_t most_open_points{40'000'000};   ///< limit over all open clouds; a single cloud may have more
+  std::size_t most_shown_points{12'000'000};  ///< limit per page, whatever its budget
+  std::uintmax_t most_session_bytes{std::uintmax_t{2} << 30U};  ///< then it accepts no more actions; in memory it takes
+                                                                ///< four times as much
 };
 
-/// Clouds are read when a page opens them, and kept while one has them open; of the others the last. Every action is on
-/// the disk before it is answered. Questions that are wrong are refused; nothing that a page says ends the program.
+/// Service for annotation. Clouds are read when a page opens them, and kept while one has them open; of the others the
+/// last one. Every action is on the disk before it is answered. Wrong questions are rejected; no message of a page ends
+/// the program.
 class AnnotationService final : public Service {
  public:
-  /// Runs work on the thread of the service, after what was posted before. Any thread may call it, as long as the
-  /// service lives.
+  /// Runs work on the service's thread, after earlier work. Any thread may call it while the service lives.
   using Post = std::function<void(std::function<void()>)>;
 
   AnnotationService(AnnotationServiceConfig config, Clients& clients, Post post);
 
-  /// Opens a cloud before a page does. On the thread of the service. Errors as where a page opens it.
+  /// Opens a cloud before any page does, on the service's thread. Errors as for a page.
   [[nodiscard]] Status prepare(std::size_t index);
 
   void opened(ConnectionId connection) override;
@@ -52,17 +53,18 @@ class AnnotationService final : public Service {
   /// One connection.
   struct Page {
     ConnectionId id{0};
-    std::uint64_t client{0};  ///< 0: it has not said hello
+    std::uint64_t client{0};  ///< 0: before its hello
     std::optional<std::size_t> cloud;
     std::size_t budget{0};
     std::size_t shown{0};
   };
   using Handler = Status (AnnotationService::*)(Page&, const Question&);
 
-  // Each answers, or says why not.
+  // Each answers a question, or says why not.
   Status hello(Page& page, const Question& question);
   Status open(Page& page, const Question& question);
   Status points(Page& page, const Question& question);
+  Status field(Page& page, const Question& question);
   Status action(Page& page, const Question& question);
   Status root(Page& page, const Question& question);
   Status tree(Page& page, const Question& question);
@@ -85,11 +87,11 @@ class AnnotationService final : public Service {
   std::size_t drop_unused();
   void build(std::size_t index, OpenCloud& cloud);
   void built(std::size_t index, const OpenCloud* cloud, const Result<OpenCloud::Built>& built);
-  /// The page has this cloud instead, or none: the one that it had may be dropped.
+  /// Switches the page to another cloud, or to none; its former cloud may be dropped.
   void leave(Page& page, std::optional<std::size_t> next = {});
   void show(Page& page, const OpenCloud& cloud);
 
-  // Notices, to all pages that have a cloud open.
+  // Notices to all pages with an open cloud.
   [[nodiscard]] std::vector<Page*> pages_of(std::size_t index);
   void send_progress(std::size_t index, const std::string& stage, std::size_t done, std::size_t total);
   void send_people(std::size_t index);
@@ -103,7 +105,7 @@ class AnnotationService final : public Service {
   Executor executor_;
   std::map<ConnectionId, Page> pages_;
   std::optional<std::size_t> last_used_;
-  std::map<std::size_t, std::unique_ptr<OpenCloud>> clouds_;  ///< that are open, by index
+  std::map<std::size_t, std::unique_ptr<OpenCloud>> clouds_;  ///< open clouds, by index
 };
 
 }  // namespace saccade::server

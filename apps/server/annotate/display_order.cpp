@@ -24,7 +24,7 @@ DisplayOrder::DisplayOrder(std::span<const Eigen::Vector3f> positions_m)
 double typical_spacing_m(std::span<const Eigen::Vector3f> positions_m, const DisplayOrder& order,
                          const Executor& executor) {
   constexpr std::size_t kSamples{48};
-  constexpr std::size_t kNearest{5};  // the point itself, and four others
+  constexpr std::size_t kNearest{5};  // the point itself and four others
   if (order.size() < kNearest) return 0.0;
   std::vector<float> distances_m2(std::min(kSamples, order.size()));
   executor.parallel_for(distances_m2.size(), 1, [&](std::size_t begin, std::size_t end) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// DisplayOrder: the order in which a page is given the points of a cloud. typical_spacing_m.
+// DisplayOrder: the order in which a page receives the points of a cloud. typical_spacing_m.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -12,19 +12,19 @@
 
 namespace saccade::server {
 
-/// A random permutation of the finite points, always the same for as many: every beginning of it is an even sample of
-/// the whole, whatever order the file has. 8 bytes per point.
+/// Random permutation of the finite points, constant for a given number: every prefix is an even sample of the whole,
+/// whatever the file's order. 8 bytes per point.
 class DisplayOrder {
  public:
   explicit DisplayOrder(std::span<const Eigen::Vector3f> positions_m);
 
-  /// Finite points.
+  /// Returns the number of finite points.
   [[nodiscard]] std::size_t size() const { return order_.size(); }
-  /// The first of them.
+  /// Returns `count` points from `from` on.
   [[nodiscard]] std::span<const std::uint32_t> points(std::size_t from, std::size_t count) const {
     return std::span{order_}.subspan(from, count);
   }
-  /// Whether a point is among the first so many; those that are not finite never are.
+  /// Tells whether a point is among the first `first` ones; points that are not finite never are.
   [[nodiscard]] bool is_among(std::uint32_t point, std::size_t first) const { return rank_[point] < first; }
 
  private:
@@ -32,7 +32,7 @@ class DisplayOrder {
   std::vector<std::uint32_t> rank_;  ///< by point
 };
 
-/// The median over some points of the order of the distance to the fourth nearest neighbour; 0 for fewer than five
+/// Returns the median distance to the fourth nearest neighbour over some points of the order; 0 for fewer than five
 /// points. O(points).
 [[nodiscard]] double typical_spacing_m(std::span<const Eigen::Vector3f> positions_m, const DisplayOrder& order,
                                        const Executor& executor);

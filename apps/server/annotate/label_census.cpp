@@ -12,7 +12,7 @@ std::size_t count_in(const std::map<std::uint32_t, std::size_t>& counts, std::ui
   return found == counts.end() ? 0 : found->second;
 }
 
-/// Keys with another value, or in one of the two only.
+/// Collects keys whose values differ, or that only one map has.
 void collect_different(const std::map<std::uint32_t, std::size_t>& before,
                        const std::map<std::uint32_t, std::size_t>& now, std::set<std::uint32_t>& different) {
   auto b = before.begin();

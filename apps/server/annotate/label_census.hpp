@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// LabelCensus: how many points and control points each label has, and of which labels that changed. Rows and colours.
+// LabelCensus: numbers of points and control points per label, and the labels whose numbers changed. Rows and colours.
 
 #include <cstdint>
 #include <map>
@@ -16,13 +16,13 @@ class LabelCensus {
  public:
   explicit LabelCensus(const Annotation& annotation);
 
-  /// The labels whose row is another one now. O(changes + labels).
+  /// Returns the labels whose row changed. O(changes + labels).
   std::set<std::uint32_t> update(const Annotation& annotation, const Applied& applied);
-  /// Those that are defined, or that points or control points have.
+  /// Returns the labels that are defined or in use by points or control points.
   [[nodiscard]] std::set<std::uint32_t> known(const Annotation& annotation) const;
   [[nodiscard]] std::size_t points(std::uint32_t label) const;
   [[nodiscard]] std::size_t control_points(std::uint32_t label) const;
-  /// Of all labels.
+  /// Returns the number of control points of all labels.
   [[nodiscard]] std::size_t control_points() const { return label_of_.size(); }
 
  private:
@@ -31,9 +31,9 @@ class LabelCensus {
   std::unordered_map<std::uint32_t, std::uint32_t> label_of_;  ///< by control point
 };
 
-/// "#rrggbb"
+/// Returns "#rrggbb".
 [[nodiscard]] std::string color_text(const std::array<std::uint8_t, 3>& color);
-/// Of labels 1, 2 and so on, as long as nobody chose others.
+/// Returns the default colours of labels 1, 2 and so on.
 [[nodiscard]] nlohmann::json well_apart_colors();
 [[nodiscard]] nlohmann::json label_rows(const std::set<std::uint32_t>& labels, const Annotation& annotation,
                                         const LabelCensus& census);

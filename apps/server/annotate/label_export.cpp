@@ -16,7 +16,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Nobody else can look into it; gone with all that is in it at its end.
+/// Folder that only this user can read, removed with its content at its end.
 class PrivateFolder {
  public:
   [[nodiscard]] static Result<PrivateFolder> make() {
@@ -66,7 +66,7 @@ Result<HttpAnswer> label_file(const LoadedCloud& cloud, const LabelledPoints& la
   const fs::path file = folder.path() / (std::string{"labels."} + known->name);
   const bool is_names = format.starts_with("names.");
   const auto said = [](Error error) {
-    error.context = "labels";  // not where it was tried
+    error.context = "labels";  // hides the temporary path
     return error;
   };
   const Status written =

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// label_file: labels of a cloud as a file for the browser to keep.
+// label_file: labels of a cloud as a file to download.
 
 #include <string>
 
@@ -10,8 +10,8 @@
 namespace saccade::server {
 
 /// @param format  pcd, ply, txt, csv, label, npy, names.txt or names.json.
-/// @return invalid_argument for another one; errors of write_labels. It is written in a folder of its own among
-/// temporary files, which is gone afterwards.
+/// @return invalid_argument for another format; errors of write_labels. The file is written in its own temporary
+/// folder, which is removed afterwards.
 [[nodiscard]] Result<HttpAnswer> label_file(const LoadedCloud& cloud, const LabelledPoints& labels,
                                             const std::string& format);
 

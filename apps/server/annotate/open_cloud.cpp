@@ -5,13 +5,15 @@
 
 #include "saccade/annotate/annotation_error.hpp"
 #include "saccade/annotate/annotation_margin.hpp"
+#include "saccade/io/clouds/cloud_upright.hpp"
 #include "saccade/io/clouds/label_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::server {
 namespace {
 
-CloudFacts facts_of(std::span<const Eigen::Vector3f> positions_m, const DisplayOrder& order, const Executor& executor) {
+CloudFacts facts_of(const LoadedCloud& cloud, const DisplayOrder& order, const Executor& executor) {
+  const std::span<const Eigen::Vector3f> positions_m{cloud.points.positions_m};
   CloudFacts facts;
   facts.finite = order.size();
   facts.least_m.setConstant(std::numeric_limits<float>::max());
@@ -22,7 +24,7 @@ CloudFacts facts_of(std::span<const Eigen::Vector3f> positions_m, const DisplayO
     facts.greatest_m = facts.greatest_m.cwiseMax(p);
   }
   facts.spacing_m = typical_spacing_m(positions_m, order, executor);
-  facts.camera_frame = is_in_camera_frame(positions_m);
+  facts.upright = upright_of(cloud.file, positions_m);
   return facts;
 }
 
@@ -32,7 +34,7 @@ OpenCloud::OpenCloud(LoadedCloud cloud, const Executor& executor)
     : executor_{executor},
       cloud_{std::move(cloud)},
       order_{cloud_.points.positions_m},
-      facts_{facts_of(cloud_.points.positions_m, order_, executor)} {}
+      facts_{facts_of(cloud_, order_, executor)} {}
 
 OpenCloud::~OpenCloud() {
   if (!builder_.joinable()) return;
@@ -108,7 +110,7 @@ void OpenCloud::begin_as_far_as_can_be(const std::optional<LabelSeeds>& seeds,
 }
 
 Status OpenCloud::begin_with(const std::optional<LabelSeeds>& seeds, std::span<const AnnotationAction> before) {
-  // Seeds begin what is not begun, and go on where they were cut short.
+  // Seeds start an empty session, and continue one that was interrupted while planting.
   const std::optional<std::size_t> planted = seeds ? planted_before(*seeds, kProgramClient, before) : std::nullopt;
   for (std::size_t i = planted.value_or(0); planted && i < seeds->actions.size(); ++i) {
     const auto done = apply({kProgramClient, seeds->actions[i]});
@@ -126,7 +128,7 @@ Result<std::filesystem::path> OpenCloud::begin_anew() {
   auto session = AnnotationSession::open_or_create(served_.session, subject_.cloud_name, subject_.positions_hash,
                                                    graph_, executor_);
   if (!session) {
-    std::error_code ignored;  // the earlier one is at least there, under its new name
+    std::error_code ignored;  // the earlier one exists at least under its new name
     std::filesystem::rename(kept, served_.session, ignored);
     return session.error();
   }

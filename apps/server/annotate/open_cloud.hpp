@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// OpenCloud: a cloud that pages have open, with its annotation once the graph is there.
+// OpenCloud: a cloud that pages have open, with its annotation once the graph is built.
 
 #include <cstdint>
 #include <functional>
@@ -12,6 +12,7 @@
 #include <thread>
 #include <vector>
 
+#include "saccade/cloud/upright.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/core/progress.hpp"
 #include "server/annotate/annotated_cloud.hpp"
@@ -21,64 +22,64 @@
 
 namespace saccade::server {
 
-/// A cloud that is served, and its files.
+/// Served cloud, and its files.
 struct ServedCloud {
   std::filesystem::path cloud;
   std::filesystem::path session;
   std::filesystem::path seeds;  ///< labels that a session begins with; empty: none
-  std::filesystem::path out;    ///< where `save` puts the labels
-  std::filesystem::path names;  ///< and what their numbers mean; empty: nowhere
+  std::filesystem::path out;    ///< destination of `save` for the labels
+  std::filesystem::path names;  ///< destination for the definitions of their numbers; empty: none
 };
 
-/// How sessions begin.
+/// Settings for the beginning of sessions.
 struct SessionStart {
   NeighbourhoodConfig graph;
-  std::vector<GraphCheck> checks;  ///< of sessions that are there
+  std::vector<GraphCheck> checks;  ///< checks of existing sessions
   std::vector<NumberedLabel> presets;
   double seed_share{0.99};
 };
 
-/// What is known of a cloud besides its points.
+/// Facts about a cloud besides its points.
 struct CloudFacts {
   std::size_t finite{0};
   Eigen::Vector3f least_m{0, 0, 0};
   Eigen::Vector3f greatest_m{0, 0, 0};
   double spacing_m{0.0};
-  bool camera_frame{false};
+  Upright upright{};
 };
 
-/// Who does what the program does by itself: presets and seeds. No page can undo it.
+/// Client of the program's own actions: presets and seeds. No page can undo them.
 inline constexpr std::uint64_t kProgramClient{0};
 
 class OpenCloud {
  public:
-  /// What takes long, and needs the cloud alone.
+  /// Slow results that depend on the cloud alone.
   struct Built {
     std::shared_ptr<const Neighbourhood> graph;
     std::optional<LabelSeeds> seeds;
   };
-  /// Labels of which another row is to be shown, and what else an action did.
+  /// Result of an action, with the labels whose rows changed.
   struct Change {
     Applied applied;
     std::set<std::uint32_t> labels;
   };
 
-  /// Reads the cloud and locks its session, which it begins if there is none. Errors of load_cloud and open_journal.
+  /// Reads the cloud and locks its session, or begins one. Errors of load_cloud and open_journal.
   [[nodiscard]] static Result<std::unique_ptr<OpenCloud>> open(const ServedCloud& served, const SessionStart& start,
                                                                const Executor& executor, const Progress& progress);
   OpenCloud(const OpenCloud&) = delete;
   OpenCloud& operator=(const OpenCloud&) = delete;
-  /// Ends what is built meanwhile.
+  /// Cancels a running build.
   ~OpenCloud();
 
-  /// The graph, here and now, or in a thread of its own, which calls `finished` at its end.
+  /// Build the graph: at once, or on a separate thread, which calls `finished` at its end.
   [[nodiscard]] Result<Built> build(const Executor& executor, const Progress& progress) const;
   void build_apart(const Executor& executor, Progress::Callback report,
                    std::function<void(std::shared_ptr<Result<Built>>)> finished);
-  /// With what was built, the annotation is ready. Where seeds or presets cannot be kept, it is read-only.
+  /// Begins the annotation with the built graph. It is read-only where seeds or presets cannot be kept.
   void begin(const Built& built);
-  /// Keeps the session under another name, which it returns, and begins an empty one. Expects that it is ready.
-  /// io_failure: then everything is as before.
+  /// Keeps the session under another name, which it returns, and begins an empty one. Expects that it is ready. Answers
+  /// io_failure; then nothing has changed.
   [[nodiscard]] Result<std::filesystem::path> begin_anew();
 
   [[nodiscard]] const LoadedCloud& cloud() const { return cloud_; }
@@ -87,23 +88,23 @@ class OpenCloud {
   [[nodiscard]] const NeighbourhoodConfig& graph_config() const { return subject_.graph; }
 
   [[nodiscard]] bool ready() const { return census_.has_value(); }
-  /// Why it cannot be annotated now: unavailable while the graph is built, or why it was not.
+  /// Returns why it cannot be annotated now: unavailable while the graph is built, or the reason of a failure.
   [[nodiscard]] Error not_ready() const;
   void fail(Error error) { failure_ = std::move(error); }
-  /// Why nothing can be changed; none: it can, or will be.
+  /// Returns why nothing can be changed; nullopt: changes are or will be possible.
   [[nodiscard]] std::optional<Error> read_only() const;
 
-  // Expect that it is ready.
+  // These expect that it is ready.
   [[nodiscard]] const Annotation& annotation() const { return session_->annotation(); }
   [[nodiscard]] const LabelCensus& census() const { return *census_; }
-  /// As AnnotationSession::apply.
+  /// Applies an action as AnnotationSession::apply.
   [[nodiscard]] Result<Change> apply(AnnotationAction action);
-  /// label_margins, kept until the next action.
+  /// Returns label_margins, cached until the next action.
   [[nodiscard]] std::span<const float> margins();
-  /// cloud_ends.
+  /// Returns cloud_ends.
   [[nodiscard]] std::span<const std::uint8_t> ends();
 
-  /// Actions in the session, undo and redo among them: in all, and of one client.
+  /// Return the number of actions in the session, including undo and redo: in all, and of one client.
   [[nodiscard]] std::uint64_t sequence() const { return sequence_; }
   [[nodiscard]] std::uint64_t actions_of(std::uint64_t client) const;
   [[nodiscard]] bool can_undo(std::uint64_t client) const;
@@ -129,7 +130,7 @@ class OpenCloud {
   std::optional<Error> failure_;
   std::uint64_t sequence_{0};
   std::map<std::uint64_t, std::uint64_t> actions_by_client_;
-  std::vector<float> margins_;  ///< empty: not known
+  std::vector<float> margins_;  ///< empty: not computed
   std::vector<std::uint8_t> ends_;
   std::shared_ptr<Progress> building_;
   std::thread builder_;

@@ -12,11 +12,11 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Never over another file. errno, 0 without a failure.
+/// Renames without overwriting. Returns errno, or 0.
 int rename_new(const fs::path& from, const fs::path& to) {
   if (::renameat2(AT_FDCWD, from.c_str(), AT_FDCWD, to.c_str(), RENAME_NOREPLACE) == 0) return 0;
   if (errno != EINVAL && errno != ENOSYS) return errno;
-  std::error_code code;  // a file system that cannot say "new"
+  std::error_code code;  // for file systems that lack an exclusive rename
   if (fs::exists(fs::symlink_status(to, code))) return EEXIST;
   return ::rename(from.c_str(), to.c_str()) == 0 ? 0 : errno;
 }

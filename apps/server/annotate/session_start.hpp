@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What a session begins with: its journal, seeds, presets; and how an earlier one is kept.
+// Beginning of a session: its journal, seeds and presets; and keeping an earlier session.
 
 #include <filesystem>
 #include <functional>
@@ -14,23 +14,24 @@
 
 namespace saccade::server {
 
-/// What is to be said where a session's graph is another one than was asked for; none: it is the same.
+/// Returns a complaint where a session's graph differs from the requested one; nullopt: it is equal.
 using GraphCheck = std::function<std::optional<std::string>(const NeighbourhoodConfig& saved)>;
 
-/// Locks the journal of a cloud, or begins one with this graph; of one that is there the graph is what it is.
-/// @return errors of AnnotationJournal::open_or_create; invalid_argument where a check says something.
+/// Locks the journal of a cloud, or begins one with this graph; an existing one keeps its graph.
+/// @return errors of AnnotationJournal::open_or_create; invalid_argument where a check complains.
 [[nodiscard]] Result<AnnotationJournal::Opened> open_journal(const std::filesystem::path& path, SessionSubject subject,
                                                              std::span<const GraphCheck> checks);
 
-/// How many of the seeds a session holds whose planting was cut short; none: it holds something else, or all of them.
+/// Returns how many seeds a session holds whose planting was interrupted; nullopt: it holds something else, or all of
+/// them.
 [[nodiscard]] std::optional<std::size_t> planted_before(const LabelSeeds& seeds, std::uint64_t client,
                                                         std::span<const AnnotationAction> actions);
 
-/// Those of which something else is known than in the presets, or nothing.
+/// Returns the presets whose definitions are missing or different in the annotation.
 [[nodiscard]] std::vector<NumberedLabel> missing_presets(std::span<const NumberedLabel> presets,
                                                          const Annotation& annotation);
 
-/// Gives a file a free name, NAME.1, NAME.2 …, which it returns. No file is lost by it. io_failure.
+/// Renames a file to a free name, NAME.1, NAME.2 …, which it returns. Never overwrites a file. Answers io_failure.
 [[nodiscard]] Result<std::filesystem::path> keep_aside(const std::filesystem::path& file);
 
 }  // namespace saccade::server

@@ -15,7 +15,7 @@ namespace {
 using nlohmann::json;
 
 constexpr std::array<std::string_view, 2> kSubprotocols{"foxglove.sdk.v1", "foxglove.websocket.v1"};
-constexpr std::size_t kMostTexts{32};  ///< that a client has not read; then it is not read from
+constexpr std::size_t kMostTexts{32};  ///< limit of texts that a client has not read; then it is not read from
 constexpr std::size_t kMostEchoed{40};
 constexpr char kMessageData{1};
 constexpr int kWarning{1};
@@ -41,7 +41,7 @@ void append_little_endian(std::string& bytes, Number number) {
   for (std::size_t i = 0; i < sizeof number; ++i) bytes += static_cast<char>((number >> (8U * i)) & 0xffU);
 }
 
-/// A whole number of 32 bits.
+/// Returns a 32-bit integer.
 std::optional<std::uint32_t> id_in(const json& value) {
   if (!value.is_number_unsigned()) return std::nullopt;
   const auto number = value.get<std::uint64_t>();
@@ -90,7 +90,7 @@ std::optional<FoxgloveClient::Wrong> FoxgloveClient::answer(std::string_view tex
                                                             std::span<const FoxgloveChannel> channels) {
   const Result<json> parsed = parse_object(text);
   if (!parsed || !parsed->contains("op") || !parsed->at("op").is_string()) {
-    return Wrong{kError, "this is no message of the protocol: a JSON object with op"};
+    return Wrong{kError, "this is not a message of the protocol: a JSON object with op"};
   }
   const std::string op = parsed->at("op").get<std::string>();
   const bool subscribes = op == "subscribe";
@@ -148,7 +148,7 @@ void FoxgloveClient::send(std::uint32_t channel, const SharedFoxgloveMessage& me
   if (waiting == waiting_.end()) {
     waiting_.push_back({channel, message});
   } else {
-    waiting->message = message;  // in its place: a slow client gets messages of every channel in turn
+    waiting->message = message;  // keeps its place, so that a slow client gets messages of every channel in turn
   }
 }
 

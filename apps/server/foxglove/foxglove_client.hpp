@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// FoxgloveClient: what one client of the Foxglove WebSocket protocol has asked and is to be told, without its socket.
+// FoxgloveClient: protocol state of one client of the Foxglove WebSocket protocol, without its socket.
 
 #include <cstddef>
 #include <cstdint>
@@ -31,34 +31,34 @@ struct FoxgloveChannel {
   SharedFoxgloveMessage newest{};
 };
 
-/// A message of the WebSocket: `head`, then the content of `message`, if there is one.
+/// WebSocket message: `head`, then the content of `message`, if there is one.
 struct FoxgloveFrame {
   bool is_text{true};
   std::string head;
   SharedFoxgloveMessage message{};
 };
 
-/// The subprotocol that a server answers to those that a client offers (header Sec-WebSocket-Protocol): the first of
-/// foxglove.sdk.v1 and foxglove.websocket.v1, which have the same messages here. Empty where there is none.
+/// Returns the server's choice among the subprotocols that a client offers (header Sec-WebSocket-Protocol): the first
+/// of foxglove.sdk.v1 and foxglove.websocket.v1, which have equal messages here. Empty where there is none.
 [[nodiscard]] std::string_view foxglove_subprotocol(std::string_view offered);
 
-/// Keeps at most one message of each channel: a newer one takes the place of one that the client has not read. Sends
-/// the newest message of a channel as soon as it is subscribed to.
+/// Client with at most one waiting message per channel: a newer one replaces an unread one. Sends the newest message of
+/// a channel on subscription.
 class FoxgloveClient {
  public:
-  /// Begins with what the server is and the channels that it has.
+  /// Begins with the server's description and its channels.
   FoxgloveClient(const std::string& session, std::span<const FoxgloveChannel> channels);
 
   void advertise(const FoxgloveChannel& channel);
-  /// Takes a message that the client has sent. What is wrong with it becomes one status message.
+  /// Handles a message of the client. Errors in it become one status message.
   void received(bool is_text, std::string_view message, std::span<const FoxgloveChannel> channels);
   /// Queues a message for a client that has subscribed to its channel.
   void send(std::uint32_t channel, const SharedFoxgloveMessage& message);
 
-  /// Takes what is to be written next; texts go before messages.
+  /// Returns what to write next; texts precede messages.
   [[nodiscard]] std::optional<FoxgloveFrame> next();
   [[nodiscard]] bool is_idle() const { return texts_.empty() && waiting_.empty(); }
-  /// False for a client that does not read the answers to what it asks.
+  /// Returns false for a client that does not read the answers to its requests.
   [[nodiscard]] bool may_read() const;
 
  private:

@@ -95,7 +95,7 @@ Status FoxgloveSink::add(std::string_view topic, const messages::MessageType& ty
 }
 
 Status FoxgloveSink::finish() {
-  static_cast<void>(hub_->wait_until_written(kLastWords));  // who reads more slowly misses the rest
+  static_cast<void>(hub_->wait_until_written(kLastWords));  // slower clients miss the rest
   return {};
 }
 

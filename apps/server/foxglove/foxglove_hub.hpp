@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// FoxgloveHub: channels, their newest messages, and the clients that look on. FoxgloveSink: a run's messages for it.
+// FoxgloveHub: channels, their newest messages, and the connected clients. FoxgloveSink: a run's messages for it.
 
 #include <chrono>
 #include <condition_variable>
@@ -17,27 +17,27 @@ namespace saccade::server {
 
 class HttpServer;
 
-/// Any thread may call. Publishing never waits for a client, for which at most one message of each channel waits.
+/// Hub. Any thread may call it. Publishing never waits for a client; at most one message per channel waits for each.
 class FoxgloveHub {
  public:
   using ClientId = std::uint64_t;
 
   FoxgloveHub();
 
-  /// Keeps a copy as the newest of its topic, and queues it for those who have subscribed. The first message of a topic
-  /// makes its channel known. Its layout is CDR.
+  /// Stores a copy as the newest of its topic, and queues it for subscribers. The first message of a topic advertises
+  /// its channel. Its layout is CDR.
   void publish(std::string_view topic, const messages::MessageType& type, messages::Time time,
                std::span<const std::byte> bytes);
-  /// Waits until every client was written every message that waits for it. False when `patience` is over before.
+  /// Waits until all waiting messages are written to their clients. Returns false when `patience` ends before.
   [[nodiscard]] bool wait_until_written(std::chrono::milliseconds patience);
 
-  /// A client comes. `wake` is called, by any thread, when there is something for it; it returns at once, and does not
+  /// Adds a client. Any thread may call `wake` when there is something for it; it must return at once, and must not
   /// call the hub.
   [[nodiscard]] ClientId join(std::function<void()> wake);
-  /// After it `wake` is not called any more.
+  /// Removes a client; `wake` is not called afterwards.
   void leave(ClientId client);
   void received(ClientId client, bool is_text, std::string_view message);
-  /// Called when what it returned before is written.
+  /// Returns the next frame. Call it when the previous one is written.
   [[nodiscard]] std::optional<FoxgloveFrame> next(ClientId client);
   [[nodiscard]] bool may_read(ClientId client);
 
@@ -61,14 +61,14 @@ class FoxgloveHub {
 /// Publishes messages on a hub.
 class FoxgloveSink final : public messages::MessageSink {
  public:
-  /// @param server  that serves the hub for this sink alone; it ends with it. May be null.
+  /// @param server  server of the hub for this sink alone, which ends with it. May be null.
   FoxgloveSink(std::shared_ptr<FoxgloveHub> hub, std::unique_ptr<HttpServer> server);
   ~FoxgloveSink() override;
 
   [[nodiscard]] messages::Wire wire() const override { return messages::Wire::cdr; }
   [[nodiscard]] Status add(std::string_view topic, const messages::MessageType& type, messages::Time time,
                            std::span<const std::byte> bytes) override;
-  /// Gives clients two seconds, at most, to read the last messages.
+  /// Gives clients at most two seconds to read the last messages.
   [[nodiscard]] Status finish() override;
 
  private:

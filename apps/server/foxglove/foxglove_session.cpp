@@ -8,12 +8,12 @@ namespace {
 
 namespace foxglove_websocket = boost::beast::websocket;
 
-constexpr std::size_t kFragmentOf{64U << 10U};        // between two fragments of a map, pings find their way
-constexpr std::chrono::milliseconds kLastGrace{200};  // once the program ends
+constexpr std::size_t kFragmentOf{64U << 10U};  // fragment size of a map, so that pings get through between fragments
+constexpr std::chrono::milliseconds kLastGrace{200};  // after the program's end was requested
 
 }  // namespace
 
-FoxgloveSession::FoxgloveSession(ServerState& state, boost::beast::tcp_stream stream, Seat seat,
+FoxgloveSession::FoxgloveSession(ServerState& state, boost::beast::tcp_stream stream, ConnectionSlot seat,
                                  std::string_view subprotocol)
     : state_{state},
       seat_{std::move(seat)},
@@ -29,7 +29,7 @@ void FoxgloveSession::run(Request request) {
 }
 
 void FoxgloveSession::begin(Request request) {
-  boost::beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own
+  boost::beast::get_lowest_layer(stream_).expires_never();  // the WebSocket has its own timeout
   stream_.set_option(foxglove_websocket::stream_base::timeout{state_.config.request_timeout, state_.config.idle_timeout,
                                                               /*pings=*/true});
   stream_.set_option(foxglove_websocket::stream_base::decorator{[this](foxglove_websocket::response_type& answer) {

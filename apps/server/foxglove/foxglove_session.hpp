@@ -24,8 +24,9 @@ class FoxgloveSession : public Session, public std::enable_shared_from_this<Foxg
  public:
   using Request = boost::beast::http::request<boost::beast::http::empty_body>;
 
-  /// @param subprotocol  that the client offered and the server answers.
-  FoxgloveSession(ServerState& state, boost::beast::tcp_stream stream, Seat seat, std::string_view subprotocol);
+  /// @param subprotocol  choice among those that the client offered.
+  FoxgloveSession(ServerState& state, boost::beast::tcp_stream stream, ConnectionSlot seat,
+                  std::string_view subprotocol);
   void run(Request request);
   void stop() override;
 
@@ -41,7 +42,7 @@ class FoxgloveSession : public Session, public std::enable_shared_from_this<Foxg
   void finish() override;
 
   ServerState& state_;
-  const Seat seat_;
+  const ConnectionSlot seat_;
   const std::shared_ptr<FoxgloveHub> hub_;
   const std::string subprotocol_;
   boost::beast::websocket::stream<boost::beast::tcp_stream, /*deflateSupported=*/false> stream_;

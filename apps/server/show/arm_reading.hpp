@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// How an arm's description was read, as a run keeps it: "arm_reading" in run.json.
+// Settings for reading an arm's description, as stored in a run: "arm_reading" in run.json.
 
 #include <nlohmann/json.hpp>
 
@@ -8,10 +8,10 @@
 
 namespace saccade::server {
 
-/// What differs from the defaults: base, tip, camera_frame, packages, drop_beyond_tip, T_world_base, T_flange_camera.
-/// Empty: nothing.
+/// Returns the settings that differ from the defaults: base, tip, camera_frame, packages, package_paths,
+/// drop_beyond_tip, T_world_base, T_flange_camera. Empty without differences.
 [[nodiscard]] nlohmann::json arm_reading_to_json(const UrdfConfig& config);
-/// The inverse; null is the defaults. corrupt_data for anything else.
+/// Reads the settings back; null gives the defaults. Answers corrupt_data for anything else.
 [[nodiscard]] Result<UrdfConfig> arm_reading_from_json(const nlohmann::json& value);
 
 }  // namespace saccade::server

@@ -15,7 +15,7 @@ namespace saccade::server {
 }
 [[nodiscard]] inline std::string millimetres(double value_m) { return decimals(1e3 * value_m, 1) + " mm"; }
 [[nodiscard]] inline std::string percent(double share) { return decimals(100.0 * share, 1) + " %"; }
-/// 12 345 678, with narrow spaces that do not break.
+/// Returns a number such as 12 345 678, with narrow no-break spaces.
 [[nodiscard]] inline std::string grouped(std::size_t count) {
   const std::string digits = std::to_string(count);
   std::string text;

@@ -24,7 +24,7 @@ void put(Layer& layer, const LayerPlace& place) {
   layer.visible = false;
 }
 
-/// Per vertex; what lies outside the workspace is in no segment, and not searched for.
+/// Returns one segment per vertex; vertices outside the workspace get none, without a search.
 std::vector<std::uint32_t> segments_of_vertices(const TsdfSnapshot& map, const TriangleMesh& mesh,
                                                 const SegmentedPoints& surface, const Executor& executor) {
   std::vector<std::size_t> inside;
@@ -100,7 +100,7 @@ Result<std::vector<Layer>> layers_of_map(const TsdfSnapshot& map, const Triangle
   std::vector<Layer> layers{triangles_layer("surface", kSurfaceName, mesh)};
   const LayerPlace always{"", std::nullopt};
   if (std::optional<Layer> frontier = frontier_layer(map, always)) {
-    frontier->visible = map.config.workspace.has_value();  // without one it is around all that was seen
+    frontier->visible = map.config.workspace.has_value();  // without a workspace it surrounds everything seen
     frontier->opacity = kFrontierOpacity;
     layers.push_back(std::move(*frontier));
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Layers of a map: its surface, the frontier of the unknown, and what of the surface draws attention.
+// Layers of a map: its surface, the frontier of the unknown, and the saliency of the surface.
 
 #include <string>
 #include <vector>
@@ -18,37 +18,36 @@ inline constexpr const char* kFrontierName{"Frontier of the unknown"};
 inline constexpr const char* kSaliencyName{"Saliency of segments"};
 inline constexpr const char* kContoursName{"Contours"};
 
-/// What is added to the ids of layers, and the step that they belong to.
+/// Suffix of the layers' ids, and the step that they belong to.
 struct LayerPlace {
   std::string suffix;
   std::optional<std::size_t> step;
 };
 
-/// Unknown voxels next to empty ones within the workspace, hidden at first. nullopt where there is none, or so many
-/// that no page could show them.
+/// Returns the unknown voxels next to empty ones within the workspace, hidden at first. nullopt where there is none, or
+/// too many for a page.
 [[nodiscard]] std::optional<Layer> frontier_layer(const TsdfSnapshot& map, const LayerPlace& place);
 
-/// The surface, the more salient its segment the brighter; hidden at first.
-/// @param mesh      of the map that was looked at.
-/// @param saliency  one per segment.
+/// Returns the surface, brighter for more salient segments; hidden at first.
+/// @param mesh      mesh of this map.
 [[nodiscard]] Layer saliency_layer(const TsdfSnapshot& map, const TriangleMesh& mesh, const SegmentedPoints& surface,
                                    std::span<const double> saliency, const LayerPlace& place, const Executor& executor);
 
-/// Places at the border of what is known with the direction to look at them from, those of one segment apart from the
-/// others; hidden at first. nullopt where there is none.
+/// Returns the contour points with their viewing directions, those of one segment distinguished from the others; hidden
+/// at first. nullopt where there is none.
 [[nodiscard]] std::optional<Layer> contours_layer(const ContourSet& contours, std::optional<std::uint32_t> segment,
                                                   const LayerPlace& place);
 
-/// Surface, frontier, saliency by `objectness` and contours of a map that is shown for itself.
+/// Returns surface, frontier, saliency by `objectness` and contours of a single map.
 [[nodiscard]] Result<std::vector<Layer>> layers_of_map(const TsdfSnapshot& map, const TriangleMesh& mesh,
                                                        const Executor& executor);
 
-/// Voxel size, truncation, extent, how much is known.
+/// Returns voxel size, truncation, extent, and the known share.
 [[nodiscard]] Facts facts_of_map(const TsdfSnapshot& map, const TriangleMesh& mesh);
-/// The workspace, or all of the surface.
+/// Returns the workspace, or the bounds of the whole surface.
 [[nodiscard]] Box bounds_of_map(const TsdfSnapshot& map, const TriangleMesh& mesh);
 
-/// What draws attention in a map.
+/// Saliency of a map.
 struct SeenAttention {
   std::shared_ptr<const SalientSurface> surface;
   ContourSet contours;

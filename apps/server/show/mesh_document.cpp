@@ -4,6 +4,7 @@
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "server/show/figures.hpp"
 #include "server/show/open_document.hpp"
+#include "server/show/stand_upright.hpp"
 
 namespace saccade::server {
 namespace {
@@ -22,14 +23,17 @@ std::string extent_text(const Box& box) {
 
 }  // namespace
 
-Result<SceneDocument> mesh_document(const std::filesystem::path& path) {
+Result<SceneDocument> mesh_document(const std::filesystem::path& path, const std::optional<Eigen::Vector3d>& up) {
   SACCADE_TRY(const TriangleMesh mesh, read_any_mesh(path));
   if (!all_finite(mesh)) return Error{Errc::corrupt_data, "has vertices that are not finite", path.string()};
   SceneDocument document;
   document.title = path.filename().string();
   document.kind = DocumentKind::mesh;
   const std::string suffix = path.extension().string();
-  if (suffix == ".glb" || suffix == ".gltf") document.up = Eigen::Vector3d::UnitY();  // as glTF's specification says
+  UprightHints hints{.up = up};
+  const bool is_gltf = suffix == ".glb" || suffix == ".gltf";
+  if (is_gltf && !up) hints.up = Eigen::Vector3d::UnitY();  // as glTF's specification says
+  SACCADE_CHECK(stand_upright(document, path, mesh.vertices, std::move(hints), false));
   document.bounds = bounds_of_points(mesh.vertices);
   document.facts = {{"vertices", grouped(mesh.vertices.size())},
                     {"triangles", grouped(mesh.triangles.size())},

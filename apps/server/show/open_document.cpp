@@ -19,11 +19,6 @@ std::string suffix_of(const fs::path& path) {
   return suffix;
 }
 
-bool is_cloud_suffix(const std::string& suffix) {
-  constexpr std::array<std::string_view, 6> kSuffixes{".pcd", ".xyz", ".txt", ".csv", ".pts", ".bin"};
-  return std::find(kSuffixes.begin(), kSuffixes.end(), suffix) != kSuffixes.end();
-}
-
 Result<bool> has_faces(const fs::path& path) {
   SACCADE_TRY(const PlyFile file, read_ply(path));
   const PlyElement* faces = file.find("face");
@@ -32,23 +27,26 @@ Result<bool> has_faces(const fs::path& path) {
 
 }  // namespace
 
-Result<SceneDocument> open_document(const fs::path& path, const Executor& executor) {
+Result<SceneDocument> open_document(const fs::path& path, const Executor& executor,
+                                    const std::optional<Eigen::Vector3d>& up) {
   std::error_code code;
   const fs::file_status status = fs::status(path, code);
   if (!fs::exists(status)) return Error{Errc::not_found, "there is no such file or folder", path.string()};
-  if (fs::is_directory(status)) return run_document(path, executor);
+  if (fs::is_directory(status)) return run_document(path, executor, up);
   const std::string suffix = suffix_of(path);
-  if (suffix == ".sacmap") return map_document(path, executor);
+  if (suffix == ".sacmap") return map_document(path, executor, up);
   if (suffix == ".ply") {
     SACCADE_TRY(const bool is_mesh, has_faces(path));
-    return is_mesh ? mesh_document(path) : cloud_document(path);
+    return is_mesh ? mesh_document(path, up) : cloud_document(path, up);
   }
-  if (is_mesh_file(path)) return mesh_document(path);
-  if (is_cloud_suffix(suffix)) return cloud_document(path);
-  return Error{Errc::unsupported,
-               "is nothing to show: name the folder of a run, a map (.sacmap), a mesh (.ply, .obj, .stl, .glb) or a "
-               "cloud (.pcd, .ply, .xyz, .txt, .csv, .pts, .bin)",
-               path.string()};
+  if (is_mesh_file(path)) return mesh_document(path, up);
+  if (is_cloud(path)) return cloud_document(path, up);
+  return Error{
+      Errc::unsupported,
+      std::string{"is nothing to show: name the folder of a run, a map (.sacmap), a mesh (.ply, .obj, .stl, .glb) "
+                  "or a cloud ("} +
+          std::string{kCloudSuffixes} + ")",
+      path.string()};
 }
 
 }  // namespace saccade::server

@@ -1,7 +1,8 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// open_document: a mesh, map, cloud or folder of a run as a document to be shown; and those one by one.
+// open_document: a mesh, map, cloud or run folder as a document of the viewer; and separate functions for each.
 
+#include <Eigen/Core>
 #include <filesystem>
 #include <optional>
 
@@ -11,17 +12,24 @@
 
 namespace saccade::server {
 
-/// A folder is that of a run; a file is told by its suffix, a PLY by whether it has faces.
-/// @return not_found for what is not there; unsupported, with what there is to show, for what is none of these; errors
-///         of the readers.
-[[nodiscard]] Result<SceneDocument> open_document(const std::filesystem::path& path, const Executor& executor);
+/// Opens a file or folder. A folder holds a run; a file is recognised by its suffix, a PLY by whether it has faces. The
+/// upward direction comes from `up`, from files beside the document (read_upright_files) or from the points
+/// (find_upright).
+/// @return not_found for a missing path; unsupported, with the list of supported kinds, for others; errors of the
+/// readers.
+[[nodiscard]] Result<SceneDocument> open_document(const std::filesystem::path& path, const Executor& executor,
+                                                  const std::optional<Eigen::Vector3d>& up = {});
 
-[[nodiscard]] Result<SceneDocument> mesh_document(const std::filesystem::path& path);
-/// Surface, frontier and segments; O(bricks + surface).
-[[nodiscard]] Result<SceneDocument> map_document(const std::filesystem::path& path, const Executor& executor);
-/// With labels as a layer of their own where there is a field label. Of very large clouds every n-th point.
-[[nodiscard]] Result<SceneDocument> cloud_document(const std::filesystem::path& path);
-/// run.json, or what an interrupted exploration left, with what lies beside it. docs/formats.md.
-[[nodiscard]] Result<SceneDocument> run_document(const std::filesystem::path& folder, const Executor& executor);
+[[nodiscard]] Result<SceneDocument> mesh_document(const std::filesystem::path& path,
+                                                  const std::optional<Eigen::Vector3d>& up = {});
+/// Shows surface, frontier and segments; O(bricks + surface).
+[[nodiscard]] Result<SceneDocument> map_document(const std::filesystem::path& path, const Executor& executor,
+                                                 const std::optional<Eigen::Vector3d>& up = {});
+/// Shows labels as a separate layer where there is a field label. Very large clouds show every n-th point.
+[[nodiscard]] Result<SceneDocument> cloud_document(const std::filesystem::path& path,
+                                                   const std::optional<Eigen::Vector3d>& up = {});
+/// Shows run.json, or the files of an interrupted exploration, with the files beside it. docs/reference/formats.md.
+[[nodiscard]] Result<SceneDocument> run_document(const std::filesystem::path& folder, const Executor& executor,
+                                                 const std::optional<Eigen::Vector3d>& up = {});
 
 }  // namespace saccade::server

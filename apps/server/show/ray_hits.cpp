@@ -18,7 +18,7 @@ std::optional<RayHit> hit_of(const TsdfSnapshot& map, const Region& region, cons
     if (state == VoxelState::empty) return false;
     const Eigen::Vector3d center = voxel_center(voxel, map.config.voxel_size_m);
     if (map.config.workspace && !contains(*map.config.workspace, center)) return false;
-    const bool has_entered = in_voxel.enter.axis != kRayStart.axis;  // the camera's own voxel is not entered
+    const bool has_entered = in_voxel.enter.axis != kRayStart.axis;  // the ray does not enter the camera's own voxel
     if (!has_entered || in_voxel.enter.t < static_cast<float>(sensor.min_range_m)) return true;
     const RayEnd unknown = contains(region, center) ? RayEnd::gained : RayEnd::unknown;
     hit = RayHit{center.cast<float>(), state == VoxelState::occupied ? RayEnd::surface : unknown};

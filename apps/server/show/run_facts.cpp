@@ -114,7 +114,7 @@ std::vector<StepPicture> pictures_of_view(const fs::path& folder, std::size_t vi
   add_if_there(pictures, folder, view_file(view, "-seen.png"), "What the camera saw");
   add_if_there(pictures, folder, view_file(view, "-choice.png"), "The choice among the candidates");
   add_if_there(pictures, folder, view_file(view, "-saliency.png"), "What drew the attention");
-  add_if_there(pictures, folder, view_file(view, "-map.png"), "The map, unknown in black");
+  add_if_there(pictures, folder, view_file(view, "-map.png"), "The map, unknown in grey");
   return pictures;
 }
 

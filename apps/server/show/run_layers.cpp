@@ -24,7 +24,7 @@ Layer placed(Layer layer, std::optional<std::size_t> step, bool visible = true) 
   return layer;
 }
 
-/// A circle around `center` through center + a and center + b.
+/// Appends a circle around `center` through center + a and center + b.
 void append_circle(std::vector<Eigen::Vector3f>& ends, const Eigen::Vector3d& center, const Eigen::Vector3d& a,
                    const Eigen::Vector3d& b) {
   constexpr int kParts{48};

@@ -12,6 +12,7 @@
 #include "server/show/open_document.hpp"
 #include "server/show/run_facts.hpp"
 #include "server/show/run_layers.hpp"
+#include "server/show/stand_upright.hpp"
 
 namespace saccade::server {
 namespace {
@@ -34,11 +35,10 @@ json entry_in(const json& object, const char* key) {
   return found != object.end() ? *found : json(nullptr);
 }
 
-/// What a journal says, in the words of a result.
+/// Converts a journal to the form of a result.
 json result_of_journal(const json& journal) {
   json result = entry_in(journal, "settings");
   if (!result.is_object()) result = json::object();
-  result["command"] = "explore";
   result["camera"] = entry_in(result, "intrinsics");
   result["initial"] = entry_in(journal, "initial");
   result["views"] = entry_in(journal, "views");
@@ -72,13 +72,19 @@ std::array<double, 2> fov_in(const json& result) {
 
 }  // namespace
 
-RunReader::RunReader(fs::path folder, const Executor& executor) : folder_{std::move(folder)}, executor_{executor} {}
+RunReader::RunReader(fs::path folder, const Executor& executor, std::optional<Eigen::Vector3d> up)
+    : folder_{std::move(folder)}, executor_{executor}, up_{std::move(up)} {}
 
 Result<SceneDocument> RunReader::read(bool live) {
   try {
-    SACCADE_TRY(const json result, read_result());
+    SACCADE_TRY(json record, read_record());
+    json result = entry_in(record, "result");
+    if (!result.is_object()) result = json::object();
+    result["command"] = text_in(record, "command");
     SACCADE_CHECK(read_steps(result));
     SceneDocument document;
+    document.record = std::move(record);
+    document.folder = folder_;
     document.title = title_of(result, folder_);
     document.kind = DocumentKind::run;
     document.live = live;
@@ -98,25 +104,23 @@ Result<SceneDocument> RunReader::read(bool live) {
   }
 }
 
-Result<json> RunReader::read_result() const {
+Result<json> RunReader::read_record() const {
   if (is_there(folder_ / "journal.json")) {
     SACCADE_TRY(const json journal, read_json(folder_ / "journal.json"));
-    if (!journal.is_object()) return Error{Errc::corrupt_data, "is no journal", (folder_ / "journal.json").string()};
+    if (!journal.is_object()) return Error{Errc::corrupt_data, "is not a journal", (folder_ / "journal.json").string()};
     json result = result_of_journal(journal);
     result["unfinished"] = true;
-    return result;
+    return json{{"command", "explore"}, {"seed", entry_in(result, "seed")}, {"result", std::move(result)}};
   }
   for (const char* name : {"run.json", "update.json"}) {
     if (!is_there(folder_ / name)) continue;
-    SACCADE_TRY(const json run, read_json(folder_ / name));
+    SACCADE_TRY(json run, read_json(folder_ / name));
     if (!run.is_object() || !entry_in(run, "result").is_object()) {
-      return Error{Errc::corrupt_data, "is no result of saccade", (folder_ / name).string()};
+      return Error{Errc::corrupt_data, "is not a result of saccade", (folder_ / name).string()};
     }
-    json result = run["result"];
-    result["command"] = text_in(run, "command");
-    return result;
+    return run;
   }
-  if (is_there(folder_ / "map.sacmap") || is_there(folder_ / "mesh.ply")) return json::object();
+  if (is_there(folder_ / "map.sacmap") || is_there(folder_ / "mesh.ply")) return json(nullptr);
   return Error{Errc::not_found, "holds no run: neither run.json nor map.sacmap nor mesh.ply", folder_.string()};
 }
 
@@ -215,11 +219,12 @@ void RunReader::add_arm(const json& result, const std::optional<Configuration>& 
   if (q->allFinite()) out.layers.push_back(arm_layer(*arm_, *q, steps_.size()));
 }
 
-/// Where steps have no maps, what the run came to.
+/// Adds the run's final result where steps have no maps.
 Status RunReader::add_end(SceneDocument& document) const {
   if (last_map_) {
     const TsdfSnapshot& map = last_map_->map;
     document.bounds = bounds_of_map(map, last_map_->mesh);
+    SACCADE_CHECK(stand_upright(document, folder_ / "", last_map_->mesh.vertices, {.up = up_}, false));
     if (map.config.workspace) document.layers.push_back(box_layer("workspace", "Workspace", *map.config.workspace));
     return {};
   }
@@ -227,10 +232,12 @@ Status RunReader::add_end(SceneDocument& document) const {
     SACCADE_TRY(const TsdfSnapshot map, load_map(folder_ / "map.sacmap", executor_));
     const TriangleMesh mesh = extract_mesh(map, executor_);
     document.bounds = bounds_of_map(map, mesh);
+    SACCADE_CHECK(stand_upright(document, folder_ / "", mesh.vertices, {.up = up_}, false));
     SACCADE_TRY(document.layers, layers_of_map(map, mesh, executor_));
   } else if (is_there(folder_ / "mesh.ply")) {
     SACCADE_TRY(const TriangleMesh mesh, read_mesh(folder_ / "mesh.ply"));
     document.bounds = bounds_of_points(mesh.vertices);
+    SACCADE_CHECK(stand_upright(document, folder_ / "", mesh.vertices, {.up = up_}, false));
     document.layers.push_back(triangles_layer("surface", kSurfaceName, mesh));
   } else {
     document.bounds = bounds_of_points({});
@@ -243,7 +250,7 @@ Status RunReader::add_end(SceneDocument& document) const {
   return {};
 }
 
-/// Of a fusion, where the camera was; what is no trajectory is left out.
+/// Adds the camera's trajectory of a fusion; anything else is ignored.
 void RunReader::add_trajectory(SceneDocument& document) const {
   if (!is_there(folder_ / "trajectory.txt")) return;
   const auto trajectory = read_tum_trajectory(folder_ / "trajectory.txt");
@@ -253,8 +260,9 @@ void RunReader::add_trajectory(SceneDocument& document) const {
   document.layers.push_back(path_layer(centers, std::nullopt));
 }
 
-Result<SceneDocument> run_document(const fs::path& folder, const Executor& executor) {
-  return RunReader{folder, executor}.read(false);
+Result<SceneDocument> run_document(const fs::path& folder, const Executor& executor,
+                                   const std::optional<Eigen::Vector3d>& up) {
+  return RunReader{folder, executor, up}.read(false);
 }
 
 }  // namespace saccade::server

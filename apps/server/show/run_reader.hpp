@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RunReader: the folder of a run as a document, again and again while the run goes on.
+// RunReader: the folder of a run as a document, re-read while the run continues.
 
 #include <filesystem>
 #include <optional>
@@ -15,15 +15,16 @@
 
 namespace saccade::server {
 
-/// One thread at a time. What a folder holds: docs/formats.md. Of an exploration without maps of its views, as older
-/// versions left them, the steps have poses, facts, pictures and the arm.
+/// Reader of a run folder. One thread at a time. Content of a folder: docs/reference/formats.md. Without maps of views,
+/// as in older versions, the steps have poses, facts, images and the arm.
 class RunReader {
  public:
-  RunReader(std::filesystem::path folder, const Executor& executor);
+  /// @param up  stated by the user; else files in the folder tell it, and without any it is z.
+  RunReader(std::filesystem::path folder, const Executor& executor, std::optional<Eigen::Vector3d> up = {});
 
-  /// Steps that were read before are kept as they are. A journal goes before a result: of two runs in one folder it is
-  /// that of the later one.
-  /// @param live  the run goes on.
+  /// Reads the folder. Steps that were read before are kept. A journal takes precedence over a result: with two runs in
+  /// one folder it belongs to the later one.
+  /// @param live  the run continues.
   /// @return not_found for a folder without a run; errors of the readers, naming the file.
   [[nodiscard]] Result<SceneDocument> read(bool live);
 
@@ -38,7 +39,8 @@ class RunReader {
     TriangleMesh mesh;
   };
 
-  [[nodiscard]] Result<nlohmann::json> read_result() const;
+  /// Returns the record that a command wrote of the run, or would write if it ended now.
+  [[nodiscard]] Result<nlohmann::json> read_record() const;
   [[nodiscard]] Status read_steps(const nlohmann::json& result);
   [[nodiscard]] Status read_step(const nlohmann::json& result, const nlohmann::json& view, std::size_t number);
   [[nodiscard]] Status add_choice(const nlohmann::json& result, std::size_t number, ReadStep& out);
@@ -51,12 +53,13 @@ class RunReader {
 
   std::filesystem::path folder_;
   Executor executor_;
+  std::optional<Eigen::Vector3d> up_;
   std::vector<ReadStep> steps_;
-  std::optional<StepMap> last_map_;  ///< of the last step that has one
+  std::optional<StepMap> last_map_;  ///< map of the last step that has one
   AttentionLook attention_;
   std::string arm_name_;
-  std::optional<ArmModel> arm_;  ///< of that name; nullopt: none could be read
-  std::string why_no_arm_;       ///< it is not shown; empty: it is
+  std::optional<ArmModel> arm_;  ///< arm of that name; nullopt: not readable
+  std::string why_no_arm_;       ///< reason why it is not shown; empty: it is shown
 };
 
 }  // namespace saccade::server

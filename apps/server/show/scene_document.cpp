@@ -40,14 +40,18 @@ std::string name_of(const std::vector<std::uint8_t>& bytes) {
   return hash.text() + "-" + std::to_string(bytes.size());
 }
 
+std::shared_ptr<const LayerBuffer> buffer_of(std::vector<std::uint8_t> bytes) {
+  std::string content = name_of(bytes);
+  return std::make_shared<const LayerBuffer>(LayerBuffer{std::move(content), std::move(bytes)});
+}
+
 Layer layer_of(std::string id, std::string name, LayerKind kind, std::size_t count, std::vector<std::uint8_t> bytes) {
   Layer layer;
   layer.id = std::move(id);
   layer.name = std::move(name);
   layer.kind = kind;
   layer.count = count;
-  std::string content = name_of(bytes);
-  layer.buffer = std::make_shared<const LayerBuffer>(LayerBuffer{std::move(content), std::move(bytes)});
+  layer.buffer = buffer_of(std::move(bytes));
   return layer;
 }
 
@@ -69,6 +73,13 @@ json layer_json(const Layer& layer) {
   }
   if (layer.kind == LayerKind::triangles) out["vertices"] = layer.vertices;
   if (layer.size_m) out["size_m"] = *layer.size_m;
+  if (layer.diameters) out["diameters"] = true;
+  if (layer.fields) {
+    out["fields"] = json::array();
+    for (const LayerField& field : *layer.fields) {
+      out["fields"].push_back({{"name", field.name}, {"width", field.width}, {"buffer", field.buffer->name}});
+    }
+  }
   if (layer.opacity < 1.0) out["opacity"] = layer.opacity;
   if (layer.holds_camera) out["holds_camera"] = true;
   for (const LegendEntry& entry : layer.legend) out["legend"].push_back({entry.text, hex(entry.color)});
@@ -89,20 +100,26 @@ json step_json(const Step& step) {
 
 json frame_of(const SceneDocument& document) {
   const Box& box = document.bounds;
-  return {{"title", document.title},
-          {"kind", to_string(document.kind)},
-          {"live", document.live},
-          {"up", {document.up.x(), document.up.y(), document.up.z()}},
-          {"bounds", {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()}},
-          {"facts", document.facts},
-          {"layers", json::array()},
-          {"steps", json::array()}};
+  json out{{"title", document.title},
+           {"kind", to_string(document.kind)},
+           {"live", document.live},
+           {"up", {document.up.x(), document.up.y(), document.up.z()}},
+           {"bounds", {box.min.x(), box.min.y(), box.min.z(), box.max.x(), box.max.y(), box.max.z()}},
+           {"facts", document.facts},
+           {"layers", json::array()},
+           {"steps", json::array()}};
+  if (document.towards_viewer) {
+    const Eigen::Vector3d& towards = *document.towards_viewer;
+    out["towards_viewer"] = {towards.x(), towards.y(), towards.z()};
+  }
+  return out;
 }
 
 }  // namespace
 
 json document_json(const SceneDocument& document) {
   json out = frame_of(document);
+  out["report"] = !document.record.is_null();
   for (const Layer& layer : document.layers) out["layers"].push_back(layer_json(layer));
   for (const Step& step : document.steps) out["steps"].push_back(step_json(step));
   return out;
@@ -143,6 +160,24 @@ Layer points_layer(std::string id, std::string name, std::span<const Eigen::Vect
   Layer layer = layer_of(std::move(id), std::move(name), LayerKind::points, points.size(), std::move(bytes));
   layer.colors = !colors.empty();
   return layer;
+}
+
+Layer discs_layer(std::string id, std::string name, std::span<const Eigen::Vector3f> points,
+                  std::span<const Rgb8> colors, std::span<const float> diameters_m) {
+  SACCADE_EXPECTS(diameters_m.size() == points.size());
+  Layer layer = points_layer(std::move(id), std::move(name), points, colors);
+  std::vector<std::uint8_t> bytes = layer.buffer->bytes;
+  append(bytes, diameters_m);
+  layer.buffer = buffer_of(std::move(bytes));
+  layer.diameters = true;
+  layer.size_m = 1.0;
+  return layer;
+}
+
+LayerField layer_field(std::string name, int width, std::span<const float> values) {
+  std::vector<std::uint8_t> bytes;
+  append(bytes, values);
+  return {std::move(name), width, buffer_of(std::move(bytes))};
 }
 
 Layer voxels_layer(std::string id, std::string name, std::span<const Eigen::Vector3f> centers, double size_m) {

@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "saccade/io/files/file_io.hpp"
+#include "server/report_file.hpp"
 
 namespace saccade::server {
 namespace {
@@ -20,7 +21,7 @@ Error wrong_question(const std::string& what) { return {Errc::invalid_argument, 
 Result<std::uint64_t> whole_number(const json& head, const char* name) {
   const auto found = head.find(name);
   if (found == head.end() || !found->is_number_unsigned()) {
-    return wrong_question(std::string{name} + " must be a whole number");
+    return wrong_question(std::string{name} + " must be an integer");
   }
   return found->get<std::uint64_t>();
 }
@@ -29,7 +30,10 @@ HttpAnswer refused(int status, const std::string& why) {
   return {status, "text/plain; charset=utf-8", "", {why.begin(), why.end()}};
 }
 
+bool is_picture(std::string_view name) { return name.ends_with(".png") || name.ends_with(".svg"); }
+
 const char* picture_type(const std::filesystem::path& path) {
+  if (path.extension() == ".svg") return "image/svg+xml";
   return path.extension() == ".png" ? "image/png" : "image/jpeg";
 }
 
@@ -41,16 +45,27 @@ ViewerService::ViewerService(Clients& clients, ViewerConfig config, const SceneD
 }
 
 ViewerService::Shown ViewerService::prepare(const SceneDocument& document) {
-  Shown shown{document_json(document), {}, {}};
-  for (const Layer& layer : document.layers) shown.buffers.emplace(layer.buffer->name, layer.buffer);
+  Shown shown{document_json(document), {}, {}, nullptr, {}};
+  for (const Layer& layer : document.layers) {
+    shown.buffers.emplace(layer.buffer->name, layer.buffer);
+    if (!layer.fields) continue;
+    for (const LayerField& field : *layer.fields) shown.buffers.emplace(field.buffer->name, field.buffer);
+  }
   for (const Step& step : document.steps) {
     for (const StepPicture& picture : step.pictures) shown.pictures.insert_or_assign(picture.name, picture.path);
+  }
+  if (document.record.is_null()) return shown;
+  shown.report = report_document(document.record, document.folder);
+  shown.report["live"] = document.live;
+  for (const json& file : shown.report["files"]) {
+    const auto& name = file.get_ref<const std::string&>();
+    if (is_picture(name)) shown.files.emplace(name, document.folder / name);
   }
   return shown;
 }
 
 void ViewerService::update(const SceneDocument& document) {
-  // Prepared here, so that the service's thread has little to do.
+  // Prepared here, to keep the load on the service's thread small.
   auto shown = std::make_shared<Shown>(prepare(document));
   config_.post([this, shown] { replace(std::move(*shown)); });
 }
@@ -126,11 +141,22 @@ Result<SharedMessage> ViewerService::answer_buffer(const Question& question) con
   return std::move(message).finish();
 }
 
+HttpAnswer ViewerService::answer_report() const {
+  if (shown_.report.is_null()) return refused(404, "there is no record of a run yet");
+  const std::string text = shown_.report.dump(-1, ' ', false, json::error_handler_t::replace);
+  return {200, "application/json", "", {text.begin(), text.end()}};
+}
+
 HttpAnswer ViewerService::get(const HttpRequest& request) {
+  if (request.path == "report") return answer_report();
+  const bool of_report = request.path == "file";
   const auto name = request.query.find("name");
-  if (request.path != "picture" || name == request.query.end()) return refused(404, "there is no such file");
-  const auto found = shown_.pictures.find(name->second);
-  if (found == shown_.pictures.end()) return refused(404, "the document has no such picture");
+  if ((!of_report && request.path != "picture") || name == request.query.end()) {
+    return refused(404, "there is no such file");
+  }
+  const auto& known = of_report ? shown_.files : shown_.pictures;
+  const auto found = known.find(name->second);
+  if (found == known.end()) return refused(404, "the document has no such picture");
   const auto content = read_file(found->second, kMaxPictureBytes);
   if (!content) return refused(404, "the picture is not there any more");
   const auto* first = reinterpret_cast<const std::uint8_t*>(content->data());

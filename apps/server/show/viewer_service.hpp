@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ViewerService: answers the pages that look at a document. docs/protocol.md, "Viewer".
+// ViewerService: answers pages that view a document. docs/reference/protocol.md, "Viewer".
 
 #include <functional>
 #include <map>
@@ -15,17 +15,17 @@
 namespace saccade::server {
 
 struct ViewerConfig {
-  std::string version;  ///< of the program, for hello
+  std::string version;  ///< version of the program, for hello
   /// Runs work on the service's thread: HttpServer::post.
   std::function<void(std::function<void()>)> post;
 };
 
 class ViewerService final : public Service {
  public:
-  /// `clients` outlives the service.
+  /// `clients` must outlive the service.
   ViewerService(Clients& clients, ViewerConfig config, const SceneDocument& document);
 
-  /// There is another document: pages are told. From any thread; the service must live until what was posted has run.
+  /// Replaces the document and notifies pages. From any thread; the service must live until the posted work has run.
   void update(const SceneDocument& document);
 
   void opened(ConnectionId connection) override;
@@ -36,11 +36,13 @@ class ViewerService final : public Service {
  private:
   using Buffers = std::map<std::string, std::shared_ptr<const LayerBuffer>, std::less<>>;
 
-  /// What is looked up by names that clients say: nothing else can be asked for.
+  /// Content that clients can request by name; nothing else is accessible.
   struct Shown {
     nlohmann::json document;
     Buffers buffers;
     std::map<std::string, std::filesystem::path, std::less<>> pictures;
+    nlohmann::json report;                                            ///< null: there is none
+    std::map<std::string, std::filesystem::path, std::less<>> files;  ///< pictures of the report
   };
 
   [[nodiscard]] static Shown prepare(const SceneDocument& document);
@@ -48,13 +50,14 @@ class ViewerService final : public Service {
   [[nodiscard]] Result<SharedMessage> answer(ConnectionId connection, const Question& question);
   [[nodiscard]] Result<SharedMessage> answer_hello(ConnectionId connection, const Question& question);
   [[nodiscard]] Result<SharedMessage> answer_buffer(const Question& question) const;
+  [[nodiscard]] HttpAnswer answer_report() const;
 
   Clients& clients_;
   ViewerConfig config_;
   Shown shown_;
-  Buffers earlier_;  ///< of the document before, which pages may still be reading
+  Buffers earlier_;  ///< buffers of the previous document, which pages may still be reading
   std::uint64_t revision_{1};
-  std::set<ConnectionId> greeted_;  ///< who said hello, and is told of other documents
+  std::set<ConnectionId> greeted_;  ///< connections that said hello and receive updates
 };
 
 }  // namespace saccade::server

@@ -12,7 +12,7 @@ namespace {
 
 Error refused(std::string why) { return {Errc::invalid_argument, std::move(why), "action"}; }
 
-/// The first number that is there twice, or none; the list is not in order.
+/// Returns the first number that occurs twice, or nullptr; the list may be unordered.
 template <class T>
 const T* repeated(std::vector<T>& numbers) {
   std::sort(numbers.begin(), numbers.end());

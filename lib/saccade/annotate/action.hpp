@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// AnnotationAction: what one client does to an annotation; check_action: what can be said of one by itself;
-// ActionHistory: all of them, which of them are undone, and what the others leave.
+// AnnotationAction: an action of a client on an annotation. check_action: checks one on its own. ActionHistory: all
+// actions, which of them are undone, and the state that the others leave.
 
 #include <cstdint>
 #include <limits>
@@ -17,7 +17,7 @@
 
 namespace saccade {
 
-/// Points become control points of a label (thesis §4.2.1); those that are already take on label and start cost.
+/// Makes points control points of a label (thesis §4.2.1); existing ones change label and start cost.
 struct SetControlPoints {
   std::vector<std::uint32_t> points;
   std::uint32_t label{1};
@@ -25,43 +25,43 @@ struct SetControlPoints {
   [[nodiscard]] bool operator==(const SetControlPoints&) const = default;
 };
 
-/// Points are control points no more; of those that are none nothing changes.
+/// Removes control points; other points stay unchanged.
 struct RemoveControlPoints {
   std::vector<std::uint32_t> points;
   [[nodiscard]] bool operator==(const RemoveControlPoints&) const = default;
 };
 
-/// A control point goes to another point, with its label and start cost, in place of one that may be there.
+/// Moves a control point with its label and start cost to another point, replacing one that may be there.
 struct MoveControlPoint {
   std::uint32_t from{0};
   std::uint32_t to{0};
   [[nodiscard]] bool operator==(const MoveControlPoint&) const = default;
 };
 
-/// Points have a label whatever tree they belong to (the thesis' rectangular selection, §4.2.2).
+/// Paints points with a label, whatever tree they belong to (the thesis' rectangular selection, §4.2.2).
 struct PaintPoints {
   std::vector<std::uint32_t> points;
   std::uint32_t label{1};  ///< kNoLabel: they follow their trees again
   [[nodiscard]] bool operator==(const PaintPoints&) const = default;
 };
 
-/// What is known of labels becomes this.
+/// Replaces the definitions of labels.
 struct DefineLabels {
   std::vector<NumberedLabel> labels;
   [[nodiscard]] bool operator==(const DefineLabels&) const = default;
 };
 
-/// No control points and no paint; definitions of labels stay.
+/// Removes all control points and paint; definitions of labels stay.
 struct ClearAnnotation {
   [[nodiscard]] bool operator==(const ClearAnnotation&) const = default;
 };
 
-/// Takes back the client's latest action that is not undone.
+/// Undoes the client's latest action that is not undone.
 struct UndoAction {
   [[nodiscard]] bool operator==(const UndoAction&) const = default;
 };
 
-/// Brings back what the client undid last and did not replace by a new action.
+/// Redoes the client's last undone action, unless a new action replaced it.
 struct RedoAction {
   [[nodiscard]] bool operator==(const RedoAction&) const = default;
 };
@@ -70,13 +70,13 @@ using AnnotationChange = std::variant<SetControlPoints, RemoveControlPoints, Mov
                                       DefineLabels, ClearAnnotation, UndoAction, RedoAction>;
 
 struct AnnotationAction {
-  std::uint64_t client{0};  ///< whose undo takes it back
+  std::uint64_t client{0};  ///< client whose undo takes it back
   AnnotationChange change;
   [[nodiscard]] bool operator==(const AnnotationAction&) const = default;
 };
 
-/// invalid_argument unless it names points of a cloud of so many, each once and at least one; labels that are some,
-/// each once, with fit text; and a start cost in [0, max_path). O(k log k) for k points.
+/// Answers invalid_argument unless the action names at least one point of a cloud of `points` points, each once; valid
+/// labels, each once, with valid text; and a start cost in [0, max_path). O(k log k) for k points.
 [[nodiscard]] Status check_action(const AnnotationAction& action, std::size_t points, double max_path);
 
 struct ControlPoint {
@@ -86,40 +86,42 @@ struct ControlPoint {
   [[nodiscard]] bool operator==(const ControlPoint&) const = default;
 };
 
-/// What may have another value now: control points and paint by point, definitions by label. In no order; some twice.
+/// Slots that may have changed: control points and paint by point, definitions by label. Unordered, with some
+/// duplicates.
 struct SlotChanges {
   std::vector<std::uint32_t> control_points;
   std::vector<std::uint32_t> painted;
   std::vector<std::uint32_t> labels;
 };
 
-/// The state is what the actions that are not undone leave, done one after the other in the order in which they came,
-/// by whatever client. So an undo takes an action out of the middle, and a redo puts it back to where it was. Undo and
-/// redo go by client and without limit; a new action of a client ends what it could redo. One writer.
+/// History of actions. The state results from the actions that are not undone, performed one after the other in order
+/// of arrival, whatever their client. An undo takes an action out of the middle, and a redo puts it back in its place.
+/// Undo and redo are per client and unlimited; a new action of a client discards what it could redo. One writer.
 ///
 /// Every action writes slots: the control point at a point, the paint on a point, the definition of a label. A slot has
-/// the value that its latest writer that is not undone gave. Memory: 4 bytes per point of the cloud from the first
-/// paint on, and 12 per point that an action names.
+/// the value given by its latest writer that is not undone. Memory: 4 bytes per point of the cloud from the first paint
+/// on, and 12 per point that an action names.
 class ActionHistory {
  public:
   explicit ActionHistory(std::size_t points) : points_{points} {}
 
-  /// Expects an action that check_action accepts. None: the client has nothing to undo or redo, and nothing is kept.
-  /// O(k log n) for k slots that the actions to be done or undone write, more where control points were moved on.
+  /// Adds an action. Expects one that check_action accepts. nullopt: the client has nothing to undo or redo, and
+  /// nothing is recorded. O(k log n) for k slots written by the actions to be done or undone, more where control points
+  /// were moved on.
   std::optional<SlotChanges> push(AnnotationAction action);
-  /// Every slot that was ever written.
+  /// Returns every slot that was ever written.
   [[nodiscard]] SlotChanges written() const;
 
   [[nodiscard]] std::optional<ControlPoint> control_point(std::uint32_t point) const { return before(point, kNone); }
   [[nodiscard]] std::uint32_t painted(std::uint32_t point) const;
-  /// None: not defined.
+  /// Returns nullptr for a label that is not defined.
   [[nodiscard]] const LabelInfo* definition(std::uint32_t label) const;
 
   [[nodiscard]] bool can_undo(std::uint64_t client) const;
   [[nodiscard]] bool can_redo(std::uint64_t client) const;
-  /// Actions that were kept, undo and redo among them.
+  /// Returns the number of recorded actions, including undo and redo.
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Those that are not undone, in the order in which they came; without undo and redo.
+  /// Returns the actions that are not undone, in order of arrival; without undo and redo.
   [[nodiscard]] std::vector<AnnotationAction> active() const;
 
  private:
@@ -128,7 +130,7 @@ class ActionHistory {
   struct Entry {
     AnnotationAction action;
     bool active{false};
-    std::optional<ControlPoint> moved;  ///< of an active MoveControlPoint: what it found
+    std::optional<ControlPoint> moved;  ///< control point found by an active MoveControlPoint
   };
   struct Client {
     std::vector<std::uint32_t> done;  ///< entries, ascending
@@ -136,7 +138,7 @@ class ActionHistory {
   };
   struct PaintWrite {
     std::uint32_t entry;
-    std::uint32_t previous;  ///< write on the same point
+    std::uint32_t previous;  ///< previous write on this point
   };
   struct LabelWrite {
     std::uint32_t entry;
@@ -162,7 +164,7 @@ class ActionHistory {
   std::map<std::uint32_t, std::vector<LabelWrite>> label_writers_;
   std::set<std::uint32_t> clears_;  ///< active ClearAnnotation
   std::set<std::uint32_t> moves_;   ///< active MoveControlPoint
-  std::set<std::uint32_t> stale_;   ///< active moves that may find another control point than they did
+  std::set<std::uint32_t> stale_;   ///< active moves that may find another control point than before
 };
 
 }  // namespace saccade

@@ -13,7 +13,7 @@ struct Overloaded : Functions... {
 template <class... Functions>
 Overloaded(Functions...) -> Overloaded<Functions...>;
 
-/// Where each action lies by its points.
+/// Calls f for each control point slot that an action writes.
 template <class F>
 void for_each_control_slot(const AnnotationChange& change, F&& f) {
   if (const auto* set = std::get_if<SetControlPoints>(&change)) {
@@ -111,7 +111,7 @@ void ActionHistory::set_clear_active(std::uint32_t entry, bool active, SlotChang
   changes.labels.clear();
 }
 
-/// Moves find what the slot that they move from holds just before them; a change there goes on to where they lead.
+/// Moves take the value that their source slot has just before them; a change there propagates to their target.
 void ActionHistory::follow_moves(SlotChanges& changes) {
   while (!stale_.empty()) {
     const std::uint32_t entry = *stale_.begin();
@@ -124,7 +124,7 @@ void ActionHistory::follow_moves(SlotChanges& changes) {
   }
 }
 
-/// A writer of a slot does something else: the writers after it, up to the first that hides it.
+/// Propagates the change of a writer of a slot to the writers after it, up to the first that hides it.
 void ActionHistory::ripple(std::uint32_t point, std::uint32_t entry, SlotChanges& changes) {
   const auto next_clear = clears_.upper_bound(entry);
   const std::vector<std::uint32_t>& writers = control_writers_.at(point);

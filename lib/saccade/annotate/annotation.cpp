@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// Fewer changes of control points than this are made one by one.
+/// Smallest number of changed control points that is applied by a rebuild; fewer are applied one by one.
 constexpr std::size_t kLeastRebuild{8};
 constexpr std::size_t kSuspectsAtOnce{16384};
 
@@ -51,7 +51,7 @@ Status Annotation::validate(const AnnotationAction& action) const {
   }
   if (const auto* move = std::get_if<MoveControlPoint>(&action.change)) {
     if (!is_control_point(move->from)) {
-      return cannot("point " + std::to_string(move->from) + " is no control point that could be moved");
+      return cannot("point " + std::to_string(move->from) + " is not a control point, so it cannot be moved");
     }
     return check_joined({&move->to, 1});
   }
@@ -118,7 +118,7 @@ void Annotation::change_forest(const std::vector<ControlPoint>& placed, const st
   const std::size_t changes = placed.size() + removed.size();
   const bool rebuild = changes >= kLeastRebuild && 2 * changes > control_.size() + placed.size();
   const auto note = [&] { suspects_.insert(suspects_.end(), forest_.touched().begin(), forest_.touched().end()); };
-  // New ones first: what they take need not be taken by others in between.
+  // New ones first, so that points which they take are not taken by others in between.
   for (const ControlPoint& point : placed) {
     const bool there = control_.contains(point.point);
     control_[point.point] = point;
@@ -148,7 +148,7 @@ void Annotation::change_forest(const std::vector<ControlPoint>& placed, const st
 void Annotation::relabel() {
   labels_now_.resize(suspects_.size());
   executor_.parallel_for(suspects_.size(), kSuspectsAtOnce, [this](std::size_t begin, std::size_t end) {
-    std::optional<ControlPoint> last;  // points one after the other mostly have the same one
+    std::optional<ControlPoint> last;  // consecutive points mostly share one
     for (std::size_t i = begin; i < end; ++i) {
       labels_now_[i] = painted(suspects_[i]);
       if (labels_now_[i] != kNoLabel) continue;

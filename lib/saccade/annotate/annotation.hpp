@@ -16,44 +16,45 @@
 
 namespace saccade {
 
-/// What an action did. The spans hold until the next action; none names anything twice.
+/// Result of an action. The spans are valid until the next action, without duplicates.
 struct Applied {
   /// False: the client has nothing to undo or redo; nothing has changed, and the action does not count.
   bool done{true};
-  std::uint64_t sequence{0};                      ///< how many actions there are with this one
-  std::span<const std::uint32_t> points;          ///< those with another label than before
-  std::span<const std::uint32_t> control_points;  ///< points that are a control point now or were one, and differ
-  std::span<const std::uint32_t> labels;          ///< numbers of labels of which something else is known
+  std::uint64_t sequence{0};                      ///< number of actions so far, including this one
+  std::span<const std::uint32_t> points;          ///< points with a new label
+  std::span<const std::uint32_t> control_points;  ///< points that became, ceased to be, or changed as control points
+  std::span<const std::uint32_t> labels;          ///< labels whose definition changed
 };
 
-/// Two layers: control points, whose trees share the points among them (ShortestPathForest), and paint above, which
-/// labels points one by one. A point has the label of its paint; without paint that of its tree's control point;
-/// without a tree none. Several clients: actions count in the order in which they come, and undo is per client
+/// Annotation in two layers: control points, whose trees divide the points among them (ShortestPathForest), and paint
+/// above, which labels points individually. A point has the label of its paint; without paint that of its tree's
+/// control point; without a tree none. With several clients, actions count in order of arrival, and undo is per client
 /// (ActionHistory). The state depends on the actions alone. One writer; about 40 bytes per point.
 class Annotation {
  public:
-  /// What changes many points uses the executor's threads; the state is the same for any number of them.
+  /// Changes of many points use the executor's threads; their number never changes the state.
   explicit Annotation(const std::shared_ptr<const Neighbourhood>& neighbourhood, const Executor& executor = {});
 
-  /// invalid_argument as check_action; for control points and paint on points without neighbours, as those that are not
-  /// finite; for removing where no control point is, and moving from where none is.
+  /// Answers invalid_argument as check_action, and for control points and paint on points without neighbours, such as
+  /// those that are not finite; for removing or moving a control point that does not exist.
   [[nodiscard]] Status validate(const AnnotationAction& action) const;
-  /// Expects what validate accepts. O(points whose tree may change), as ShortestPathForest's add and remove.
+  /// Applies an action. Expects one that validate accepts. O(points whose tree may change), as ShortestPathForest's add
+  /// and remove.
   Applied apply(AnnotationAction action);
-  /// Actions from the start, undo and redo among them, with one build of the forest at the end. Expects that
-  /// check_action accepts them and that there were none before.
+  /// Applies actions from the start, including undo and redo, with a single build of the forest at the end. Expects
+  /// that check_action accepts them and that there were none before.
   void restore(std::span<const AnnotationAction> actions);
 
-  /// Of each point, kNoLabel where it has none.
+  /// Returns the label of each point, kNoLabel where it has none.
   [[nodiscard]] std::span<const std::uint32_t> labels() const { return labels_; }
   [[nodiscard]] std::uint32_t label_of(std::uint32_t point) const { return labels_[point]; }
-  /// kNoLabel: the point follows its tree.
+  /// Returns the paint of a point; kNoLabel: the point follows its tree.
   [[nodiscard]] std::uint32_t painted(std::uint32_t point) const {
     return painted_.empty() ? kNoLabel : painted_[point];
   }
-  /// Points by label, of labels that have some.
+  /// Returns the number of points by label, for labels that have some.
   [[nodiscard]] const std::map<std::uint32_t, std::size_t>& counts() const { return counts_; }
-  /// In ascending order of points.
+  /// Returns the control points in ascending order of points.
   [[nodiscard]] std::vector<ControlPoint> control_points() const;
   [[nodiscard]] std::optional<ControlPoint> control_point(std::uint32_t point) const;
   [[nodiscard]] const LabelTable& label_table() const { return table_; }
@@ -61,7 +62,7 @@ class Annotation {
   [[nodiscard]] const ShortestPathForest& forest() const { return forest_; }
 
  private:
-  /// Points that went from one label to another.
+  /// Points that changed from one label to another.
   struct Moved {
     std::uint32_t from{kNoLabel};
     std::uint32_t to{kNoLabel};
@@ -83,8 +84,8 @@ class Annotation {
   std::vector<std::uint32_t> painted_;  ///< empty before the first paint
   std::vector<std::uint32_t> labels_;
   std::map<std::uint32_t, std::size_t> counts_;
-  std::vector<std::uint32_t> suspects_;    ///< points whose label may change by this action, some twice
-  std::vector<std::uint32_t> labels_now_;  ///< of the suspects
+  std::vector<std::uint32_t> suspects_;    ///< points whose label may change by this action, with some duplicates
+  std::vector<std::uint32_t> labels_now_;  ///< current labels of the suspects
   std::vector<std::uint32_t> changed_points_;
   std::vector<std::uint32_t> changed_control_points_;
   std::vector<std::uint32_t> changed_labels_;

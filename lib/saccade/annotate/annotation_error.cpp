@@ -9,13 +9,13 @@ namespace saccade {
 
 namespace {
 
-/// Of the root mean square distance of the points that so many steps lead to: their mean is farther where a cloud ends.
-/// 0.6 at the straight border of a half-disc; 0.44 finds 99 of 100 border points of scattered ones, and 2 of 100
-/// inside.
+/// Distance of the mean of the points up to kEndSteps steps away, relative to their root mean square distance; it is
+/// larger where a cloud ends. 0.6 at the straight border of a half-disc; the limit 0.44 finds 99 of 100 border points
+/// of scattered points, and 2 of 100 inside.
 constexpr int kEndSteps{3};
 constexpr double kEndShare{0.44};
 
-/// Whether labels differ from the truth where there is one; no label may stand for the background.
+/// Comparison of labels with the ground truth; one label may stand for the background.
 class Comparison {
  public:
   Comparison(std::span<const std::uint32_t> labels, std::span<const std::uint32_t> truth,
@@ -98,7 +98,7 @@ std::vector<std::uint8_t> cloud_ends(const Neighbourhood& neighbourhood, std::sp
                                      std::span<const Eigen::Vector3f> normals) {
   SACCADE_EXPECTS(positions_m.size() == neighbourhood.size());
   SACCADE_EXPECTS(normals.empty() || normals.size() == positions_m.size());
-  /// Of the ways from a point along so many steps: sums of what they lead over, of its squares, and their number.
+  /// Sums over the paths of a number of steps from a point: of their ends, of the squares, and their number.
   struct Ways {
     Eigen::Vector3d sum{Eigen::Vector3d::Zero()};
     double squares{0.0};
@@ -141,7 +141,7 @@ std::vector<std::uint32_t> region_centres(const Neighbourhood& neighbourhood, st
                                           std::span<const ErrorRegion> regions) {
   SACCADE_EXPECTS(ends.empty() || ends.size() == neighbourhood.size());
   constexpr std::uint32_t kReached{1U << 31U};
-  std::vector<std::uint32_t> region_of(neighbourhood.size(), 0);  // of nodes: one more than its index, 0 for none
+  std::vector<std::uint32_t> region_of(neighbourhood.size(), 0);  // per node: index of the region + 1, 0 for none
   std::size_t points{0};
   for (std::uint32_t i = 0; i < regions.size(); ++i) {
     SACCADE_EXPECTS(!regions[i].points.empty());
@@ -168,7 +168,8 @@ std::vector<std::uint32_t> region_centres(const Neighbourhood& neighbourhood, st
     for (std::size_t i = level; i < level_end; ++i) {
       const std::uint32_t region = region_of[reached[i]] & ~kReached;
       centres[region - 1] = std::min(centres[region - 1], neighbourhood.point_of(reached[i]));
-      for (const Neighbourhood::Edge& edge : neighbourhood.edges(reached[i])) {  // without branches: few are new
+      for (const Neighbourhood::Edge& edge :
+           neighbourhood.edges(reached[i])) {  // without branches, because few are new
         const bool is_new = region_of[edge.node] == region;
         reached[end] = edge.node;
         end += is_new ? 1 : 0;

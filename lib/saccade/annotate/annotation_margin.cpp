@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-/// Of a node, as the forest has it.
+/// Label and path of a node in the forest.
 struct Owned {
   std::uint32_t label{kNoLabel};
   std::uint32_t path{kPathUnits};
@@ -24,7 +24,7 @@ std::vector<Owned> owned_nodes(const ShortestPathForest& forest, std::span<const
   return owned;
 }
 
-/// The shortest way into a node's region that ends there: from a neighbour that has another label.
+/// Returns the length of the shortest path into a node's region that ends there: from a neighbour with another label.
 std::uint32_t entering(const Neighbourhood& graph, const std::vector<Owned>& owned, std::uint32_t node) {
   std::uint32_t best{kPathUnits};
   for (const Neighbourhood::Edge& edge : graph.edges(node)) {
@@ -45,12 +45,12 @@ LabelPaths label_paths(const ShortestPathForest& forest, std::span<const std::ui
   paths.own.assign(graph.size(), kNoLabel);  // labels of roots, at first
   for (std::size_t i = 0; i < roots.size(); ++i) paths.own[roots[i].point] = label_of_root[i];
   const std::vector<Owned> owned = owned_nodes(forest, paths.own);
-  std::vector<std::uint32_t> other(graph.size(), kPathUnits);  // of nodes
+  std::vector<std::uint32_t> other(graph.size(), kPathUnits);  // per node
   PathBuckets queue{graph};
   for (std::uint32_t node = 0; node < other.size(); ++node) {
     if (owned[node].label != kNoLabel) other[node] = entering(graph, owned, node);
   }
-  for (std::size_t i = 0; i < roots.size(); ++i) {  // those that another label covers
+  for (std::size_t i = 0; i < roots.size(); ++i) {  // roots that another label covers
     const std::uint32_t node = graph.node_of(roots[i].point);
     if (owned[node].label != label_of_root[i]) other[node] = std::min(other[node], forest.start_units(roots[i].point));
   }

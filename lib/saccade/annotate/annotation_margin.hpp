@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// label_margins: how sure the label of each point is; next_best_click: where another control point would settle most.
-// Not in the thesis.
+// label_margins: certainty of each point's label. next_best_click: where another control point would settle most. Not
+// in the thesis.
 
 #include <cstdint>
 #include <optional>
@@ -13,46 +13,46 @@
 
 namespace saccade {
 
-/// Of each point, in path units, start costs included; kPathUnits: none is shorter than Ω_max.
+/// Path length of each point in path units, start cost included; kPathUnits where none is shorter than Ω_max.
 struct LabelPaths {
-  std::vector<std::uint32_t> own;    ///< ω₁, to the root that it belongs to
-  std::vector<std::uint32_t> other;  ///< ω₂, to the nearest root with another label than that one
+  std::vector<std::uint32_t> own;    ///< ω₁, to its own root
+  std::vector<std::uint32_t> other;  ///< ω₂, to the nearest root with another label
 };
 
-/// Paths go through the whole graph. Dijkstra's algorithm once more, inside the regions of the labels: a shortest path
-/// from another label enters a point's region where its own part of the way begins.
-/// @param label_of_root  in the order of forest.roots(), none of them kNoLabel.
-/// O(edges of what the forest has reached), one thread; 8 bytes per point while it works.
+/// Computes path lengths through the whole graph. Runs Dijkstra's algorithm once more, inside the regions of the
+/// labels: a shortest path from another label enters a point's region where the path's part inside begins.
+/// @param label_of_root  in the order of forest.roots(), none of them kNoLabel. O(edges reached by the forest), one
+/// thread; 8 bytes per point while it works.
 [[nodiscard]] LabelPaths label_paths(const ShortestPathForest& forest, std::span<const std::uint32_t> label_of_root);
 
-/// 1 − ω₁ / ω₂, in [0, 1]: 0 where two labels are equally near and where none is, 1 at control points. It has no unit
-/// and does not depend on weights or Ω_max being scaled: half means that another label is twice as far. Towards the
-/// end of what labels reach, ω₂ is Ω_max at most, it falls to 0, too.
+/// Returns the margin 1 − ω₁ / ω₂, in [0, 1]: 0 where two labels are equally near and where there is none, 1 at control
+/// points. It has no unit and does not depend on the scale of weights or Ω_max: one half means that another label is
+/// twice as far. It also falls to 0 towards the limit of what labels reach, because ω₂ is at most Ω_max.
 [[nodiscard]] inline float label_margin(std::uint32_t own, std::uint32_t other) {
   if (own >= other) return 0.0F;
   return 1.0F - static_cast<float>(own) / static_cast<float>(other);
 }
 
-/// Of each point; 1 where it is painted. Not in the thesis. As label_paths.
+/// Returns the margin of each point's label; 1 where it is painted. Not in the thesis. Cost as label_paths.
 [[nodiscard]] std::vector<float> label_margins(const Annotation& annotation);
 
 struct BestClick {
   std::uint32_t point{0};
-  std::uint32_t label{kNoLabel};  ///< that the point has now
-  double gain{0.0};               ///< in points
+  std::uint32_t label{kNoLabel};  ///< current label of the point
+  double gain{0.0};               ///< gain in points
 };
 
-/// A point that is not painted is in doubt by d = 1 − margin. A control point with path lengths ω' of its own settles
-/// each point that it takes from paths ω by d⁸ (1 − ω' / ω); the gain is their sum: d alone, and taking alone, lead to
-/// far worse clicks (docs/annotation.md). Tried are the centres (region_centre) of the most
-/// doubtful regions of those points that have half of all doubt.
+/// Finds the best next control point. A point that is not painted has the doubt d = 1 − margin. A new control point
+/// that takes a point from a path ω by a path ω' settles it by d⁸ (1 − ω' / ω); the gain is the sum. Using d alone, or
+/// counting points alone, leads to far worse clicks (docs/guides/annotation.md). Candidates are the centres
+/// (region_centre) of the most doubtful regions of those points that carry half of all doubt.
 /// @param margins  label_margins of this annotation.
-/// @param ends     cloud_ends, or none.
-/// @return none: nothing is in doubt. O(points + edges that trials look at, which are bounded), one thread.
+/// @param ends     cloud_ends, or empty.
+/// @return nullopt: nothing is in doubt. O(points + edges visited by trials, which are bounded), one thread.
 [[nodiscard]] std::optional<BestClick> next_best_click(const Annotation& annotation, std::span<const float> margins,
                                                        std::span<const std::uint8_t> ends);
 
-/// The gain of one point. As next_best_click.
+/// Returns the gain of one point, as in next_best_click.
 [[nodiscard]] double click_gain(const Annotation& annotation, std::span<const float> margins, std::uint32_t point);
 
 }  // namespace saccade

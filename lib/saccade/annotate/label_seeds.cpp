@@ -13,7 +13,7 @@
 namespace saccade {
 namespace {
 
-/// A round goes down to regions of this share of its largest: what is smaller may well be right after it.
+/// Largest ratio of region sizes within a round; smaller regions may well be right after it.
 constexpr std::size_t kRoundRange{4};
 
 Error no_seeds(std::string why) { return {Errc::invalid_argument, std::move(why), "seeds from labels"}; }
@@ -74,12 +74,12 @@ class Seeding {
     relabel();
   }
 
-  /// @return whether there is one control point more.
+  /// @return whether a control point was added.
   bool round() {
     std::vector<ErrorRegion> regions = wrong_regions();
     std::erase_if(regions, [this](const ErrorRegion& region) { return is_full(region.truth); });
     const std::vector<std::uint32_t> centres = region_centres(forest_.neighbourhood(), ends_, regions);
-    std::size_t largest{0};  // that was given a control point
+    std::size_t largest{0};  // region that was given a control point
     for (std::size_t i = 0; i < regions.size() && !is_enough(); ++i) {
       const std::uint32_t truth = regions[i].truth;
       if (regions[i].points.size() * kRoundRange < largest) break;

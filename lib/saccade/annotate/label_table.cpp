@@ -14,10 +14,10 @@ using Color = std::array<std::uint8_t, 3>;
 constexpr std::size_t kWellApart{256};
 constexpr int kChannelStep{17};  // 16 levels per channel
 constexpr double kLeastChroma{30.0};
-constexpr double kLeastLightness{30.0};
-constexpr double kMostLightness{92.0};
+constexpr double kLeastLightness{54.0};
+constexpr double kMostLightness{78.0};
 
-/// In 1/256 of a unit: whole numbers, so that the order of colours does not hang on last bits.
+/// Colour in units of 1/256: integers, so that the order of colours does not depend on rounding.
 using WholeLab = std::array<std::int64_t, 3>;
 
 WholeLab whole_lab(const Color& color) {
@@ -49,14 +49,14 @@ std::vector<Color> colorful_grid() {
   return colors;
 }
 
-/// Well mixed bits of a number (the finaliser of SplitMix64).
+/// Returns well mixed bits of a number (the finaliser of SplitMix64).
 std::uint64_t mixed(std::uint64_t x) {
   x = (x ^ (x >> 30U)) * 0xbf58476d1ce4e5b9ULL;
   x = (x ^ (x >> 27U)) * 0x94d049bb133111ebULL;
   return x ^ (x >> 31U);
 }
 
-/// Bytes of the UTF-8 character at the start of a text; 0: there is none.
+/// Returns the bytes of the UTF-8 character at the start of a text; 0 where there is none.
 std::size_t utf8_length(std::string_view text) {
   const auto byte = [&](std::size_t i) { return i < text.size() ? static_cast<unsigned char>(text[i]) : 0U; };
   const auto follows = [&](std::size_t i) { return (byte(i) & 0xC0U) == 0x80U; };

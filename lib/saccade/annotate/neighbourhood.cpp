@@ -21,13 +21,13 @@ constexpr std::uint32_t kNoNode{std::numeric_limits<std::uint32_t>::max()};
 
 bool is_weight(double value) { return std::isfinite(value) && value >= 0.0; }
 
-/// The same both ways, and as nearest_neighbours has it, to the bit.
+/// Returns the squared distance: symmetric, and to the bit as in nearest_neighbours.
 float squared_distance_m2(const Eigen::Vector3f& a, const Eigen::Vector3f& b) {
   const Eigen::Vector3f d = a - b;
   return d.x() * d.x() + d.y() * d.y() + d.z() * d.z();
 }
 
-/// What edges follow from.
+/// Data that edges are computed from.
 class Nodes {
  public:
   Nodes(const PointCloud& cloud, const NearestNeighbours& neighbours, const NeighbourhoodConfig& config,
@@ -61,7 +61,7 @@ class Nodes {
     if (adapt_to_density_ && !nodes_.empty()) median_spacing_m_ = median_spacing_m();
   }
 
-  /// Bit n: the node's neighbour n does not have it among its own.
+  /// Returns a mask: bit n is set when the node's neighbour n does not have it among its own.
   [[nodiscard]] std::uint64_t one_sided(std::uint32_t node) const {
     std::uint64_t bits{0};
     const std::span<const std::uint32_t> row = neighbours_.of(node);
@@ -69,7 +69,7 @@ class Nodes {
       const Node& other = nodes_[row[n]];
       const float distance_m2 = squared_distance_m2(nodes_[node].p_m, other.p_m);
       bool is_one_sided = distance_m2 > other.reach_m2;
-      if (distance_m2 == other.reach_m2) {  // one of several that are as near
+      if (distance_m2 == other.reach_m2) {  // one of several at this distance
         const std::span<const std::uint32_t> theirs = neighbours_.of(row[n]);
         is_one_sided = std::find(theirs.begin(), theirs.end(), node) == theirs.end();
       }
@@ -78,7 +78,7 @@ class Nodes {
     return bits;
   }
 
-  /// Eq. 4.17, in path units, kPathUnits at most.
+  /// Returns the cost by eq. 4.17, in path units, at most kPathUnits.
   [[nodiscard]] std::uint32_t cost(std::uint32_t a, std::uint32_t b) const {
     const double units = units_per_m_ * distance_m(a, b) + units_per_normal_ * normal_difference(a, b) +
                          units_per_color_ * color_difference(a, b);
@@ -88,8 +88,8 @@ class Nodes {
  private:
   struct alignas(32) Node {
     Eigen::Vector3f p_m;
-    float reach_m2;          ///< squared distance of the farthest of its nearest ones
-    Eigen::Vector4f normal;  ///< and its length: 1, or 0 where it is not known
+    float reach_m2;          ///< squared distance of its farthest neighbour
+    Eigen::Vector4f normal;  ///< normal and its length: 1, or 0 where it is unknown
   };
 
   static Eigen::Vector4f with_length(const Eigen::Vector3f& normal) {
@@ -105,7 +105,7 @@ class Nodes {
     return local > 0.0 ? distance / local * median_spacing_m_ : 0.0;
   }
 
-  /// 1 − n_a · n_b. Estimated normals have no sides: the smaller of both ways to turn them.
+  /// Returns 1 − n_a · n_b. Estimated normals have arbitrary signs, so the smaller of both values counts.
   [[nodiscard]] double normal_difference(std::uint32_t a, std::uint32_t b) const {
     const Eigen::Vector4f& n = nodes_[a].normal;
     const Eigen::Vector4f& m = nodes_[b].normal;
@@ -124,7 +124,7 @@ class Nodes {
   }
 
   const NearestNeighbours& neighbours_;
-  UnsetVector<Node> nodes_;
+  UninitializedVector<Node> nodes_;
   std::vector<Eigen::Vector3f> colors_;
   double median_spacing_m_{0.0};
   double units_per_m_;
@@ -136,15 +136,15 @@ class Nodes {
 
 struct Joined {
   std::vector<std::uint32_t> starts;
-  UnsetVector<Neighbourhood::Edge> edges;
+  UninitializedVector<Neighbourhood::Edge> edges;
 };
 
-/// Both ways: a node's own nearest, then, in ascending order, the others that have it among theirs.
+/// Makes edges symmetric: a node's own nearest, then, in ascending order, the others that have it among theirs.
 Joined join(const NearestNeighbours& neighbours, std::size_t points, const Nodes& nodes, const Executor& executor) {
   const std::size_t size = neighbours.order.size();
   const std::size_t k = neighbours.count;
   std::vector<std::uint32_t> others(size, 0);
-  UnsetVector<std::uint64_t> one_sided_of(size);
+  UninitializedVector<std::uint64_t> one_sided_of(size);
   executor.parallel_for(size, kNodeGrain, [&](std::size_t begin, std::size_t end) {
     for (auto node = static_cast<std::uint32_t>(begin); node < end; ++node) {
       one_sided_of[node] = nodes.one_sided(node);
@@ -240,7 +240,7 @@ Result<Neighbourhood> Neighbourhood::build(const PointCloud& cloud, const Neighb
     }
   });
   if (graph.point_of_.size() < size) {
-    for (std::uint32_t point = 0; point < size; ++point) {  // those that have no neighbours come last
+    for (std::uint32_t point = 0; point < size; ++point) {  // points without neighbours come last
       if (graph.node_of_[point] != kNoNode) continue;
       graph.node_of_[point] = static_cast<std::uint32_t>(graph.point_of_.size());
       graph.point_of_.push_back(point);

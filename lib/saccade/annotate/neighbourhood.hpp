@@ -10,20 +10,20 @@
 #include "saccade/core/executor.hpp"
 #include "saccade/core/progress.hpp"
 #include "saccade/core/result.hpp"
-#include "saccade/core/unset_vector.hpp"
+#include "saccade/core/uninitialized_vector.hpp"
 
 namespace saccade {
 
-/// Costs of paths are whole multiples of Ω_max / 2³⁰, so that sums are exact and do not depend on their order.
+/// Costs of paths are integer multiples of Ω_max / 2³⁰, so that sums are exact and independent of their order.
 inline constexpr std::uint32_t kPathUnits{1U << 30U};
 
 /// Chosen on clouds of a depth camera (docs/decisions/0014-annotation-weights.md).
 struct NeighbourhoodConfig {
-  int neighbours{10};                 ///< K_nn, 1 to 64; points that have one as a neighbour are its neighbours, too
+  int neighbours{10};                 ///< K_nn, 1 to 64; neighbourhood is symmetric
   double position_weight_per_m{0.2};  ///< α_p
   double normal_weight{8.0};          ///< α_n
   double color_weight{1.0};           ///< α_c; an edge of the colour cube is 1
-  double max_path{100.0};             ///< Ω_max: a path is shorter, in the unit of the costs
+  double max_path{100.0};             ///< Ω_max: limit of a path, in the unit of the costs
   /// Distances are divided by the local spacing of the points (the farther K-th neighbour's distance of the two) and
   /// multiplied by its median: for clouds that thin out away from the sensor, as a LiDAR's do.
   bool adapt_to_density{false};
@@ -32,10 +32,11 @@ struct NeighbourhoodConfig {
   [[nodiscard]] Status validate() const;
 };
 
-/// Undirected graph over a cloud's points: each is joined to its K nearest, and cost h_ij (eq. 4.17) is the same both
-/// ways. Normals that a cloud lacks altogether are estimated (estimate_normals); where a point's normal is not known,
-/// and without colours, that part costs nothing. A point that is not finite has no neighbours. Inside, points are nodes
-/// in an order that keeps neighbours near each other in memory. Constant; any number of threads may read.
+/// Undirected graph over a cloud's points. Each is joined to its K nearest, with symmetric cost h_ij (eq. 4.17).
+/// Normals that a cloud lacks altogether are estimated (estimate_normals). The normal part costs nothing where a
+/// point's normal is unknown, nor does the colour part without colours. A point that is not finite has no neighbours.
+/// Inside, points are nodes in an order that keeps neighbours close in memory. Constant; any number of threads may
+/// read.
 class Neighbourhood {
  public:
   struct Edge {
@@ -43,25 +44,25 @@ class Neighbourhood {
     std::uint32_t cost;  ///< in units of Ω_max / 2³⁰; kPathUnits and more: no path goes along it
   };
 
-  /// Which of several points at the K-th distance are neighbours is decided by the cloud alone.
+  /// Builds the graph. The cloud alone decides which of several points at the K-th distance are neighbours.
   /// @return invalid_argument for a bad configuration and for more than 2³¹ points times neighbours; errors of
-  /// PointCloud::validate; cancelled, which is looked at between its three stages.
-  /// The same for every thread count and instruction set. O(n log n + n K); about 13 K + 76 bytes per point while it
-  /// works (1.9 GiB for ten million points), 9 K + 12 after.
+  /// PointCloud::validate; cancelled, tested between its three stages. The thread count and instruction set never
+  /// change the result. O(n log n + n K); about 13 K + 76 bytes per point while it works (1.9 GiB for ten million
+  /// points), 9 K + 12 after.
   [[nodiscard]] static Result<Neighbourhood> build(const PointCloud& cloud, const NeighbourhoodConfig& config,
                                                    const Executor& executor, const Progress& progress = {});
 
   [[nodiscard]] const NeighbourhoodConfig& config() const { return config_; }
-  /// Points of the cloud, those that are not finite included; as many as nodes.
+  /// Returns the number of the cloud's points, including those that are not finite; equals the number of nodes.
   [[nodiscard]] std::size_t size() const { return point_of_.size(); }
   [[nodiscard]] std::uint32_t node_of(std::uint32_t point) const { return node_of_[point]; }
   [[nodiscard]] std::uint32_t point_of(std::uint32_t node) const { return point_of_[node]; }
-  /// Of a node: its own nearest first, then those that have it among theirs.
+  /// Edges of a node: to its own nearest neighbours first, then to nodes that count it among theirs.
   [[nodiscard]] std::span<const Edge> edges(std::uint32_t node) const {
     return {edges_.data() + starts_[node], starts_[node + 1] - starts_[node]};
   }
   [[nodiscard]] std::size_t edge_count() const { return edges_.size() / 2; }
-  /// A cost that half of the edges do not exceed, in path units.
+  /// Returns a cost that half of the edges do not exceed, in path units.
   [[nodiscard]] std::uint32_t median_cost() const { return median_cost_; }
 
  private:
@@ -69,9 +70,9 @@ class Neighbourhood {
 
   NeighbourhoodConfig config_;
   std::vector<std::uint32_t> starts_;
-  UnsetVector<Edge> edges_;
-  UnsetVector<std::uint32_t> node_of_;
-  UnsetVector<std::uint32_t> point_of_;
+  UninitializedVector<Edge> edges_;
+  UninitializedVector<std::uint32_t> node_of_;
+  UninitializedVector<std::uint32_t> point_of_;
   std::uint32_t median_cost_{1};
 };
 

@@ -12,12 +12,12 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kMostCandidates{16};
-/// Trials end when they have taken so many times as many points as there are: the first ones take the most.
+/// Limit of trials, in multiples of the number of points taken; the first trials take the most.
 constexpr std::size_t kMostTaken{4};
-/// Of all doubt, in the points from which candidates come.
+/// Share of all doubt that the candidates' points carry.
 constexpr double kDoubtShare{0.5};
 
-/// Points that could be settled, others 0.
+/// Returns the doubt of points that could be settled, 0 for others.
 std::vector<float> doubts(const Annotation& annotation, std::span<const float> margins) {
   const Neighbourhood& graph = annotation.forest().neighbourhood();
   std::vector<float> doubts(margins.size(), 0.0F);
@@ -28,7 +28,8 @@ std::vector<float> doubts(const Annotation& annotation, std::span<const float> m
   return doubts;
 }
 
-/// Connected regions of the most doubtful points, which have a share of all doubt; the most doubtful regions first.
+/// Returns connected regions of the most doubtful points, which carry a share of all doubt; the most doubtful regions
+/// first.
 std::vector<ErrorRegion> doubtful_regions(const Neighbourhood& graph, const std::vector<float>& doubts) {
   constexpr std::size_t kLevels{1024};
   std::vector<double> sums(kLevels + 1, 0.0);  // by doubt
@@ -57,7 +58,7 @@ std::vector<ErrorRegion> doubtful_regions(const Neighbourhood& graph, const std:
   return first;
 }
 
-/// Algorithm 8 from one more root, without changing the forest.
+/// Trial of Algorithm 8 from one more root, without changing the forest.
 class Trials {
  public:
   Trials(const ShortestPathForest& forest, std::span<const float> doubts)
@@ -88,7 +89,7 @@ class Trials {
     return sum;
   }
 
-  /// Points, all in all.
+  /// Returns the number of points taken by all trials.
   [[nodiscard]] std::size_t taken_points() const { return taken_points_; }
 
  private:
@@ -98,7 +99,7 @@ class Trials {
     float weight;
   };
 
-  /// d⁸.
+  /// Returns d⁸.
   static float weight(float doubt) {
     const float squared = doubt * doubt;
     return squared * squared * squared * squared;

@@ -12,14 +12,14 @@ namespace saccade {
 
 namespace {
 
-constexpr double kWidest{1.7320508075688772};  ///< half a picture at 1 m: 120°
+constexpr double kWidest{1.7320508075688772};  ///< half the image width at 1 m: 120°
 
 Error bad_annotator(const char* what) { return {Errc::invalid_argument, what, "rectangle annotator"}; }
 
-/// Shows all points in front of the camera, at most 120° of them.
+/// Returns a view of all points in front of the camera, at most 120° wide.
 Eigen::Matrix4d view_of(std::span<const Eigen::Vector3f> positions_m, const Pose& T_world_camera, double aspect) {
   const Pose T_camera_world = T_world_camera.inverse();
-  double half{1e-3};  // of the picture's height at 1 m
+  double half{1e-3};  // half the image height at 1 m
   double farthest_m{1e-3};
   for (const Eigen::Vector3f& p_world : positions_m) {
     const Eigen::Vector3d p = T_camera_world * p_world.cast<double>();
@@ -39,7 +39,7 @@ Eigen::Matrix4d view_of(std::span<const Eigen::Vector3f> positions_m, const Pose
   return clip_camera * T_camera_world.matrix();
 }
 
-/// The sensor's, and those around the centroid.
+/// Returns the sensor's pose, and those around the centroid.
 std::vector<Pose> viewpoints(std::span<const Eigen::Vector3f> positions_m, double orbit_rad) {
   Eigen::Vector3d sum = Eigen::Vector3d::Zero();
   double count{0.0};
@@ -66,14 +66,15 @@ std::vector<Pose> viewpoints(std::span<const Eigen::Vector3f> positions_m, doubl
   return poses;
 }
 
-/// A rectangle of cells and the sum over it.
+/// Rectangle of cells and the sum over it.
 struct BestRectangle {
   std::int64_t sum{0};
   int left{0}, top{0}, right{0}, bottom{0};
 };
 
-/// The rectangle of greatest sum, the first of equals by top, bottom, right; empty where no sum is positive. Kadane's
-/// algorithm for every pair of rows. O(columns · rows²), of the part around positive cells: the best ends at these.
+/// Returns the rectangle with the largest sum, at a tie the first by top, bottom, right; empty where no sum is
+/// positive. Kadane's algorithm for every pair of rows. O(columns · rows²) in the part around positive cells, where the
+/// best one ends.
 BestRectangle best_rectangle(std::span<const std::int32_t> cells, int columns, int rows) {
   const auto cell = [&](int column, int row) { return cells[static_cast<std::size_t>(row * columns + column)]; };
   PixelWindow part{columns, rows, 0, 0};
@@ -179,8 +180,8 @@ RectangleAction RectangleAnnotator::best_in(std::size_t view, bool surface) cons
   const Picture& picture = pictures_[view];
   const std::size_t cells = static_cast<std::size_t>(config_.columns) * static_cast<std::size_t>(config_.rows);
   std::vector<std::size_t> wrong_of(names_.size(), 0);
-  std::vector<std::int32_t> all_right(cells, 0);  // what painting any label breaks
-  // What of this it does not break when it is the label in question, and what it corrects.
+  std::vector<std::int32_t> all_right(cells, 0);  // points that painting any label would break
+  // Per label: the points that it does not break after all, and those that it corrects.
   std::vector<std::vector<std::int32_t>> gains(names_.size());
   for (std::size_t i = 0; i < truth_.size(); ++i) {
     if (truth_[i] == 0 || picture.cells[i] == kNowhere || (surface && picture.seen[i] == 0)) continue;
@@ -206,7 +207,7 @@ RectangleAction RectangleAnnotator::best_in(std::size_t view, bool surface) cons
     best_label = label;
   }
   RectangleAction action{view, surface, names_[best_label], best.left, best.top, best.right, best.bottom};
-  action.corrected = static_cast<std::size_t>(best.sum);  // less what is broken, until it is carried out
+  action.corrected = static_cast<std::size_t>(best.sum);  // minus the broken points, until it is performed
   return action;
 }
 
@@ -214,7 +215,7 @@ std::optional<RectangleAction> RectangleAnnotator::next(const Executor& executor
   std::vector<RectangleAction> actions(2 * pictures_.size());
   executor.parallel_for(actions.size(), 1,
                         [&](std::size_t i, std::size_t) { actions[i] = best_in(i / 2, i % 2 == 0); });
-  // Of equals the first.
+  // The first at a tie.
   RectangleAction best = *std::max_element(actions.begin(), actions.end(),
                                            [](const auto& a, const auto& b) { return a.corrected < b.corrected; });
   if (best.corrected == 0) return std::nullopt;
@@ -222,7 +223,7 @@ std::optional<RectangleAction> RectangleAnnotator::next(const Executor& executor
   return best;
 }
 
-/// With what it corrects and breaks.
+/// Returns the action with the numbers of points that it corrects and breaks.
 RectangleAction RectangleAnnotator::around(const ErrorRegion& region, std::size_t view, bool surface) const {
   const Picture& picture = pictures_[view];
   RectangleAction action{view, surface, region.truth, config_.columns, config_.rows, 0, 0};

@@ -27,7 +27,7 @@ Status validate_points(std::span<const ScreenPoint> points, std::size_t fewest) 
   return {};
 }
 
-/// The points that bound a shape, and by how much it exceeds them.
+/// Points that bound a shape, and the distance by which it exceeds them.
 struct Outline {
   std::vector<ScreenPoint> points;
   double beside_px{0.0};
@@ -37,7 +37,7 @@ Outline outline(const ScreenRectangle& shape) { return {{shape.corner, shape.opp
 Outline outline(const ScreenPolygon& shape) { return {shape.corners, 0.0}; }
 Outline outline(const ScreenStroke& shape) { return {shape.line, shape.radius_px}; }
 
-/// The first pixel whose centre is not before x.
+/// Returns the first pixel whose centre is not before x.
 int first_pixel(double x) { return static_cast<int>(std::ceil(x - 0.5)); }
 
 PixelWindow window_of(const Outline& outline, int width, int height) {
@@ -49,7 +49,7 @@ PixelWindow window_of(const Outline& outline, int width, int height) {
   }
   least.array() -= outline.beside_px;
   greatest.array() += outline.beside_px;
-  // One pixel more: with strokes the border belongs to the shape.
+  // One pixel more, because the border of a stroke belongs to the shape.
   return {std::max(0, first_pixel(least.x())), std::max(0, first_pixel(least.y())),
           std::min(width, first_pixel(greatest.x()) + 1), std::min(height, first_pixel(greatest.y()) + 1)};
 }
@@ -70,7 +70,7 @@ struct Interval {
   }
 };
 
-/// Where the line v meets what lies within the radius of a segment; up to rounding.
+/// Returns where the line v meets the surroundings of a segment within the radius, up to rounding.
 Interval cut(double v, const ScreenPoint& a, const ScreenPoint& b, double radius_px) {
   Interval cut;
   for (const ScreenPoint& end : {a, b}) {

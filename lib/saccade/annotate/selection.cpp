@@ -30,17 +30,17 @@ Indices joined(const std::vector<Indices>& chunks) {
   return all;
 }
 
-/// The pixel that a point in view is in.
+/// Returns the pixel of a point in view.
 int pixel(double px) { return static_cast<int>(px); }
 
-/// A point in the shape, until it is known what hides it.
+/// Point in the shape that may still be hidden.
 struct Candidate {
   std::uint32_t point;
   std::uint16_t u, v;
   float depth_m;
 };
 
-/// A line as wide as it must be to have no gaps.
+/// Radius of a line just wide enough to have no gaps.
 constexpr double kLineRadius_px{0.75};
 
 /// Draws all points, and visits those in view; one thread at a time visits those of a chunk.
@@ -66,7 +66,7 @@ void draw(std::span<const Eigen::Vector3f> positions_m, const ScreenProjection& 
   surface.finish(executor);
 }
 
-/// Balls of one radius, by the cells of a grid that they may reach.
+/// Balls of one radius, indexed by the cells of a grid that they may reach.
 class Balls {
  public:
   Balls(const std::vector<Eigen::Vector3d>& centres_m, double radius_m) : radius2_m2_{radius_m * radius_m} {
@@ -87,7 +87,7 @@ class Balls {
   }
   [[nodiscard]] bool contain(const Eigen::Vector3d& p) const {
     const bool near = (p.array() >= least_.array()).all() && (p.array() <= greatest_.array()).all();
-    if (!near) return false;  // as every point that is not finite
+    if (!near) return false;  // also for every point that is not finite
     const auto cell = cells_.find(key(cell_of(p)));
     return cell != cells_.end() && std::any_of(cell->second.begin(), cell->second.end(), [&](const auto& centre) {
              return (p - centre).squaredNorm() <= radius2_m2_;
@@ -153,7 +153,7 @@ Result<Indices> select_points(std::span<const Eigen::Vector3f> positions_m, cons
     std::size_t count{0};
     for (const Candidate& candidate : candidates[begin]) {
       const double behind_m{static_cast<double>(candidate.depth_m) - surface.depth_m(candidate.u, candidate.v)};
-      chunk[count] = candidate.point;  // stays where the next one does not overwrite it
+      chunk[count] = candidate.point;  // kept unless the next one overwrites it
       count += behind_m <= below_m ? 1 : 0;
     }
     chunk.resize(count);

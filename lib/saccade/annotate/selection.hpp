@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SelectionView and ScreenProjection: the picture in which points are selected; ScreenShape and ScreenMask: what a tool
-// draws on it; select_points, select_around: the points in that. Thesis §4.2.2.
+// SelectionView and ScreenProjection: the image in which points are selected. ScreenShape and ScreenMask: the shape
+// that a tool draws on it. select_points, select_around: the points in that shape. Thesis §4.2.2.
 
 #include <Eigen/Core>
 #include <cmath>
@@ -16,22 +16,22 @@
 
 namespace saccade {
 
-/// Image coordinates as in SelectionView. May lie outside the picture, up to a million pixels away.
+/// Image coordinates as in SelectionView. They may lie up to a million pixels outside the image.
 using ScreenPoint = Eigen::Vector2d;
 
-/// Between two opposite corners, whichever: contains what is ≥ the lesser and < the greater coordinates.
+/// Rectangle between two opposite corners: contains coordinates ≥ the lesser and < the greater ones.
 struct ScreenRectangle {
   ScreenPoint corner;
   ScreenPoint opposite;
 };
 
-/// Closed, by the even-odd rule: a lasso, or the polyline through clicked corners that the thesis' users asked for
-/// (§4.2.3). Of its border, the left and upper parts belong to it, as with a rectangle.
+/// Closed polygon by the even-odd rule: a lasso, or the polyline through clicked corners that the thesis' users asked
+/// for (§4.2.3). Its left and upper borders belong to it, as with a rectangle.
 struct ScreenPolygon {
   std::vector<ScreenPoint> corners;  ///< 3 to 10,000
 };
 
-/// Whatever lies within the radius of an open line, border included: a brush, or a line of some width.
+/// Everything within the radius of an open line, border included: a brush, or a line of some width.
 struct ScreenStroke {
   std::vector<ScreenPoint> line;  ///< 1 to 10,000 points
   double radius_px{10.0};         ///< positive, up to 10,000
@@ -39,7 +39,7 @@ struct ScreenStroke {
 
 using ScreenShape = std::variant<ScreenRectangle, ScreenPolygon, ScreenStroke>;
 
-/// invalid_argument for coordinates, numbers of points and radii that are not as said above.
+/// Answers invalid_argument for coordinates, numbers of points and radii outside the limits above.
 [[nodiscard]] Status validate(const ScreenShape& shape);
 
 /// Pixels [left, right) × [top, bottom).
@@ -54,15 +54,15 @@ struct PixelWindow {
   [[nodiscard]] bool contains(int u, int v) const { return u >= left && u < right && v >= top && v < bottom; }
 };
 
-/// The pixels of a picture whose centres a shape contains. O(pixels around the shape + rows of its lines).
+/// Pixels of an image whose centres a shape contains. O(pixels around the shape + rows of its lines).
 class ScreenMask {
  public:
-  /// Expects a valid shape and a picture of positive size.
+  /// Draws the mask. Expects a valid shape and an image of positive size.
   ScreenMask(const ScreenShape& shape, int width, int height);
 
-  /// Pixels outside of it are not in the shape.
+  /// Returns a window that contains all pixels of the shape.
   [[nodiscard]] const PixelWindow& window() const { return window_; }
-  /// Of any pixel.
+  /// Tells whether the shape contains a pixel, inside or outside the window.
   [[nodiscard]] bool contains(int u, int v) const { return window_.contains(u, v) && pixels_[offset(u, v)] != 0; }
 
  private:
@@ -80,36 +80,37 @@ class ScreenMask {
   std::vector<std::uint8_t> pixels_;
 };
 
-/// A picture of points as OpenGL draws it. Image coordinates (u, v) are pixels from the upper left corner, v down;
-/// pixel (i, j) covers [i, i + 1) × [j, j + 1), and its centre is (i + ½, j + ½).
+/// Image of points as OpenGL draws it. Image coordinates (u, v) are pixels from the upper left corner, v down; pixel
+/// (i, j) covers [i, i + 1) × [j, j + 1), and its centre is (i + ½, j + ½).
 struct SelectionView {
-  /// Maps (x, y, z, 1) of a point in metres to clip coordinates, perspective or orthographic. In view is what has
-  /// w > 0, −w ≤ x < w, −w < y ≤ w and −w ≤ z ≤ w; x / w = −1 is the left border, y / w = 1 the upper one. What is
-  /// farther has the larger w, or with an orthographic view the larger z.
+  /// Maps (x, y, z, 1) of a point in metres to clip coordinates, perspective or orthographic. A point is in view if w >
+  /// 0, −w ≤ x < w, −w < y ≤ w and −w ≤ z ≤ w; x / w = −1 is the left border, y / w = 1 the upper one. Farther points
+  /// have a larger w, or with an orthographic view a larger z.
   Eigen::Matrix4d clip_world{Eigen::Matrix4d::Identity()};
   int width{1280};       ///< px, 1 to 8192
   int height{720};       ///< px, 1 to 8192
   int point_size_px{3};  ///< edge of the square as which a point is drawn, 1 to 64
 
-  /// invalid_argument for sizes out of range, and for a matrix that is not finite or no view of space.
+  /// Answers invalid_argument for sizes out of range, and for a matrix that is not finite or does not map space to a
+  /// view.
   [[nodiscard]] Status validate() const;
 };
 
-/// Where a point is seen. Not in view: every member is NaN.
+/// Position of a point on the screen; NaN in every member where it is not in view.
 struct ScreenPosition {
   double u_px;
   double v_px;
-  float depth_m;  ///< along the viewing direction, from the camera or, in an orthographic view, from anywhere
+  float depth_m;  ///< along the viewing direction, from the camera; in an orthographic view from an arbitrary origin
   [[nodiscard]] bool in_view() const { return !std::isnan(depth_m); }
 };
 
-/// The arithmetic of a view.
+/// Arithmetic of a view.
 class ScreenProjection {
  public:
   /// Expects a valid view.
   explicit ScreenProjection(const SelectionView& view);
 
-  /// Points that are not finite are not in view.
+  /// Projects a point. Points that are not finite are not in view.
   [[nodiscard]] ScreenPosition operator()(const Eigen::Vector3f& p_world) const {
     const double x{p_world.x()}, y{p_world.y()}, z{p_world.z()};
     const auto row = [&](int i) {
@@ -124,29 +125,30 @@ class ScreenProjection {
     if (!in_view) return {kNone, kNone, static_cast<float>(kNone)};
     return {u_px, v_px, static_cast<float>((perspective_ ? w : clip_z) * m_per_clip_)};
   }
-  /// The place that projects to (u_px, v_px) at that depth.
+  /// Returns the place that projects to (u_px, v_px) at that depth.
   [[nodiscard]] Eigen::Vector3d place(double u_px, double v_px, double depth_m) const;
 
  private:
   static constexpr double kNone{std::numeric_limits<double>::quiet_NaN()};
 
   Eigen::Matrix4d clip_world_;
-  Eigen::Matrix3d world_clip_;  ///< from x, y and what depth is taken from
+  Eigen::Matrix3d world_clip_;  ///< from x, y and the row of the depth
   double half_width_;
   double half_height_;
   bool perspective_;
   double m_per_clip_;  ///< depth per w or, in an orthographic view, per z
 };
 
-/// How far behind the visible surface points are still selected: not at all, only what is seen (the thesis' Surface
-/// rect); however far (its Deep rect). What is between takes in what lies slightly below the surface, as its users
-/// asked for (§4.2.3).
+/// Depth behind the visible surface within which points are selected. kOnSurface_m: only visible points (the thesis'
+/// Surface rect); kAnyDepth_m: all (its Deep rect). Values between include points slightly below the surface, as its
+/// users asked for (§4.2.3).
 inline constexpr double kOnSurface_m{0.0};
 inline constexpr double kAnyDepth_m{std::numeric_limits<double>::infinity()};
 
-/// The points in view whose pixel is in the shape, and which lie at most `below_m` behind what this pixel shows (see
-/// SplatDepth; depth is compared in single precision). Where points are drawn too small to close the surface, what is
-/// seen between them is selected too. Points that are not in view or not finite neither are selected nor hide others.
+/// Selects the points in view whose pixel is in the shape, and which lie at most `below_m` behind the surface shown by
+/// this pixel (see SplatDepth; depth is compared in single precision). Where points are drawn too small to close the
+/// surface, points visible between them are selected too. Points that are not in view or not finite are neither
+/// selected nor hide others.
 /// @param positions_m  at most 2³² − 1 points, in the frame that the view maps from.
 /// @return indices in ascending order; invalid_argument for a bad view or shape, or below_m that is negative or NaN.
 /// O(points + pixels). The thread count never changes the result.
@@ -154,9 +156,9 @@ inline constexpr double kAnyDepth_m{std::numeric_limits<double>::infinity()};
                                                                const SelectionView& view, const ScreenShape& shape,
                                                                double below_m, const Executor& executor);
 
-/// The points in view, hidden or not, at most `radius_m` from the visible surface under a line: a ball drawn along it.
-/// The surface is taken where rays through the centres of the pixels within ¾ pixel of the line meet what these show.
-/// @param line  as that of a ScreenStroke.
+/// Selects the points in view, hidden or not, at most `radius_m` from the visible surface under a line: a ball moved
+/// along it. The surface is sampled where rays through the centres of the pixels within ¾ pixel of the line meet it.
+/// @param line  as in a ScreenStroke.
 /// @return as select_points; invalid_argument also for a radius that is not finite and positive.
 /// O(points + pixels + balls near each point). The thread count never changes the result.
 [[nodiscard]] Result<std::vector<std::uint32_t>> select_around(std::span<const Eigen::Vector3f> positions_m,

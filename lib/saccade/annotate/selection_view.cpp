@@ -13,7 +13,7 @@ constexpr int kLargestPoint{64};
 
 bool is_perspective(const Eigen::Matrix4d& clip_world) { return !clip_world.row(3).head<3>().isZero(0.0); }
 
-/// Rows of x, y and of what depth is taken from.
+/// Returns the rows of x, y and of the depth.
 Eigen::Matrix3d seen_axes(const Eigen::Matrix4d& clip_world) {
   Eigen::Matrix3d axes;
   axes.row(0) = clip_world.row(0).head<3>();
@@ -38,7 +38,7 @@ Status SelectionView::validate() const {
   const bool is_view = clip_world.allFinite() && (is_perspective(clip_world) || clip_world(3, 3) > 0.0) &&
                        seen_axes(clip_world).inverse().allFinite();
   if (!is_view) {
-    return Error{Errc::invalid_argument, "the matrix is no perspective or orthographic view of space",
+    return Error{Errc::invalid_argument, "the matrix is not a perspective or orthographic view of space",
                  "selection view"};
   }
   return {};

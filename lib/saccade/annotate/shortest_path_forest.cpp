@@ -11,7 +11,7 @@
 namespace saccade {
 namespace {
 
-/// A search that has gone through so many is shared among threads: these take as long as to wake another.
+/// Nodes after which a search is shared among threads: visiting these takes as long as waking another thread.
 constexpr std::size_t kNodesOfOneThread{4096};
 
 }  // namespace
@@ -23,13 +23,13 @@ ShortestPathForest::ShortestPathForest(std::shared_ptr<const Neighbourhood> neig
       queue_{PathBuckets{*neighbourhood_}},
       executor_{executor} {}
 
-/// Not inline, it took a tenth of the time.
+/// Inline, because a call took a tenth of the time.
 [[gnu::always_inline]] inline void ShortestPathForest::reach(std::uint32_t node, PathReach reach, PathBuckets& queue) {
   reach_[node] = reach;
   queue.push(path_of(reach), node);
 }
 
-/// Algorithm 8.
+/// Runs Algorithm 8.
 void ShortestPathForest::spread() {
   const std::size_t most = touched_.size() + kNodesOfOneThread;
   PathBuckets& queue = *queue_;
@@ -68,9 +68,9 @@ void ShortestPathForest::remove(std::uint32_t point) {
   is_start_[first] = false;
   starts_.erase(start_of(point));
   touched_.clear();
-  if (!belongs_to(first, point)) return;  // nothing was its own
-  // Algorithm 9: the tree is cleared. It is connected: what belongs to a root is reached along what belongs to it.
-  // Where other trees enter, or start in what this one had covered, Algorithm 8 goes on.
+  if (!belongs_to(first, point)) return;  // the root owned nothing
+  // Algorithm 9: clears the tree. The tree is connected, because a root's points are reached through its points.
+  // Algorithm 8 continues where other trees enter, or start within the cleared part.
   touched_.assign(1, first);
   entered_.clear();
   reach_[first] = kNoPath;
@@ -79,7 +79,7 @@ void ShortestPathForest::remove(std::uint32_t point) {
     if (!is_cleared && is_large(touched_.size())) {
       clear_all_of(point);
       is_cleared = true;
-      if (starts_.empty()) break;  // there is nobody to enter
+      if (starts_.empty()) break;  // no tree is left to enter
     }
     entered_.push_back(clear_beside(touched_[i], point));
   }
@@ -88,7 +88,7 @@ void ShortestPathForest::remove(std::uint32_t point) {
   }
   const std::size_t cleared = touched_.size();
   spread();
-  touched_.resize(cleared);  // none but the cleared ones
+  touched_.resize(cleared);  // only the cleared ones
   name_touched();
 }
 
@@ -96,7 +96,7 @@ bool ShortestPathForest::belongs_to(std::uint32_t node, std::uint32_t root) cons
   return root_of_reach(reach_[node]) == root && reach_[node] != kNoPath;
 }
 
-/// What is left of a tree, without looking for it along its edges.
+/// Clears the rest of a tree without following its edges.
 void ShortestPathForest::clear_all_of(std::uint32_t root) {
   for (std::uint32_t node = 0; node < reach_.size(); ++node) {
     if (!belongs_to(node, root)) continue;
@@ -106,7 +106,7 @@ void ShortestPathForest::clear_all_of(std::uint32_t root) {
 }
 
 /// Clears the neighbours that belong to the root, too.
-/// @return how a node that was cleared is entered from other trees, or starts one.
+/// @return the reach with which a cleared node is entered from other trees, or starts one.
 std::uint64_t ShortestPathForest::clear_beside(std::uint32_t node, std::uint32_t root) {
   PathReach best{kNoPath};
   if (is_start_[node]) {
@@ -159,14 +159,14 @@ std::uint32_t ShortestPathForest::start_units(std::uint32_t point) const {
   return start_of(point)->path;
 }
 
-/// Whether so many nodes are better gone through in their order in memory.
+/// Tells whether it is faster to visit this number of nodes in their order in memory.
 bool ShortestPathForest::is_large(std::size_t nodes) const {
   constexpr std::size_t kShare{32};
   return nodes > reach_.size() / kShare;
 }
 
-/// Nodes become points. Of many, each is named once, in the order in memory: what is done with them waits for memory
-/// else, and the order is the same for any number of threads.
+/// Converts nodes to points. Large sets are named once each, in memory order: otherwise later work would wait for
+/// memory. The order is equal for any number of threads.
 void ShortestPathForest::name_touched() {
   if (touched_.size() >= kNodesOfOneThread || is_large(touched_.size())) {
     constexpr std::size_t kBits{64};

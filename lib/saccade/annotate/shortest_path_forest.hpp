@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ShortestPathForest: which control point each point belongs to, kept up to date. Thesis Algorithms 8 and 9.
+// ShortestPathForest: assigns each point to a control point, updated incrementally. Thesis Algorithms 8 and 9.
 
 #include <cstdint>
 #include <memory>
@@ -16,16 +16,16 @@ namespace saccade {
 
 class PathBuckets;
 
-/// A point from which a tree grows. It has no label here: labels follow from the root (thesis: L_i = L_{l_i}).
+/// Point from which a tree grows. It has no label here: labels follow from the root (thesis: L_i = L_{l_i}).
 struct Root {
   std::uint32_t point{0};
-  double start_cost{0.0};  ///< ω_a, in [0, Ω_max): the larger, the less it takes from others
+  double start_cost{0.0};  ///< ω_a, in [0, Ω_max): a larger cost takes less from others
   [[nodiscard]] bool operator==(const Root&) const = default;
 };
 
-/// The shortest-path forest of a neighbourhood from roots: each point belongs to the root from which a path is
-/// shortest, start cost included, and below Ω_max; of equal paths to the one of lower point index. Any sequence of
-/// add and remove leaves exactly what rebuild gives with the roots that are left. One writer.
+/// Shortest-path forest of a neighbourhood from roots. Each point belongs to the root with the shortest path to it,
+/// start cost included and below Ω_max; at a tie the lower point index wins. Any sequence of add and remove gives
+/// exactly the result of rebuild with the remaining roots. One writer.
 class ShortestPathForest {
  public:
   /// A search that goes far uses the executor's threads.
@@ -33,27 +33,28 @@ class ShortestPathForest {
 
   [[nodiscard]] const Neighbourhood& neighbourhood() const { return *neighbourhood_; }
 
-  /// From nothing: Algorithm 8 from all roots at once. Expects roots of different points, in the cloud, with start
-  /// costs in [0, Ω_max). O(edges of what is reached).
+  /// Builds the forest by Algorithm 8 from all roots at once. Expects roots at different points of the cloud, with
+  /// start costs in [0, Ω_max). O(edges of what is reached).
   void rebuild(std::span<const Root> roots);
-  /// Algorithm 8 from one more root. Expects that the point is none. O(edges of the points that it takes).
+  /// Adds a root by Algorithm 8. Expects that the point is not a root. O(edges of the points that it takes).
   void add(const Root& root);
-  /// Algorithm 9, then Algorithm 8 from the border. Expects that the point is a root. O(edges of its points).
+  /// Removes a root by Algorithm 9, then Algorithm 8 from the border. Expects that the point is a root. O(edges of its
+  /// points).
   void remove(std::uint32_t point);
 
-  /// In ascending order of points.
+  /// Returns the roots in ascending order of points.
   [[nodiscard]] std::vector<Root> roots() const;
   [[nodiscard]] bool is_root(std::uint32_t point) const;
-  /// The root that a point belongs to; none: no path to it is short enough.
+  /// Returns the root that a point belongs to; nullopt where no path to it is short enough.
   [[nodiscard]] std::optional<std::uint32_t> root_of(std::uint32_t point) const;
-  /// ω_i in the unit of the costs; infinite where there is no root.
+  /// Returns ω_i in the unit of the costs; infinite where there is no root.
   [[nodiscard]] double path_length(std::uint32_t point) const;
-  /// ω_i in path units; kPathUnits where there is no root.
+  /// Returns ω_i in path units; kPathUnits where there is no root.
   [[nodiscard]] std::uint32_t path_units(std::uint32_t point) const;
-  /// The start cost of a root in path units. Expects that the point is one.
+  /// Returns the start cost of a root in path units. Expects that the point is a root.
   [[nodiscard]] std::uint32_t start_units(std::uint32_t point) const;
-  /// Points whose root the last add or remove may have changed, some of them twice, or that the last rebuild reached;
-  /// in no particular order.
+  /// Returns the points whose root the last add or remove may have changed, with some duplicates, or that the last
+  /// rebuild reached; in no particular order.
   [[nodiscard]] std::span<const std::uint32_t> touched() const { return touched_; }
 
  private:

@@ -14,7 +14,8 @@ Result<SimulatedAnnotator> SimulatedAnnotator::create(std::shared_ptr<const Neig
     return Error{Errc::size_mismatch, "the truth must have one label per point", "simulated annotator"};
   }
   for (std::uint32_t point = 0; point < truth.size(); ++point) {
-    if (neighbourhood->edges(neighbourhood->node_of(point)).empty()) truth[point] = 0;  // as those that are not finite
+    if (neighbourhood->edges(neighbourhood->node_of(point)).empty())
+      truth[point] = 0;  // such as points that are not finite
   }
   if (std::all_of(truth.begin(), truth.end(), [](std::uint32_t label) { return label == 0; })) {
     return Error{Errc::invalid_argument, "there is no label but 0 on points that have neighbours to spread to", {}};

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SimulatedAnnotator and RectangleAnnotator: someone who knows the truth, with control points and with rectangles.
-// Thesis §4.2.2, §4.2.3.
+// SimulatedAnnotator and RectangleAnnotator: annotators who know the ground truth, one with control points, one with
+// rectangles. Thesis §4.2.2, §4.2.3.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -23,22 +23,22 @@ namespace saccade {
 struct SimulatedClick {
   std::uint32_t point{0};
   std::uint32_t label{0};
-  double add_ms{0.0};     ///< of the forest alone
-  AnnotationScore score;  ///< with it
+  double add_ms{0.0};     ///< time of the forest alone
+  AnnotationScore score;  ///< score after the click
 };
 
-/// The usual protocol of interactive segmentation: the next click is at the centre of the largest region of points that
-/// ought to have the same label and do not (error_regions, region_centre), and gives them this label. The truth does
-/// nothing else. Every point that the cloud has counts, until it has the label of its truth.
+/// Annotator by the usual protocol of interactive segmentation. The next click is at the centre of the largest region
+/// of points that share a true label and do not have it (error_regions, region_centre), and gives them this label. The
+/// ground truth is used for nothing else. Every point of the cloud counts, until it has its true label.
 class SimulatedAnnotator {
  public:
-  /// @param truth  a label per point; 0: none, it does not matter what the point is given.
+  /// @param truth  one label per point; 0: none, any label is accepted.
   /// @return size_mismatch unless there is one per point of the graph and per position; invalid_argument without a
   /// label.
   [[nodiscard]] static Result<SimulatedAnnotator> create(std::shared_ptr<const Neighbourhood> neighbourhood,
                                                          const PointCloud& cloud, std::vector<std::uint32_t> truth);
 
-  /// Clicks. None: nothing is wrong any more, or what is wrong is a control point already.
+  /// Clicks. nullopt: nothing is wrong any more, or the wrong points are control points already.
   std::optional<SimulatedClick> next();
 
   [[nodiscard]] const std::vector<std::uint32_t>& labels() const { return labels_; }  ///< 0: none yet
@@ -56,13 +56,13 @@ class SimulatedAnnotator {
 };
 
 struct RectangleAnnotatorConfig {
-  int columns{160};          ///< borders of rectangles lie on a grid of so many columns …
-  int rows{120};             ///< … and rows; each cell is cell_px wide and high; 1 to 1024
+  int columns{160};          ///< columns of the grid on which borders of rectangles lie
+  int rows{120};             ///< rows of the grid; each cell is cell_px wide and high; 1 to 1024
   int cell_px{4};            ///< 1 to 8
-  int point_size_px{5};      ///< of the points in the picture: what Surface rect does not select; 1 to 64
-  double orbit_rad{30_deg};  ///< between the views; positive, at most 90°
+  int point_size_px{5};      ///< size of the drawn points, which determines what Surface rect cannot select; 1 to 64
+  double orbit_rad{30_deg};  ///< angle between the views; positive, at most 90°
 
-  /// invalid_argument for numbers out of range.
+  /// Answers invalid_argument for numbers out of range.
   [[nodiscard]] Status validate() const;
 };
 
@@ -72,21 +72,21 @@ struct RectangleAction {
   bool surface{false};  ///< Surface rect; otherwise Deep rect
   std::uint32_t label{0};
   int left{0}, top{0}, right{0}, bottom{0};  ///< cells [left, right) × [top, bottom)
-  std::size_t corrected{0};                  ///< points with a wrong label before, and the right one after
-  std::size_t broken{0};                     ///< the other way round
+  std::size_t corrected{0};                  ///< points that become right
+  std::size_t broken{0};                     ///< points that become wrong
 };
 
-/// A user of the thesis' rectangular selection who knows the truth: paints one label into one rectangle per action, in
-/// one of six views, as Surface rect or Deep rect. `next_around` draws it around the largest region that is wrong, as
-/// SimulatedAnnotator clicks into its centre. `next` always takes the one by which the number of points with a wrong
-/// label falls most, of all that there are; users do not find these. The views: the sensor's own (from the origin along
-/// +z, y down, at most 120° wide), and from as far from the centroid, or farther where the cloud is too large, turned
-/// around it by ±1 and ±2 orbits about y, and by one upwards. What most of the scene is has a label like others.
+/// User of the thesis' rectangular selection who knows the ground truth. Each action paints one label into one
+/// rectangle, in one of six views, as Surface rect or Deep rect. `next_around` draws it around the largest wrong
+/// region, whose centre SimulatedAnnotator would click. `next` takes the rectangle that reduces the number of wrong
+/// points most; users do not find these. The views: the sensor's own (from the origin along +z, y down, at most 120°
+/// wide), and from as far from the centroid, or farther where the cloud is too large, turned around it by ±1 and ±2
+/// orbits about y, and by one upwards. The background has a label like others.
 class RectangleAnnotator {
  public:
   /// @param positions_m  in the frame of the sensor; those that are not finite have no truth.
-  /// @param truth        a label per position; 0: none, it does not matter what the point is given.
-  /// @return size_mismatch for unlike numbers; invalid_argument for a bad configuration, or no point with a truth.
+  /// @param truth        one label per position; 0: none, any label is accepted.
+  /// @return size_mismatch for unequal numbers; invalid_argument for a bad configuration, or no point with a truth.
   [[nodiscard]] static Result<RectangleAnnotator> create(std::span<const Eigen::Vector3f> positions_m,
                                                          std::span<const std::uint32_t> truth,
                                                          const RectangleAnnotatorConfig& config,
@@ -96,14 +96,14 @@ class RectangleAnnotator {
   [[nodiscard]] std::size_t wrong() const { return wrong_; }
   [[nodiscard]] const SelectionView& view(std::size_t view) const { return pictures_[view].view; }
 
-  /// Chooses and carries out the next action. Of equally good ones it is in the first view, surface before deep, of the
-  /// least label, the topmost, the least high, the one that ends first from the left, the narrowest. None: no rectangle
-  /// makes it better. O(views · (points + labels · columns · rows²)), where of the pictures only what may be corrected
-  /// counts, and of labels those that may be the best. The thread count never changes the result.
+  /// Chooses and performs the next action. Ties are broken by: the first view, surface before deep, the smallest label,
+  /// the topmost, the lowest height, the leftmost right border, the narrowest. nullopt: no rectangle is an improvement.
+  /// O(views · (points + labels · columns · rows²)), restricted to the parts of images that can be corrected, and to
+  /// labels that may be best. The thread count never changes the result.
   std::optional<RectangleAction> next(const Executor& executor);
 
-  /// The rectangle around all that is seen of a region, in the view and by the tool by which the number of points with
-  /// a wrong label falls most; of equals the first view, surface before deep. Where it never falls, what `next` does.
+  /// Draws a rectangle around all visible points of a region, in the view and with the tool that reduce the number of
+  /// wrong points most; at a tie the first view, surface before deep. Acts as `next` where no rectangle reduces it.
   /// @param region  the first of error_regions of labels(). O(views · points) unless `next` is needed.
   std::optional<RectangleAction> next_around(const ErrorRegion& region, const Executor& executor);
 

@@ -8,7 +8,7 @@
 #include <limits>
 
 #include "saccade/arm/arm_mesh.hpp"
-#include "saccade/arm/internal/arm_front.hpp"
+#include "saccade/arm/internal/arm_cover.hpp"
 #include "saccade/arm/internal/cover_separation.hpp"
 
 namespace saccade {
@@ -17,13 +17,13 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr double kBarely_m{1e-6};
-constexpr double kFloatSlack{1e-5};  ///< a float's rounding is 6e-8 of it; those along an arm add up
+constexpr double kFloatSlack{1e-5};  ///< a float's relative rounding is 6e-8; it accumulates along an arm
 constexpr int kSelfSamples{200};
 constexpr std::uint32_t kSelfSeed{1};
 
 Vector3d half_edges(const Eigen::AlignedBox3d& box) { return 0.5 * box.sizes() + Vector3d::Constant(kBarely_m); }
 
-/// How far the origin of a joint can be from that of the joint before.
+/// Returns the largest distance between the origins of a joint and of the previous one.
 double longest_offset_m(const ArmJoint& joint) {
   const double slide_m =
       joint.kind == JointKind::prismatic ? std::max(std::fabs(joint.limits.lower), std::fabs(joint.limits.upper)) : 0.0;
@@ -73,12 +73,12 @@ Result<ArmCollision> ArmCollision::create(const ArmModel& arm, const ArmCollisio
   collision.find_self_pairs();
   const double farthest_m = arm.T_world_base().translation().norm() + reach_bound_m(arm) +
                             *std::max_element(collision.reach_m_.begin(), collision.reach_m_.end());
-  collision.front_ = std::make_shared<const ArmFront>(arm, bodies->covers, upright_boxes, collision.self_pairs_,
+  collision.front_ = std::make_shared<const ArmCover>(arm, bodies->covers, upright_boxes, collision.self_pairs_,
                                                       kFloatSlack * farthest_m);
   return collision;
 }
 
-/// Of the ways from a joint's origin to the links behind it, and how far those reach.
+/// Computes upper bounds of the distances from a joint's origin to the links behind it, and of their reach.
 void ArmCollision::find_levers() {
   const ArmModel& arm = *arm_;
   const auto links = bodies_->covers.size();
@@ -206,7 +206,7 @@ bool ArmCollision::touches_obstacle(const FrontBall& of_front, const PlacedFront
   const auto is_clear = [&](const TreeBall& ball) {
     const Vector3d center = T_world_link * ball.center.cast<double>();
     const double radius_m = static_cast<double>(ball.radius_m) + front_->slack_m();
-    // The exact answer costs more than a look at the balls below.
+    // The exact answer costs more than testing the balls below.
     return ball.finest ? obstacles.clear(center, radius_m) : obstacles.distance_bound_m(center) > radius_m;
   };
   return !bodies_->covers[of_front.link][of_front.body].clear(is_clear, of_front.index);
@@ -216,15 +216,15 @@ double ArmCollision::travel_bound_m(const Configuration& from, const Configurati
   double bound_m = 0.0;
   for (std::size_t link = 1; link < bodies_->covers.size(); ++link) {
     if (bodies_->covers[link].empty()) continue;
-    const Travel travel = travel_of(0, link, from, to);
+    const MotionBound travel = motion_bound_of(0, link, from, to);
     bound_m = std::max(bound_m, travel.fixed_m + travel.turn_rad * reach_m_[link]);
   }
   return bound_m;
 }
 
-ArmCollision::Travel ArmCollision::travel_of(std::size_t first, std::size_t link, const Configuration& from,
-                                             const Configuration& to) const {
-  Travel travel;
+ArmCollision::MotionBound ArmCollision::motion_bound_of(std::size_t first, std::size_t link, const Configuration& from,
+                                                        const Configuration& to) const {
+  MotionBound travel;
   for (std::size_t joint = first; joint < link; ++joint) {
     const auto i = static_cast<int>(joint);
     const double change = std::fabs(to[i] - from[i]);

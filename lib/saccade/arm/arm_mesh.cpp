@@ -6,7 +6,7 @@ namespace {
 
 constexpr std::array<Rgb8, 2> kGreys{{{104, 112, 124}, {158, 166, 178}}};
 
-/// Adds the part with its vertices moved.
+/// Adds the part, transformed.
 void append(TriangleMesh& mesh, const TriangleMesh& part, const Pose& T_world_part, const Rgb8& color) {
   const auto first = static_cast<std::uint32_t>(mesh.vertices.size());
   for (const Eigen::Vector3f& vertex : part.vertices) {

@@ -6,6 +6,8 @@
 #include <numbers>
 #include <utility>
 
+#include "saccade/core/length_limit.hpp"
+
 namespace saccade {
 namespace {
 
@@ -14,10 +16,9 @@ constexpr double kInfinity{std::numeric_limits<double>::infinity()};
 
 Error wrong(const std::string& what, const std::string& where) { return {Errc::invalid_argument, what, where}; }
 
-/// And such as an arm can have: lengths of numbers without bounds add up to infinity.
+/// Tells whether T is rigid and plausible for an arm: unbounded lengths could add up to infinity.
 bool rigid(const Pose& T) {
-  constexpr double kFarthest_m{1000.0};
-  return T.matrix().allFinite() && T.translation().cwiseAbs().maxCoeff() <= kFarthest_m &&
+  return T.matrix().allFinite() && T.translation().cwiseAbs().maxCoeff() <= kMaxLength_m &&
          (T.linear() * T.linear().transpose() - Eigen::Matrix3d::Identity()).norm() <= 1e-9 &&
          T.linear().determinant() > 0.0;
 }
@@ -40,7 +41,7 @@ Status check_joint(ArmJoint& joint) {
   const double length = joint.axis_joint.norm();
   if (!std::isfinite(length) || length < kShortestAxis) return wrong("its axis has no length", where);
   joint.axis_joint /= length;
-  if (!rigid(joint.T_parent_joint)) return wrong("its origin is no rigid transform, or goes farther than 1 km", where);
+  if (!rigid(joint.T_parent_joint)) return wrong("its origin is not a rigid transform, or is longer than 1 km", where);
   SACCADE_CHECK(check_limits(joint, where));
   if (joint.kind == JointKind::continuous) {
     joint.limits.lower = -kInfinity;
@@ -81,7 +82,7 @@ Status check_link(const ArmLink& link) {
   for (const CollisionBody& body : link.bodies) {
     const std::string where = "link " + (body.name.empty() ? link.name : body.name);
     if (!rigid(body.T_link_body))
-      return wrong("the origin of a collision body is no rigid transform, or goes farther than 1 km", where);
+      return wrong("the origin of a collision body is not a rigid transform, or is longer than 1 km", where);
     SACCADE_CHECK(std::visit([&where](const auto& shape) { return check_shape(shape, where); }, body.shape));
   }
   return {};
@@ -106,11 +107,11 @@ Result<ArmModel> ArmModel::create(ArmDescription description) {
   for (ArmJoint& joint : description.joints) SACCADE_CHECK(check_joint(joint));
   for (const ArmLink& link : description.links) SACCADE_CHECK(check_link(link));
   if (!rigid(description.T_world_base))
-    return wrong("the pose of its base is no rigid transform, or goes farther than 1 km", where);
+    return wrong("the pose of its base is not a rigid transform, or is longer than 1 km", where);
   if (!rigid(description.T_link_flange))
-    return wrong("the pose of its flange is no rigid transform, or goes farther than 1 km", where);
+    return wrong("the pose of its flange is not a rigid transform, or is longer than 1 km", where);
   if (!rigid(description.T_flange_camera))
-    return wrong("its hand-eye transform is no rigid transform, or goes farther than 1 km", where);
+    return wrong("its hand-eye transform is not a rigid transform, or is longer than 1 km", where);
   return ArmModel{std::move(description)};
 }
 

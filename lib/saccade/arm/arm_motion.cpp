@@ -1,28 +1,28 @@
 // SPDX-License-Identifier: Apache-2.0
-// ArmCollision::motion_contact: intervals of a motion, halved as long as a ball could touch something within.
+// ArmCollision::motion_contact: halves intervals of a motion as long as a ball could touch something within.
 #include <algorithm>
 #include <array>
 #include <span>
 #include <vector>
 
 #include "saccade/arm/arm_collision.hpp"
-#include "saccade/arm/internal/arm_front.hpp"
+#include "saccade/arm/internal/arm_cover.hpp"
 #include "saccade/arm/internal/cover_separation.hpp"
 
 namespace saccade {
 
-/// In the middle of an interval each ball is as far from obstacles as it is; where that is more than it moves until the
-/// interval's ends, it is free all along and no longer asked about. What is left is looked at in both halves, the
-/// first one first, and when the ball moves little compared to its size, by the balls below it.
+/// Check of a motion. In the middle of an interval each ball has its distance from obstacles. A ball that moves less
+/// than this until the interval's ends is free throughout and is dropped. The remaining balls are checked in both
+/// halves, the first one first; a ball that moves little compared to its size is replaced by the balls below it.
 class ArmCollision::Motion {
  public:
   Motion(const ArmCollision& arm, const Configuration& from, const Configuration& to, const ObstacleMap& obstacles)
       : arm_{arm}, covers_{arm.bodies_->covers}, from_{from}, way_{to - from}, obstacles_{obstacles} {
-    for (std::size_t link = 0; link < covers_.size(); ++link) travel_[link] = arm.travel_of(0, link, from, to);
+    for (std::size_t link = 0; link < covers_.size(); ++link) travel_[link] = arm.motion_bound_of(0, link, from, to);
     for (std::size_t i = 0; i < arm.self_pairs_.size(); ++i) {
       const auto a = static_cast<std::size_t>(arm.self_pairs_[i].first);
       const auto b = static_cast<std::size_t>(arm.self_pairs_[i].second);
-      const Travel travel = arm.travel_of(a, b, from, to);
+      const MotionBound travel = arm.motion_bound_of(a, b, from, to);
       pair_travel_m_[i] = static_cast<float>(travel.fixed_m + travel.turn_rad * arm.reach_m_[b]);
     }
   }
@@ -43,22 +43,22 @@ class ArmCollision::Motion {
     return std::nullopt;
   }
 
-  /// What is still to be looked at: parts of balls_ and pairs_.
-  struct Rest {
+  /// Remaining checks: parts of balls_ and pairs_.
+  struct PendingChecks {
     std::size_t first_ball, end_ball;
     std::size_t first_pair, end_pair;
     [[nodiscard]] bool empty() const { return first_ball == end_ball && first_pair == end_pair; }
   };
 
-  /// What is left of `rest` in the middle of an interval is put behind it.
-  std::optional<MotionContact> first_between(double begin, double end, const Rest& rest) {
+  /// Checks an interval; balls and pairs that remain undecided in its middle are appended.
+  std::optional<MotionContact> first_between(double begin, double end, const PendingChecks& rest) {
     if (rest.empty()) return std::nullopt;
     const double middle = 0.5 * (begin + end);
     const Configuration q = from_ + middle * way_;
     const PlacedFront placed{*arm_.front_, q};
     half_ = 0.5 * (end - begin);
     touched_ = false;
-    Rest left{balls_.size(), 0, pairs_.size(), 0};
+    PendingChecks left{balls_.size(), 0, pairs_.size(), 0};
     look_at_balls(rest, placed);
     look_at_pairs(rest, placed);
     left.end_ball = balls_.size();
@@ -73,7 +73,7 @@ class ArmCollision::Motion {
     return found;
   }
 
-  void look_at_balls(const Rest& rest, const PlacedFront& placed) {
+  void look_at_balls(const PendingChecks& rest, const PlacedFront& placed) {
     constexpr std::size_t kAtOnce{64};
     std::array<float, kAtOnce> x_m;
     std::array<float, kAtOnce> y_m;
@@ -104,9 +104,9 @@ class ArmCollision::Motion {
     }
   }
 
-  /// How far a ball moves until the ends of the interval.
+  /// Returns how far a ball moves until the ends of the interval.
   [[nodiscard]] double moves_m(std::size_t link, const TreeBall& ball) const {
-    const Travel& travel = travel_[link];
+    const MotionBound& travel = travel_[link];
     return half_ * (travel.fixed_m + travel.turn_rad * static_cast<double>(ball.center.norm() + ball.radius_m));
   }
 
@@ -136,7 +136,7 @@ class ArmCollision::Motion {
     }
   }
 
-  void look_at_pairs(const Rest& rest, const PlacedFront& placed) {
+  void look_at_pairs(const PendingChecks& rest, const PlacedFront& placed) {
     if (rest.first_pair == rest.end_pair) return;
     std::array<float, kMostPairs> margins_m;
     for (std::size_t i = 0; i < arm_.self_pairs_.size(); ++i)
@@ -155,9 +155,10 @@ class ArmCollision::Motion {
     }
   }
 
-  /// A ball that moves farther than so many of its radii is asked about in halves of the interval, else by those below.
+  /// Largest movement of a ball, in radii, at which it is replaced by those below; otherwise the interval is halved.
   static constexpr double kMostMove{0.5};
-  /// Links that move farther are only held against each other's boxes: many of their balls are as near as that.
+  /// Largest movement of links whose balls are compared; beyond it only their boxes are, because too many balls would
+  /// be near.
   static constexpr double kMostPairMove_m{0.03};
 
   const ArmCollision& arm_;
@@ -165,11 +166,11 @@ class ArmCollision::Motion {
   Configuration from_;
   Configuration way_;
   const ObstacleMap& obstacles_;
-  std::array<Travel, kMaxJoints + 1> travel_;
+  std::array<MotionBound, kMaxJoints + 1> travel_;
   std::array<float, kMostPairs> pair_travel_m_;
-  std::vector<FrontBall> balls_;  ///< stacks
+  std::vector<FrontBall> balls_;  ///< stack
   std::vector<std::size_t> pairs_;
-  double half_{0.0};  ///< of the present interval
+  double half_{0.0};  ///< half the current interval
   bool touched_{false};
 };
 

@@ -14,10 +14,10 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr double kMostCovered{0.9};  ///< of the picture, by the camera's own link
+constexpr double kMostCovered{0.9};  ///< share of the image covered by the camera's own link
 constexpr std::size_t kRowsPerTask{32};
 
-/// Whether the plane of the triangle has the camera's centre, the origin, on its outer side.
+/// Tells whether the camera's centre, the origin, is on the outer side of the triangle's plane.
 bool faces_camera(const Vector3d& a, const Vector3d& b, const Vector3d& c) { return (b - a).cross(c - a).dot(a) < 0.0; }
 
 std::size_t covered_pixels(const Image<float>& inverse_depth) {
@@ -25,7 +25,7 @@ std::size_t covered_pixels(const Image<float>& inverse_depth) {
       std::count_if(inverse_depth.pixels().begin(), inverse_depth.pixels().end(), [](float w) { return w > 0.0F; }));
 }
 
-/// Half the picture's edges as planes through the camera's centre: x/z or y/z at most this beyond the optical axis.
+/// Returns the largest x/z or y/z of points in the image, with `beyond` pixels around it.
 double half_extent(int pixels, double middle, double focal, double beyond) {
   return (std::max(middle, pixels - 1 - middle) + 0.5 + beyond) / focal;
 }
@@ -88,7 +88,7 @@ ArmSilhouette::Surface ArmSilhouette::surface_of(const CollisionBody& body, std:
   const TriangleMesh mesh = body_surface(body);
   Surface surface;
   surface.link = link;
-  // Vertices at one place become one, so that triangles know their neighbours.
+  // Merges vertices at one place, so that triangles know their neighbours.
   std::map<std::array<float, 3>, std::uint32_t> index;
   std::vector<std::uint32_t> welded;
   for (const Eigen::Vector3f& p : mesh.vertices) {
@@ -122,7 +122,7 @@ ArmSilhouette::Surface ArmSilhouette::surface_of(const CollisionBody& body, std:
   return surface;
 }
 
-/// Finds the neighbours. A surface is closed when every edge is run along once in each direction.
+/// Finds the neighbours. A surface is closed when every edge occurs once in each direction.
 void ArmSilhouette::connect(Surface& surface) {
   std::map<std::pair<std::uint32_t, std::uint32_t>, std::uint32_t> triangle_at;  // by directed edge
   bool single = true;
@@ -237,10 +237,10 @@ Result<std::size_t> ArmSilhouette::mask(const Configuration& q, DepthImage& dept
     for (std::size_t i = 0; i < inverse_depth.size(); ++i) {
       const float w = inverse_depth[i];
       const float d = out[i];
-      // d < z − error · z² with z = 1/w: something stands before the arm.
+      // d < z − error · z² with z = 1/w: an object stands in front of the arm.
       const bool before = (d > 0.0F) & (d * w * w < w - error_per_m);
       const bool masked = (w > 0.0F) & !before;
-      count += static_cast<unsigned>(masked & ((d > 0.0F) | (d < 0.0F)));  // NaN is no measurement
+      count += static_cast<unsigned>(masked & ((d > 0.0F) | (d < 0.0F)));  // NaN is not a measurement
       out[i] = masked ? 0.0F : d;
     }
     lost[first / task] = count;

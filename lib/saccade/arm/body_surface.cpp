@@ -10,7 +10,7 @@ namespace {
 using Eigen::Vector3d;
 
 constexpr std::uint32_t kSides{24};
-constexpr std::uint32_t kRings{12};  ///< of a sphere, pole to pole
+constexpr std::uint32_t kRings{12};  ///< rings of a sphere, pole to pole
 
 struct SurfaceOf {
   TriangleMesh operator()(const BoxBody& box) const {
@@ -32,7 +32,7 @@ struct SurfaceOf {
   }
 
   TriangleMesh operator()(const SphereBody& sphere) const {
-    // Rings of vertices on a larger sphere: the flat parts between them stay outside.
+    // Rings of vertices on a larger sphere, so that the flat parts between them stay outside.
     const double radius_m =
         sphere.radius_m / (std::cos(std::numbers::pi / kSides) * std::cos(0.5 * std::numbers::pi / kRings));
     std::vector<std::pair<double, double>> profile;
@@ -51,7 +51,7 @@ struct SurfaceOf {
   }
 
  private:
-  /// A profile of (radius, z), low to high, turned about the z axis and closed by two points on it.
+  /// Revolves a profile of (radius, z), low to high, about the z axis, closed by two points on it.
   static TriangleMesh turned(const std::vector<std::pair<double, double>>& profile, double low, double high) {
     TriangleMesh mesh;
     for (const auto& [radius_m, z] : profile) {

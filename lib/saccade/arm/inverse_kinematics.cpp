@@ -13,7 +13,7 @@
 namespace saccade {
 namespace {
 
-/// Poses per chunk of work: a millisecond or so.
+/// Poses per chunk of work: about a millisecond.
 constexpr std::size_t kGrain{512};
 
 bool meets(const Pose& T_world_a, const Pose& T_world_b) {
@@ -36,9 +36,9 @@ struct InverseKinematics::Solvers {
 };
 
 Result<InverseKinematics> InverseKinematics::create(ArmModel arm, const IkConfig& config) {
-  if (config.max_turns < 1) return Error{Errc::invalid_argument, "max_turns must be one at least", ""};
+  if (config.max_turns < 1) return Error{Errc::invalid_argument, "max_turns must be at least one", ""};
   if (config.redundancy_samples < 1)
-    return Error{Errc::invalid_argument, "redundancy_samples must be one at least", ""};
+    return Error{Errc::invalid_argument, "redundancy_samples must be at least one", ""};
   const auto shared = std::make_shared<const ArmModel>(std::move(arm));
   SACCADE_TRY(NumericIk numeric, NumericIk::create(shared, config.numeric));
   InverseKinematics ik{shared, config.max_turns};

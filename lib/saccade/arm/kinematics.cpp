@@ -7,7 +7,7 @@
 namespace saccade {
 namespace {
 
-/// Frame of the link behind a joint.
+/// Returns the frame of the link behind a joint.
 Pose link_pose(const Pose& T_world_parent, const ArmJoint& joint, double q) {
   Pose T_world_link;
   T_world_link.linear().noalias() = T_world_parent.linear() * joint.T_parent_joint.linear();
@@ -61,8 +61,8 @@ Jacobian camera_jacobian(const ArmModel& arm, const ArmPoses& poses) {
   Jacobian J{6, arm.dof()};
   const Eigen::Vector3d p_world = poses.T_world_camera.translation();
   for (int i = 0; i < arm.dof(); ++i) {
-    // A turn about the axis, or a move along it, leaves the axis where it was: the frame behind the joint tells as
-    // well.
+    // Neither a rotation about the axis nor a translation along it moves the axis, so the frame behind the joint serves
+    // as well.
     const Pose& T_world_link = poses.T_world_link[static_cast<std::size_t>(i) + 1];
     const Eigen::Vector3d axis_world = T_world_link.linear() * arm.joint(i).axis_joint;
     if (arm.joint(i).kind == JointKind::prismatic) {

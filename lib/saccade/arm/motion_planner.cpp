@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-/// A start may lie this far beyond a limit: arms come to their limits by rounding. rad, or m.
+/// Distance of a start beyond a limit that counts as rounding. rad, or m.
 constexpr double kStartSlack{1e-6};
 
 PlanOutcome refusal(Refusal reason, std::string why) {
@@ -43,7 +43,7 @@ Result<MotionPlanner> MotionPlanner::create(const ArmCollision& collision, const
   return MotionPlanner{collision, config};
 }
 
-/// Start and goals that cannot do; `usable` becomes the goals that can, the nearest first.
+/// Refuses unusable starts and goals; `usable` receives the usable goals, nearest first.
 std::optional<PlanOutcome> MotionPlanner::refuse(const Configuration& start, std::span<const Configuration> goals,
                                                  std::vector<std::size_t>& usable, const ObstacleMap& obstacles) const {
   const ArmModel& arm = collision_.arm();
@@ -133,7 +133,7 @@ Result<PlanOutcome> MotionPlanner::plan(const Configuration& start, std::span<co
 }
 
 bool MotionPlanner::piece_is_free(const Trajectory::Piece& piece, const ObstacleMap& obstacles) const {
-  // Speeds change linearly: each joint is fastest at one of the piece's ends, or of a part's.
+  // Speeds change linearly, so each joint is fastest at one of the ends of the piece, or of a part of it.
   const double step_m = collision_.config().max_step_m;
   const Configuration still = Configuration::Zero(piece.q.size());
   const auto fastest = [&](double from_s, double to_s) -> Configuration {

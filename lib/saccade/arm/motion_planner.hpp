@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// MotionPlanner: collision-free motions of an arm to the best of several configurations; parametrise: a path with its
-// times, within the limits of speed and acceleration.
+// MotionPlanner: collision-free motions of an arm to the best of several configurations. parametrise: timing of a path
+// within the limits of speed and acceleration.
 
 #include <cstdint>
 #include <functional>
@@ -19,60 +19,61 @@
 namespace saccade {
 
 struct MotionPlannerConfig {
-  std::string planner{"RRTConnect"};  ///< one of planner_names(), as OMPL calls it
-  /// Straight motions that are checked at most, first those to the goals, then a search's: the effort after which there
-  /// is no path, the same on every machine. Planners look at it once a round, so a few more may be checked.
+  std::string planner{"RRTConnect"};  ///< one of planner_names(), named as in OMPL
+  /// Limit of checked straight motions, first those to the goals, then a search's. This effort is equal on every
+  /// machine; after it there is no path. Planners test it once per round, so slightly more may be checked.
   int max_motions{5000};
-  double budget_s{2.0};  ///< wall time of a search at most; where it runs out first, the result depends on the machine
-  int shortcut_tries{60};  ///< chords across a found path that are tried in a row without gain
+  double budget_s{2.0};    ///< limit of a search's wall time; if it ends a search, the result depends on the machine
+  int shortcut_tries{60};  ///< consecutive failed attempts to shorten a found path by chords
   std::uint64_t seed{1};
 
   [[nodiscard]] Status validate() const;
 };
 
-/// Planners of OMPL that stop with the first path and depend on the seed alone.
+/// Returns OMPL's planners that stop with the first path and depend on the seed alone.
 [[nodiscard]] std::vector<std::string> planner_names();
 
 struct MotionPlan {
-  std::size_t goal{0};  ///< index of the configuration that is gone to
-  JointPath path;       ///< straight lines between configurations, free all along
+  std::size_t goal{0};  ///< index of the configuration reached
+  JointPath path;       ///< straight lines between configurations, free of collision
   Trajectory trajectory;
 };
 
-/// What planning came to.
+/// Result of planning.
 struct PlanOutcome {
   std::optional<MotionPlan> plan;
   std::optional<Refusal>
-      refusal;      ///< where there is no plan: start_in_collision, outside_limits, goal_in_collision, no_path
+      refusal;      ///< set where there is no plan: start_in_collision, outside_limits, goal_in_collision, no_path
   std::string why;  ///< one sentence, for people
-  int motions{0};   ///< checked: those to the goals and the search's
+  int motions{0};   ///< checked motions: those to the goals and the search's
   double search_ms{0.0};
-  double shortcut_ms{0.0};  ///< with the times along the path
+  double shortcut_ms{0.0};  ///< includes timing the path
 };
 
-/// The straight motion to the nearest goal that has one (nearest in seconds), else a path by sampling (OMPL), from
-/// which corners are cut as long as that saves time. Every motion is free by ArmCollision: at configurations between
-/// which no point of the arm moves farther than max_step_m, or than what is free around it; in between it could graze a
-/// corner by half a step less what the balls exceed the links. One seed gives one plan, whatever was planned before and
-/// whoever else plans. Immutable; safe for concurrent use. OMPL's messages are silenced while it plans, and the seed of
-/// its generators is set.
+/// Planner of motions. It takes the straight motion to the nearest goal that has one (nearest in seconds), otherwise a
+/// path by sampling (OMPL), from which corners are cut as long as that saves time. Every motion is free by
+/// ArmCollision: at configurations between which no point of the arm moves farther than max_step_m, or than the free
+/// space around it. Between them it could graze a corner by at most half a step minus the balls' excess over the links.
+/// A seed gives one plan, independent of earlier and concurrent planning. Immutable; safe for concurrent use. While it
+/// plans, OMPL's messages are silenced, and the seed of its generators is set.
 class MotionPlanner {
  public:
-  /// invalid_argument for a bad configuration, with the known names for an unknown planner.
+  /// Answers invalid_argument for a bad configuration, with the known names for an unknown planner.
   [[nodiscard]] static Result<MotionPlanner> create(const ArmCollision& collision,
                                                     const MotionPlannerConfig& config = {});
 
-  /// Goals are configurations, one of which is wanted; the start may be 1e-6 beyond a limit. invalid_argument where one
-  /// has not the arm's number of joints, or there is none; everything else that can go wrong is a refusal. Microseconds
-  /// where the straight motion is free.
+  /// Plans a motion to one of the goals, which are configurations. The start may be up to 1e-6 beyond a limit. Answers
+  /// invalid_argument where a configuration has the wrong number of joints, or there is no goal; all other failures are
+  /// refusals. Microseconds where the straight motion is free.
   [[nodiscard]] Result<PlanOutcome> plan(const Configuration& start, std::span<const Configuration> goals,
                                          const ObstacleMap& obstacles) const;
 
-  /// The straight motion alone; no_path where it is not free.
+  /// Plans the straight motion only; no_path where it is not free.
   [[nodiscard]] Result<PlanOutcome> plan_straight(const Configuration& start, std::span<const Configuration> goals,
                                                   const ObstacleMap& obstacles) const;
 
-  /// Whether the arm is free all along, by steps in which no point of it moves farther than max_step_m.
+  /// Tells whether the whole trajectory is free, checked in steps in which no point of the arm moves farther than
+  /// max_step_m.
   [[nodiscard]] bool is_free(const Trajectory& trajectory, const ObstacleMap& obstacles) const;
 
   [[nodiscard]] const ArmCollision& collision() const { return collision_; }
@@ -89,18 +90,18 @@ class MotionPlanner {
   MotionPlannerConfig config_;
 };
 
-/// Whether the arm is free all along a piece of a trajectory.
+/// Tells whether the arm is free along a whole piece of a trajectory.
 using PieceIsFree = std::function<bool(const Trajectory::Piece& piece)>;
 
-/// On every straight line all joints start, cruise and brake together, the slowest at its limit. At an inner
-/// configuration, where `is_free` says that a parabola which cuts the corner is free, the arm turns without stopping;
-/// elsewhere, and with no `is_free`, it stops there. A parabola takes no more than half of the lines beside it, both
-/// together are never slower than stopping. Configurations within 1e-12 of the one before are passed over. The last
-/// configuration is met to rounding.
-/// O(configurations) and as many calls of is_free, or a few times as many.
+/// Times a path. On every straight line all joints start, cruise and brake together, the slowest at its limit. At an
+/// inner configuration the arm follows a parabola that cuts the corner without stopping, if `is_free` accepts it;
+/// otherwise, and without is_free, it stops there. A parabola takes at most half of each adjacent line, and is never
+/// slower than stopping. Configurations within 1e-12 of the previous one are skipped. The last configuration is reached
+/// up to rounding.
+/// O(configurations) and about as many calls of is_free, or a few times more.
 [[nodiscard]] Trajectory parametrise(const ArmModel& arm, const JointPath& path, const PieceIsFree& is_free = {});
 
-/// Seconds of parametrise without is_free: every line from rest to rest. O(configurations)
+/// Returns the seconds of parametrise without is_free: every line from rest to rest. O(configurations)
 [[nodiscard]] double rest_to_rest_s(const ArmModel& arm, const Configuration& from, const Configuration& to);
 [[nodiscard]] double rest_to_rest_s(const ArmModel& arm, const JointPath& path);
 

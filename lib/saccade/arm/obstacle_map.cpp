@@ -14,25 +14,25 @@
 namespace saccade {
 namespace {
 
-/// Above the rounding of what is computed in double precision, in cells.
+/// Slack above the rounding of double precision, in cells.
 constexpr double kSlack_cells{1e-9};
-/// Above the rounding of the stored distances, in half cells.
+/// Slack above the rounding of the stored distances, in half cells.
 constexpr double kFieldSlack{1e-4};
 
 Error invalid(const std::string& what) { return {Errc::invalid_argument, what, "obstacle map"}; }
 
 double squared(double x) { return x * x; }
 
-/// How far a coordinate lies beyond [lo, lo + 1].
+/// Returns the distance of a coordinate from [lo, lo + 1].
 double gap(double at, double lo) { return std::max({lo - at, at - lo - 1.0, 0.0}); }
 
-/// The cells from `lo` to `hi` that exist, first and last.
+/// Returns the first and last existing cell from `lo` to `hi`.
 std::pair<std::int32_t, std::int32_t> range_of_cells(double lo, double hi, std::int32_t size) {
   return {static_cast<std::int32_t>(std::clamp(std::floor(lo), 0.0, 1.0 * size)),
           static_cast<std::int32_t>(std::clamp(std::floor(hi), -1.0, size - 1.0))};
 }
 
-/// Whether one of the bits from first to last is set.
+/// Tells whether one of the bits from first to last is set.
 bool any_set(const std::uint64_t* row, std::int32_t first, std::int32_t last) {
   const std::uint64_t from_first = ~std::uint64_t{0} << (first % 64);
   const std::uint64_t to_last = ~std::uint64_t{0} >> (63 - last % 64);
@@ -46,7 +46,7 @@ bool any_set(const std::uint64_t* row, std::int32_t first, std::int32_t last) {
   return (row[end] & to_last) != 0;
 }
 
-/// The spheres from one of them on.
+/// Returns the spheres from one of them on.
 obstacle::SphereArrays from(const SphereSpans& spheres, std::size_t first) {
   return {spheres.x_m.data() + first, spheres.y_m.data() + first, spheres.z_m.data() + first,
           spheres.radius_m.data() + first};
@@ -91,7 +91,7 @@ ObstacleMap::ObstacleMap(const TsdfConfig& map, ObstacleConfig config, ObstacleC
       field_{ObstacleField{*cells_, reach_cells, config_.fixtures, executor}},
       origin_{cells_->bounds_of(cells_->box().lo).min},
       half_cells_per_m_{2.0 / cells_->cell_edge_m()} {
-  // A float's rounding is 6e-8 of it; the kernel adds a few.
+  // A float's relative rounding is 6e-8; the kernel adds a little.
   const double largest = half_cells_per_m_ * (origin_.cwiseAbs().maxCoeff() +
                                               (cells_->bounds_of(cells_->box().hi).min - origin_).maxCoeff());
   batch_slack_ = static_cast<float>(1e-3 + 1e-6 * largest);
@@ -137,7 +137,7 @@ bool ObstacleMap::clear(const Eigen::Vector3d& center_world, double radius_m) co
   if (left < 0.0 || distance > at.from_centre + std::sqrt(left)) {
     return at.outside_squared == 0.0 || !touches_fixture(center_world, radius);
   }
-  // A distance from a fixture was rounded down by less than one in the square.
+  // A squared distance from a fixture was rounded down by less than one.
   const bool within_reach = distance < field_->reach() && at.outside_squared == 0.0;
   if (within_reach && std::sqrt(squared(distance) + 1.0) + at.from_centre < reach - 2.0 * kFieldSlack) return false;
   return !touches_cell(center_world, radius) && !touches_fixture(center_world, radius);
@@ -235,7 +235,7 @@ double ObstacleMap::distance_m(const Eigen::Vector3d& p_world) const {
   const double edge_m = cells_->cell_edge_m();
   double best_m = fixture_distance_m(p_world);
   if (at.outside_squared == 0.0 && distance >= field_->reach() + at.from_centre) return best_m;
-  if (distance < field_->reach()) {  // the nearest cell or fixture is no farther than by way of the centre
+  if (distance < field_->reach()) {  // the nearest cell or fixture is at most as far as through the centre
     const double half_cells = std::sqrt(squared(distance) + 1.0) + at.from_centre + std::sqrt(at.outside_squared);
     best_m = std::min(best_m, half_cells / half_cells_per_m_ + kFieldSlack * edge_m);
   }

@@ -5,22 +5,22 @@
 #include <utility>
 
 #include "saccade/arm/arm_silhouette.hpp"
-#include "saccade/arm/internal/driven_way.hpp"
+#include "saccade/arm/internal/executed_path.hpp"
 #include "saccade/arm/internal/swept_cells.hpp"
 #include "saccade/arm/motion_planner.hpp"
 
 namespace saccade {
 namespace {
 
-/// Expects one configuration at least.
+/// Returns the nearest configuration. Expects at least one.
 const Configuration& nearest(const ArmModel& arm, const Configuration& from, const std::vector<Configuration>& to) {
   return *std::min_element(to.begin(), to.end(), [&](const Configuration& a, const Configuration& b) {
     return rest_to_rest_s(arm, from, a) < rest_to_rest_s(arm, from, b);
   });
 }
 
-/// Keeps the configurations of one pose that are the nearest in seconds. A pose that leaves a value open has hundreds,
-/// samples of a continuum, and a planner tries the straight motion to each.
+/// Keeps the configurations of one pose that are nearest in seconds. A pose with a free value has hundreds, samples of
+/// a continuum, and a planner tries the straight motion to each.
 void keep_nearest(const ArmModel& arm, const Configuration& from, std::vector<Configuration>& of_pose) {
   constexpr std::size_t kMost{32};
   if (of_pose.size() <= kMost) return;
@@ -32,7 +32,7 @@ void keep_nearest(const ArmModel& arm, const Configuration& from, std::vector<Co
   of_pose = std::move(kept);
 }
 
-/// The configuration that config asks for; touching is not looked at.
+/// Returns the start configuration that config selects, regardless of collisions.
 Configuration choose_start(const PlannedArmConfig& config, const Reachability& reachability,
                            const ObstacleMap& fixtures) {
   if (config.start) return *config.start;
@@ -99,7 +99,7 @@ PlannedArm::PlannedArm(Parts parts, std::shared_ptr<JointController> joints)
       obstacles_{std::move(parts.obstacles)},
       stand_by_{parts.start},
       q_{parts.start},
-      way_{DrivenWay{}} {}
+      way_{ExecutedPath{}} {}
 
 Status PlannedArm::place(const Configuration& q) {
   SACCADE_CHECK(check_configuration(arm(), q));
@@ -113,16 +113,16 @@ Status PlannedArm::follow(const TsdfSnapshot& map, const Executor& executor) {
   SACCADE_TRY([[maybe_unused]] const ObstacleUpdate update, obstacles_.update(map, executor));
   const ArmCollision& collision = reachability_.collision();
   retreat_.reset();
-  if (collision.contact(q_, obstacles_)) retreat_ = way_->back_from(q_, collision, obstacles_);
+  if (collision.contact(q_, obstacles_)) retreat_ = way_->retreat_from(q_, collision, obstacles_);
   return {};
 }
 
-Result<std::vector<Box>> PlannedArm::swept_by(std::span<const Pose> T_world_camera) {
+Result<std::vector<Box>> PlannedArm::swept_volume(std::span<const Pose> T_world_camera) {
   SweptCells cells{reachability_.collision(), obstacles_};
   Configuration at = q_;
   cells.add(at);
   for (const Pose& pose : T_world_camera) {
-    SACCADE_TRY(const PlannedMotion planned, plan_among(std::span{&pose, 1}, Way::any, at, fixtures_));
+    SACCADE_TRY(const PlannedMotion planned, plan_among(std::span{&pose, 1}, MotionKind::planned, at, fixtures_));
     if (!planned.motion) continue;
     cells.add(planned.motion->trajectory);
     at = planned.motion->trajectory.end();
@@ -146,16 +146,16 @@ Result<OwnBody> PlannedArm::own_body(const PinholeCamera& sensor) const {
   }};
 }
 
-Result<PlannedMotion> PlannedArm::plan(std::span<const Pose> T_world_camera, Way way) {
-  if (way == Way::straight) return plan_among(T_world_camera, way, q_, obstacles_);
+Result<PlannedMotion> PlannedArm::plan(std::span<const Pose> T_world_camera, MotionKind way) {
+  if (way == MotionKind::direct) return plan_among(T_world_camera, way, q_, obstacles_);
   SACCADE_TRY(PlannedMotion planned, plan_among(T_world_camera, way, planned_from(), obstacles_));
   if (planned.motion) begin_with_retreat(*planned.motion);
   return planned;
 }
 
-std::vector<CameraSample> PlannedArm::camera_on_way(const Motion& motion, double every_s) const {
+std::vector<MotionSample> PlannedArm::camera_on_way(const Motion& motion, double every_s) const {
   SACCADE_EXPECTS(every_s > 0.0);
-  std::vector<CameraSample> samples;
+  std::vector<MotionSample> samples;
   for (double t_s = every_s; t_s < motion.trajectory.duration_s(); t_s += every_s) {
     samples.push_back({t_s, camera_pose(arm(), motion.trajectory.at(t_s).q)});
   }
@@ -193,23 +193,23 @@ void PlannedArm::begin_with_retreat(Motion& motion) const {
   motion.retreat_s = retreat_->duration_s();
 }
 
-Result<PlannedMotion> PlannedArm::plan_among(std::span<const Pose> T_world_camera, Way way, const Configuration& from,
-                                             const ObstacleMap& obstacles) const {
+Result<PlannedMotion> PlannedArm::plan_among(std::span<const Pose> T_world_camera, MotionKind way,
+                                             const Configuration& from, const ObstacleMap& obstacles) const {
   SACCADE_EXPECTS(!T_world_camera.empty());
   std::vector<Configuration> goals;
   std::vector<std::size_t> pose_of;
   std::optional<Refusal> refusal;
   for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
     PoseGoals at_pose = reachability_.goals(T_world_camera[i], from, obstacles);
-    // Of several poses, the reason of the one that came farthest.
+    // Keeps, among several poses, the reason of the one that passed the most tests.
     if (at_pose.refusal && (!refusal || *at_pose.refusal > *refusal)) refusal = at_pose.refusal;
     if (reachability_.ik().redundancy() != IkRedundancy::none) keep_nearest(arm(), from, at_pose.free);
     pose_of.insert(pose_of.end(), at_pose.free.size(), i);
     std::move(at_pose.free.begin(), at_pose.free.end(), std::back_inserter(goals));
   }
   if (goals.empty()) return PlannedMotion{std::nullopt, refusal, ""};
-  SACCADE_TRY(PlanOutcome outcome, way == Way::straight ? planner_.plan_straight(from, goals, obstacles)
-                                                        : planner_.plan(from, goals, obstacles));
+  SACCADE_TRY(PlanOutcome outcome, way == MotionKind::direct ? planner_.plan_straight(from, goals, obstacles)
+                                                             : planner_.plan(from, goals, obstacles));
   if (!outcome.plan) return PlannedMotion{std::nullopt, outcome.refusal, std::move(outcome.why)};
   const std::size_t pose = pose_of[outcome.plan->goal];
   return PlannedMotion{Motion{pose, T_world_camera[pose], std::move(outcome.plan->trajectory)}, std::nullopt, ""};
@@ -221,7 +221,7 @@ Status PlannedArm::check_start(const Motion& motion) const {
   return Error{Errc::invalid_argument, "the motion does not begin where the arm stands", arm().name()};
 }
 
-Result<std::optional<Arrival>> PlannedArm::execute(const Motion& motion, const OnWay& on_way) {
+Result<std::optional<Arrival>> PlannedArm::execute(const Motion& motion, const MotionObserver& on_way) {
   SACCADE_CHECK(check_start(motion));
   JointPath driven{q_};
   const JointObserver observer = [&](const JointSample& sample) {

@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-/// Poses that are tested together: enough for all threads, few enough to stop soon.
+/// Poses tested together: enough for all threads, few enough to stop soon.
 constexpr std::size_t kPosesAtOnce{8192};
 constexpr std::size_t kNumericPosesAtOnce{256};
 
@@ -32,7 +32,7 @@ std::vector<ReachPoint> grid_of(const ReachMapConfig& config, std::size_t column
   return points;
 }
 
-/// Where the answers about a sphere's poses are counted: the index order of view_sphere.
+/// Position of a pose within a sphere's results: the index order of view_sphere.
 struct SphereOrder {
   std::size_t rolls;
   std::size_t longitudes;
@@ -85,7 +85,7 @@ double ReachCounts::share() const {
 
 Status ReachMapConfig::validate() const {
   if (!saccade::validate(Region{workspace})) return bad_map("the workspace is empty");
-  if (!std::isfinite(height_m)) return bad_map("the height is no number");
+  if (!std::isfinite(height_m)) return bad_map("the height is not a number");
   if (!(step_m > 0.0) || !std::isfinite(step_m)) return bad_map("the step must be positive");
   const Eigen::Vector3d size = workspace.max - workspace.min;
   if (step_m > std::min(size.x(), size.y()) * (1.0 + 1e-9)) {

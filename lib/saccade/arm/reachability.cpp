@@ -16,7 +16,8 @@ Result<ArmModel> without_limits(const ArmModel& arm) {
   return ArmModel::create(std::move(description));
 }
 
-/// Whether the contact is one of every configuration that has the camera at the same pose: there the last link stands.
+/// Tells whether the contact occurs in every configuration with the camera at this pose: it involves only the last
+/// link.
 bool is_of_pose(const ArmModel& arm, const Contact& contact) {
   return contact.link == arm.dof() && !contact.other_link;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reachability: which camera poses an arm can take without touching anything, before any path is looked for.
+// Reachability: the camera poses that an arm can take without collision, tested before any path is planned.
 
 #include <optional>
 #include <span>
@@ -13,26 +13,26 @@
 
 namespace saccade {
 
-/// What stands at a pose: the configurations that have the camera there and touch nothing, or why there is none.
+/// Configurations without collision that have the camera at a pose, or the reason why there is none.
 struct PoseGoals {
   std::vector<Configuration> free;
   std::optional<Refusal> refusal;  ///< no_ik, outside_limits or goal_in_collision
 };
 
-/// Immutable, cheap to copy, safe for concurrent use.
+/// Reachability test. Immutable, cheap to copy, safe for concurrent use.
 class Reachability {
  public:
   /// Errors: those of InverseKinematics::create.
   [[nodiscard]] static Result<Reachability> create(const ArmCollision& collision, const IkConfig& config = {});
 
-  /// All of InverseKinematics::solve that are free. A pose that has no solution within the limits is asked about once
-  /// more without them, to tell outside_limits from no_ik.
+  /// Returns all free solutions of InverseKinematics::solve. A pose without a solution within the limits is solved once
+  /// more without them, to distinguish outside_limits from no_ik.
   [[nodiscard]] PoseGoals goals(const Pose& T_world_camera, const Configuration& reference,
                                 const ObstacleMap& obstacles) const;
 
-  /// For each pose the refusal of goals(), nullopt where it has a free configuration; looks at no more of them than it
-  /// takes. Some 2 to 10 µs at the median in closed form (bench/reachability.cpp). The thread count never changes the
-  /// result.
+  /// Returns for each pose the refusal of goals(), nullopt where it has a free configuration; examines no more
+  /// configurations than necessary. Some 2 to 10 µs at the median in closed form (bench/reachability.cpp). The thread
+  /// count never changes the result.
   [[nodiscard]] std::vector<std::optional<Refusal>> test(std::span<const Pose> T_world_camera,
                                                          const Configuration& reference, const ObstacleMap& obstacles,
                                                          const Executor& executor) const;
@@ -48,7 +48,7 @@ class Reachability {
 
   ArmCollision collision_;
   InverseKinematics ik_;
-  InverseKinematics boundless_;  ///< the same arm without limits of its turning joints
+  InverseKinematics boundless_;  ///< arm without limits of its turning joints
 };
 
 }  // namespace saccade

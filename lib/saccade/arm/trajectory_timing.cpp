@@ -9,14 +9,14 @@
 namespace saccade {
 namespace {
 
-/// Steps up to here, rad or m, are no lines: they would be gone through at infinite rates.
+/// Steps up to this length, rad or m, are not lines: their rates would be infinite.
 constexpr double kSame{1e-12};
 
 bool are_same(const Configuration& a, const Configuration& b) { return (b - a).lpNorm<Eigen::Infinity>() <= kSame; }
 
-/// A straight line of the path, gone through from share 0 to 1: what its joints allow.
+/// Straight line of the path, from share 0 to 1, with the rates that its joints allow.
 struct Line {
-  Configuration step;  ///< from its beginning to its end
+  Configuration step;  ///< from beginning to end
   double max_rate;     ///< shares per second
   double max_acceleration;
 };
@@ -32,7 +32,7 @@ Line line_between(const ArmModel& arm, const Configuration& from, const Configur
   return line;
 }
 
-/// Over a stretch of a line, `length` in shares: accelerate to a peak, cruise, brake.
+/// Speed profile over a stretch of a line, `length` in shares: accelerate to a peak, cruise, brake.
 struct Profile {
   double peak_rate;
   double accelerate_s;
@@ -48,23 +48,23 @@ Profile profile_of(const Line& line, double length, double rate_in, double rate_
   return {peak, (peak - rate_in) / a, std::max(0.0, length - spent) / peak, (peak - rate_out) / a};
 }
 
-/// How a corner is turned: a parabola from `before` shares ahead of it, on the line that ends here, to `after` shares
-/// behind it, on the next one. No duration: the arm stops in the corner.
+/// Turn at a corner: a parabola from `before` shares ahead of it, on the line that ends here, to `after` shares beyond
+/// it, on the next one. Without a duration the arm stops at the corner.
 struct Turn {
   double before{0.0};
   double after{0.0};
   double duration_s{0.0};
 
-  /// Rates of the two lines where the parabola meets them.
+  /// Rates on the two lines where the parabola meets them.
   [[nodiscard]] double rate_in() const { return duration_s > 0.0 ? 2.0 * before / duration_s : 0.0; }
   [[nodiscard]] double rate_out() const { return duration_s > 0.0 ? 2.0 * after / duration_s : 0.0; }
 };
 
-/// At `widest`, before and after are so many shares, or less where that line is the longer one: both lines meet the
-/// parabola at the same part of the speed that they allow. Narrower by a factor, the curve keeps its shape and its
+/// Returns the quickest turn. At most `widest` shares lie before and after, fewer on a longer line: both lines meet the
+/// parabola at an equal fraction of their allowed speeds. Narrowing it by a factor preserves the curve's shape and
 /// acceleration.
 Turn quickest_turn(const ArmModel& arm, const Line& in, const Line& out, double widest) {
-  constexpr double kLeast_s{1e-3};  // straight on there is nothing to turn
+  constexpr double kLeast_s{1e-3};  // a straight path needs no turn
   double duration_s = kLeast_s;
   for (int i = 0; i < arm.dof(); ++i) {
     const double change = std::fabs(out.max_rate * out.step[i] - in.max_rate * in.step[i]);
@@ -91,7 +91,7 @@ void slow_down(const std::vector<Line>& lines, std::vector<Turn>& turns) {
     const double length = 1.0 - turns[line].after - turns[line + 1].before;
     return std::sqrt(rate * rate + 2.0 * lines[line].max_acceleration * std::max(0.0, length));
   };
-  // turns[i] lies between lines[i − 1] and lines[i]; the first and the last are the rests at the ends.
+  // turns[i] lies between lines[i − 1] and lines[i]; the first and the last are at rest.
   for (std::size_t i = 1; i + 1 < turns.size(); ++i) {
     slow_to(turns[i], turns[i].rate_in(), reachable(i - 1, turns[i - 1].rate_out()));
   }
@@ -130,7 +130,7 @@ std::vector<Trajectory::Piece> pieces_of(const JointPath& path, const std::vecto
 }  // namespace
 
 Trajectory parametrise(const ArmModel& arm, const JointPath& path, const PieceIsFree& is_free) {
-  constexpr double kWidest{0.5};  // a turn takes no more than half of each line
+  constexpr double kWidest{0.5};  // a turn takes at most half of each line
   constexpr int kHalvings{5};
   JointPath corners;
   for (const Configuration& q : path) {

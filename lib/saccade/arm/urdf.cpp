@@ -2,14 +2,18 @@
 #include "saccade/arm/urdf.hpp"
 
 #include <algorithm>
+#include <cmath>
+#include <numbers>
 #include <optional>
 #include <set>
 #include <utility>
 
 #include "saccade/arm/internal/arm_chain.hpp"
+#include "saccade/arm/internal/urdf_bodies.hpp"
 #include "saccade/arm/internal/urdf_document.hpp"
 #include "saccade/arm/internal/urdf_tree.hpp"
-#include "saccade/io/clouds/any_mesh.hpp"
+#include "saccade/arm/internal/xacro.hpp"
+#include "saccade/core/length_limit.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
 
@@ -24,16 +28,20 @@ Error wrong(Errc code, const std::string& what, const std::string& where) { retu
 Eigen::Vector3d to_eigen(const urdf::Vector3& v) { return {v.x, v.y, v.z}; }
 
 constexpr std::size_t kMessageBytes{1000};
+constexpr double kLongestPart_m{20.0};
+constexpr double kShortestArm_m{0.01};
+constexpr double kMostTurn_rad{1000.0};
+constexpr double kUsualTurn_rad{8.0 * std::numbers::pi};  ///< four turns either way; less than 30°, taken for radians
+constexpr double kLongestXacro_s{86400.0};
 
-/// Makes the description, walking down the tree.
+/// Builder of the description, which walks down the tree.
 class ArmBuilder {
  public:
   ArmBuilder(const UrdfDocument& document, const fs::path& folder, const UrdfConfig& config)
-      : document_{document}, tree_{*document.model}, folder_{folder}, config_{config} {}
+      : document_{document}, tree_{*document.model}, bodies_{folder, config}, config_{config} {}
 
   Result<UrdfArm> build() {
     SACCADE_TRY(chain_, find_arm_chain(tree_, config_));
-    notes_ = chain_.choices;
     for (const JointPtr& joint : chain_.joints) on_chain_.insert(joint->name);
     arm_.name = document_.model->name_;
     arm_.links.push_back({chain_.base, {}});
@@ -46,20 +54,37 @@ class ArmBuilder {
       return wrong(Errc::invalid_argument, "no joint moves between " + chain_.base + " and " + chain_.tip, "");
     SACCADE_CHECK(walk(chain_.base, 0, Pose::Identity(), true));
     SACCADE_CHECK(place_mounts());
+    collect_choices();
     auto arm = ArmModel::create(std::move(arm_));
     // Limits and axes came from the file.
     if (!arm) return Error{Errc::corrupt_data, arm.error().message, arm.error().context};
-    return UrdfArm{*std::move(arm), std::move(notes_), std::move(chain_.choices)};
+    return UrdfArm{*std::move(arm), all_notes(), std::move(chain_.choices)};
   }
 
  private:
+  /// Adds what is to be said about lengths, limits and bodies to the choices.
+  void collect_choices() {
+    if (reach_m_ > 0.0 && reach_m_ < kShortestArm_m)
+      doubts_.push_back("the joints lie within " + short_number(1e3 * reach_m_) + " mm; URDFs are in metres");
+    chain_.choices.insert(chain_.choices.end(), doubts_.begin(), doubts_.end());
+    const std::vector<std::string> remarks = bodies_.remarks();
+    chain_.choices.insert(chain_.choices.end(), remarks.begin(), remarks.end());
+  }
+
+  [[nodiscard]] std::vector<std::string> all_notes() const {
+    std::vector<std::string> all = chain_.choices;
+    all.insert(all.end(), notes_.begin(), notes_.end());
+    return all;
+  }
+
   struct Place {
-    std::size_t link;  ///< of the arm
+    std::size_t link;  ///< link of the arm
     Pose T_link_frame;
-    bool rigid;  ///< no joint stands still between
+    bool rigid;  ///< no held joint between
   };
 
-  /// Whether a joint of the chain is one of the arm's. A gripper's that follows another stands still with that one.
+  /// Tells whether a joint of the chain belongs to the arm. A gripper's joint that follows another stands still with
+  /// that one.
   [[nodiscard]] bool drives(const urdf::Joint& joint) const {
     return moves(joint) && (joint.mimic == nullptr || chain_.gripper.count(joint.name) == 0);
   }
@@ -75,16 +100,19 @@ class ArmBuilder {
       default: return wrong(Errc::unsupported, "only revolute, continuous and prismatic joints are handled", where);
     }
     if (joint.mimic != nullptr)
-      return wrong(Errc::unsupported,
-                   "follows joint " + joint.mimic->joint_name +
-                       ", as in a parallel linkage; that is handled behind the arm and beside it, not on its chain",
-                   where);
+      return wrong(
+          Errc::unsupported,
+          "follows joint " + joint.mimic->joint_name +
+              ", as in a parallel linkage; that is handled behind the arm and beside it, not on its chain: --tip "
+              "with a link before it leaves it out",
+          where);
     made.axis_joint = to_eigen(joint.axis);
     if (joint.limits != nullptr) {
       made.limits = {joint.limits->lower, joint.limits->upper, joint.limits->velocity, 0.0};
     } else if (made.kind != JointKind::continuous) {
       return wrong(Errc::corrupt_data, "has no limits", where);
     }
+    if (made.kind != JointKind::continuous) SACCADE_CHECK(check_range(made, where));
     if (made.kind == JointKind::continuous && made.limits.speed == 0.0) {
       made.limits.speed = config_.default_speed;
       notes_.push_back(where + " has no speed limit: " + short_number(config_.default_speed) + " rad/s is taken");
@@ -98,13 +126,41 @@ class ArmBuilder {
     return {};
   }
 
-  /// Bodies of a link and of everything below it.
+  /// Compares a joint's limits with those of arms.
+  Status check_range(const ArmJoint& joint, const std::string& where) {
+    const double most = std::max(std::abs(joint.limits.lower), std::abs(joint.limits.upper));
+    const bool slides = joint.kind == JointKind::prismatic;
+    if (!(most <= (slides ? kMaxLength_m : kMostTurn_rad)))
+      return wrong(Errc::corrupt_data,
+                   slides ? "its limits are beyond 1 km"
+                          : "its limits are beyond 1000 rad; a joint that turns without end is of the type continuous",
+                   where);
+    const std::string limits = short_number(joint.limits.lower) + " to " + short_number(joint.limits.upper);
+    if (!slides && most > kUsualTurn_rad)
+      doubts_.push_back(where + " turns from " + limits + "; URDFs are in radians: are these degrees?");
+    if (slides && most > kLongestPart_m)
+      doubts_.push_back(where + " slides from " + limits + "; URDFs are in metres: are these millimetres?");
+    return {};
+  }
+
+  /// Doubts origins between the arm's joints that are longer than an arm's; the first one may place the arm in a hall.
+  void check_origin(const urdf::Joint& joint, std::size_t link, const Pose& T_parent_joint) {
+    const double length_m = T_parent_joint.translation().norm();
+    if (link == 0) return;
+    reach_m_ += length_m;
+    if (length_m > kLongestPart_m)
+      doubts_.push_back("joint " + joint.name + " lies " + short_number(length_m) +
+                        " m from the joint before it; URDFs are in metres: are these millimetres?");
+  }
+
+  /// Adds the bodies of a link and of everything below it.
   Status walk(const std::string& name, std::size_t link, const Pose& T_link_frame, bool rigid) {
     places_[name] = {link, T_link_frame, rigid};
-    SACCADE_CHECK(add_bodies(*tree_.link(name), link, T_link_frame));
+    SACCADE_CHECK(bodies_.add(*tree_.link(name), T_link_frame, arm_.links[link].bodies));
     for (const JointPtr& joint : tree_.below(name)) {
       SACCADE_TRY(const Pose T_parent_joint, pose_of(joint->parent_to_joint_origin_transform, "joint " + joint->name));
       const Pose T_link_joint = T_link_frame * T_parent_joint;
+      check_origin(*joint, link, T_parent_joint);
       const bool chain = on_chain_.count(joint->name) > 0;
       if (chain && drives(*joint)) {
         arm_.joints[link].T_parent_joint = T_link_joint;
@@ -124,7 +180,7 @@ class ArmBuilder {
     return tree_.path(joint.child_link_name, chain_.camera).has_value();
   }
 
-  /// A joint that the arm does not move.
+  /// Returns the transform of a joint that the arm does not move.
   Pose standing_still(const urdf::Joint& joint) {
     Pose T = Pose::Identity();
     if (!moves(joint)) return T;
@@ -150,57 +206,6 @@ class ArmBuilder {
     return on_chain_.count(master->name) > 0 ? follows + ", but is not moved with it here" : follows;
   }
 
-  Status add_bodies(const urdf::Link& link, std::size_t at, const Pose& T_link_frame) {
-    std::vector<urdf::CollisionSharedPtr> bodies = link.collision_array;
-    if (bodies.empty() && link.collision != nullptr) bodies.push_back(link.collision);
-    if (bodies.empty() && (link.visual != nullptr || !link.visual_array.empty()))
-      notes_.push_back("link " + link.name + " can be seen but has no collision body");
-    for (const urdf::CollisionSharedPtr& collision : bodies) {
-      const std::string where = "link " + link.name;
-      if (collision == nullptr || collision->geometry == nullptr)
-        return wrong(Errc::corrupt_data, "has a collision body without geometry", where);
-      SACCADE_TRY(const Pose T_frame_body, pose_of(collision->origin, where));
-      CollisionBody body{link.name, T_link_frame * T_frame_body, {}};
-      SACCADE_CHECK(shape_of(*collision->geometry, where, body));
-      arm_.links[at].bodies.push_back(std::move(body));
-    }
-    return {};
-  }
-
-  Status shape_of(const urdf::Geometry& geometry, const std::string& where, CollisionBody& body) const {
-    switch (geometry.type) {
-      case urdf::Geometry::SPHERE:
-        body.shape = SphereBody{static_cast<const urdf::Sphere&>(geometry).radius};
-        return {};
-      case urdf::Geometry::BOX: body.shape = BoxBody{to_eigen(static_cast<const urdf::Box&>(geometry).dim)}; return {};
-      case urdf::Geometry::CYLINDER: {
-        const auto& cylinder = static_cast<const urdf::Cylinder&>(geometry);
-        body.shape = CylinderBody{cylinder.radius, cylinder.length};
-        return {};
-      }
-      case urdf::Geometry::MESH: return mesh_of(static_cast<const urdf::Mesh&>(geometry), where, body);
-    }
-    return wrong(Errc::unsupported, "has a collision body of an unknown kind", where);
-  }
-
-  Status mesh_of(const urdf::Mesh& mesh, const std::string& where, CollisionBody& body) const {
-    const auto at_link = [&where](const Error& e) { return Error{e.code, e.message, where + ", " + e.context}; };
-    const Eigen::Vector3f scale = to_eigen(mesh.scale).cast<float>();
-    if (!scale.allFinite() || scale.cwiseAbs().minCoeff() == 0.0F)
-      return wrong(Errc::corrupt_data, "its mesh is scaled by zero or what is not finite", where);
-    const auto path = resolve_mesh(mesh.filename, folder_, config_.packages);
-    if (!path) return at_link(path.error());
-    auto triangles = read_any_mesh(*path);
-    if (!triangles) return at_link(triangles.error());
-    for (Eigen::Vector3f& vertex : triangles->vertices) vertex = vertex.cwiseProduct(scale);
-    if (scale.prod() < 0.0F) {  // mirrored
-      for (auto& [a, b, c] : triangles->triangles) std::swap(b, c);
-    }
-    triangles->normals.clear();
-    body.shape = MeshBody{*std::move(triangles)};
-    return {};
-  }
-
   Status place_mounts() {
     const Place& flange = places_.at(chain_.tip);
     const auto camera = places_.find(chain_.camera);
@@ -221,23 +226,18 @@ class ArmBuilder {
     return {};
   }
 
-  [[nodiscard]] static std::string short_number(double value) {
-    std::string text = std::to_string(value);
-    text.erase(text.find_last_not_of('0') + 1);
-    if (text.back() == '.') text.pop_back();
-    return text;
-  }
-
   const UrdfDocument& document_;
   UrdfTree tree_;
-  fs::path folder_;
+  UrdfBodies bodies_;
   const UrdfConfig& config_;
   ArmChain chain_;
   std::set<std::string> on_chain_;
   std::map<std::string, Place> places_;
   int without_acceleration_{0};
+  double reach_m_{0.0};  ///< length of all origins behind the first joint
   ArmDescription arm_;
   std::vector<std::string> notes_;
+  std::vector<std::string> doubts_;  ///< about lengths and limits
 };
 
 }  // namespace
@@ -245,16 +245,25 @@ class ArmBuilder {
 Result<UrdfArm> parse_urdf(const std::string& urdf, const fs::path& folder, const UrdfConfig& config) {
   if (!(config.default_speed > 0.0) || !(config.acceleration_time_s > 0.0))
     return Error{Errc::invalid_argument, "the default speed and the time to reach a speed must be positive", ""};
+  if (has_xacro_elements(urdf))
+    return Error{Errc::unsupported, "has elements of xacro, which expands it: run " + xacro_command({}), ""};
   const auto document = parse_urdf_document(urdf);
   auto arm = document ? ArmBuilder{*document, folder, config}.build() : Result<UrdfArm>{document.error()};
   if (arm) return arm;
-  // Names in the file may be anything.
+  // Names in the file may hold any characters.
   return Error{arm.error().code, readable(arm.error().message, kMessageBytes),
                readable(arm.error().context, kMessageBytes)};
 }
 
 Result<UrdfArm> read_urdf(const fs::path& path, const UrdfConfig& config) {
-  SACCADE_TRY(const std::string urdf, read_text_file(path));
+  SACCADE_TRY(std::string urdf, read_text_file(path));
+  if (in_small_letters(path.extension().string()) == ".xacro" || has_xacro_elements(urdf)) {
+    if (!(config.xacro_timeout_s > 0.0 && config.xacro_timeout_s <= kLongestXacro_s))
+      return Error{Errc::invalid_argument, "the time limit of xacro must be positive and at most a day", ""};
+    auto expanded = run_xacro(path, config);
+    if (!expanded) return in_file(expanded.error(), path);
+    urdf = *std::move(expanded);
+  }
   auto arm = parse_urdf(urdf, path.parent_path(), config);
   if (!arm) return in_file(arm.error(), path);
   return arm;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// AttentionSource: where to look; WholeWorkspace and RegionsInTurn, which do not depend on what was seen;
-// PlanningContext: what attention, view generators and gains may see while a view is chosen.
+// AttentionSource: regions to look at. WholeWorkspace and RegionsInTurn: sources that do not depend on what was seen.
+// PlanningContext: the input of attention, view generators and gains while a view is chosen.
 
 #include <cstddef>
 #include <functional>
@@ -21,43 +21,43 @@ namespace saccade {
 
 struct ExpectedSurface;
 
-/// A view that was taken, and the share of its promise that it kept.
+/// View that was taken, and the share of its promise that it kept.
 struct CheckedView {
   Pose T_world_camera{Pose::Identity()};
-  double kept{1.0};  ///< in [0, 1]
+  double kept_share{1.0};  ///< in [0, 1]
 };
 
 struct PlanningContext {
   const TsdfSnapshot& map;
   const Executor& executor;
-  PhaseTimes* times{nullptr};  ///< nullptr: times are not taken
-  std::size_t region{0};       ///< RegionOfInterest::index of the region that is looked at
+  PhaseTimes* times{nullptr};  ///< nullptr: times are not measured
+  std::size_t region{0};       ///< RegionOfInterest::index of the region being explored
   std::size_t views_taken{0};  ///< views of that region so far
-  /// Whether the camera went to the pose, or tried to, for this region. Empty: to none.
+  /// Tells whether the camera went to the pose, or tried to, for this region. Empty: to none.
   std::function<bool(const Pose& T_world_camera)> attempted{};
-  std::span<const CheckedView> checked{};  ///< views of the run that promised something, whatever their region
-  /// What a look takes in, its tilts included; nullopt: not known, so that promises cannot be told.
+  std::span<const CheckedView> checked{};  ///< views of the run that had a promise, of any region
+  /// Field of view and range of a view, tilts included; nullopt: unknown, so promises cannot be computed.
   std::optional<PinholeCamera> sensor{};
-  /// The robot's own body in the picture of a sensor. Empty: there is none, or it is not known.
+  /// Renders the robot's own body in the image of a sensor. Empty: there is none, or it is unknown.
   std::function<Result<OwnBody>(const PinholeCamera& sensor)> own_body{};
-  /// Where parts of one choice leave what they expect of the map for each other; nullptr: each works it out.
+  /// Place where parts of one choice share the expected surface of the map; nullptr: each computes it.
   std::shared_ptr<const ExpectedSurface>* expected{nullptr};
 
   [[nodiscard]] bool was_attempted(const Pose& T_world_camera) const { return attempted && attempted(T_world_camera); }
 
-  /// PhaseTimes::measure, where there are times.
+  /// Calls PhaseTimes::measure, where there are times.
   template <class Work>
   decltype(auto) measure(Phase phase, const Work& work) const {
     return times != nullptr ? times->measure(phase, work) : work();
   }
 };
 
-/// Regions worth looking at. One caller at a time; what it returns depends on the context alone, so that a run can be
-/// resumed.
+/// Source of regions worth exploring. One caller at a time. Its result depends on the context alone, so that a run can
+/// be resumed.
 class AttentionSource {
  public:
   virtual ~AttentionSource() = default;
-  /// @return the most salient region first; none: nothing draws attention.
+  /// @return the regions, most salient first; empty where nothing draws attention.
   [[nodiscard]] virtual Result<std::vector<RegionOfInterest>> regions(const PlanningContext& context) = 0;
 };
 
@@ -68,7 +68,7 @@ class WholeWorkspace final : public AttentionSource {
   [[nodiscard]] Result<std::vector<RegionOfInterest>> regions(const PlanningContext& context) override;
 };
 
-/// Given regions one after the other: each is left when none of its views is worth taking, and not returned to.
+/// Given regions, one after the other. Each is left when none of its views is worth taking, and not visited again.
 class RegionsInTurn final : public AttentionSource {
  public:
   explicit RegionsInTurn(std::span<const RegionOfInterest> regions);

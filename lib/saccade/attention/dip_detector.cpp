@@ -14,12 +14,12 @@ namespace saccade {
 
 namespace {
 
-constexpr std::size_t kFewest{8};  // samples that a trajectory with an action has at least
+constexpr std::size_t kFewest{8};  // fewest samples of a trajectory with an action
 constexpr double kShortest_s{1e-6};
 constexpr int kRounds{3};             // mean speed and kernel width depend on each other
 constexpr double kFirstKernel{16.0};  // sampling intervals: wide enough for noise, narrow enough for actions
 
-/// The speed needs a kernel, and the kernel the speed. 0 where the hand does not move.
+/// Chooses the kernel iteratively, since speed and kernel depend on each other. 0 where the hand does not move.
 double choose_kernel_s(const std::vector<TimedPoint>& samples, const DipConfig& config, DipResult& result) {
   const double duration_s = samples.back().time_s - samples.front().time_s;
   const double sampling_s = interval_s(samples);

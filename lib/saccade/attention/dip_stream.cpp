@@ -15,15 +15,15 @@ namespace {
 constexpr std::size_t kMostSamples{256};
 constexpr std::size_t kMostDifferences{64};
 constexpr double kIntervalMemory{64.0};  // samples
-constexpr std::size_t kJudged{4};        // of the window, the sample that is checked for being an outlier
+constexpr std::size_t kJudged{4};        // index in the window of the sample tested as an outlier
 constexpr double kReach{3.2};            // kernel widths to where the kernel is cut off
 constexpr double kPast{2.5};             // kernel widths that must lie behind the first speed judged
-constexpr double kSignificant{3.0};      // velocity noises above which the mean speed takes note of a speed
+constexpr double kSignificant{3.0};      // multiple of the velocity noise above which a speed enters the mean
 constexpr double kStepsPerKernel{4.0};   // in gaps
-constexpr int kStepsAtEnd{32};           // of a gap
+constexpr int kStepsAtEnd{32};           // steps at each end of a gap
 
-/// Times after `from_s`, up to `to_s`, a quarter of a kernel width apart; of a long gap only those near its ends, since
-/// nothing is known of the rest.
+/// Returns times after `from_s`, up to `to_s`, a quarter of a kernel width apart. Of a long gap it returns only those
+/// near its ends, since nothing is known about the rest.
 std::vector<double> times_within(double from_s, double to_s, double kernel_s) {
   const double steps = std::max(1.0, std::ceil(kStepsPerKernel * (to_s - from_s) / kernel_s));
   const double step_s = steps > 2 * kStepsAtEnd ? kernel_s / kStepsPerKernel : (to_s - from_s) / steps;
@@ -153,7 +153,7 @@ std::vector<HandAction> DipStream::advance() {
   std::array<TimedPoint, kOutlierWindow> window{};
   std::copy(fresh_.begin(), fresh_.end(), window.begin());
   fresh_.pop_front();
-  // Of the first window, all samples up to the one that is checked are new.
+  // In the first window, all samples up to the tested one are new.
   for (std::size_t i = std::exchange(begun_, true) ? kJudged : 0; i <= kJudged; ++i) {
     if (is_outlier(window, i, noise_m_, config_.outlier_limit)) {
       ++outliers_;

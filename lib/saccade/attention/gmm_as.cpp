@@ -15,7 +15,7 @@
 namespace saccade {
 namespace {
 
-/// Seconds to mean sampling intervals after the start, and back.
+/// Conversion of seconds to mean sampling intervals after the start, and back.
 struct TimeScale {
   double start_s{0.0};
   double interval_s{1.0};
@@ -27,7 +27,7 @@ TimeScale time_scale(const HandTrajectory& trajectory) {
   return {trajectory.front().time_s, span_s / static_cast<double>(trajectory.size() - 1)};
 }
 
-/// Lines 1 to 4.
+/// Runs lines 1 to 4.
 std::vector<Eigen::Vector4d> augmented(const HandTrajectory& trajectory, const TimeScale& scale) {
   std::vector<Eigen::Vector4d> samples;
   samples.reserve(trajectory.size());
@@ -38,7 +38,7 @@ std::vector<Eigen::Vector4d> augmented(const HandTrajectory& trajectory, const T
   return samples;
 }
 
-/// Lines 5 to 14: the mixture with the least BIC before it rises.
+/// Runs lines 5 to 14: returns the mixture with the smallest BIC before it rises.
 GmmFit best_mixture(const GmmEm& em, const GmmAsConfig& config, GmmAsResult& result) {
   const auto most =
       static_cast<int>(std::min<std::size_t>(em.samples(), static_cast<std::size_t>(config.max_gaussians)));
@@ -58,7 +58,7 @@ GmmFit best_mixture(const GmmEm& em, const GmmAsConfig& config, GmmAsResult& res
   return best;
 }
 
-/// Eq. 2.12, 2.13.
+/// Returns the saliency by eq. 2.12, 2.13.
 double saliency_of(const SalientGaussian& gaussian, std::size_t count, SaliencyFormula formula) {
   Eigen::SelfAdjointEigenSolver<Eigen::Matrix3d> solver;
   solver.computeDirect(gaussian.covariance_m2, Eigen::EigenvaluesOnly);

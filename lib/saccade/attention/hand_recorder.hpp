@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HandRecorder: cuts the stream of a motion sensor into tasks, from the hand's entering the workspace to its leaving.
+// HandRecorder: cuts the stream of a motion sensor into tasks, from the hand's entry into the workspace to its exit.
 
 #include <optional>
 
@@ -13,29 +13,30 @@ namespace saccade {
 struct HandRecorderConfig {
   Box workspace{};                     ///< world frame, metres
   double margin_m{0.02};               ///< a hand that entered has left when it is outside by more than this
-  double dropout_s{0.5};               ///< so long without a good sample, or outside, the task goes on
-  std::size_t min_samples{2};          ///< shorter tasks are passed over: a hand that only brushed the border
+  double dropout_s{0.5};               ///< longest time without a good sample, or outside, within a task
+  std::size_t min_samples{2};          ///< shorter tasks are ignored: the hand only brushed the border
   std::size_t max_samples{1'000'000};  ///< a task that lasts longer ends there
 
-  /// invalid_argument for an empty box or a value out of range.
+  /// Answers invalid_argument for an empty box or a value out of range.
   [[nodiscard]] Status validate() const;
 };
 
-/// Thesis §2.2.4, Fig. 2.6. A task begins with the first good sample inside the workspace and ends with the last one
-/// before the hand was outside, or nothing was heard of it, for longer than `dropout_s`. Samples that are not finite,
-/// or whose time does not increase, are counted and left out; time passes with those whose position alone is not.
+/// Recorder of tasks. Thesis §2.2.4, Fig. 2.6. A task begins with the first good sample inside the workspace. It ends
+/// with the last one before the hand was outside, or sent no samples, for longer than `dropout_s`. Samples that are not
+/// finite, or whose time does not increase, are counted and dropped; where only the position is not finite, time
+/// passes.
 class HandRecorder {
  public:
   /// invalid_argument as validate().
   [[nodiscard]] static Result<HandRecorder> create(HandRecorderConfig config);
 
-  /// Takes the next sample of the stream; a finished task if this sample ended one. Amortised O(1).
+  /// Takes the next sample of the stream. Returns a task if this sample ended one. Amortised O(1).
   [[nodiscard]] std::optional<HandTrajectory> push(const HandSample& sample);
 
-  /// The stream has ended: the task that was under way, if there is one.
+  /// Ends the stream. Returns the current task, if there is one.
   [[nodiscard]] std::optional<HandTrajectory> finish();
 
-  /// Samples of the task under way so far; those after its last one inside may yet be dropped.
+  /// Returns the samples of the current task so far; those after its last one inside may yet be dropped.
   [[nodiscard]] const HandTrajectory& under_way() const { return task_; }
   [[nodiscard]] std::size_t bad_samples() const { return bad_samples_; }
 

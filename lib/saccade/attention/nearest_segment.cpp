@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// Indices of the points cell by cell, in each in their order.
+/// Indices of the points cell by cell, in order within each.
 class PointsByCell {
  public:
   PointsByCell(std::span<const Eigen::Vector3f> positions_m, double edge_m) : edge_m_{edge_m} {
@@ -34,7 +34,7 @@ class PointsByCell {
     }
   }
 
-  /// All points within an edge length of the place, and some beyond; false where that cannot be told.
+  /// Visits all points within an edge length of the place, and some beyond; returns false where that is impossible.
   template <class Body>
   bool for_each_around(const Eigen::Vector3d& place_m, const Body& body) const {
     const std::uint64_t center = cell_at(place_m.cast<float>(), edge_m_);
@@ -54,7 +54,7 @@ class PointsByCell {
 
   double edge_m_;
   CellIndex cells_;
-  std::vector<std::uint32_t> starts_;  ///< of each cell, and the end
+  std::vector<std::uint32_t> starts_;  ///< start of each cell, then the end
   std::vector<std::uint32_t> points_;
   std::vector<std::uint32_t> far_;  ///< beyond the index
 };

@@ -13,7 +13,7 @@ namespace saccade {
 
 namespace {
 
-constexpr double kFlat{0.2};  // roundness of a support, at most
+constexpr double kFlat{0.2};  // largest roundness of a support
 
 std::string number(double value, int decimals) {
   std::array<char, 32> text{};
@@ -23,7 +23,7 @@ std::string number(double value, int decimals) {
 std::string percent(double share) { return number(100.0 * share, 0) + " %"; }
 std::string centimetres(double length_m) { return number(100.0 * length_m, 1) + " cm"; }
 
-/// "21.0 × 14.2 × 9.1 cm".
+/// Returns "21.0 × 14.2 × 9.1 cm".
 std::string sizes_text(const SegmentMeasures& segment) {
   Eigen::Vector3d sizes_m = segment.sizes_m;
   std::sort(sizes_m.begin(), sizes_m.end());
@@ -38,7 +38,7 @@ std::string roundness_text(const SegmentMeasures& segment) {
   return "roundness " + number(segment.roundness, 2) + " (" + sizes_text(segment) + ")";
 }
 
-/// A heuristic that looks at each segment with points by itself; one without points draws nothing.
+/// Rates each segment with points individually; one without points gets 0.
 template <class Judge>
 std::vector<Saliency> judge_each(const MeasuredSegments& segments, const Judge& judge) {
   std::vector<Saliency> saliencies(segments.measures.size(), {0.0, "has no points"});
@@ -50,7 +50,7 @@ std::vector<Saliency> judge_each(const MeasuredSegments& segments, const Judge& 
 
 double longest_m(const SegmentMeasures& segment) { return segment.sizes_m.maxCoeff(); }
 
-/// Of the largest side of its oriented bounding box.
+/// Returns the area of the largest side of its oriented bounding box.
 double extent_m2(const SegmentMeasures& segment) {
   const Eigen::Vector3d& d = segment.sizes_m;
   return std::max({d[0] * d[1], d[0] * d[2], d[1] * d[2]});

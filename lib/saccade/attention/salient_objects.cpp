@@ -12,7 +12,7 @@ bool is_scrap(const SegmentMeasures& measures, double scrap_length_m) {
   return measures.sizes_m.maxCoeff() <= scrap_length_m;
 }
 
-/// Segments by decreasing saliency, scraps behind all others.
+/// Returns segments by decreasing saliency, scraps after all others.
 std::vector<std::uint32_t> by_saliency(std::span<const SegmentMeasures> measures, std::span<const Saliency> saliency,
                                        double scrap_length_m) {
   std::vector<std::uint32_t> order(measures.size());

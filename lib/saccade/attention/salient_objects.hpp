@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SalientObjects: attention to what looks like an object; SalientSurface: the segments it is drawn from. Thesis §3.1,
+// SalientObjects: attention to segments that look like objects. SalientSurface: the segmented surface. Thesis §3.1,
 // Algorithm 4, lines 3 to 6.
 
 #include <memory>
@@ -16,38 +16,38 @@ struct SalientObjectsConfig {
   MapSegmentsConfig segments;  ///< `within` is the map's workspace, where it has one
   MeasureConfig measures;
   SaliencyHeuristic saliency{objectness()};
-  /// Segments that are no longer than this come last, whatever their saliency: scraps at the border of what was seen
-  /// stand alone and look round.
+  /// Length up to which segments are scraps and come last, whatever their saliency: scraps at the border of seen space
+  /// are isolated and look round.
   double scrap_length_m{0.03};
-  double reach_m{0.2};  ///< unknown space counts within the segment's bounding sphere enlarged by this; thesis §3.1
+  double reach_m{0.2};  ///< enlargement of the segment's bounding sphere within which unknown space counts; thesis §3.1
 
-  /// invalid_argument unless lengths are positive and finite and there is a heuristic; errors of the parts.
+  /// Answers invalid_argument unless lengths are positive and finite and there is a heuristic; errors of the parts.
   [[nodiscard]] Status validate() const;
 };
 
-/// The segmented surface of a map, and how salient its segments are.
+/// Segmented surface of a map, with the saliency of its segments.
 struct SalientSurface {
   SegmentedPoints points;                 ///< means of the surface's voxels
   std::vector<SegmentMeasures> measures;  ///< one per segment, as the next
   std::vector<Saliency> saliency;
-  std::vector<std::uint32_t> order;  ///< segments, the most salient first, scraps last, ties by index
+  std::vector<std::uint32_t> order;  ///< segments, most salient first, scraps last, ties by index
   std::size_t scraps{0};             ///< number of scraps, at the end of `order`
 
-  /// The ball around the box of a segment's points, larger by `reach_m`. Expects a segment with points.
+  /// Returns the ball around the box of a segment's points, enlarged by `reach_m`. Expects a segment with points.
   [[nodiscard]] Sphere surroundings(std::uint32_t segment, double reach_m) const;
 };
 
-/// Segments of the map's surface by saliency: a region is the surroundings of one segment, all have the index 0, and
-/// scraps are no rivals. Follows the map from call to call; surface outside the workspace draws no attention.
+/// Segments of the map's surface by saliency. A region is the surroundings of one segment; all have index 0, and scraps
+/// are not rivals. Follows the map from call to call; surface outside the workspace is ignored.
 class SalientObjects final : public AttentionSource {
  public:
   /// Expects a valid configuration.
   explicit SalientObjects(SalientObjectsConfig config = {});
 
-  /// O(what changed since the last call + surface voxels). Errors of the heuristic: size_mismatch when it does not
-  /// return one value per segment.
+  /// O(changes since the last call + surface voxels). Errors of the heuristic: size_mismatch when it does not return
+  /// one value per segment.
   [[nodiscard]] Result<std::vector<RegionOfInterest>> regions(const PlanningContext& context) override;
-  /// The surface alone. A map without a surface has no segment.
+  /// Returns only the surface. A map without a surface has no segment.
   [[nodiscard]] Result<std::shared_ptr<const SalientSurface>> look(const PlanningContext& context);
 
  private:
@@ -60,7 +60,7 @@ class SalientObjects final : public AttentionSource {
 /// The map's workspace as one region, with the saliency of all segments in it.
 class SalientWorkspace final : public AttentionSource {
  public:
-  /// Expects a valid configuration.
+  /// Creates the source. Expects a valid configuration.
   explicit SalientWorkspace(SalientObjectsConfig config = {}) : objects_{std::move(config)} {}
   /// Errors of WholeWorkspace and SalientObjects.
   [[nodiscard]] Result<std::vector<RegionOfInterest>> regions(const PlanningContext& context) override;

@@ -18,8 +18,8 @@ namespace {
 constexpr std::size_t kPointGrain{8192};
 constexpr std::size_t kSegmentGrain{64};
 
-/// Calls body(segment, begin, end, sums) for each run of one segment's points in a chunk of all points, and adds up
-/// what it made, in the order of the points, by `to += from`.
+/// Calls body(segment, begin, end, sums) for each run of one segment's points in a chunk of all points, and adds up the
+/// results in the order of the points by `to += from`.
 template <class Sums, class Body>
 std::vector<Sums> sum_by_segment(const SegmentedPoints& points, const Executor& executor, const Body& body) {
   const std::size_t count = points.start_of(points.segments());  // those in no segment come last
@@ -40,7 +40,7 @@ std::vector<Sums> sum_by_segment(const SegmentedPoints& points, const Executor& 
   return sums;
 }
 
-/// From a segment's first point, so that nothing is lost far from the origin.
+/// Moments relative to a segment's first point, so that precision is kept far from the origin.
 struct Moments {
   Eigen::Vector3d sum{Eigen::Vector3d::Zero()};
   Eigen::Matrix3d squares{Eigen::Matrix3d::Zero()};
@@ -51,7 +51,7 @@ struct Moments {
   }
 };
 
-/// Along the three principal axes, and along x, y, z.
+/// Extents along the three principal axes, and along x, y, z.
 struct Extents {
   using Vector6 = Eigen::Matrix<double, 6, 1>;
   Vector6 least{Vector6::Constant(std::numeric_limits<double>::infinity())};

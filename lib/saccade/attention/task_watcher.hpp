@@ -19,38 +19,38 @@
 
 namespace saccade {
 
-/// One task, from the hand's entering the workspace to its leaving.
+/// One task, from the hand's entry into the workspace to its exit.
 struct UserTask {
   HandTrajectory trajectory;
-  std::vector<HandAction> actions;        ///< in the order of time
+  std::vector<HandAction> actions;        ///< in order of time
   std::vector<RegionOfInterest> regions;  ///< one around each action
 };
 
-/// Finds the actions of a task: GMM-AS, ZVC, dips.
+/// Detector of a task's actions: GMM-AS, ZVC, dips.
 using DetectActions = std::function<Result<std::vector<HandAction>>(const HandTrajectory& trajectory)>;
 
-/// Listens to the tracker from a thread of its own, so that a hand that comes while the robot works is noticed. One
-/// caller at a time, but for hand_inside().
+/// Watcher that listens to the tracker on its own thread, so that it notices a hand while the robot works. One caller
+/// at a time, except for hand_inside().
 class TaskWatcher {
  public:
-  /// @param radius_m  of the ball around each action
+  /// @param radius_m  radius of the ball around each action
   /// @param on_enter  called from the listening thread when the hand enters the workspace; may be empty
-  /// invalid_argument as HandRecorderConfig::validate(), and for a radius that is not positive.
+  /// Answers invalid_argument as HandRecorderConfig::validate(), and for a radius that is not positive.
   [[nodiscard]] static Result<std::unique_ptr<TaskWatcher>> create(std::unique_ptr<HandTracker> hand,
                                                                    const HandRecorderConfig& recorder,
                                                                    DetectActions detect, double radius_m = 0.2,
                                                                    std::function<void()> on_enter = {});
   TaskWatcher(const TaskWatcher&) = delete;
   TaskWatcher& operator=(const TaskWatcher&) = delete;
-  /// Waits until the tracker's next sample, or its failing to give one.
+  /// Waits until the tracker delivers its next sample, or fails to.
   ~TaskWatcher();
 
-  /// Waits for the next task that has ended. A task without an action has no regions.
-  /// @param progress asked every 20 ms; nullptr: never cancelled
+  /// Waits for the next finished task. A task without an action has no regions.
+  /// @param progress polled every 20 ms; nullptr: never cancelled
   /// @return nullopt: the tracker has no more samples, or the caller cancelled. Errors: those of tracker and detector.
   [[nodiscard]] Result<std::optional<UserTask>> next_task(const Progress* progress = nullptr);
 
-  /// Whether a task is under way: nothing that is seen meanwhile is worth fusing.
+  /// Tells whether a task is in progress, so that frames should not be fused.
   [[nodiscard]] bool hand_inside() const { return inside_.load(); }
 
  private:
@@ -61,7 +61,7 @@ class TaskWatcher {
   [[nodiscard]] Result<std::optional<HandTrajectory>> next_trajectory(const Progress* progress);
 
   std::unique_ptr<HandTracker> hand_;
-  HandRecorder recorder_;  ///< used by the listening thread alone
+  HandRecorder recorder_;  ///< used only by the listening thread
   DetectActions detect_;
   double radius_m_;
   std::function<void()> on_enter_;
@@ -73,7 +73,7 @@ class TaskWatcher {
   std::deque<HandTrajectory> ended_;
   std::optional<Error> problem_;
   bool at_end_{false};
-  std::thread listener_;  // last: it uses all others
+  std::thread listener_;  // last: it uses all other members
 };
 
 }  // namespace saccade

@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// The hand is faster: of the samples, those at steps of 1 / multiplier, rounded down.
+/// Makes the hand faster: takes the samples at steps of 1 / multiplier, rounded down.
 HandTrajectory left_out(const HandTrajectory& trajectory, double multiplier) {
   HandTrajectory fewer;
   for (std::size_t i = 0; static_cast<double>(i) / multiplier < static_cast<double>(trajectory.size()); ++i) {
@@ -26,7 +26,7 @@ HandSample between(const HandSample& a, const HandSample& b, double share) {
   return sample;
 }
 
-/// The hand is slower: more samples, from end to end.
+/// Makes the hand slower: more samples, from end to end.
 HandTrajectory interpolated(const HandTrajectory& trajectory, double multiplier) {
   const auto intervals = static_cast<double>(trajectory.size() - 1);
   const auto count = static_cast<std::size_t>(std::round(intervals * multiplier));

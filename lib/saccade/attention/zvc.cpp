@@ -26,13 +26,13 @@ std::vector<Eigen::Vector3d> mean_filtered(const HandTrajectory& trajectory, int
   return smooth;
 }
 
-/// R_i(r): samples first … last, eq. 2.15.
+/// Neighbourhood R_i(r): samples first … last, eq. 2.15.
 struct Neighbourhood {
   std::size_t first{0};
   std::size_t last{0};
 };
 
-/// Grows a neighbourhood as far as every sample in between lies within the radius of sample i.
+/// Grows a neighbourhood while every sample in between lies within the radius of sample i.
 Neighbourhood grown(const std::vector<Eigen::Vector3d>& q, std::size_t i, double radius_m, Neighbourhood from) {
   const double squared = radius_m * radius_m;
   const auto within = [&](std::size_t k) { return (q[k] - q[i]).squaredNorm() < squared; };

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// detect_by_zvc: the adaptive zero-velocity-crossings detector. Where a hand acted, by its speed near and far.
+// detect_by_zvc: the adaptive zero-velocity-crossings detector. Finds where a hand acted by its speed near and far.
 
 #include <cstddef>
 #include <vector>
@@ -10,35 +10,36 @@
 
 namespace saccade {
 
-/// Defaults as measured to give the thesis' Tables 2.2–2.4.
+/// Defaults that reproduce the thesis' Tables 2.2–2.4.
 struct ZvcConfig {
   int half_window{4};       ///< B: the mean filter is 2 B + 1 samples wide; ends are repeated
   double near_m{0.10};      ///< r1
   double far_m{0.25};       ///< r2
   double threshold{1.385};  ///< ZVCTh
-  bool drop_at_ends{true};  ///< slow segments whose r1 neighbourhood meets an end of the trajectory do not count
+  bool drop_at_ends{true};  ///< ignores slow segments whose r1 neighbourhood meets an end of the trajectory
 
-  /// What the thesis prints: ZVCTh = 1.72, and nothing about ends.
+  /// Returns the printed parameters of the thesis: ZVCTh = 1.72, without a rule for ends.
   [[nodiscard]] static ZvcConfig as_printed();
-  /// invalid_argument for a value out of range.
+  /// Answers invalid_argument for a value out of range.
   [[nodiscard]] Status validate() const;
 };
 
-/// Samples first … last, all slow.
+/// Slow samples first … last.
 struct SlowSegment {
   std::size_t first{0};
   std::size_t last{0};
-  bool at_end{false};  ///< the r1 neighbourhood of one of them meets an end of the trajectory
+  bool at_end{false};  ///< the r1 neighbourhood of a sample meets an end of the trajectory
 };
 
 struct ZvcResult {
   std::vector<HandAction> actions;     ///< points of interest by increasing time; saliency: v̄(r2) / v̄(r1)
-  std::vector<SlowSegment> segments;   ///< all, those dropped at ends included
+  std::vector<SlowSegment> segments;   ///< all, including those dropped at ends
   std::vector<double> near_speed_m_s;  ///< v̄(r1) per sample
   std::vector<double> far_speed_m_s;   ///< v̄(r2) per sample
 };
 
-/// Thesis §2.2.4, eq. 2.14, 2.15: a slow segment, v̄(r1) · ZVCTh < v̄(r2), is a point of interest at its middle sample.
+/// Finds actions. Thesis §2.2.4, eq. 2.14, 2.15: a slow segment, v̄(r1) · ZVCTh < v̄(r2), is a point of interest at its
+/// middle sample.
 /// @return invalid_argument for a bad configuration or a bad sample (see usable_samples). One thread; deterministic.
 /// O(samples · samples within r2).
 [[nodiscard]] Result<ZvcResult> detect_by_zvc(const HandTrajectory& trajectory, const ZvcConfig& config = {});

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// CellIndex: cells of a regular grid, numbered in the order of insertion; PointCells: points of a cloud by the cells
-// that they lie in.
+// CellIndex: cells of a regular grid, numbered in the order of insertion. PointCells: points of a cloud, grouped by the
+// cell that they lie in.
 
 #include <Eigen/Core>
 #include <array>
@@ -17,22 +17,22 @@
 namespace saccade {
 
 inline constexpr std::uint64_t kNoCell{~std::uint64_t{0}};
-inline constexpr std::uint64_t kFarCell{kNoCell - 1};  ///< beyond what an index holds
+inline constexpr std::uint64_t kFarCell{kNoCell - 1};  ///< outside the range of an index
 inline constexpr int kCellBits{21};                    ///< per axis
 
-/// The cell of edge length `size` that `place` lies in, or kFarCell.
+/// Returns the cell of edge length `size` that contains `place`, or kFarCell.
 [[nodiscard]] inline std::uint64_t cell_at(const Eigen::Vector3f& place, double size) {
   constexpr double kHalf{static_cast<double>(1 << (kCellBits - 1))};
   std::uint64_t cell{0};
   for (const int axis : {0, 1, 2}) {
     const double index = std::floor(static_cast<double>(place[axis]) / size);
-    if (!(index > 8.0 - kHalf && index < kHalf - 9.0)) return kFarCell;  // so that blocks next to its block exist
+    if (!(index > 8.0 - kHalf && index < kHalf - 9.0)) return kFarCell;  // so that the neighbours of its block exist
     cell = (cell << kCellBits) | static_cast<std::uint64_t>(index + kHalf);
   }
   return cell;
 }
 
-/// What to add to a cell, without sign, to come to the 26 next to it.
+/// Returns the 26 offsets (unsigned, wrapping) from a cell to its neighbours.
 [[nodiscard]] inline const std::array<std::uint64_t, 26>& neighbour_offsets() {
   static const std::array<std::uint64_t, 26> offsets = [] {
     std::array<std::uint64_t, 26> made{};
@@ -50,17 +50,17 @@ inline constexpr int kCellBits{21};                    ///< per axis
   return offsets;
 }
 
-/// A hash of cells. One thread inserts; find is const.
+/// Hash table of cells. One thread inserts; find is const.
 class CellIndex {
  public:
   CellIndex() : slots_(std::size_t{1} << kFirstBits, kUnlabelled) {}
 
   [[nodiscard]] const std::vector<std::uint64_t>& cells() const { return cells_; }
 
-  /// kUnlabelled if the cell is not there.
+  /// Returns the number of the cell, or kUnlabelled where it was not inserted.
   [[nodiscard]] std::uint32_t find(std::uint64_t cell) const { return slots_[slot_of(cell)]; }
 
-  /// The number of the cell, the next one if it is new.
+  /// Returns the number of the cell, inserting it with the next number if it is new.
   std::uint32_t insert(std::uint64_t cell) {
     std::uint32_t& slot = slots_[slot_of(cell)];
     if (slot != kUnlabelled) return slot;
@@ -74,7 +74,7 @@ class CellIndex {
  private:
   static constexpr int kFirstBits{12};
 
-  /// Of the cell, or the free one in which it would stand.
+  /// Returns the slot of the cell, or the free slot where it would be inserted.
   [[nodiscard]] std::size_t slot_of(std::uint64_t cell) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = static_cast<std::size_t>((cell * 0x9E3779B97F4A7C15ULL) >> (64 - bits_));
@@ -92,43 +92,43 @@ class CellIndex {
   std::vector<std::uint64_t> cells_;
 };
 
-/// Cells are numbered in the order of their first points.
+/// Points by cell. Cells are numbered in the order of their first points.
 class PointCells {
  public:
-  /// Of the points that are named, which are finite. invalid_argument for one farther than a million cells from the
-  /// origin. O(points), one thread.
+  /// Groups the given points, which must be finite. Answers invalid_argument for a point farther than a million cells
+  /// from the origin. O(points), one thread.
   [[nodiscard]] static Result<PointCells> create(std::span<const Eigen::Vector3f> positions_m,
                                                  std::span<const std::uint32_t> points, double size_m);
 
   [[nodiscard]] std::size_t size() const { return index_.cells().size(); }
   [[nodiscard]] double size_m() const { return size_m_; }
-  /// By cell, in the order given within one.
+  /// Points grouped by cell, within a cell in the order given.
   [[nodiscard]] std::span<const std::uint32_t> points() const { return points_; }
-  /// Of its points among these.
+  /// Range of a cell's points within points().
   [[nodiscard]] std::uint32_t first_of(std::size_t cell) const { return starts_[cell]; }
   [[nodiscard]] std::uint32_t end_of(std::size_t cell) const { return starts_[cell + 1]; }
-  /// The cell's place in the grid, as cell_at has it.
+  /// Returns the cell's position in the grid, as cell_at does.
   [[nodiscard]] std::uint64_t key(std::size_t cell) const { return index_.cells()[cell]; }
-  /// The number of a cell by its place; kUnlabelled where no point lies.
+  /// Returns the number of the cell at a position, or kUnlabelled where no point lies.
   [[nodiscard]] std::uint32_t find(std::uint64_t key) const { return index_.find(key); }
 
  private:
   CellIndex index_;
-  std::vector<std::uint32_t> starts_;  ///< one more than cells
+  std::vector<std::uint32_t> starts_;  ///< first point of each cell; one entry more than cells
   std::vector<std::uint32_t> points_;
   double size_m_{0.0};
 };
 
-/// Steps along the axes from cell to cell.
+/// Returns the difference between cells that lie x, y, z steps apart.
 [[nodiscard]] inline std::uint64_t cell_offset(int x, int y, int z) {
   constexpr std::int64_t kAxis{std::int64_t{1} << kCellBits};
   return static_cast<std::uint64_t>((x * kAxis + y) * kAxis + z);
 }
 
-/// The corner of a cell that has the least coordinates.
+/// Returns the corner of a cell with the smallest coordinates.
 [[nodiscard]] Eigen::Vector3d low_corner_m(std::uint64_t key, double size_m);
 
-/// The points with a finite place.
+/// Returns the indices of the points whose coordinates are finite.
 [[nodiscard]] std::vector<std::uint32_t> finite_points(std::span<const Eigen::Vector3f> positions_m);
 
 }  // namespace saccade

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// DisjointSets: what hangs together, found by several threads.
+// DisjointSets: connected components, found by several threads (union-find).
 
 #include <atomic>
 #include <cstddef>
@@ -12,8 +12,8 @@
 
 namespace saccade {
 
-/// Disjoint sets of 0, 1, …; a set is called by its least member. Any number of threads may join at once: which sets
-/// result depends on what was joined alone, never on the order.
+/// Disjoint sets of 0, 1, …; each set is named by its smallest member. Any number of threads may join at once: the
+/// result depends only on the pairs joined, never on their order.
 class DisjointSets {
  public:
   explicit DisjointSets(std::size_t count) : parents_(count) {
@@ -23,7 +23,7 @@ class DisjointSets {
   [[nodiscard]] std::uint32_t root(std::uint32_t i) {
     for (std::uint32_t parent = load(i); parent != i; parent = load(i)) {
       const std::uint32_t above = load(parent);
-      at(i).store(above, std::memory_order_relaxed);  // an ancestor still, whatever others join
+      at(i).store(above, std::memory_order_relaxed);  // still an ancestor, whatever other threads join
       i = above;
     }
     return i;
@@ -40,7 +40,7 @@ class DisjointSets {
     }
   }
 
-  /// Of each member the number of its set, counted in the order of their least members; and how many sets there are.
+  /// Numbers the sets by their smallest member. Returns each member's set number and the number of sets.
   [[nodiscard]] std::pair<std::vector<std::uint32_t>, std::uint32_t> numbered() {
     std::vector<std::uint32_t> numbers(parents_.size());
     std::uint32_t next{0};

@@ -5,19 +5,19 @@
 #include <array>
 #include <span>
 
-#include "saccade/cloud/internal/least_directions.hpp"
+#include "saccade/cloud/internal/smallest_eigenvectors.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kNormalGrain{1024};
 
-/// Σ p pᵀ over points p = (x, y, z, 1) relative to one of them, so that single precision is enough. By rows.
+/// Σ p pᵀ over points p = (x, y, z, 1) relative to one of them, so that single precision suffices. Stored by rows.
 struct Moments {
   Eigen::Vector4f x, y, z, one;
 };
 
-/// Of a node by itself.
+/// Returns the moments of a node alone.
 Moments one_point() {
   const Eigen::Vector4f zero = Eigen::Vector4f::Zero();
   return {zero, zero, zero, Eigen::Vector4f::UnitW()};
@@ -32,7 +32,7 @@ void add_point(Moments& moments, const Eigen::Vector4f& offset) {
   moments.one += p;
 }
 
-/// Adds those around another node, `offset` from here: T M Tᵀ, where T moves by the offset.
+/// Adds the moments of the points around another node, `offset` from here: T M Tᵀ, where T moves by the offset.
 void add_moved(Moments& moments, const Moments& other, const Eigen::Vector4f& offset) {
   const Eigen::Vector4f x = other.x + offset.x() * other.one;
   const Eigen::Vector4f y = other.y + offset.y() * other.one;
@@ -63,7 +63,7 @@ using Block = std::array<Moments, kBlock>;
 void set_normals(const Block& block, std::span<Eigen::Vector3f> normals) {
   Covariances covariances{};
   for (std::size_t i = 0; i < normals.size(); ++i) set_covariance(block[i], covariances, i);
-  const Directions directions = least_directions(covariances);
+  const Directions directions = smallest_eigenvectors(covariances);
   for (std::size_t i = 0; i < normals.size(); ++i) {
     normals[i] = {directions.xyz[0][i], directions.xyz[1][i], directions.xyz[2][i]};
   }
@@ -80,10 +80,10 @@ std::vector<Eigen::Vector3f> estimate_normals(const NearestNeighbours& neighbour
   executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) positions_m[i] << neighbours.positions_m[i], 0.0F;
   });
-  UnsetVector<Moments> around;
+  UninitializedVector<Moments> around;
   for (int round = 0; round < rounds; ++round) {
     const bool is_last = round + 1 == rounds;
-    UnsetVector<Moments> wider(is_last ? 0 : size);
+    UninitializedVector<Moments> wider(is_last ? 0 : size);
     executor.parallel_for(size, kNormalGrain, [&](std::size_t begin, std::size_t end) {
       Block block;
       for (std::size_t first = begin; first < end; first += kBlock) {

@@ -14,18 +14,20 @@ namespace {
 
 constexpr std::size_t kPointGrain{4096};
 constexpr std::size_t kLeafGrain{64};
-constexpr float kFarthest_m{1e18F};  // beyond it squares are infinite
+constexpr float kFarthest_m{1e18F};  // squares of larger numbers are infinite
 
 bool is_usable(const Eigen::Vector3f& p) { return p.allFinite() && p.cwiseAbs().maxCoeff() < kFarthest_m; }
 
-/// In the order of their points.
-UnsetVector<LeafTree::Site> usable_sites(std::span<const Eigen::Vector3f> positions_m, const Executor& executor) {
-  std::vector<std::size_t> first((positions_m.size() + kPointGrain - 1) / kPointGrain + 1);  // of each chunk
+/// Returns the usable points in their original order.
+UninitializedVector<LeafTree::IndexedPoint> usable_sites(std::span<const Eigen::Vector3f> positions_m,
+                                                         const Executor& executor) {
+  std::vector<std::size_t> first((positions_m.size() + kPointGrain - 1) / kPointGrain +
+                                 1);  // first usable point of each chunk
   executor.parallel_for(positions_m.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) first[begin / kPointGrain + 1] += is_usable(positions_m[i]) ? 1 : 0;
   });
   std::partial_sum(first.begin(), first.end(), first.begin());
-  UnsetVector<LeafTree::Site> sites(first.back());
+  UninitializedVector<LeafTree::IndexedPoint> sites(first.back());
   executor.parallel_for(positions_m.size(), kPointGrain, [&](std::size_t begin, std::size_t end) {
     std::size_t next = first[begin / kPointGrain];
     for (std::size_t i = begin; i < end; ++i) {
@@ -40,7 +42,7 @@ UnsetVector<LeafTree::Site> usable_sites(std::span<const Eigen::Vector3f> positi
 NearestNeighbours nearest_neighbours(std::span<const Eigen::Vector3f> positions_m, std::size_t k,
                                      const Executor& executor) {
   SACCADE_EXPECTS(k >= 1 && k <= kMostNeighbours && positions_m.size() < std::numeric_limits<std::uint32_t>::max());
-  UnsetVector<LeafTree::Site> sites = usable_sites(positions_m, executor);
+  UninitializedVector<LeafTree::IndexedPoint> sites = usable_sites(positions_m, executor);
   NearestNeighbours result;
   if (sites.empty()) return result;
   const LeafTree tree{std::move(sites), executor};

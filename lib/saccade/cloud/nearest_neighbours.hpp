@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// nearest_neighbours: the K nearest points of every point of a cloud, exactly; estimate_normals, estimate_radii: what
-// follows from them.
+// nearest_neighbours: the exact K nearest points of every point of a cloud. estimate_normals, estimate_radii: estimates
+// derived from them.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -10,42 +10,41 @@
 #include <vector>
 
 #include "saccade/core/executor.hpp"
-#include "saccade/core/unset_vector.hpp"
+#include "saccade/core/uninitialized_vector.hpp"
 
 namespace saccade {
 
-/// Points that are finite (and nearer than 10¹⁸ m), in the order of a k-d tree's leaves, so that near ones stand near
-/// each other: node n is point order[n], at positions_m[n].
+/// Graph of nearest neighbours. Its nodes are the finite points (nearer than 10¹⁸ m) in the order of a k-d tree's
+/// leaves, so that nearby points are nearby in memory: node n is point order[n], at positions_m[n].
 struct NearestNeighbours {
-  UnsetVector<std::uint32_t> order;
+  UninitializedVector<std::uint32_t> order;
   std::vector<Eigen::Vector3f> positions_m;
-  std::size_t count{0};              ///< K, or one fewer than there are nodes
-  UnsetVector<std::uint32_t> nodes;  ///< `count` per node, the nearest first, equally near ones in ascending order
+  std::size_t count{0};                      ///< K, limited to one fewer than the number of nodes
+  UninitializedVector<std::uint32_t> nodes;  ///< `count` per node, nearest first, equally near ones in ascending order
 
   [[nodiscard]] std::span<const std::uint32_t> of(std::size_t node) const {
     return {nodes.data() + node * count, count};
   }
 };
 
-/// All eight points of a leaf look for theirs together, nearest boxes first. Of points at the K-th distance (squared,
-/// in single precision) any may be taken; which depends on the points alone. The same for every thread count and
-/// instruction set. Expects 1 ≤ k ≤ 64 and at most 2³² − 1 points. O(n (log n + k)), whatever the density; 4 k + 48
-/// bytes per point.
+/// Finds the k nearest points of each point. The eight points of a leaf search together, nearest boxes first. Where
+/// several points lie at the K-th distance (squared, in single precision), any of them may be taken; the choice depends
+/// on the points alone. The thread count and instruction set never change the result. Expects 1 ≤ k ≤ 64 and at most
+/// 2³² − 1 points. O(n (log n + k)), whatever the density; 4 k + 48 bytes per point.
 [[nodiscard]] NearestNeighbours nearest_neighbours(std::span<const Eigen::Vector3f> positions_m, std::size_t k,
                                                    const Executor& executor);
 
-/// The direction in which the points around a node vary least: least eigenvector of their covariance. `rounds` says how
-/// far around reaches: 1, the K nearest; each more, the neighbours of these as well, those that are reached in several
-/// ways counting as often. Either of the two directions; zero where there are fewer than three points around.
-/// One per node. The same for every thread count and instruction set. O(n K rounds); 16 bytes per point while it works,
-/// 80 with two rounds.
+/// Estimates one normal per node: the direction in which the points around it vary least, the eigenvector of their
+/// covariance for the smallest eigenvalue. Its sign is arbitrary. It is zero where fewer than three points lie around.
+/// `rounds` sets how far "around" reaches: 1 takes the K nearest; each further round takes their neighbours as well,
+/// counting points as often as they are reached. The thread count and instruction set never change the result. O(n K
+/// rounds); 16 bytes per point while it works, 80 with two rounds.
 [[nodiscard]] std::vector<Eigen::Vector3f> estimate_normals(const NearestNeighbours& neighbours, int rounds,
                                                             const Executor& executor);
 
-/// √2 times the distance to the fourth nearest point, which is how large a surfel of a camera's pixel is made beside
-/// its neighbours; no more than four times the median of all, so that a stray point reaches no other surface. Without
-/// four neighbours the last there is; 0 without any.
-/// One per node. O(n).
+/// Estimates one radius per node: √2 times the distance to the fourth nearest point, the size that a surfel of a
+/// camera's pixel has relative to its neighbours. The radius is at most four times the median of all, so that a stray
+/// point reaches no other surface. Nodes with fewer than four neighbours use the last one, those with none get 0. O(n).
 [[nodiscard]] std::vector<float> estimate_radii(const NearestNeighbours& neighbours);
 
 }  // namespace saccade

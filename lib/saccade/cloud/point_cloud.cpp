@@ -23,7 +23,7 @@ Status PointCloud::validate() const {
   if (points >= kUnlabelled) return Error{Errc::invalid_argument, "more points than labels", "point cloud"};
   for (std::size_t i = 0; i < colors.size(); ++i) {
     if (!colors[i].allFinite()) {
-      return Error{Errc::invalid_argument, "a colour that is not finite", "point " + std::to_string(i)};
+      return Error{Errc::invalid_argument, "a colour is not finite", "point " + std::to_string(i)};
     }
   }
   return {};

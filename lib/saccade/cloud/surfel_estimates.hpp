@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// surfel_radii, surfel_normals: estimates of what surfels need and a cloud may lack.
+// surfel_radii, surfel_normals: estimates of surfel properties that a cloud may lack.
 
 #include <Eigen/Core>
 #include <span>
@@ -10,12 +10,12 @@
 
 namespace saccade {
 
-/// Estimates a radius for each position, as estimate_radii does from the ten nearest; 0 where a position is not finite.
-/// O(n log n). The thread count never changes a bit of the result.
+/// Estimates a radius for each position from its ten nearest neighbours, as estimate_radii does; 0 where a position is
+/// not finite. O(n log n). The thread count never changes a bit of the result.
 [[nodiscard]] std::vector<float> surfel_radii(std::span<const Eigen::Vector3f> positions_m, const Executor& executor);
 
-/// Estimates a normal for each position, as estimate_normals does from the ten nearest and their neighbours, turned
-/// towards the viewpoint; zero where a position is not finite.
+/// Estimates a normal for each position from its ten nearest neighbours and their neighbours, as estimate_normals does,
+/// and turns it towards the viewpoint; zero where a position is not finite.
 /// O(n log n). The thread count never changes a bit of the result.
 [[nodiscard]] std::vector<Eigen::Vector3f> surfel_normals(std::span<const Eigen::Vector3f> positions_m,
                                                           const Eigen::Vector3d& viewpoint_m, const Executor& executor);

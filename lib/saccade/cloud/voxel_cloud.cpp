@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kVoxelPointGrain{8192};
 constexpr std::size_t kVoxelGrain{1024};
 
-/// Sums over points, of which plane and mean come: x y z, xx xy xz yy yz zz, and their number.
+/// Sums over points that give their plane and mean: x y z, xx xy xz yy yz zz, and their number.
 struct VoxelMoments {
   Eigen::Array<double, 10, 1> sums{Eigen::Array<double, 10, 1>::Zero()};
 
@@ -34,14 +34,14 @@ struct VoxelMoments {
   [[nodiscard]] Eigen::Vector3d mean() const { return (sums.head<3>() / count()).matrix(); }
 };
 
-/// Of a symmetric matrix without negative eigenvalues and with a trace of 1: the eigenvector of the least one; zero
-/// where two of them are next to zero, or all are alike.
+/// Returns the eigenvector of the smallest eigenvalue of a symmetric matrix without negative eigenvalues and with trace
+/// 1. Zero where two eigenvalues are close to zero, or all are alike.
 Eigen::Vector3d least_eigenvector(const Eigen::Matrix3d& m) {
-  constexpr double kThinnest{1e-6};  // of the spread, squared: thinner is a line
+  constexpr double kThinnest{1e-6};  // share of the squared spread; anything thinner is a line
   const double minors = m(0, 0) * m(1, 1) - m(0, 1) * m(0, 1) + m(0, 0) * m(2, 2) - m(0, 2) * m(0, 2) +
                         m(1, 1) * m(2, 2) - m(1, 2) * m(1, 2);
   const double determinant = m.determinant();
-  // Newton's steps from below come to the least root of λ³ − λ² + minors · λ − determinant.
+  // Newton's method from below converges to the smallest root of λ³ − λ² + minors · λ − determinant.
   double least{0.0};
   for (int step = 0; step < 30; ++step) {
     const double slope = (3.0 * least - 2.0) * least + minors;
@@ -65,7 +65,8 @@ Eigen::Vector3d least_eigenvector(const Eigen::Matrix3d& m) {
                                        : Eigen::Vector3d{Eigen::Vector3d::Zero()};
 }
 
-/// Of the plane through the points, towards the viewpoint; where they do not span one, to the viewpoint.
+/// Returns the normal of the plane through the points, towards the viewpoint; the direction to the viewpoint where they
+/// span no plane.
 Eigen::Vector3f plane_normal(const VoxelMoments& moments, const Eigen::Vector3d& to_viewpoint) {
   const Eigen::Vector3d mean = moments.mean();
   const auto& s = moments.sums;
@@ -75,7 +76,7 @@ Eigen::Vector3f plane_normal(const VoxelMoments& moments, const Eigen::Vector3d&
   const double spread = covariance.trace();
   Eigen::Vector3d normal = Eigen::Vector3d::Zero();
   if (spread > 1e-12 * mean.squaredNorm())
-    normal = least_eigenvector(covariance / spread);  // else only rounding is left
+    normal = least_eigenvector(covariance / spread);  // otherwise only rounding is left
   if (normal.isZero(0.0)) {
     const double distance_m = to_viewpoint.norm();
     return distance_m > 0.0 ? Eigen::Vector3f{(to_viewpoint / distance_m).cast<float>()} : Eigen::Vector3f::UnitZ();
@@ -83,7 +84,7 @@ Eigen::Vector3f plane_normal(const VoxelMoments& moments, const Eigen::Vector3d&
   return (normal.dot(to_viewpoint) < 0.0 ? Eigen::Vector3d{-normal} : normal).cast<float>();
 }
 
-/// The sums over each voxel and those next to it.
+/// Returns the sums over each voxel and its neighbours.
 std::vector<VoxelMoments> with_neighbours(const VoxelCloud& cloud, const std::vector<VoxelMoments>& moments,
                                           const Executor& executor) {
   std::vector<VoxelMoments> sums(moments.size());
@@ -117,7 +118,7 @@ void find_neighbours(VoxelCloud& cloud, const CellBlocks& index, const Executor&
   for (const std::vector<std::uint32_t>& chunk : chunks) cloud.ids.insert(cloud.ids.end(), chunk.begin(), chunk.end());
 }
 
-/// What the points of one voxel add up to.
+/// Sums over the points of one voxel.
 struct VoxelSums {
   Eigen::Vector3d normal{Eigen::Vector3d::Zero()};
   Eigen::Vector3d color{Eigen::Vector3d::Zero()};

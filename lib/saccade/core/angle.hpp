@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// 30.0_deg, to_rad and to_deg: angles that people give and read in degrees, as radians.
+// 30.0_deg, to_rad and to_deg: conversion of angles in degrees, as people write them, to radians.
 
 #include <numbers>
 

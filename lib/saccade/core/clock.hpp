@@ -6,13 +6,13 @@
 
 namespace saccade {
 
-/// Starts when it is made; steady clock.
+/// Starts at construction; uses the steady clock.
 class Stopwatch {
  public:
   [[nodiscard]] double elapsed_ms() const {
     return std::chrono::duration<double, std::milli>(std::chrono::steady_clock::now() - start_).count();
   }
-  /// Milliseconds since the start or the last lap.
+  /// Returns the milliseconds since construction or the last lap.
   double lap_ms() {
     const auto now = std::chrono::steady_clock::now();
     const double ms = std::chrono::duration<double, std::milli>(now - start_).count();

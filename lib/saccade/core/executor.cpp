@@ -56,7 +56,8 @@ void run_on_threads(std::size_t threads, std::size_t chunks, std::size_t count, 
   if (failure) std::rethrow_exception(failure);
 }
 
-/// Cores this process may run on. (std::thread::hardware_concurrency counts those of the machine.)
+/// Returns the number of cores that this process may run on. std::thread::hardware_concurrency counts all of the
+/// machine.
 std::size_t available_cores() { return static_cast<std::size_t>(oneapi::tbb::info::default_concurrency()); }
 
 }  // namespace
@@ -83,7 +84,7 @@ Executor Executor::with_threads(std::size_t threads, Backend backend) {
     using oneapi::tbb::global_control;
     constexpr auto kLimit = global_control::max_allowed_parallelism;
     if (threads > available_cores()) impl->allowance = std::make_unique<global_control>(kLimit, threads);
-    // An arena made at once and within the limit: oneTBB prints a warning where one asks for more.
+    // The arena is made at once and within the limit, because oneTBB prints a warning where an arena asks for more.
     const std::size_t slots = std::min(threads, global_control::active_value(kLimit));
     impl->arena = std::make_unique<oneapi::tbb::task_arena>(static_cast<int>(slots));
     impl->arena->initialize();
@@ -111,8 +112,8 @@ void Executor::parallel_for(std::size_t count, std::size_t grain, const Body& bo
           std::size_t{0}, chunks, [&](std::size_t chunk) { run_chunk(chunk, count, grain, body); },
           oneapi::tbb::simple_partitioner{});
     };
-    // Isolated: while the caller waits for its last chunks it runs none of another loop, whose body may want a lock
-    // that the caller holds, such as a map's.
+    // Isolated: while the caller waits for its last chunks, it must not run chunks of another loop. Their body might
+    // want a lock that the caller holds, such as a map's.
     impl_->arena->execute([&] { oneapi::tbb::this_task_arena::isolate(run); });
   } else {
     run_on_threads(impl_->threads, chunks, count, grain, body);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Fnv1a: a hash of numbers, the same on every machine; against mistakes, not against forgers.
+// Fnv1a: a hash of numbers that is equal on every machine. It detects mistakes, not forgeries.
 
 #include <Eigen/Core>
 #include <bit>
@@ -9,7 +9,7 @@
 
 namespace saccade {
 
-/// 64-bit FNV-1a over the bytes of what is added, the lowest first.
+/// 64-bit FNV-1a hash over the bytes of the added values, lowest byte first.
 class Fnv1a {
  public:
   void add(std::uint64_t value) {
@@ -25,7 +25,7 @@ class Fnv1a {
     }
   }
   [[nodiscard]] std::uint64_t value() const { return state_; }
-  /// 16 hexadecimal digits.
+  /// Returns the hash as 16 hexadecimal digits.
   [[nodiscard]] std::string text() const {
     constexpr char kDigits[] = "0123456789abcdef";
     std::string digits;

@@ -12,7 +12,8 @@ namespace saccade {
 void keep_freed_memory() {
 #ifdef __GLIBC__
   constexpr int kMiB{1 << 20};
-  mallopt(M_MMAP_THRESHOLD, 32 * kMiB);  // the most that the C library takes; larger blocks go back as before
+  mallopt(M_MMAP_THRESHOLD, 32 * kMiB);  // the largest value that the C library accepts; larger blocks are returned as
+                                         // before
   mallopt(M_TRIM_THRESHOLD, 256 * kMiB);
 #endif
 }

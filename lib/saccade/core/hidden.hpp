@@ -7,8 +7,8 @@
 
 namespace saccade {
 
-/// A value that is copied, moved and const with its owner, though where the owner is declared it may be of an
-/// incomplete type; where it is made, the type is complete. What was moved from can only be assigned to or destroyed.
+/// Value of a type that may be incomplete where its owner is declared, and must be complete where the value is made. It
+/// is copied, moved and const together with its owner. A moved-from value can only be assigned to or destroyed.
 template <class T>
 class Hidden {
  public:
@@ -29,7 +29,7 @@ class Hidden {
   [[nodiscard]] const T* operator->() const { return value_.get(); }
 
  private:
-  std::shared_ptr<T> value_;  ///< never shared: it only remembers how T is destroyed
+  std::shared_ptr<T> value_;  ///< never shared: it only remembers how to destroy a T
   std::shared_ptr<T> (*copy_)(const T&);
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Names: the words for the values of an enum, written once for texts, files and options; joined, listed: words in a
+// Names: the words for the values of an enum, written once for texts, files and options. joined, listed: words in a
 // row.
 
 #include <algorithm>
@@ -30,14 +30,14 @@ template <class Items, class Text = std::identity>
   return joined(words.first(words.size() - 1)).append(" or ").append(words.back());
 }
 
-/// The words for the values of a type, in the order in which they are listed. The first word of a value is its name;
-/// further ones are read alone. Made by make_names.
+/// Words for the values of a type, in the order in which they are listed. The first word of a value is its name;
+/// further words are only read. Made by make_names.
 template <class T, std::size_t N>
 struct Names {
   std::array<T, N> values{};
   std::array<std::string_view, N> words{};
 
-  /// Returns the name of a value; "unknown" for one that has none.
+  /// Returns the name of a value, or "unknown" for a value without a name.
   [[nodiscard]] constexpr std::string_view of(const T& value) const {
     for (std::size_t i = 0; i < N; ++i) {
       if (values[i] == value) return words[i];
@@ -53,18 +53,18 @@ struct Names {
     return std::nullopt;
   }
 
-  /// Lists the words, for errors.
+  /// Lists the words, for error messages.
   [[nodiscard]] std::string listed() const { return saccade::listed(words); }
 };
 
-/// Tells whether a value of an enum has an enumerator: the compiler spells others as numbers.
+/// Tells whether a value of an enum has an enumerator. The compiler spells other values as numbers.
 template <auto kValue>
 [[nodiscard]] consteval bool is_enumerator() {
   constexpr std::string_view kSpelled{__PRETTY_FUNCTION__};
   return kSpelled[kSpelled.find_last_of(": )", kSpelled.size() - 2) + 1] > '9';
 }
 
-/// Tells whether the table has all of the first N + 1 values of an enum that have an enumerator.
+/// Tells whether the table names every enumerator among the first N + 1 values of an enum.
 template <class T, std::size_t N, std::size_t... kIndex>
 [[nodiscard]] constexpr bool has_every(const Names<T, N>& names, std::index_sequence<kIndex...> /*values*/) {
   return ((!is_enumerator<static_cast<T>(kIndex)>() ||
@@ -72,7 +72,7 @@ template <class T, std::size_t N, std::size_t... kIndex>
           ...);
 }
 
-/// Makes a table of words for some values. A constant of it does not compile where a word stands for two.
+/// Makes a table of words for some values. A constant table in which one word stands for two values does not compile.
 template <class T, std::size_t N>
 [[nodiscard]] constexpr Names<T, N> make_some_names(const std::pair<T, std::string_view> (&entries)[N]) {
   Names<T, N> names;
@@ -86,8 +86,8 @@ template <class T, std::size_t N>
   return names;
 }
 
-/// Makes a table: `inline constexpr auto kSideNames = make_names<Side>({{Side::left, "left"}, …});`. A constant of it
-/// does not compile where an enumerator has no word; those of an enum count up from 0.
+/// Makes a table: `inline constexpr auto kSideNames = make_names<Side>({{Side::left, "left"}, …});`. A constant table
+/// does not compile when an enumerator has no word. Enumerators must count up from 0.
 template <class T, std::size_t N>
 [[nodiscard]] constexpr Names<T, N> make_names(const std::pair<T, std::string_view> (&entries)[N]) {
   const Names<T, N> names = make_some_names<T>(entries);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Phase and PhaseTimes: what the wall time of a view is spent on.
+// Phase and PhaseTimes: how the wall time of a view is spent.
 
 #include <algorithm>
 #include <array>
@@ -17,18 +17,18 @@ namespace saccade {
 
 /// Phases of a view, in the order in which they are done.
 enum class Phase : std::uint8_t {
-  obstacles,     ///< the robot's obstacle map follows the map
+  obstacles,     ///< the robot's obstacle map is brought up to date with the map
   candidates,    ///< view poses are generated
   segmentation,  ///< the surface is cut into segments
-  saliency,      ///< attention ranks what there is to look at
-  reachability,  ///< the robot tests poses
+  saliency,      ///< attention ranks regions of interest
+  reachability,  ///< the robot tests view poses
   gain,          ///< views are evaluated
   planning,      ///< motions are planned
   motion,        ///< the robot moves
   fusion,        ///< frames are taken and fused
 };
 
-/// In files: keys of JSON, columns of tables.
+/// Names in files: keys of JSON, columns of tables.
 inline constexpr auto kPhaseNames = make_names<Phase>({{Phase::obstacles, "planner_map"},
                                                        {Phase::candidates, "candidates"},
                                                        {Phase::segmentation, "segmentation"},
@@ -45,7 +45,7 @@ inline constexpr auto kPhaseNames = make_names<Phase>({{Phase::obstacles, "plann
   return phase == Phase::planning ? "motion planning" : to_string(phase);
 }
 
-/// Milliseconds per phase. One thread.
+/// Milliseconds per phase. For one thread.
 class PhaseTimes {
  public:
   void add(Phase phase, double ms) { ms_[static_cast<std::size_t>(phase)] += ms; }
@@ -55,8 +55,8 @@ class PhaseTimes {
   [[nodiscard]] double ms(Phase phase) const { return ms_[static_cast<std::size_t>(phase)]; }
   [[nodiscard]] double total_ms() const { return std::accumulate(ms_.begin(), ms_.end(), 0.0); }
 
-  /// Calls `work` and adds its time to the phase. What `work` itself measures with these times counts for the inner
-  /// phase alone.
+  /// Calls `work` and adds its time to the phase. Time that `work` itself measures here counts for the inner phase
+  /// only.
   template <class Work>
   decltype(auto) measure(Phase phase, const Work& work) {
     const Measured measured{*this, phase};

@@ -17,7 +17,7 @@ Result<Pose> pose_from_matrix(const Eigen::Matrix4d& matrix) {
   const double deviation = (R * R.transpose() - Eigen::Matrix3d::Identity()).norm();
   if (!(deviation <= kRotationTolerance) || R.determinant() <= 0.0) {
     return Error{Errc::invalid_argument,
-                 "the pose is no rotation: ‖RRᵀ − I‖ = " + std::to_string(deviation) +
+                 "the pose is not a rotation: ‖RRᵀ − I‖ = " + std::to_string(deviation) +
                      ", det = " + std::to_string(R.determinant()),
                  {}};
   }

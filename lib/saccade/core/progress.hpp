@@ -9,11 +9,11 @@
 
 namespace saccade {
 
-/// Handed to long work. It calls report(); the caller may call request_cancel() from any thread, a signal handler
-/// included. A default-constructed Progress is silent and never cancelled by itself.
+/// Progress of long work, which calls report(). The caller may call request_cancel() from any thread and from signal
+/// handlers. A default-constructed Progress is silent and never cancels by itself.
 class Progress {
  public:
-  /// stage: what is being done; done of total units (total 0: unknown). Called from the working thread.
+  /// stage: the work in progress; done: finished units out of total (total 0: unknown). Called from the working thread.
   using Callback = std::function<void(std::string_view stage, std::size_t done, std::size_t total)>;
 
   Progress() = default;

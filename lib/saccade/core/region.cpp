@@ -31,7 +31,7 @@ Status check(const Cylinder& c) {
                c.radius_m > 0.0 && (c.top - c.base).norm() > 0.0);
 }
 
-/// Above the rounding of contains(), below any voxel; metres.
+/// Slack in metres: above the rounding of contains(), below any voxel.
 constexpr double kSlackM{1e-9};
 
 }  // namespace
@@ -67,7 +67,7 @@ Overlap overlap(const Box& region, const Box& box) {
   return contains(region, box.min) && contains(region, box.max) ? Overlap::whole : Overlap::partial;
 }
 
-/// By the ball around the box.
+/// Tests the ball around the box.
 Overlap overlap(const Cylinder& cylinder, const Box& box) {
   const Eigen::Vector3d axis = cylinder.top - cylinder.base;
   const double length_m = axis.norm();

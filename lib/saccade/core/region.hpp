@@ -40,22 +40,22 @@ using Region = std::variant<Sphere, Box, Cylinder>;
 [[nodiscard]] bool contains(const Cylinder& cylinder, const Eigen::Vector3d& p);
 [[nodiscard]] bool contains(const Region& region, const Eigen::Vector3d& p);
 
-/// Smallest axis-aligned box around the region.
+/// Returns the smallest axis-aligned box around the region.
 [[nodiscard]] Box bounds(const Region& region);
 
-/// How much of a box of points a region contains, judged without looking at the points.
+/// Share of a box of points that a region contains, judged without looking at the points.
 enum class Overlap {
   none,     ///< no point of the closed box
-  partial,  ///< not known: some, or in rare cases all or none
+  partial,  ///< undecided: some points, or in rare cases all or none
   whole,    ///< every point of the closed box
 };
-/// Never wrong about a point for which contains() decides, whatever its rounding. O(1).
+/// Agrees with contains() for every point, whatever its rounding. O(1).
 [[nodiscard]] Overlap overlap(const Sphere& sphere, const Box& closed_box);
 [[nodiscard]] Overlap overlap(const Box& box, const Box& closed_box);
 [[nodiscard]] Overlap overlap(const Cylinder& cylinder, const Box& closed_box);
 [[nodiscard]] Overlap overlap(const Region& region, const Box& closed_box);
 
-/// invalid_argument when a number is not finite or a size is zero or negative.
+/// Answers invalid_argument when a number is not finite, or a size is zero or negative.
 [[nodiscard]] Status validate(const Region& region);
 
 }  // namespace saccade

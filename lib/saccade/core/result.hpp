@@ -13,15 +13,15 @@
 
 namespace saccade {
 
-/// What kind of thing went wrong; the command line maps these to exit statuses, the server to HTTP ones.
+/// Kind of an error. The command line maps it to an exit status, the server to an HTTP status.
 enum class Errc {
-  invalid_argument,  ///< a value that the caller chose is out of range or makes no sense
-  not_found,         ///< a file or folder that is not there
+  invalid_argument,  ///< a value chosen by the caller is out of range or makes no sense
+  not_found,         ///< a file or folder does not exist
   io_failure,        ///< reading or writing failed (permissions, full disk, broken pipe)
-  corrupt_data,      ///< a file is there but its content is damaged or not what it claims to be
-  unsupported,       ///< well-formed, but a variant that is not read here
+  corrupt_data,      ///< a file exists but its content is damaged or is not what it claims to be
+  unsupported,       ///< well-formed, but of a variant that is not supported
   size_mismatch,     ///< two things that must agree in size do not
-  unavailable,       ///< a back end or an optional part that this build or machine lacks
+  unavailable,       ///< a back end or an optional part is missing from this build or machine
   cancelled,         ///< the caller asked to stop
 };
 
@@ -35,13 +35,13 @@ inline constexpr auto kErrcNames = make_names<Errc>({{Errc::invalid_argument, "i
                                                      {Errc::cancelled, "cancelled"}});
 [[nodiscard]] constexpr std::string_view to_string(Errc code) { return kErrcNames.of(code); }
 
-/// What is wrong, where, and what to do.
+/// An error: what is wrong, where, and what to do.
 struct Error {
   Errc code{Errc::invalid_argument};
   std::string message;  ///< what is wrong and, where it helps, what to do
   std::string context;  ///< where: a file, a line, a frame, a byte offset; may be empty
 
-  /// "context: message", or the message alone.
+  /// Returns "context: message", or the message alone where there is no context.
   [[nodiscard]] std::string to_string() const;
 };
 
@@ -72,7 +72,7 @@ class [[nodiscard]] Result {
   [[nodiscard]] T* operator->() { return &value(); }
   [[nodiscard]] const T* operator->() const { return &value(); }
 
-  /// Only when !ok().
+  /// Requires !ok().
   [[nodiscard]] const Error& error() const {
     const Error* e = std::get_if<1>(&state_);
     if (e == nullptr) contract_violation("Result holds an error", __FILE__, __LINE__);
@@ -104,7 +104,7 @@ class [[nodiscard]] Status {
 
 }  // namespace saccade
 
-/// Programmer errors at API borders; kept in Release.
+/// Checks a contract at API borders, also in Release. A violation is a programmer's error.
 #define SACCADE_EXPECTS(condition) \
   ((condition) ? static_cast<void>(0) : ::saccade::contract_violation(#condition, __FILE__, __LINE__))
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SeededRandom: the one source of random numbers. A seed decides them, on every platform alike.
+// SeededRandom: the only source of random numbers. Equal seeds give equal numbers on every platform.
 
 #include <cmath>
 #include <cstddef>
@@ -12,7 +12,7 @@
 
 namespace saccade {
 
-/// std::mt19937_64 is the same everywhere; the distributions of the standard library are not.
+/// Random numbers from std::mt19937_64, which is equal everywhere; the distributions of the standard library are not.
 class SeededRandom {
  public:
   explicit SeededRandom(std::uint64_t seed) : engine_{seed} {}
@@ -31,7 +31,7 @@ class SeededRandom {
     for (std::size_t i = std::size(values); i > 1; --i) std::swap(values[i - 1], values[below(i)]);
   }
 
-  /// Mean 0, standard deviation 1, by the method of Box and Muller.
+  /// Returns a normally distributed number with mean 0 and standard deviation 1, by the method of Box and Muller.
   [[nodiscard]] double normal() {
     if (has_spare_) {
       has_spare_ = false;

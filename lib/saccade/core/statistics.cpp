@@ -11,7 +11,7 @@
 namespace saccade {
 namespace {
 
-/// The probability as a function of the angle θ = atan(t/√degrees), which is bounded where t is not.
+/// Returns the probability as a function of the angle θ = atan(t/√degrees), which stays bounded where t does not.
 double probability_within(double theta, std::size_t degrees) {
   const double sine = std::sin(theta);
   const double cosine = std::cos(theta);
@@ -27,7 +27,7 @@ double probability_within(double theta, std::size_t degrees) {
   return odd ? 2.0 / std::numbers::pi * (theta + sine * sum) : sine * sum;
 }
 
-/// Ranks 1, 2, …; equal values share the mean of theirs.
+/// Returns the ranks 1, 2, …; equal values share their mean rank.
 std::vector<double> ranks_of(std::span<const double> values) {
   std::vector<std::size_t> order(values.size());
   std::iota(order.begin(), order.end(), std::size_t{0});

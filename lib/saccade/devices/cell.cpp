@@ -1,10 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/devices/cell.hpp"
+#include "saccade/core/length_limit.hpp"
 
 #include <Eigen/Geometry>
 #include <algorithm>
 
 #include "saccade/core/angle.hpp"
+#include "saccade/core/length_limit.hpp"
 #include "saccade/devices/internal/ros_device.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/yaml_map.hpp"
@@ -36,7 +38,13 @@ std::string text_in(YamlMap& map, const std::string& key) {
   return node.IsDefined() ? yaml_text(node) : std::string{};
 }
 
-/// A matrix of three or four rows.
+/// Rejects a pose that is too far away to be right.
+void check_near(const YAML::Node& node, const Pose& pose) {
+  if (pose.translation().cwiseAbs().maxCoeff() <= kMaxLength_m) return;
+  yaml_problem(node, "the pose is farther than a kilometre from the origin; lengths are metres");
+}
+
+/// Reads a matrix of three or four rows.
 Pose read_matrix(const YAML::Node& node) {
   if (!node.IsSequence() || (node.size() != 3 && node.size() != 4)) yaml_problem(node, "expected the rows of a pose");
   Pose pose = Pose::Identity();
@@ -48,8 +56,9 @@ Pose read_matrix(const YAML::Node& node) {
   }
   if (!((pose.linear() * pose.linear().transpose() - Eigen::Matrix3d::Identity()).norm() < 1e-3) ||
       pose.linear().determinant() < 0.0) {
-    yaml_problem(node, "the first three columns are no rotation");
+    yaml_problem(node, "the first three columns are not a rotation");
   }
+  check_near(node, pose);
   pose.linear() = Eigen::Quaterniond{pose.linear()}.normalized().toRotationMatrix();
   return pose;
 }
@@ -58,12 +67,15 @@ Pose read_base_at(const YAML::Node& node) {
   const std::vector<double> n = yaml_numbers(node, 0);
   if (n.size() != 3 && n.size() != 4) yaml_problem(node, "expected [x, y, z] or [x, y, z, degrees]");
   const double turn_rad = n.size() == 4 ? to_rad(n[3]) : 0.0;
-  return Eigen::Translation3d{n[0], n[1], n[2]} * Eigen::AngleAxisd{turn_rad, Eigen::Vector3d::UnitZ()};
+  const Pose T_world_base =
+      Eigen::Translation3d{n[0], n[1], n[2]} * Eigen::AngleAxisd{turn_rad, Eigen::Vector3d::UnitZ()};
+  check_near(node, T_world_base);
+  return T_world_base;
 }
 
 Box read_cell_box(const YAML::Node& node) {
-  YamlMap map{node, "a box"};
-  const Box box{yaml_point(map.need("min")), yaml_point(map.need("max"))};
+  YamlMap map{node, "a box", {"min", "max"}};
+  const Box box{yaml_place(map.need("min"), "a box"), yaml_place(map.need("max"), "a box")};
   map.finish();
   if (!(box.min.array() < box.max.array()).all()) yaml_problem(node, "the box is empty: min must be below max");
   return box;
@@ -78,7 +90,10 @@ std::vector<Box> read_boxes(const YAML::Node& node) {
 }
 
 CellArm read_cell_arm(const YAML::Node& node, const fs::path& folder) {
-  YamlMap map{node, "an arm"};
+  YamlMap map{node,
+              "an arm",
+              {"urdf", "robot", "base", "tip", "camera_frame", "base_at", "T_flange_camera", "packages",
+               "package_paths", "drop_beyond_tip", "speed"}};
   CellArm arm;
   const std::string urdf = text_in(map, "urdf");
   arm.robot = urdf.empty() ? text_in(map, "robot") : (folder / urdf).string();
@@ -94,6 +109,10 @@ CellArm read_cell_arm(const YAML::Node& node, const fs::path& folder) {
     if (!packages.IsMap()) yaml_problem(packages, "expected NAME: FOLDER");
     for (const auto& entry : packages) arm.packages[yaml_text(entry.first)] = folder / yaml_text(entry.second);
   }
+  if (const YAML::Node paths = map.find("package_paths"); paths.IsDefined()) {
+    if (!paths.IsSequence()) yaml_problem(paths, "expected a list of folders");
+    for (const YAML::Node& path : paths) arm.package_paths.push_back(folder / yaml_text(path));
+  }
   if (const YAML::Node drop = map.find("drop_beyond_tip"); drop.IsDefined()) arm.drop_beyond_tip = yaml_flag(drop);
   if (const YAML::Node speed = map.find("speed"); speed.IsDefined()) {
     arm.speed = yaml_positive(speed);
@@ -103,7 +122,8 @@ CellArm read_cell_arm(const YAML::Node& node, const fs::path& folder) {
   return arm;
 }
 
-/// A device over ROS in full: {ros: /camera/depth, info: /camera/camera_info}. Returns "ros:/camera/depth --info …".
+/// Reads a device over ROS in full form: {ros: /camera/depth, info: /camera/camera_info}. Returns "ros:/camera/depth
+/// --info …".
 std::string ros_command(YamlMap& map, const std::string& role, const YAML::Node& name, const std::string& prefix) {
   std::string command = prefix + shell_quoted(yaml_text(name));
   for (const std::string_view option : ros_options(role)) {
@@ -115,7 +135,7 @@ std::string ros_command(YamlMap& map, const std::string& role, const YAML::Node&
   return command;
 }
 
-/// Refuses what no program over ROS can be.
+/// Rejects devices that no program over ROS can be.
 void check_ros_name(const YAML::Node& node, const std::string& role, const std::string& command) {
   if (const Status status = check_over_ros(role, command); !status.ok()) yaml_problem(node, status.error().message);
 }
@@ -136,7 +156,7 @@ std::string read_command(YamlMap& map, const std::string& role) {
   return command;
 }
 
-/// A device's keys; or, in place of all of them, ros:NAME.
+/// Keys of a device; or, instead of all of them, ros:NAME.
 class ProgramKeys {
  public:
   ProgramKeys(const YAML::Node& node, const std::string& role) {
@@ -154,7 +174,7 @@ class ProgramKeys {
     return map_ ? positive_in(*map_, key) : std::nullopt;
   }
   [[nodiscard]] double number(const std::string& key) { return map_ ? map_->number(key, 0.0) : 0.0; }
-  /// Tells a program over ROS what Saccade waits for, so that it gives up a little earlier, and says why.
+  /// Passes Saccade's time limit to a program over ROS, so that it gives up slightly earlier, and says why.
   void tell(const char* option, std::optional<double> limit_s) {
     constexpr double kEarlier{0.8};
     if (!limit_s || !is_over_ros(program_.command)) return;
@@ -221,8 +241,7 @@ Result<Cell> parse_cell(std::string_view yaml, const fs::path& folder) {
 }
 
 Result<Cell> read_cell(const fs::path& path) {
-  constexpr std::uintmax_t kMaxBytes{std::uintmax_t{16} << 20U};
-  SACCADE_TRY(const std::string text, read_text_file(path, kMaxBytes));
+  SACCADE_TRY(const std::string text, read_yaml_file(path));
   auto cell = parse_cell(text, path.parent_path());
   if (cell) return cell;
   Error error = cell.error();

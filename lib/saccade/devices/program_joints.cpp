@@ -17,11 +17,11 @@ namespace saccade {
 namespace {
 
 constexpr std::chrono::milliseconds kWatchStep{10};
-constexpr double kStopTimeout_s{0.5};  ///< from the word to the arm's standing still
+constexpr double kStopTimeout_s{0.5};  ///< from the request to the arm's standstill
 
 Error nonsense(std::string what) { return {Errc::corrupt_data, std::move(what), {}}; }
 
-/// corrupt_data for positions outside the limits by more than the tolerance.
+/// Answers corrupt_data for positions outside the limits by more than the tolerance.
 Status check_limits(const ProgramJointsConfig& config, const Configuration& q) {
   for (Eigen::Index i = 0; i < q.size(); ++i) {
     if (q[i] >= config.lower[i] - config.tolerance && q[i] <= config.upper[i] + config.tolerance) continue;
@@ -47,7 +47,7 @@ Status ProgramJointsConfig::validate() const {
   return validate_time_limit(watchdog_s, "joints");
 }
 
-/// Watches one motion from a thread of its own, so that an observer that takes its time delays no stop.
+/// Supervises one motion from its own thread, so that a slow observer delays no stop.
 class ProgramJoints::Drive {
  public:
   Drive(ProgramJoints& joints, const Trajectory& trajectory, std::size_t number)
@@ -108,7 +108,7 @@ class ProgramJoints::Drive {
     return stop_asked_;
   }
 
-  /// Takes a line on the way, or the last one. Returns whether it was the last; whatever is wrong with it stops the
+  /// Handles a line during the motion, or the last one. Returns whether it was the last; any problem with it stops the
   /// arm.
   [[nodiscard]] Result<bool> take(const std::string& line, double since_start_s) {
     const auto answer = parse_joint_answer(line, config_.lower.size());
@@ -130,7 +130,7 @@ class ProgramJoints::Drive {
     return answer->done;
   }
 
-  /// Returns the largest difference of a joint from where the trajectory has it, at the best instant of the last lag_s.
+  /// Returns the largest difference of a joint from the trajectory, at the best instant of the last lag_s.
   [[nodiscard]] double distance_to_way(double t_s, double lag_s) const {
     constexpr double kStep_s{0.01};
     double least = std::numeric_limits<double>::infinity();
@@ -140,7 +140,7 @@ class ProgramJoints::Drive {
     return least;
   }
 
-  /// Tells the program to stop, and waits until it says where the arm stands.
+  /// Tells the program to stop, and waits for the arm's final positions.
   [[nodiscard]] Result<JointArrival> stop() {
     const std::size_t number = joints_.asked_++;
     const Request request{"stop " + std::to_string(number), kStopTimeout_s};
@@ -175,11 +175,11 @@ class ProgramJoints::Drive {
   const Trajectory& trajectory_;
   std::size_t number_;
   Request request_;
-  Configuration q_;  ///< that the watcher heard last
+  Configuration q_;  ///< last positions received by the watcher
 
   std::mutex mutex_;
   std::condition_variable changed_;
-  std::optional<JointSample> sample_;  ///< not observed yet
+  std::optional<JointSample> sample_;  ///< not yet passed to the observer
   std::optional<Result<JointArrival>> end_;
   bool stop_asked_{false};
 };

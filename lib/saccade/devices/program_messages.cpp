@@ -12,11 +12,11 @@
 namespace saccade {
 namespace {
 
-constexpr double kLongestWrite_s{86400.0};  // how slow a program may be, until the end gives up
+constexpr double kLongestWrite_s{86400.0};  // longest time of a write; finish() has its own limit
 
 const RosProgram& program_of(RosVersion version) { return kRosPrograms[static_cast<std::size_t>(version)]; }
 
-/// A message as the pipe has it: length of the head, head, bytes.
+/// Returns a message as sent through the pipe: length of the head, head, bytes.
 std::vector<std::byte> piped(std::string_view topic, const messages::MessageType& type, messages::Wire wire,
                              std::span<const std::byte> bytes) {
   nlohmann::json head{{"topic", topic}, {"type", type.name}, {"latched", true}, {"bytes", bytes.size()}};

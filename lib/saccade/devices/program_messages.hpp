@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ProgramMessages: messages to a program that publishes them; RosVersion, publisher_command: those for ROS.
-// The pipe's protocol is in docs/processes.md.
+// ProgramMessages: messages to a program that publishes them. RosVersion, publisher_command: the programs for ROS. The
+// pipe's protocol is in docs/guides/processes.md.
 
 #include <atomic>
 #include <chrono>
@@ -25,54 +25,55 @@ enum class RosVersion { ros1, ros2 };
 inline constexpr auto kRosVersionNames =
     make_names<RosVersion>({{RosVersion::ros1, "ros"}, {RosVersion::ros2, "ros2"}});
 
-/// Returns the command of the program that publishes. unavailable: it is neither beside this program nor in PATH.
+/// Returns the command of the program that publishes. Answers unavailable when it is neither beside this program nor in
+/// PATH.
 [[nodiscard]] Result<std::string> publisher_command(RosVersion version);
-/// Returns the layout in which a version has its messages.
+/// Returns the message layout of a version.
 [[nodiscard]] messages::Wire wire_of(RosVersion version);
 
 struct ProgramMessagesConfig {
-  std::string command;  ///< as a shell would run it
+  std::string command;  ///< command line for a shell
   messages::Wire wire{messages::Wire::cdr};
-  std::chrono::milliseconds flush_limit{5000};  ///< for what is queued at the end
-  std::chrono::milliseconds end_limit{3000};    ///< for the program to end after that
+  std::chrono::milliseconds flush_limit{5000};  ///< limit for sending the queue at the end
+  std::chrono::milliseconds end_limit{3000};    ///< limit for the program to end after that
 };
 
-/// Writes messages into a program's standard input from a thread of its own: a program that reads slowly, or not at
-/// all, does not hold up the caller. A message that waits is replaced by a later one on its topic.
+/// Writes messages to a program's standard input from its own thread, so that a slow program does not delay the caller.
+/// A waiting message is replaced by a later one on its topic.
 class ProgramMessages final : public messages::MessageSink {
  public:
   /// Starts the program. Errors: those of starting a process.
   [[nodiscard]] static Result<std::unique_ptr<ProgramMessages>> start(ProgramMessagesConfig config);
   ProgramMessages(const ProgramMessages&) = delete;
   ProgramMessages& operator=(const ProgramMessages&) = delete;
-  /// Ends the program; what is queued is lost, unless finish() came before.
+  /// Ends the program. Queued messages are lost unless finish() was called.
   ~ProgramMessages() override;
 
   [[nodiscard]] messages::Wire wire() const override { return config_.wire; }
-  /// Queues the message. io_failure: the program has ended; its last words on standard error are quoted.
+  /// Queues the message. Answers io_failure when the program has ended, quoting its last words on standard error.
   [[nodiscard]] Status add(std::string_view topic, const messages::MessageType& type, messages::Time time,
                            std::span<const std::byte> bytes) override;
-  /// Waits until all is written and the program has ended, no longer than the two limits. io_failure: it did not read
-  /// all in time, or ended with an error.
+  /// Waits until all is written and the program has ended, within the two limits. Answers io_failure when it did not
+  /// read everything in time, or ended with an error.
   [[nodiscard]] Status finish() override;
 
  private:
   struct Waiting {
     std::string topic;
-    std::vector<std::byte> bytes;  ///< with its head
+    std::vector<std::byte> bytes;  ///< including its head
   };
 
   explicit ProgramMessages(ProgramMessagesConfig config);
   [[nodiscard]] Status launch();
   void write_all();
-  /// The next message to write; nullopt at the end.
+  /// Returns the next message to write; nullopt at the end.
   [[nodiscard]] std::optional<Waiting> next();
 
   ProgramMessagesConfig config_;
   std::mutex mutex_;
   std::condition_variable changed_;
   std::deque<Waiting> waiting_;
-  bool ends_{false};     ///< no message comes any more
+  bool ends_{false};     ///< no more messages will come
   bool written_{false};  ///< the thread has written all, or failed
   std::optional<Error> failure_;
   std::atomic<bool> gives_up_{false};

@@ -16,12 +16,12 @@ Result<std::unique_ptr<ProgramRobot>> ProgramRobot::start(const ProgramConfig& c
   return std::unique_ptr<ProgramRobot>{new ProgramRobot{config, std::move(started.process)}};
 }
 
-Result<PlannedMotion> ProgramRobot::plan(std::span<const Pose> T_world_camera, Way /*way*/) {
+Result<PlannedMotion> ProgramRobot::plan(std::span<const Pose> T_world_camera, MotionKind /*way*/) {
   SACCADE_EXPECTS(!T_world_camera.empty());
   return PlannedMotion{Motion{0, T_world_camera.front(), {}}, std::nullopt, ""};
 }
 
-Result<std::optional<Arrival>> ProgramRobot::execute(const Motion& motion, const OnWay& on_way) {
+Result<std::optional<Arrival>> ProgramRobot::execute(const Motion& motion, const MotionObserver& on_way) {
   const std::size_t number = asked_++;
   const Request request{"move " + std::to_string(number), config_.timeout_s};
   why_not_reached_.clear();

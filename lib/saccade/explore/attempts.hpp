@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Attempts: where the camera went, or could not go, for each region of a run.
+// Attempts: poses that the camera took, or could not take, for each region of a run.
 
 #include <span>
 #include <vector>
@@ -10,29 +10,29 @@
 
 namespace saccade {
 
-/// Remembers poses by region. Poses that differ by rounding are the same: one that was written to a file and read again
-/// is still known.
+/// Poses by region. Poses that differ by rounding are equal, so a pose is recognised after it was written to a file and
+/// read again.
 class Attempts {
  public:
   Attempts() = default;
-  /// Begins with the views of a run that goes on.
+  /// Begins with the views of a resumed run.
   explicit Attempts(std::span<const ViewRecord> views);
 
   void add_view(const ViewRecord& view);
-  /// The robot cannot take these poses.
+  /// Records poses that the robot cannot take.
   void add_refused(std::size_t region, std::span<const RankedView> views, Refusal refusal);
-  /// The caller does not want this pose.
+  /// Records a pose that the caller does not want.
   void add_skipped(std::size_t region, const Pose& T_world_camera);
 
-  /// Whether the camera went to the pose, or tried to, for this region.
+  /// Tells whether the camera took the pose, or tried to, for this region.
   [[nodiscard]] bool contains(std::size_t region, const Pose& T_world_camera) const;
-  /// Whether the robot could not take it.
+  /// Tells whether the robot could not take it.
   [[nodiscard]] bool was_refused(std::size_t region, const Pose& T_world_camera) const;
-  /// Views taken of the region.
+  /// Returns the number of views taken of the region.
   [[nodiscard]] std::size_t views_of(std::size_t region) const;
-  /// Views that promised something that could be checked, in their order.
+  /// Returns the views with a promise that could be checked, in their order.
   [[nodiscard]] std::span<const CheckedView> checked() const { return checked_; }
-  /// Refusals for the region since the last view.
+  /// Returns the refusals for the region since the last view.
   [[nodiscard]] RefusalCounts refusals_of(std::size_t region) const;
 
  private:

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Updates of an environment that a user has changed (Explorer::update): their defaults, and RegionMeter, which follows
-// how much of each region is unknown. Thesis §2.2.
+// Updates of an environment that a user has changed (Explorer::update): their defaults, and RegionMeter, which records
+// the unknown share of each region. Thesis §2.2.
 
 #include <span>
 #include <string_view>
@@ -16,26 +16,26 @@ namespace saccade {
 /// When frames are fused. Thesis §2.2.
 enum class FuseWhen : std::uint8_t {
   viewpoints,  ///< KFOVP: while the camera oscillates at a view
-  motion,      ///< KFOM: on the way to a view as well, for which the arm moves more slowly
+  motion,      ///< KFOM: also on the way to a view, for which the arm moves more slowly
 };
 inline constexpr auto kFuseWhenNames =
     make_names<FuseWhen>({{FuseWhen::viewpoints, "viewpoints"}, {FuseWhen::motion, "motion"}});
 [[nodiscard]] constexpr std::string_view to_string(FuseWhen when) { return kFuseWhenNames.of(when); }
 
-/// Share of its speed that an arm has while frames are fused on the way. The thesis' arm took about four times as long
-/// (Table 2.8).
+/// Speed of an arm while frames are fused during the motion, as a share of its full speed. The thesis' arm took about
+/// four times as long (Table 2.8).
 constexpr double kSpeedWhileFusing{0.25};
-/// Between frames that are fused on the way, seconds.
+/// Interval between frames that are fused during a motion, seconds.
 constexpr double kFrameOnWay_s{0.1};
-/// IncTh of Algorithm 1 for regions as small as those of a hand: from 0.8 m a ball of 0.2 m fills about 3500 of the 160
-/// × 120 rays that views are chosen with.
+/// IncTh of Algorithm 1 for small regions around a hand: from 0.8 m a ball of 0.2 m fills about 3500 of the 160 × 120
+/// rays that choose views.
 constexpr double kUpdateMinGain{50.0};
-/// The three regions of the thesis' second experiment took five.
+/// The three regions of the thesis' second experiment took five views.
 constexpr int kUpdateMaxViews{30};
 
 /// Unknown voxels of each region.
 using UnknownOfRegions = std::vector<std::size_t>;
-/// O(voxels of the regions).
+/// Counts the unknown voxels of each region. O(voxels of the regions).
 [[nodiscard]] UnknownOfRegions count_unknown(const TsdfSnapshot& map, std::span<const RegionOfInterest> regions);
 
 /// Counts the unknown voxels of regions after each view.
@@ -43,7 +43,7 @@ class RegionMeter final : public Recorder {
  public:
   explicit RegionMeter(std::span<const RegionOfInterest> regions) : regions_{regions.begin(), regions.end()} {}
   [[nodiscard]] Status viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> frames) override;
-  /// One for each view so far.
+  /// Returns one entry for each view so far.
   [[nodiscard]] const std::vector<UnknownOfRegions>& unknown() const { return unknown_; }
 
  private:

@@ -7,7 +7,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kLeastOnWay_s{0.01};  // no camera is faster, and each frame of a plan costs a look at the map
+constexpr double kLeastOnWay_s{0.01};  // no camera is faster, and each planned frame costs a look at the map
 
 std::vector<Pose> poses_of(std::span<const RankedView> views) {
   std::vector<Pose> poses;
@@ -20,7 +20,7 @@ RegionResult& result_of(RunRecord& run, std::size_t region) {
   return run.regions[region];
 }
 
-/// Takes over how regions ended that a ranking left.
+/// Records the results of regions that a ranking left.
 void note_left(RunRecord& run, const Ranking& ranking) {
   for (const auto& [region, result] : ranking.left()) {
     result_of(run, region) = result;
@@ -53,7 +53,7 @@ Status ExplorerConfig::validate() const {
 Result<RunRecord> Explorer::explore(ViewPlanner& planner, RunRecord run) {
   SACCADE_CHECK(config_.validate());
   attempts_ = Attempts{run.views};
-  region_ = run.views.empty() ? 0 : run.views.back().region;  // what an earlier call was done with stays done
+  region_ = run.views.empty() ? 0 : run.views.back().region;  // regions finished by an earlier call stay finished
   std::optional<StopReason> reason;
   while (!(reason = stopped(run))) {
     ViewRecord view;
@@ -129,7 +129,7 @@ Result<Explorer::Outcome> Explorer::go_to_next(ViewPlanner& planner, RunRecord& 
   }
 }
 
-/// Lines 6–12: views as good as the best are offered to the robot together, then the next best.
+/// Runs lines 6–12: offers equally good views to the robot together, then the next best.
 Result<Explorer::Outcome> Explorer::go_to_best(Ranking& ranking, ViewRecord& view) {
   view.candidates = ranking.candidates();
   view.evaluated = ranking.evaluated();
@@ -151,7 +151,7 @@ Result<Explorer::Outcome> Explorer::go_to_best(Ranking& ranking, ViewRecord& vie
     if (approval == Approval::go) {
       promise_ = ranking.promise(chosen.T_world_camera);
       SACCADE_TRY(const std::optional<Arrival> arrival, move(*planned.motion, view));  // 12
-      if (arrival && arrival->stopped) {  // something new stands in the way
+      if (arrival && arrival->stopped) {                                               // a new obstacle is in the way
         attempts_.add_refused(ranking.region(), std::span{&chosen, 1}, Refusal::no_path);
         return cancelled() ? Outcome::cancelled : Outcome::stopped_on_way;
       }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Explorer: the closed loop of choosing a view, going there, looking and fusing. Thesis Algorithms 1 and 4.
+// Explorer: the closed loop of choosing a view, moving there, taking frames and fusing them. Thesis Algorithms 1 and 4.
 
 #include <functional>
 #include <optional>
@@ -20,25 +20,26 @@
 namespace saccade {
 
 struct ExplorerConfig {
-  /// Views that gain at least this share of the best one's are as good as the best: among these the robot goes to the
-  /// one that it reaches soonest. 1: to the best alone.
+  /// Views whose gain is at least this share of the best one's count as equally good: the robot takes the one that it
+  /// reaches soonest. 1: only the best counts.
   double good_enough{1.0};
-  int max_views{12};              ///< in all
-  double oscillation_rad{5_deg};  ///< at each view the camera is tilted from minus to plus this
-  int oscillation_frames{5};      ///< frames taken on the way; 1: none but the view itself
-  /// Seconds of motion between frames that are fused on the way to a view (KFOM of thesis §2.2); 0: none are, the map
-  /// learns at views alone (KFOVP). For robots that know their way.
+  int max_views{12};              ///< limit for the run
+  double oscillation_rad{5_deg};  ///< at each view the camera is tilted from minus to plus this angle
+  int oscillation_frames{5};      ///< frames taken during the oscillation; 1: only the view itself
+  /// Seconds of motion between frames that are fused on the way to a view (KFOM of thesis §2.2); 0: only frames at
+  /// views are fused (KFOVP). For robots that know their path.
   double frame_on_way_s{0.0};
-  bool way_counts{true};                    ///< what these frames are expected to show: Foresight; false: the thesis
-  int lookahead{1};                         ///< views that are chosen together: Foresight
-  Objective objective{Objective::surface};  ///< what a view is chosen by
+  bool way_counts{true};                    ///< whether these frames' expected gain counts: Foresight; false: as in the
+                                            ///< thesis
+  int lookahead{1};                         ///< number of views chosen together: Foresight
+  Objective objective{Objective::surface};  ///< criterion for choosing a view
 
-  /// Where the poses of frames come from: forced takes the robot's; hint lets ICP begin there, and takes the robot's
-  /// where ICP refuses; icp lets it begin where the robot's motion leads from the last tracked pose, and does not fuse
-  /// what it refuses.
+  /// Source of the frames' poses. forced takes the robot's. hint lets ICP start there, and takes the robot's where ICP
+  /// fails. icp lets it start where the robot's motion leads from the last tracked pose, and skips frames where it
+  /// fails.
   TrackingMode tracking{TrackingMode::forced};
-  /// Added to the camera's times for those of the robot. Frames on the way that have a time are fused where the robot
-  /// was then, where that has a clock too.
+  /// Added to the camera's times to get the robot's. Frames with a time are fused where the robot was at that time, if
+  /// the robot has a clock too.
   double camera_clock_offset_s{0.0};
   IcpConfig icp{.max_translation_m = 0.08, .max_rotation_rad = 0.15};
 
@@ -48,56 +49,57 @@ struct ExplorerConfig {
   }
 };
 
-/// What the caller answers before the camera moves to a view.
+/// Caller's answer before the camera moves to a view.
 enum class Approval : std::uint8_t { go, skip, stop };
 using Approve = std::function<Approval(const RankedView& view)>;
 
-/// What an explorer works with. All of it outlives the explorer.
+/// Parts of an explorer, all of which must outlive it.
 struct ExplorerParts {
   TsdfMap& map;
   Camera& camera;
   Robot& robot;
   const Executor& executor;
-  Recorder* recorder{nullptr};        ///< nullptr: nothing is recorded but what explore() returns
-  const Stopping* stopping{nullptr};  ///< besides ExplorerConfig::max_views
-  Approve approve{};                  ///< asked before each move to a view or a pose of the scan; empty: go
+  Recorder* recorder{nullptr};        ///< nullptr: records only the result of explore()
+  const Stopping* stopping{nullptr};  ///< in addition to ExplorerConfig::max_views
+  Approve approve{};                  ///< asked before each move to a view or a scan pose; empty: go
   const Progress* progress{nullptr};
-  std::function<bool()> suspended{};  ///< asked before each frame; true: none is taken. Empty: all are
+  std::function<bool()> suspended{};  ///< asked before each frame; true: none is taken. Empty: all are taken
 };
 
 /// Return to the stand-by pose.
 struct StandByResult {
   bool at_stand_by{false};
-  std::optional<Refusal> refusal{};  ///< where there was no way: why
-  double motion_s{0.0};              ///< duration of the way of a real arm
+  std::optional<Refusal> refusal{};  ///< why there was no motion
+  double motion_s{0.0};              ///< duration of the motion on a real arm
 };
 
-/// One caller at a time. What is fused comes from the camera, at poses by ExplorerConfig::tracking.
+/// Exploration loop. One caller at a time. Fuses the camera's frames, at poses by ExplorerConfig::tracking.
 class Explorer {
  public:
   Explorer(ExplorerParts parts, const ExplorerConfig& config) : parts_{std::move(parts)}, config_{config} {}
 
-  /// The initial scan: moves to each pose that can be reached, looks, and fuses. What the robot sweeps on its way
-  /// through them is set free before (Robot::swept_by): the caller vouches for it. Errors:
-  /// those of robot, camera, map and recorder.
-  /// @param scan  what an earlier, interrupted call did; the map is as it left it
+  /// Performs the initial scan: moves to each reachable pose, takes frames, and fuses them. First sets free the volume
+  /// that the robot sweeps on its way (Robot::swept_volume); the caller guarantees that it is free. Errors: those of
+  /// robot, camera, map and recorder.
+  /// @param scan  result of an earlier, interrupted call, which left the map in its present state
   [[nodiscard]] Result<ScanRecord> scan(std::span<const Pose> T_world_camera, ScanRecord scan = {});
 
-  /// Algorithm 1, lines 4–17, and the exploration of chapter 3: they differ in the planner's attention source. A pose
-  /// is attempted once per region; the planner is asked anew after each view, and also when no view of a ranking could
-  /// be reached.
-  /// @param run views that an earlier, interrupted call took, with its scan; the map is as they left it. The
-  /// exploration
-  ///            ends as if it had never been interrupted, but tries again poses that could not be reached.
+  /// Runs Algorithm 1, lines 4–17, or the exploration of chapter 3: they differ in the planner's attention source. A
+  /// pose is attempted once per region. The planner is asked again after each view, and also when no view of a ranking
+  /// could be reached.
+  /// @param run views and scan of an earlier, interrupted call, which left the map in its present state. The
+  /// exploration ends as if it had never been interrupted, but tries again poses that could not be reached.
   /// @return the whole run; invalid_argument for a bad configuration; errors of planner, robot, camera, map, recorder.
   [[nodiscard]] Result<RunRecord> explore(ViewPlanner& planner, RunRecord run = {});
 
-  /// Algorithm 1 whole: forgets the regions, explores one after the other, and returns to stand-by unless cancelled.
+  /// Runs the whole of Algorithm 1: forgets the regions, explores one after the other, and returns to stand-by unless
+  /// cancelled.
   [[nodiscard]] Result<RunRecord> update(std::span<const RegionOfInterest> changed, const ViewPlanner& planner);
 
-  /// Lines 1 to 3 of Algorithm 1. invalid_argument for a bad region; those before it were forgotten then.
+  /// Runs lines 1 to 3 of Algorithm 1. Answers invalid_argument for a bad region; those before it are then already
+  /// forgotten.
   [[nodiscard]] Status forget(std::span<const RegionOfInterest> regions);
-  /// Line 17. Robots without a stand-by stay where they are. Errors: those of the robot.
+  /// Runs line 17. Robots without a stand-by pose stay where they are. Errors: those of the robot.
   [[nodiscard]] Result<StandByResult> return_to_stand_by();
 
  private:
@@ -107,19 +109,19 @@ class Explorer {
   [[nodiscard]] std::optional<StopReason> stopped(const RunRecord& run) const;
   [[nodiscard]] bool suspended() const { return parts_.suspended && parts_.suspended(); }
   [[nodiscard]] bool cancelled() const { return parts_.progress != nullptr && parts_.progress->cancelled(); }
-  /// Ranks and tries until the robot stands at a view or no view is left.
+  /// Ranks and tries until the robot has reached a view or no view is left.
   [[nodiscard]] Result<Outcome> go_to_next(ViewPlanner& planner, RunRecord& run, ViewRecord& view);
   [[nodiscard]] Result<Outcome> go_to_best(Ranking& ranking, ViewRecord& view);
   [[nodiscard]] Result<std::optional<Arrival>> move(const Motion& motion, ViewRecord& view);
-  /// Fuses a frame on the way to a view. Returns whether what it shows stands in the way.
-  [[nodiscard]] Result<bool> fuse_on_way(Frame frame, const CameraSample& at, const Motion& motion, ViewRecord& view);
+  /// Fuses a frame on the way to a view. Returns whether it shows an obstacle in the rest of the motion.
+  [[nodiscard]] Result<bool> fuse_on_way(Frame frame, const MotionSample& at, const Motion& motion, ViewRecord& view);
   [[nodiscard]] Status look(ViewRecord& view);
-  /// Fills in gain_observed.
+  /// Computes gain_observed.
   void check_promise(ViewRecord& view) const;
   [[nodiscard]] Result<Outcome> scan_from(const Pose& T_world_camera, ScanRecord& scan);
-  /// Fuses a frame that the robot's motion has at a pose. Returns whether it was fused.
+  /// Fuses a frame for which the robot reports this pose. Returns whether it was fused.
   [[nodiscard]] Result<bool> fuse(Frame frame, const Pose& T_world_robot, bool keep, TrackedFrames& tracking);
-  /// Returns the pose at which a frame is fused; nullopt: ICP refused it.
+  /// Returns the pose at which a frame is fused; nullopt: ICP rejected it.
   [[nodiscard]] Result<std::optional<Pose>> track(const Frame& frame, const Pose& T_world_robot,
                                                   TrackedFrames& tracking);
   [[nodiscard]] Result<double> farthest_tilt_rad(const Pose& T_world_view, double wanted_rad);
@@ -127,10 +129,10 @@ class Explorer {
   ExplorerParts parts_;
   ExplorerConfig config_;
   Attempts attempts_;
-  std::size_t region_{0};      ///< that is being explored; those before it are done
-  Promise promise_;            ///< what the view that is being taken is to show
-  std::vector<Frame> frames_;  ///< frames of the view that is being taken
-  /// Where ICP last found the camera, as seen from where the robot had it.
+  std::size_t region_{0};      ///< region being explored; those before it are done
+  Promise promise_;            ///< promise of the view being taken
+  std::vector<Frame> frames_;  ///< frames of the view being taken
+  /// Last pose found by ICP, relative to the robot's.
   Pose T_robot_tracked_{Pose::Identity()};
 };
 

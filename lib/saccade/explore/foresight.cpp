@@ -8,9 +8,9 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kPool{256};  // views that a set is chosen from
-constexpr std::size_t kRivals{8};  // a set's size where nothing asks for another
-constexpr double kLook_s{1.0};     // what a view takes besides the motion to it
+constexpr std::size_t kPool{256};  // views to choose a set from
+constexpr std::size_t kRivals{8};  // default size of a set
+constexpr double kLook_s{1.0};     // duration of a view besides the motion to it
 
 /// Returns the best view of each camera centre: its other rolls show almost the same.
 std::vector<std::size_t> best_of_centers(std::span<const RankedView> views) {
@@ -35,12 +35,12 @@ std::vector<Promise> promises_of(const Ranking& ranking, std::span<const std::si
   return promises;
 }
 
-/// What a motion makes known: the view's promise, and those of the frames on the way.
+/// Returns the worth of a motion: the view's promise, and those of the frames during it.
 double worth_with_way(const Promise& view, const Motion& motion, const Foresight& foresight, const Robot& robot,
                       const Ranking& ranking) {
   if (!(foresight.frame_on_way_s > 0.0)) return view.worth();
   std::vector<Promise> promises{view};
-  for (const CameraSample& sample : robot.camera_on_way(motion, foresight.frame_on_way_s)) {
+  for (const MotionSample& sample : robot.camera_on_way(motion, foresight.frame_on_way_s)) {
     promises.push_back(ranking.promise(sample.T_world_camera));
   }
   return worth_together(promises);

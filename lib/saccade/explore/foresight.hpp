@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Foresight: weighs views by what comes after them, by the time that they take, and by what is seen on the way.
+// Foresight: weighs views by later views, by their duration, and by what is seen during the motion.
 
 #include <cstddef>
 #include <cstdint>
@@ -12,10 +12,10 @@
 
 namespace saccade {
 
-/// What makes one view better than another.
+/// Criterion for comparing views.
 enum class Objective : std::uint8_t {
   surface,             ///< its gain
-  surface_per_second,  ///< its gain for the time of the motion and of looking
+  surface_per_second,  ///< its gain relative to the time of motion and view
 };
 inline constexpr auto kObjectiveNames =
     make_names<Objective>({{Objective::surface, "surface"}, {Objective::surface_per_second, "surface-per-second"}});
@@ -23,23 +23,23 @@ inline constexpr auto kObjectiveNames =
 [[nodiscard]] constexpr std::string_view to_string(Objective objective) { return kObjectiveNames.of(objective); }
 
 struct Foresight {
-  /// Views that one after the other make known most, soonest: the next view is one of them; they are chosen anew for
-  /// each. 1: the best one.
+  /// Number of views that together make most known, soonest; the next view is one of them. They are chosen anew for
+  /// each view. 1: the best one.
   std::size_t lookahead{1};
   Objective objective{Objective::surface};
-  double frame_on_way_s{0.0};  ///< seconds between frames that are fused on the way to a view; 0: none are
+  double frame_on_way_s{0.0};  ///< seconds between frames fused on the way to a view; 0: none
 
-  /// Whether the order of gains is not all that matters.
+  /// Tells whether anything besides the order of gains matters.
   [[nodiscard]] bool is_needed() const {
     return lookahead > 1 || objective != Objective::surface || frame_on_way_s > 0.0;
   }
 };
 
-/// Puts the view to which the robot is to go to the front of the ranking, and behind it the others of the set, then the
-/// rest as they were. The set is best_sequence of `lookahead` views, or of 8 to choose from where it is 1. Of the set,
-/// the view comes first that is worth most, with what frames on the way show, or most for its time. Views of the set
-/// that the robot cannot reach stay where they were. Does nothing where the gain makes no promises.
-/// Costs a motion's planning for each view of the set, and the promises of 256 views. Errors: those of the robot.
+/// Moves the robot's next view to the front of the ranking, followed by the others of the set, then the rest unchanged.
+/// The set is best_sequence of `lookahead` views, or of 8 to choose from where it is 1. The first is the view of the
+/// set with the largest worth, including frames during the motion, or the largest worth per time. Views of the set that
+/// the robot cannot reach keep their place. Does nothing where the gain makes no promises. Costs planning a motion for
+/// each view of the set, and the promises of 256 views. Errors: those of the robot.
 [[nodiscard]] Status look_ahead(const Foresight& foresight, Robot& robot, const Executor& executor, Ranking& ranking);
 
 }  // namespace saccade

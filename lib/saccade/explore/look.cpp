@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the explorer does at a view and on its way there: it moves, tilts the camera, takes frames and fuses them.
+// Explorer at a view and during the motion to it: moves, tilts the camera, takes frames and fuses them.
 #include <algorithm>
 #include <cmath>
 #include <utility>
@@ -16,13 +16,13 @@ Pose tilted(const Pose& T_world_view, double tilt_rad) {
   return T_world_view * Eigen::AngleAxisd{tilt_rad, Eigen::Vector3d::UnitX()};
 }
 
-/// Returns the tilt at the ends of an oscillation; 0 where a view has but one frame, which is taken from the view
+/// Returns the tilt at the ends of an oscillation; 0 where a view has only one frame, which is taken at the view
 /// itself.
 double oscillation_rad(const ExplorerConfig& config) {
   return config.oscillation_frames > 1 ? config.oscillation_rad : 0.0;
 }
 
-/// Returns the tilts that are tried for one end of an oscillation, the farthest first: halves of halves.
+/// Returns the tilts to try for one end of an oscillation, largest first, by repeated halving.
 std::vector<double> tilts_towards(double farthest_rad) {
   constexpr int kHalvings{3};
   std::vector<double> tilts_rad;
@@ -47,7 +47,7 @@ void TrackedFrames::refuse(std::string reason) {
 Result<double> Explorer::farthest_tilt_rad(const Pose& T_world_view, double wanted_rad) {
   for (const double tilt_rad : tilts_towards(wanted_rad)) {
     const Pose pose = tilted(T_world_view, tilt_rad);
-    SACCADE_TRY(const PlannedMotion planned, parts_.robot.plan(std::span{&pose, 1}, Way::straight));
+    SACCADE_TRY(const PlannedMotion planned, parts_.robot.plan(std::span{&pose, 1}, MotionKind::direct));
     if (planned.motion) return tilt_rad;
   }
   return 0.0;
@@ -80,7 +80,7 @@ Result<bool> Explorer::fuse(Frame frame, const Pose& T_world_robot, bool keep, T
   return true;
 }
 
-Result<bool> Explorer::fuse_on_way(Frame frame, const CameraSample& at, const Motion& motion, ViewRecord& view) {
+Result<bool> Explorer::fuse_on_way(Frame frame, const MotionSample& at, const Motion& motion, ViewRecord& view) {
   SACCADE_TRY(const bool fused, fuse(std::move(frame), at.T_world_camera, false, view.tracking));
   if (!fused) return false;
   ++view.frames_on_way;
@@ -90,19 +90,19 @@ Result<bool> Explorer::fuse_on_way(Frame frame, const CameraSample& at, const Mo
 
 Result<std::optional<Arrival>> Explorer::move(const Motion& motion, ViewRecord& view) {
   double next_s = config_.frame_on_way_s;
-  TimedFrame waiting{config_.camera_clock_offset_s};  // a frame with a time, until the robot has told where it was then
-  const auto take = [&](const CameraSample& sample) -> Result<bool> {
+  TimedFrame waiting{config_.camera_clock_offset_s};  // holds a frame with a time until the robot's pose then is known
+  const auto take = [&](const MotionSample& sample) -> Result<bool> {
     if (const auto at = waiting.reached(sample)) return fuse_on_way(waiting.take(), *at, motion, view);
     if (config_.frame_on_way_s <= 0.0 || sample.t_s < next_s || waiting.holds() || suspended()) return false;
     next_s = std::max(next_s + config_.frame_on_way_s, sample.t_s);
     SACCADE_TRY(Frame frame, parts_.camera.capture(sample.T_world_camera));
-    CameraSample at = sample;
+    MotionSample at = sample;
     at.T_world_camera = frame.T_world_camera.value_or(sample.T_world_camera);
     if (waiting.hold(frame, sample)) return false;
     return fuse_on_way(std::move(frame), at, motion, view);
   };
   Result<bool> blocked{false};
-  const OnWay on_way = [&](const CameraSample& sample) {
+  const MotionObserver on_way = [&](const MotionSample& sample) {
     view.path.emplace_back(sample.T_world_camera.translation());
     if (cancelled()) return Advance::stop;
     blocked = view.times.measure(Phase::fusion, [&] { return take(sample); });
@@ -126,7 +126,7 @@ Status Explorer::look(ViewRecord& view) {
     for (int i = 0; i < config_.oscillation_frames; ++i) {
       const double share = config_.oscillation_frames > 1 ? 2.0 * i / (config_.oscillation_frames - 1) - 1.0 : 0.0;
       const Pose wanted = tilted(view.T_world_camera, middle_rad + share * half_rad);
-      SACCADE_TRY(const PlannedMotion planned, parts_.robot.plan(std::span{&wanted, 1}, Way::straight));
+      SACCADE_TRY(const PlannedMotion planned, parts_.robot.plan(std::span{&wanted, 1}, MotionKind::direct));
       if (!planned.motion) continue;
       SACCADE_TRY(const std::optional<Arrival> arrival, parts_.robot.execute(*planned.motion));
       if (!arrival) continue;
@@ -145,7 +145,7 @@ Status Explorer::look(ViewRecord& view) {
 
 void Explorer::check_promise(ViewRecord& view) const {
   if (!(view.gain_predicted > 0.0 && promise_.worth() > 0.0)) return;
-  view.gain_observed = view.gain_predicted * promise_.kept(parts_.map.content().grid);
+  view.gain_observed = view.gain_predicted * promise_.kept_share(parts_.map.content().grid);
 }
 
 Result<ScanRecord> Explorer::scan(std::span<const Pose> T_world_camera, ScanRecord scan) {
@@ -159,7 +159,7 @@ Result<ScanRecord> Explorer::scan(std::span<const Pose> T_world_camera, ScanReco
     }
   }
   SACCADE_CHECK(parts_.robot.follow(parts_.map.content(), parts_.executor));
-  SACCADE_TRY(const std::vector<Box> swept, parts_.robot.swept_by(way));
+  SACCADE_TRY(const std::vector<Box> swept, parts_.robot.swept_volume(way));
   for (const Box& box : swept) SACCADE_CHECK(parts_.map.free(box));
   scan.complete = true;
   for (std::size_t i = first; i < T_world_camera.size(); ++i) {

@@ -3,6 +3,7 @@
 
 #include <algorithm>
 
+#include "saccade/core/nearest_word.hpp"
 #include "saccade/views/surface_views.hpp"
 
 namespace saccade {
@@ -11,7 +12,7 @@ namespace {
 constexpr std::size_t kContourTries{64};
 constexpr std::size_t kSurfaceTries{4};
 constexpr std::size_t kForesightTries{256};
-constexpr std::size_t kSpareViews{16};  // told ahead of those that were taken: the robot may not reach some
+constexpr std::size_t kSpareViews{16};  // ranked in addition to the views taken, since the robot may not reach some
 constexpr std::size_t kAllViews{std::numeric_limits<std::size_t>::max()};
 
 std::shared_ptr<AttentionSource> regions_in_turn(const PlannerSetup& setup) {
@@ -66,7 +67,10 @@ Result<NamedPlanner> Planners::find(std::string_view name) const {
   for (const NamedPlanner& planner : planners_) {
     if (planner.name == name) return planner;
   }
-  return Error{Errc::invalid_argument, "there is no strategy \"" + std::string{name} + "\"; known: " + names(), ""};
+  std::vector<std::string_view> known;
+  for (const NamedPlanner& planner : planners_) known.emplace_back(planner.name);
+  return Error{Errc::invalid_argument,
+               "there is no strategy \"" + std::string{name} + "\"; known: " + names() + did_you_mean(name, known), ""};
 }
 
 std::string Planners::names() const { return joined(planners_, ", ", &NamedPlanner::name); }

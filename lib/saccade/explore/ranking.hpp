@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Ranking: views worth trying, the best first, and the regions that have none left; PlanningScene: what a view is
-// planned with: the map, the robot, and what was attempted.
+// Ranking: views worth trying, best first, and the regions that have none left. PlanningScene: the input of planning a
+// view: the map, the robot, and earlier attempts.
 
 #include <algorithm>
 #include <memory>
@@ -20,13 +20,13 @@ namespace saccade {
 struct PlanningScene {
   const TsdfSnapshot& map;
   const Executor& executor;
-  PhaseTimes* times{nullptr};             ///< nullptr: times are not taken
+  PhaseTimes* times{nullptr};             ///< nullptr: times are not measured
   const Robot* robot{nullptr};            ///< nullptr: every pose may be taken
-  const Attempts* attempts{nullptr};      ///< nullptr: there were none
+  const Attempts* attempts{nullptr};      ///< nullptr: no attempts yet
   std::size_t first_region{0};            ///< regions of a lower index are done
-  std::optional<PinholeCamera> sensor{};  ///< what a look takes in, its tilts included; nullopt: not known
+  std::optional<PinholeCamera> sensor{};  ///< field of view and range of a view, tilts included; nullopt: unknown
 
-  /// What attention, view generator and gain see of it.
+  /// Returns the part of it for attention, view generator and gain.
   [[nodiscard]] PlanningContext context(std::size_t region = 0) const {
     PlanningContext context{map, executor, times, region, attempts != nullptr ? attempts->views_of(region) : 0};
     context.sensor = sensor;
@@ -48,50 +48,50 @@ struct PlanningScene {
 /// Result of ranking the views of a map. Regions of one index (RegionOfInterest::index) are counted together.
 class Ranking {
  public:
-  /// @param min_gain  views that gain less are not worth going to
+  /// @param min_gain  views that gain less are not worth taking
   explicit Ranking(double min_gain = 0.0) : min_gain_{min_gain} {}
 
-  /// Whether views of the region might be taken instead of those found so far: of a rival at least so salient, as a
-  /// share of the first region that has a view worth trying. True while there is none.
+  /// Tells whether views of the region might replace those found so far: a rival must be at least this salient,
+  /// relative to the first region with a view worth trying. True while there is none.
   [[nodiscard]] bool competes(const RegionOfInterest& region, double rival_share) const;
   /// Adds the views of a region. The region is chosen if one of them is worth trying and gains more than those chosen
   /// before.
   void add(const RegionOfInterest& region, const ViewCandidates& found, const RefusalCounts& refused,
            RankedViews ranked, const PlanningScene& scene);
-  /// All regions were added that are to be.
+  /// Marks the end: all regions were added.
   void end(const PlanningScene& scene);
 
-  /// Whether no view is worth trying.
+  /// Tells whether no view is worth trying.
   [[nodiscard]] bool empty() const { return untried_.empty(); }
-  /// Expects one.
+  /// Returns the best view. Expects one.
   [[nodiscard]] const RankedView& best() const { return untried_.front(); }
-  /// The best view and those behind it that gain at least this share of it, 64 at most. Views that are not ranked by
-  /// gain come one by one. Expects one view.
+  /// Returns the best view and those behind it with at least this share of its gain, at most 64. Returns one view at a
+  /// time where views are not ranked by gain. Expects one view.
   [[nodiscard]] std::span<const RankedView> as_good_as_best(double share) const;
-  /// The views that are worth trying, by decreasing gain unless put_first() was called.
+  /// Returns the views worth trying, by decreasing gain unless put_first() was called.
   [[nodiscard]] std::span<const RankedView> untried() const { return untried_; }
-  /// Puts these views before all others, in their order. From then on views come one by one. Expects each once.
+  /// Moves these views before all others, in their order. From then on views come one by one. Expects each once.
   void put_first(std::span<const std::size_t> views);
-  /// Takes out the first views, or one, once they were tried.
+  /// Removes the first views, or one view, after they were tried.
   void drop_first(std::size_t count);
   void drop(std::size_t view);
 
-  /// Index of the region that is being looked at.
+  /// Returns the index of the region being explored.
   [[nodiscard]] std::size_t region() const { return index_; }
-  /// Regions that were left, with how each ended.
+  /// Returns the regions that were left, with their results.
   [[nodiscard]] const std::vector<std::pair<std::size_t, RegionResult>>& left() const { return left_; }
-  /// Predicted gain of the best view that was not attempted; 0: none.
+  /// Returns the predicted gain of the best view not yet attempted; 0 where there is none.
   [[nodiscard]] double gain_left(const PlanningScene& scene) const;
 
-  // Counts of the regions of the index that is looked at.
+  // Counts over the regions with the index being explored.
   [[nodiscard]] std::size_t candidates() const;
   [[nodiscard]] std::size_t evaluated() const { return evaluated_; }
   [[nodiscard]] const RefusalCounts& refused() const { return refused_; }
 
-  /// What a view of the chosen region is expected to make known; nothing where that cannot be told. Expects a view.
+  /// Returns what a view of the chosen region is expected to make known; empty where unknown. Expects a view.
   [[nodiscard]] Promise promise(const Pose& T_world_camera) const;
   [[nodiscard]] bool makes_promises() const { return static_cast<bool>(ranked_.promise); }
-  /// What the views are chosen from, and the segment that drew the attention. Expects a view.
+  /// Return the choice that the views are part of, and the segment that drew the attention. Expect a view.
   [[nodiscard]] std::shared_ptr<const ViewChoice> choice() const;
   [[nodiscard]] std::optional<ViewAttention> attention() const;
 
@@ -114,7 +114,7 @@ class Ranking {
   std::shared_ptr<const ContourSet> contours_{};
   double first_saliency_{0.0};  ///< saliency of the first region that was chosen
   std::vector<RankedView> untried_{};
-  bool one_by_one_{false};  ///< the order is not that of the gains
+  bool one_by_one_{false};  ///< whether the order differs from that of the gains
   std::vector<std::pair<std::size_t, RegionResult>> left_{};
 };
 

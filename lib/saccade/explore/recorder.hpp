@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Recorder: told what a run does while it goes on; Recorders: several of them.
+// Recorder: is informed of a run's progress. Recorders: several of them.
 
 #include <span>
 #include <vector>
@@ -11,7 +11,7 @@
 
 namespace saccade {
 
-/// As it is here, it records nothing. An error ends the run.
+/// Recorder of a run. The base class records nothing. An error ends the run.
 class Recorder {
  public:
   virtual ~Recorder() = default;
@@ -20,16 +20,16 @@ class Recorder {
   /// Called after the initial scan; may add measures to the record.
   [[nodiscard]] virtual Status scanned(ScanRecord& /*scan*/, const TsdfSnapshot& /*map*/) { return {}; }
   /// Called after each view, before it joins the record; may add measures to it.
-  /// @param frames those of the view, without those on the way
+  /// @param frames the view's frames, without those during the motion
   [[nodiscard]] virtual Status viewed(ViewRecord& /*view*/, const TsdfSnapshot& /*map*/,
                                       std::span<const Frame> /*frames*/) {
     return {};
   }
-  /// Called at the end, however the run ended.
+  /// Called at the end of the run, for whatever reason it ends.
   [[nodiscard]] virtual Status ended(const RunRecord& /*run*/) { return {}; }
 };
 
-/// Several, in their order; they outlive it.
+/// Several recorders, called in their order; they must outlive it.
 class Recorders final : public Recorder {
  public:
   Recorders(std::initializer_list<Recorder*> recorders) : recorders_{recorders} {}

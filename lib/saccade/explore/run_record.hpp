@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RunRecord: what is kept of one exploration.
+// RunRecord: the record of one exploration.
 
 #include <cstdint>
 #include <string_view>
@@ -12,10 +12,10 @@
 namespace saccade {
 
 enum class StopReason : std::uint8_t {
-  regions_done,   ///< no view of any region that the robot can take gains enough
-  views_used_up,  ///< as many views as were allowed
-  no_candidate,   ///< no view of a region can be reached, or none of those that would gain enough
-  cancelled,      ///< the caller's progress or approval said so
+  regions_done,   ///< no reachable view of any region gains enough
+  views_used_up,  ///< the allowed number of views was taken
+  no_candidate,   ///< no view of a region is reachable, or none of those with enough gain
+  cancelled,      ///< the caller cancelled, by progress or approval
 };
 inline constexpr auto kStopReasonNames = make_names<StopReason>({{StopReason::regions_done, "regions_done"},
                                                                  {StopReason::views_used_up, "views_used_up"},
@@ -23,11 +23,11 @@ inline constexpr auto kStopReasonNames = make_names<StopReason>({{StopReason::re
                                                                  {StopReason::cancelled, "cancelled"}});
 [[nodiscard]] constexpr std::string_view to_string(StopReason reason) { return kStopReasonNames.of(reason); }
 
-/// How the exploration of one region ended.
+/// Status of the exploration of one region.
 enum class RegionStatus : std::uint8_t {
   not_begun,
-  done,          ///< no view that was not attempted gains enough
-  out_of_reach,  ///< some would gain as much, but the robot could not take them
+  done,          ///< no view left to attempt gains enough
+  out_of_reach,  ///< views with enough gain exist, but the robot could not take them
   interrupted,   ///< the run ended before the region was done
 };
 inline constexpr auto kRegionStatusNames = make_names<RegionStatus>({{RegionStatus::not_begun, "not_begun"},
@@ -40,17 +40,17 @@ inline constexpr auto kRegionStatusNames = make_names<RegionStatus>({{RegionStat
 struct RegionResult {
   RegionStatus status{RegionStatus::not_begun};
   double gain_left{0.0};    ///< predicted gain of the best view not yet attempted, at the last ranking; 0: none
-  double gain_needed{0.0};  ///< a view that gains less than this was not worth going to, then
+  double gain_needed{0.0};  ///< smallest gain worth taking at that time
   RefusalCounts refused{};  ///< out_of_reach: reasons
 };
 
-/// The initial scan.
+/// Record of the initial scan.
 struct ScanRecord {
   bool complete{true};       ///< false: cancelled
-  std::size_t attempted{0};  ///< poses that are done with, in their order
+  std::size_t attempted{0};  ///< number of poses finished, in their order
   std::size_t views{0};
   std::size_t frames{0};    ///< fused
-  RefusalCounts refused{};  ///< poses that were passed over
+  RefusalCounts refused{};  ///< poses that were skipped
   Measures measures{};      ///< the map after it
 };
 
@@ -59,9 +59,9 @@ struct RunRecord {
   std::vector<ViewRecord> views{};
   std::vector<RegionResult> regions{};  ///< one for each region
   StopReason stopped_because{StopReason::regions_done};
-  RefusalCounts refused_at_end{};  ///< no_candidate: reasons, of the last region without a view in reach
+  RefusalCounts refused_at_end{};  ///< no_candidate: reasons, for the last region without a reachable view
 
-  /// Measures after the last view, or after the scan.
+  /// Returns the measures after the last view, or after the scan.
   [[nodiscard]] const Measures& final() const { return views.empty() ? scan.measures : views.back().measures; }
 };
 

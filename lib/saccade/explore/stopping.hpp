@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Stopping: when a run is over besides when nothing is left to see; StopRule: after a number of views.
+// Stopping: an additional condition for the end of a run. StopRule: ends it after a number of views.
 
 #include <optional>
 
@@ -11,7 +11,7 @@ namespace saccade {
 class Stopping {
  public:
   virtual ~Stopping() = default;
-  /// @return why the run ends here; nullopt: it goes on. Asked before each view.
+  /// @return why the run ends here; nullopt: it continues. Called before each view.
   [[nodiscard]] virtual std::optional<StopReason> reached(const RunRecord& run) const = 0;
 };
 

@@ -6,7 +6,7 @@
 namespace saccade {
 namespace {
 
-/// Points to what somebody else owns.
+/// Returns a pointer to a part with another owner.
 template <class T>
 std::shared_ptr<T> borrowed(T& part) {
   return {std::shared_ptr<T>{}, &part};

@@ -60,7 +60,7 @@ void DenseBrick::update_masks() {
 
 namespace {
 
-/// No surface is near: every voxel is unknown or has v = 1 with a weight up to the limit.
+/// Tells whether no surface is near: every voxel is unknown or has v = 1 with a weight up to the limit.
 bool is_free(const DenseBrick& brick, std::uint16_t weight_limit) {
   if (brick.occupied.any()) return false;
   for (std::size_t slice = 0; slice < kBrickVoxels; slice += 64) {  // whole slices: vector code

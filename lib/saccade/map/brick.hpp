@@ -86,14 +86,14 @@ struct Mask512 {
 /// TSDF value of 1 in a voxel's fixed-point representation.
 constexpr std::int16_t kTsdfOne{32767};
 
-/// What a voxel stores: v in units of 1/32767 and the number of observations. w = 0 implies v = 0.
+/// Content of a voxel: v in units of 1/32767, and the number of observations w. w = 0 implies v = 0.
 struct Voxel {
   std::int16_t v{0};
   std::uint16_t w{0};
   [[nodiscard]] constexpr bool operator==(const Voxel&) const = default;
 };
 
-/// Thesis eq. 2.11.
+/// States of a voxel (thesis eq. 2.11).
 enum class VoxelState : std::uint8_t { unknown, empty, occupied };
 
 [[nodiscard]] constexpr VoxelState state_of(const Voxel& voxel) {
@@ -108,8 +108,8 @@ enum class BrickKind : std::uint8_t {
   dense,          ///< v and w of every voxel, perhaps colours
 };
 
-/// Every voxel unknown, or v = 1 with a weight ≤ 7. The weight's bits lie in three planes, so that counting an
-/// observation of many voxels is a few word operations.
+/// Brick in which every voxel is unknown, or has v = 1 and a weight ≤ 7. The weights' bits lie in three planes, so that
+/// a few word operations count an observation of many voxels.
 struct FreeBrick {
   std::array<Mask512, 3> weight_bits{};
 
@@ -121,9 +121,9 @@ struct FreeBrick {
   void set_weight(int i, std::uint16_t w) {
     for (std::size_t bit = 0; bit < 3; ++bit) weight_bits[bit].assign(i, ((w >> bit) & 1U) != 0);
   }
-  /// The voxels of a slice whose weight is at least so much; least ≥ 1.
+  /// Returns the voxels of a slice whose weight is at least `least` ≥ 1.
   [[nodiscard]] std::uint64_t weight_at_least(std::size_t slice, std::uint16_t least) const;
-  /// w ← min(w + 1, limit) for the voxels in `seen`; limit in [1, 7].
+  /// Counts an observation: w ← min(w + 1, limit) for the voxels in `seen`; limit in [1, 7].
   void observe(const Mask512& seen, std::uint16_t limit);
   [[nodiscard]] static FreeBrick constant(std::uint16_t w);
   [[nodiscard]] bool operator==(const FreeBrick&) const = default;
@@ -131,7 +131,7 @@ struct FreeBrick {
 
 using BrickColors = std::array<Rgb8, kBrickVoxels>;
 
-/// v and w of every voxel, the two masks of eq. 2.11, and colours where any were fused.
+/// Brick with v and w of every voxel, the two masks of eq. 2.11, and colours where any were fused.
 struct DenseBrick {
   std::array<std::int16_t, kBrickVoxels> v{};
   std::array<std::uint16_t, kBrickVoxels> w{};
@@ -143,7 +143,7 @@ struct DenseBrick {
   DenseBrick(const DenseBrick& other);
   DenseBrick& operator=(const DenseBrick&) = delete;
   [[nodiscard]] bool operator==(const DenseBrick& other) const;
-  /// The voxels of a slice whose weight is at least so much; least ≥ 1.
+  /// Returns the voxels of a slice whose weight is at least `least` ≥ 1.
   [[nodiscard]] std::uint64_t weight_at_least(std::size_t slice, std::uint16_t least) const;
   /// Recomputes both masks from v and w.
   void update_masks();
@@ -166,9 +166,9 @@ inline std::uint64_t DenseBrick::weight_at_least(std::size_t slice, std::uint16_
   if (least == 1) return observed;
   const std::uint16_t* weights = &w[slice * 64];
   const auto least_before = static_cast<std::uint16_t>(least - 1);
-  unsigned rarely{0};  // whether any was observed, but less often: vector code
+  unsigned rarely{0};  // whether any was observed less often; vector code
   for (std::size_t i = 0; i < 64; ++i) {
-    const auto before = static_cast<std::uint16_t>(weights[i] - 1);  // the greatest of all where unknown
+    const auto before = static_cast<std::uint16_t>(weights[i] - 1);  // the largest value where unknown
     rarely |= before < least_before ? 1U : 0U;
   }
   if (rarely == 0) return observed;
@@ -177,15 +177,15 @@ inline std::uint64_t DenseBrick::weight_at_least(std::size_t slice, std::uint16_
   return enough;
 }
 
-/// Shared, copy-on-write handle of one brick, 8 bytes: unknown and constant-free bricks are tagged values, the others
-/// point to a reference-counted block. Copies share; the non-const accessors give an unshared brick to write.
-/// Distinct handles may be used from different threads.
+/// Shared, copy-on-write handle of one brick, 8 bytes. Unknown and constant-free bricks are tagged values; the others
+/// point to a reference-counted block. Copies share it; the non-const accessors return an unshared brick to write.
+/// Different threads may use different handles.
 class BrickRef {
  public:
   BrickRef() = default;  ///< unknown
   [[nodiscard]] static BrickRef constant_free(std::uint16_t w);
   [[nodiscard]] static BrickRef make(const FreeBrick& brick);
-  [[nodiscard]] static BrickRef make_dense();  ///< all voxels unknown, to be filled
+  [[nodiscard]] static BrickRef make_dense();  ///< all voxels unknown, ready to be filled
   BrickRef(const BrickRef& other) noexcept;
   BrickRef(BrickRef&& other) noexcept : bits_{std::exchange(other.bits_, 0)} {}
   BrickRef& operator=(BrickRef other) noexcept {
@@ -196,33 +196,34 @@ class BrickRef {
 
   [[nodiscard]] BrickKind kind() const;
   [[nodiscard]] bool is_unknown() const { return bits_ == 0; }
-  /// Only for constant_free.
+  /// Requires a constant_free brick.
   [[nodiscard]] std::uint16_t constant_weight() const { return static_cast<std::uint16_t>(bits_); }
-  /// nullptr unless of that kind.
+  /// Return nullptr for a brick of another kind.
   [[nodiscard]] const FreeBrick* free() const;
   [[nodiscard]] const DenseBrick* dense() const;
-  /// For writing: unshares first. Only for that kind.
+  /// Return the brick for writing, unsharing it first. Require a brick of that kind.
   [[nodiscard]] FreeBrick& writable_free();
   [[nodiscard]] DenseBrick& writable_dense();
 
   [[nodiscard]] Voxel voxel(int i) const;
   [[nodiscard]] Mask512 unknown_mask() const;
   [[nodiscard]] Mask512 occupied_mask() const;
-  /// Word z of unknown_mask() | occupied_mask(): where rays of view evaluation stop.
+  /// Returns word z of unknown_mask() | occupied_mask(): the voxels that stop rays of view evaluation.
   [[nodiscard]] std::uint64_t nonempty_word(int z) const;
 
-  /// Turns free → constant-free or unknown, and dense → free or less, where the content allows: every content has one
-  /// representation. Colours of a brick without a surface are dropped.
+  /// Turns free into constant-free or unknown, and dense into a simpler kind, where the content allows. Each content
+  /// has exactly one representation. Drops the colours of a brick without a surface.
   void canonicalize(std::uint16_t free_weight_limit);
-  /// The dense form of this brick, sharing nothing; *this becomes it.
+  /// Turns *this into the unshared dense form of this brick.
   DenseBrick& densify();
-  /// The free form of an unknown or constant-free brick; *this becomes it.
+  /// Turns *this, unknown or constant-free, into the free form.
   FreeBrick& expand_to_free();
 
-  /// Whether both handles are copies of one, so that their content is equal without a look at it.
+  /// Tells whether both handles are copies of one, so that their content is known to be equal.
   [[nodiscard]] bool shares(const BrickRef& other) const { return bits_ == other.bits_; }
-  /// Bytes on the heap, and whether both handles hold equal content.
+  /// Returns the bytes on the heap.
   [[nodiscard]] std::size_t heap_bytes() const;
+  /// Tells whether both handles hold equal content.
   [[nodiscard]] bool operator==(const BrickRef& other) const;
 
  private:
@@ -273,19 +274,19 @@ inline const DenseBrick* BrickRef::dense() const {
   return is_block() && block()->kind == BrickKind::dense ? &static_cast<DenseBlock*>(block())->brick : nullptr;
 }
 
-/// 8³ bricks and, per brick, the summaries that let rays and fusion pass over it.
+/// 8³ bricks and summaries per brick, which let rays and fusion skip it.
 struct Sector {
   std::array<BrickRef, kSectorBricks> bricks;
   Mask512 has_unknown{Mask512::all_set()};  ///< the brick contains an unknown voxel
   Mask512 has_occupied;                     ///< the brick contains an occupied voxel
-  Mask512 saturated;  ///< constant free at the weight limit: another observation of free space changes nothing
+  Mask512 saturated;  ///< constant free at the weight limit: observing free space again changes nothing
 
-  /// Brings the summaries of brick i up to date after it was written.
+  /// Updates the summaries of brick i after a write.
   void update_summary(int i, std::uint16_t free_weight_limit);
   [[nodiscard]] bool all_unknown() const;
 };
 
-/// Shared, copy-on-write handle of a sector; like BrickRef, but never null after make().
+/// Shared, copy-on-write handle of a sector. Like BrickRef, but never null after make().
 class SectorRef {
  public:
   SectorRef() = default;
@@ -305,8 +306,8 @@ class SectorRef {
   [[nodiscard]] explicit operator bool() const { return block_ != nullptr; }
   [[nodiscard]] const Sector& operator*() const { return block_->sector; }
   [[nodiscard]] const Sector* get() const { return block_ != nullptr ? &block_->sector : nullptr; }
-  /// For writing: unshares first. The acquire pairs with a reader's last decrement, so that what it read happened
-  /// before what we write.
+  /// Returns the sector for writing, unsharing it first. The acquire pairs with a reader's last decrement, so that all
+  /// its reads happen before our writes.
   [[nodiscard]] Sector& writable() {
     if (block_->references.load(std::memory_order_acquire) != 1) *this = SectorRef{new Block{block_->sector}};
     return block_->sector;

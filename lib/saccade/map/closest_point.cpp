@@ -19,7 +19,7 @@ Vector3d closest_point_on_segment(const Vector3d& p, const Vector3d& a, const Ve
 }  // namespace
 
 Vector3d closest_point_on_triangle(const Vector3d& p, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
-  // The foot of p on the plane, if it lies inside; else the nearest point of the three edges.
+  // The foot of p on the plane if it lies inside, otherwise the nearest point of the three edges.
   const Vector3d normal = (b - a).cross(c - a);
   const double area2 = normal.squaredNorm();
   if (area2 > 0.0) {

@@ -11,7 +11,7 @@
 namespace saccade {
 namespace {
 
-/// A sector on its way from the mesh before to the mesh after.
+/// Update of one sector from the previous mesh to the next.
 struct SectorStep {
   Index3 key;
   const Mask512* stale{nullptr};  ///< nullptr: nothing
@@ -20,7 +20,7 @@ struct SectorStep {
   std::vector<Index3> replaced;
 };
 
-/// Sectors that own something or have stale bricks; both lists and the result are in z-y-x order.
+/// Returns the sectors that own something or have stale bricks; both lists and the result are in z-y-x order.
 std::vector<SectorStep> steps_of(std::vector<MeshSector>& sectors, const std::vector<SectorBricks>& stale) {
   std::vector<SectorStep> steps;
   auto previous = sectors.begin();

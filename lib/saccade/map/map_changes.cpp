@@ -21,7 +21,7 @@ Mask512 differing_bricks(const Sector* before, const Sector* after) {
   return differing;
 }
 
-/// The sectors of either grid, in z-y-x order.
+/// Returns the sectors of either grid, in z-y-x order.
 std::vector<Index3> sectors_of_both(const TsdfGrid& before, const TsdfGrid& after) {
   const std::vector<Index3> first = before.sorted_sectors();
   const std::vector<Index3> second = after.sorted_sectors();
@@ -31,7 +31,7 @@ std::vector<Index3> sectors_of_both(const TsdfGrid& before, const TsdfGrid& afte
   return keys;
 }
 
-/// Bricks -1 … 8 of a sector along each axis: a row per (y, z), bit x + 1.
+/// Bricks -1 … 8 of a sector along each axis: one row per (y, z), bit x + 1.
 class PaddedSector {
  public:
   explicit PaddedSector(const Mask512& bricks) {

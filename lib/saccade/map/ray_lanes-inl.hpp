@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// No include guard of the usual kind: included once per instruction set, by files with vector kernels.
-// RayLanes: the exact walk of ray_math.hpp for many rays from one origin, one per lane; each function to the bit like
-// the one that it names.
+// No include guard of the usual kind: files with vector kernels include this once per instruction set.
+// RayLanes: the exact walk of ray_math.hpp for many rays from one origin, one per lane. Each function agrees to the bit
+// with the function that its comment names.
 #if defined(SACCADE_MAP_RAY_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SACCADE_MAP_RAY_LANES_INL
 #undef SACCADE_MAP_RAY_LANES_INL
@@ -31,7 +31,7 @@ HWY_INLINE bool any(M mask) { return !hn::AllFalse(F{}, mask); }
 HWY_INLINE M none() { return hn::Lt(hn::Zero(F{}), hn::Zero(F{})); }
 HWY_INLINE M select(M mask, M yes, M no) { return hn::Or(hn::And(mask, yes), hn::AndNot(mask, no)); }
 
-/// RayEvent.
+/// Vector form of RayEvent.
 struct Event {
   VF t;
   VI axis;
@@ -43,11 +43,11 @@ HWY_INLINE Event select(M mask, const Event& yes, const Event& no) {
   return {hn::IfThenElse(mask, yes.t, no.t), hn::IfThenElse(hn::RebindMask(I{}, mask), yes.axis, no.axis)};
 }
 HWY_INLINE Event earlier(const Event& a, const Event& b) { return select(before(b, a), b, a); }
-/// kRayStart, after_depth.
+/// Vector forms of kRayStart and after_depth.
 HWY_INLINE Event ray_start() { return {hn::Zero(F{}), hn::Set(I{}, -1)}; }
 HWY_INLINE Event past_depth(float t) { return {hn::Set(F{}, t), hn::Set(I{}, 3)}; }
 
-/// Rays from one origin; o, d, inv as LatticeRay has them. Planes are relative to the origin's voxel.
+/// Rays from one origin; o, d and inv as in LatticeRay. Planes are relative to the origin's voxel.
 struct RayLanes {
   std::array<VF, 3> o;
   std::array<VF, 3> d;
@@ -58,7 +58,8 @@ struct RayLanes {
     return hn::Mul(hn::Sub(plane, o[axis]), inv[axis]);
   }
 
-  /// clip: the part of the rays between the planes of a box, where `inside` says that it does not lie behind.
+  /// Vector form of clip: the part of the rays between the planes of a box; `inside` is false where the box lies
+  /// behind.
   struct Span {
     M inside;
     Event enter;
@@ -84,14 +85,14 @@ struct RayLanes {
     return span;
   }
 
-  /// position_at, for the rays of a mask: where they are along an axis once all crossings up to and including the event
-  /// have happened. It must lie between `lowest` and `highest`, which save the settling some steps.
+  /// Vector form of position_at for the rays of a mask: their position along an axis after all crossings up to and
+  /// including the event. It must lie between `lowest` and `highest`, which save some steps of settling.
   [[nodiscard]] HWY_INLINE VF position(std::size_t axis, const Event& event, VF lowest, VF highest, M rays) const {
     const F f;
     const VF zero = hn::Zero(f);
     const VF one = hn::Set(f, 1.0F);
     const VI this_axis = hn::Set(I{}, static_cast<int>(axis));
-    // No ray comes further back than its origin's voxel.
+    // No ray goes back beyond its origin's voxel.
     lowest = hn::IfThenElse(forward[axis], hn::Max(lowest, zero), lowest);
     highest = hn::IfThenElse(forward[axis], highest, hn::Min(highest, zero));
     VF p = hn::Floor(hn::Add(o[axis], hn::Mul(event.t, d[axis])));
@@ -110,20 +111,20 @@ struct RayLanes {
       p = hn::IfThenElse(wrong, hn::IfThenElse(up, hn::Add(p, one), hn::Sub(p, one)), p);
     }
   }
-  /// The plane by which a ray leaves voxel p of an axis.
+  /// Returns the plane through which a ray leaves voxel p of an axis.
   [[nodiscard]] HWY_INLINE VF plane_ahead(std::size_t axis, VF p) const {
     return hn::Add(p, hn::IfThenElseZero(forward[axis], hn::Set(F{}, 1.0F)));
   }
 };
 
-/// LatticeWalk: when the rays cross their next plane of each axis.
+/// Vector form of LatticeWalk: the times at which the rays cross their next plane of each axis.
 struct NextPlanes {
   std::array<VF, 3> plane;
   std::array<VF, 3> t;
 
   struct First {
     Event event;
-    M y;  ///< the first event is of axis y or z, unless z
+    M y;  ///< the first event is on axis y, or on z where `z` is set
     M z;
   };
   [[nodiscard]] HWY_INLINE First first() const {
@@ -134,7 +135,7 @@ struct NextPlanes {
     const VI axis_xy = hn::IfThenElseZero(hn::RebindMask(i, y), hn::Set(i, 1));
     return {{hn::IfThenElse(z, t[2], earlier_xy), hn::IfThenElse(hn::RebindMask(i, z), hn::Set(i, 2), axis_xy)}, y, z};
   }
-  /// Takes the rays of a mask across a plane of an axis; `index` changes by ± stride.
+  /// Moves the rays of a mask across a plane of an axis; `index` changes by ± stride.
   HWY_INLINE void advance(const RayLanes& rays, std::size_t axis, M crossing, int stride, VI& index) {
     const F f;
     const I i;

@@ -11,7 +11,7 @@
 
 namespace saccade {
 
-/// A point on the lattice: its voxel, and where in the voxel, a multiple of 2⁻¹⁶ in [0, 1).
+/// Point on the lattice: its voxel, and its position in the voxel, a multiple of 2⁻¹⁶ in [0, 1).
 struct LatticePoint {
   Index3 voxel;
   float fraction[3]{0.0F, 0.0F, 0.0F};
@@ -21,8 +21,8 @@ struct LatticePoint {
   }
 };
 
-/// The lattice point nearest to (x, y, z), given in voxels (metres / voxel size); 2⁻¹⁶ voxel is 0.1 µm at 5.8 mm.
-/// Coordinates must stay below 2²⁹ voxels.
+/// Returns the lattice point nearest to (x, y, z), given in voxels (metres / voxel size). 2⁻¹⁶ voxel is 0.1 µm at 5.8
+/// mm. Coordinates must stay below 2²⁹ voxels.
 [[nodiscard]] SACCADE_HD inline LatticePoint lattice_point(double x, double y, double z) {
   constexpr double kSteps{65536.0};
   const double sx = std::floor(x * kSteps + 0.5);
@@ -39,15 +39,15 @@ struct LatticePoint {
   return p;
 }
 
-/// Time at which a ray crosses a lattice plane: the one formula behind every walk. It is never accumulated, and it is
-/// monotone in the plane, so walking the planes of voxels, bricks or sectors gives the same crossings.
+/// Returns the time at which a ray crosses a lattice plane: the one formula behind every walk. It is never accumulated,
+/// and it is monotone in the plane. Walks over planes of voxels, bricks or sectors therefore give equal crossings.
 template <class T>
 [[nodiscard]] SACCADE_HD constexpr T crossing_time(T plane, T o, T inv) {
   return (plane - o) * inv;
 }
 
-/// A ray from a lattice point. t is depth: with d in voxels per metre of depth, t is in metres along camera +z.
-/// Lattice coordinates inside are relative to the origin's voxel and must stay within ±2²³.
+/// Ray from a lattice point. t is depth: with d in voxels per metre of depth, t is in metres along camera +z. Lattice
+/// coordinates inside are relative to the origin's voxel and must stay within ±2²³.
 struct LatticeRay {
   Index3 origin;
   float o[3];
@@ -79,7 +79,7 @@ constexpr float kParallel{1e-20F};
   return ray;
 }
 
-/// The crossing of a lattice plane of an axis (0 x, 1 y, 2 z) at time t. Events are ordered by t, ties by axis: this
+/// Crossing of a lattice plane of an axis (0 x, 1 y, 2 z) at time t. Events are ordered by t, ties by axis. This order
 /// decides which voxels a ray through an edge or a corner visits.
 struct RayEvent {
   float t;
@@ -88,17 +88,17 @@ struct RayEvent {
 [[nodiscard]] SACCADE_HD constexpr bool before(const RayEvent& a, const RayEvent& b) {
   return a.t < b.t || (a.t == b.t && a.axis < b.axis);
 }
-/// Before every crossing.
+/// Event before every crossing.
 constexpr RayEvent kRayStart{0.0F, -1};
-/// After every crossing at t or earlier: what is entered at exactly t is still visited.
+/// Returns the event after every crossing at t or earlier, so that voxels entered at exactly t are still visited.
 [[nodiscard]] SACCADE_HD constexpr RayEvent after_depth(float t) { return {t, 3}; }
 
-/// What a ray visits from the event `enter` (included) to the event `exit` (not included).
+/// Part of a ray from the event `enter` (included) to the event `exit` (excluded).
 struct RaySpan {
   RayEvent enter{kRayStart};
   RayEvent exit{kRayStart};
   [[nodiscard]] SACCADE_HD constexpr bool empty() const { return !before(enter, exit); }
-  /// The part of this span that lies before `limit`.
+  /// Returns the part of this span before `limit`.
   [[nodiscard]] SACCADE_HD constexpr RaySpan until(const RayEvent& limit) const {
     return {enter, before(limit, exit) ? limit : exit};
   }
@@ -114,8 +114,8 @@ constexpr float kLargestCoordinate{8388608.0F};
 }
 }  // namespace ray_detail
 
-/// Relative voxel coordinate along `axis` once every crossing up to and including `event` has happened. Estimated by
-/// o + t·d, then settled by the crossings themselves.
+/// Returns the relative voxel coordinate along `axis` after every crossing up to and including `event`. It is estimated
+/// as o + t·d and then settled by the crossings themselves.
 [[nodiscard]] SACCADE_HD inline std::int32_t position_at(const LatticeRay& ray, int axis, const RayEvent& event) {
   std::int32_t p = ray_detail::estimate(ray, axis, event.t);
   if (ray.positive(axis)) {
@@ -130,12 +130,12 @@ constexpr float kLargestCoordinate{8388608.0F};
   return p;
 }
 
-/// The voxel in which the ray is once every crossing up to and including `event` has happened.
+/// Returns the voxel of the ray after every crossing up to and including `event`.
 [[nodiscard]] SACCADE_HD inline Index3 voxel_at_event(const LatticeRay& ray, const RayEvent& event) {
   return ray.origin + Index3{position_at(ray, 0, event), position_at(ray, 1, event), position_at(ray, 2, event)};
 }
 
-/// The event by which the ray enters a voxel that lies on it; kRayStart for the origin's own voxel.
+/// Returns the event at which the ray enters a voxel on it; kRayStart for the origin's own voxel.
 [[nodiscard]] SACCADE_HD inline RayEvent entry_event(const LatticeRay& ray, const Index3& voxel) {
   const std::int32_t p[3]{voxel.x - ray.origin.x, voxel.y - ray.origin.y, voxel.z - ray.origin.z};
   RayEvent latest = kRayStart;
@@ -147,7 +147,8 @@ constexpr float kLargestCoordinate{8388608.0F};
   return latest;
 }
 
-/// The part of the ray within a box of voxels (not empty): voxel for voxel those of the walk that lie in the box.
+/// Returns the part of the ray within a box of voxels (not empty). It visits exactly those voxels of the full walk that
+/// lie in the box.
 [[nodiscard]] SACCADE_HD inline RaySpan clip(const LatticeRay& ray, const IndexBox& box) {
   const std::int32_t lo[3]{box.lo.x - ray.origin.x, box.lo.y - ray.origin.y, box.lo.z - ray.origin.z};
   const std::int32_t hi[3]{box.hi.x - ray.origin.x, box.hi.y - ray.origin.y, box.hi.z - ray.origin.z};

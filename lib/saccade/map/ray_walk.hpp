@@ -14,7 +14,7 @@ constexpr int kVoxelLevel{0};
 constexpr int kBrickLevel{3};
 constexpr int kSectorLevel{6};
 
-/// Steps through the cells of 2^kLevel voxels along a ray: always across the plane with the earliest event.
+/// Walk through the cells of 2^kLevel voxels along a ray: always across the plane with the earliest event.
 template <int kLevel>
 class LatticeWalk {
  public:
@@ -33,14 +33,14 @@ class LatticeWalk {
 
   /// Absolute index at this level.
   [[nodiscard]] SACCADE_HD Index3 cell() const { return {cell_[0], cell_[1], cell_[2]}; }
-  /// The event by which the ray leaves the cell.
+  /// Returns the event at which the ray leaves the cell.
   [[nodiscard]] SACCADE_HD RayEvent next() const {
     RayEvent event{t_[0], 0};
     if (t_[1] < event.t) event = {t_[1], 1};
     if (t_[2] < event.t) event = {t_[2], 2};
     return event;
   }
-  /// Goes across the plane of next().
+  /// Crosses the plane of next().
   SACCADE_HD void step(int axis) {
     if (axis == 0) {
       advance(0);
@@ -62,13 +62,13 @@ class LatticeWalk {
   std::int32_t cell_[3];
   std::int32_t step_[3];
   std::int32_t plane_[3];  // next plane, relative to the origin's voxel
-  float t_[3];             // when it is crossed
+  float t_[3];             // time of crossing it
 };
 
 /// Calls visit(index, RaySpan) for each cell of 2^kLevel voxels that the ray visits within the span, in order, until it
-/// returns true; then returns true. With kVoxelLevel this is the voxel-by-voxel walk that defines what a ray visits;
-/// the coarser levels visit exactly the cells that hold those voxels. The spans handed on join without gaps.
-/// `first` is the voxel at span.enter, where it is known already. O(cells); no allocation.
+/// returns true. Returns true if stopped. With kVoxelLevel this is the voxel-by-voxel walk that defines which voxels a
+/// ray visits. Coarser levels visit exactly the cells that hold those voxels. The spans join without gaps. `first` is
+/// the voxel at span.enter, for callers that know it. O(cells); no allocation.
 template <int kLevel, class Visit>
 SACCADE_HD bool walk_cells_from(const Index3& first, const LatticeRay& ray, const RaySpan& span, Visit&& visit) {
   if (span.empty()) return false;
@@ -89,10 +89,10 @@ SACCADE_HD bool walk_cells(const LatticeRay& ray, const RaySpan& span, Visit&& v
   return walk_cells_from<kLevel>(voxel_at_event(ray, span.enter), ray, span, visit);
 }
 
-/// Walks the map: enter_sector(sector index, const Sector*, RaySpan) says whether to look into a sector (nullptr: all
-/// unknown); where it says true, visit_brick(brick index, const Sector*, child index, RaySpan) is called for the bricks
-/// along the ray and returns true to stop. Returns whether it was stopped. Within a brick, walk_cells<kVoxelLevel> with
-/// the brick's span goes on.
+/// Walks the map. enter_sector(sector index, const Sector*, RaySpan) decides whether to enter a sector (nullptr: all
+/// unknown). In sectors that it enters, the walk calls visit_brick(brick index, const Sector*, child index, RaySpan)
+/// for the bricks along the ray, which returns true to stop. Returns whether it was stopped. Within a brick, continue
+/// with walk_cells<kVoxelLevel> and the brick's span.
 template <class EnterSector, class VisitBrick>
 bool walk_map(const LatticeRay& ray, const RaySpan& span, const SectorTable& sectors, EnterSector&& enter_sector,
               VisitBrick&& visit_brick) {
@@ -105,21 +105,21 @@ bool walk_map(const LatticeRay& ray, const RaySpan& span, const SectorTable& sec
   });
 }
 
-/// What stops a ray.
+/// Voxel states that stop a ray.
 struct StopAt {
   bool unknown{true};
   bool occupied{true};
 };
 
-/// A voxel met by a ray, its state, and the depth at which the ray enters it.
+/// Voxel met by a ray, its state, and the depth at which the ray enters it.
 struct VoxelHit {
   Index3 voxel;
   VoxelState state{VoxelState::unknown};
   float t{0.0F};
 };
 
-/// The first voxel of the ray within the span that is unknown or occupied, as asked for (eq. 2.11). Empty space is
-/// skipped by the sectors' summaries and the bricks' masks; the result is that of the voxel-by-voxel walk.
+/// Returns the first voxel of the ray within the span that is unknown or occupied, as asked for (eq. 2.11). Skips empty
+/// space by the sectors' summaries and the bricks' masks; the result is that of the voxel-by-voxel walk.
 [[nodiscard]] inline std::optional<VoxelHit> first_voxel(const LatticeRay& ray, const RaySpan& span,
                                                          const SectorTable& sectors, const StopAt& stop = {}) {
   std::optional<VoxelHit> hit;

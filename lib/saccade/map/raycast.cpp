@@ -22,30 +22,30 @@ using tile_cast::TileRays;
 constexpr int kTilePx{SurfaceTiles::kTilePx};
 static_assert(kTilePx * kTilePx == kTileRays);
 
-/// The pixel of a tile that a ray belongs to: blocks of 4×4, so that rays that are cast together meet the same bricks.
+/// Pixel of a tile that a ray belongs to. Blocks of 4×4 keep together rays that meet the same bricks.
 struct TilePixel {
   int u;
   int v;
 };
 constexpr TilePixel pixel_of_ray(int i) { return {(i & 3) | ((i >> 2) & 4), ((i >> 2) & 3) | ((i >> 3) & 4)}; }
 
-/// What all tiles of one cast share.
+/// Data shared by all tiles of one cast.
 struct Cast {
   const PinholeCamera& camera;
   const SectorTable& sectors;
   const SurfaceTiles& tiles;
-  LatticePoint origin;        ///< of the rays, in the lattice of the cells
-  Eigen::Matrix3d per_cell;   ///< camera directions to cells
-  std::vector<double> ray_x;  ///< of PinholeCamera::ray, by column, up to the border of the last tile
-  std::vector<double> ray_y;  ///< by row
+  LatticePoint origin;        ///< origin of the rays, in the lattice of the cells
+  Eigen::Matrix3d per_cell;   ///< from camera directions to cells
+  std::vector<double> ray_x;  ///< x of PinholeCamera::ray by column, up to the border of the last tile
+  std::vector<double> ray_y;  ///< y by row
   Eigen::Matrix3f R_camera_world;
   bool colors;
 };
 
-/// The corners of cells, and their neighbours along the axes, for gradients.
+/// Returns the corners of cells and their neighbours along the axes, for gradients.
 IndexBox with_neighbours(const IndexBox& cells) { return {cells.lo - Index3{1, 1, 1}, cells.hi + Index3{2, 2, 2}}; }
 
-/// Unpacked bricks, the last few hundred that were asked for. One thread.
+/// Cache of the last few hundred unpacked bricks. One thread.
 class SurfaceBricks {
  public:
   explicit SurfaceBricks(const Cast& cast) : cast_{&cast}, slot_of_(cast.tiles.bricks().size(), 0), slots_(kSlots) {}
@@ -76,7 +76,7 @@ class SurfaceBricks {
   std::uint16_t next_{0};
 };
 
-/// Casts tiles. One per thread.
+/// Caster of tiles. One per thread.
 class TileCaster {
  public:
   explicit TileCaster(const Cast& cast) : cast_{&cast}, bricks_{cast}, reader_{cast.sectors} {
@@ -103,7 +103,7 @@ class TileCaster {
   }
 
  private:
-  /// Rays of pixels beyond the image's border are cast as well, and not written.
+  /// Aims the rays. Those of pixels beyond the image's border are cast as well, but not written.
   void aim(int u0, int v0) {
     const double* x = cast_->ray_x.data() + u0;
     const double* y = cast_->ray_y.data() + v0;
@@ -145,7 +145,7 @@ class TileCaster {
     }
   }
 
-  /// Of the voxel nearest to the hit, or of any of the cell that has one.
+  /// Returns the colour of the voxel nearest to the hit, or of any voxel of the cell that has one.
   [[nodiscard]] Rgb8 color(std::size_t i) {
     const Index3 cell = cast_->tiles.bricks()[hits_.brick[i]].index * kBrickEdge + child_offset(hits_.cell[i]);
     const Index3 nearest{hits_.fraction[0][i] > 0.5F ? 1 : 0, hits_.fraction[1][i] > 0.5F ? 1 : 0,
@@ -174,7 +174,7 @@ std::vector<double> ray_coordinates(int count, const At& at) {
   return coordinates;
 }
 
-/// Lends casters to chunks of work, so that there is one per thread, not one per chunk.
+/// Pool that lends casters to chunks of work, so that each thread has one, not each chunk.
 class CasterPool {
  public:
   explicit CasterPool(const Cast& cast) : cast_{&cast} {}

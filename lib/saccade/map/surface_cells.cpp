@@ -6,7 +6,7 @@
 namespace saccade {
 namespace {
 
-/// A bit is set where it was, or where the bit one step further along the axis is; `next` is the mask beyond the end.
+/// Sets each bit that was set, or whose next bit along the axis is; `next` is the mask beyond the end.
 Mask512 spread_x(const Mask512& mask, const Mask512& next) {
   constexpr std::uint64_t kNotLastColumn{0x7F7F7F7F7F7F7F7FULL};
   constexpr std::uint64_t kFirstColumn{0x0101010101010101ULL};
@@ -29,8 +29,8 @@ Mask512 spread_z(const Mask512& mask, const Mask512& next) {
   return out;
 }
 
-/// masks[i] belongs to the neighbour at (i & 1, i >> 1 & 1, i >> 2 & 1); the result says for each position of the first
-/// mask whether any of its eight cell corners is set.
+/// Tells for each position of the first mask whether any of its eight cell corners is set. masks[i] belongs to the
+/// neighbour at (i & 1, i >> 1 & 1, i >> 2 & 1).
 Mask512 any_corner(const std::array<Mask512, 8>& masks) {
   const auto along_x = [&](std::size_t i) { return spread_x(masks[i], masks[i + 1]); };
   const auto along_xy = [&](std::size_t i) { return spread_y(along_x(i), along_x(i + 2)); };

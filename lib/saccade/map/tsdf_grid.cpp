@@ -23,9 +23,9 @@ Status TsdfConfig::validate() const {
 }
 
 IndexBox voxels_with_center_in(const Box& box, double voxel_size_m) {
-  // The centre test itself decides at the borders, so that this agrees with contains(Box, voxel_center) to the bit.
+  // The centre test itself decides at the borders, for agreement with contains(Box, voxel_center) to the bit.
   const auto first_at_or_above = [&](double bound) {
-    constexpr double kFarthest{1e9};  // no map reaches as far
+    constexpr double kFarthest{1e9};  // beyond any map
     const double near = std::clamp(std::floor(bound / voxel_size_m - 0.5), -kFarthest, kFarthest);
     auto i = static_cast<std::int32_t>(near) - 1;
     if (std::abs(near) == kFarthest) return i;

@@ -6,36 +6,14 @@
 #include <utility>
 
 #include "saccade/core/clock.hpp"
+#include "saccade/map/internal/frame_check.hpp"
 #include "saccade/map/internal/frame_fuser.hpp"
 #include "saccade/map/voxels_inside.hpp"
 
 namespace saccade {
 namespace {
 
-Status check_frame(const PinholeCamera& camera, const DepthImage& depth, const Pose& T_world_camera,
-                   const ColorImage* color) {
-  SACCADE_CHECK(camera.validate());
-  const auto size = [](int width, int height) { return std::to_string(width) + "x" + std::to_string(height); };
-  if (depth.width() != camera.width || depth.height() != camera.height) {
-    return Error{Errc::size_mismatch,
-                 "the depth image is " + size(depth.width(), depth.height()) + ", the camera " +
-                     size(camera.width, camera.height),
-                 {}};
-  }
-  if (color != nullptr && (color->width() != camera.width || color->height() != camera.height)) {
-    return Error{Errc::size_mismatch,
-                 "the colour image is " + size(color->width(), color->height()) + ", the camera " +
-                     size(camera.width, camera.height),
-                 {}};
-  }
-  if (const auto checked = pose_from_matrix(T_world_camera.matrix()); !checked) return checked.error();
-  if (T_world_camera.translation().cwiseAbs().maxCoeff() > 1000.0) {
-    return Error{Errc::invalid_argument, "the camera lies farther than 1000 m from the origin", {}};
-  }
-  return {};
-}
-
-/// Sectors of a box, in z-y-x order; all, or those that are stored.
+/// Returns the sectors of a box in z-y-x order: all, or only those that are stored.
 std::vector<Index3> sectors_in(const IndexBox& box, const TsdfGrid& grid, bool only_stored) {
   std::vector<Index3> keys;
   if (only_stored && box.count() > static_cast<double>(grid.sector_count())) {
@@ -49,7 +27,7 @@ std::vector<Index3> sectors_in(const IndexBox& box, const TsdfGrid& grid, bool o
   return keys;
 }
 
-/// Which bricks of a region an edit is for.
+/// Bricks of a region that an edit applies to.
 enum class Bricks {
   known,  ///< only those with a known voxel inside; nothing is created
   all,    ///< created where they are absent

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// TsdfMap: the map that one thread fuses into; TsdfSnapshot: the same content for readers, taken in microseconds;
-// count_unknown: how much of a region is unknown.
+// TsdfMap: the map that one thread fuses into. TsdfSnapshot: its content for readers, taken in microseconds.
+// count_unknown: number of unknown voxels in a region.
 
 #include <mutex>
 #include <optional>
@@ -15,26 +15,27 @@
 
 namespace saccade {
 
-/// What one depth image changed.
+/// Changes made by one depth image.
 struct FusionStats {
-  std::size_t bricks_updated{0};    ///< bricks whose voxels were gone through one by one
-  std::size_t bricks_free{0};       ///< bricks found wholly in front of the surface, or saturated and unseen elsewhere
-  std::size_t bricks_saturated{0};  ///< of those, bricks that needed no work at all
+  std::size_t bricks_updated{0};    ///< bricks whose voxels were visited one by one
+  std::size_t bricks_free{0};       ///< bricks found entirely in front of the surface, or saturated and unseen
+                                    ///< elsewhere
+  std::size_t bricks_saturated{0};  ///< bricks among bricks_free that needed no work at all
   std::size_t valid_pixels{0};
   double ms{0.0};
 };
 
-/// An immutable view of a map; copying and destroying are cheap, and it stays as it is while the map goes on.
+/// Immutable view of a map, cheap to copy and destroy. It stays unchanged while the map goes on.
 struct TsdfSnapshot {
   TsdfConfig config;
   TsdfGrid grid;
 };
 
 /// Truncated signed distance map that never confuses unknown with empty. Thesis §2.2.1, §2.2.2, §2.3.1.
-/// One writer at a time (integrate, forget, free, replace); snapshot() may be called from any thread meanwhile.
+/// One writer at a time (integrate, forget, free); snapshot() may be called from any thread meanwhile.
 class TsdfMap {
  public:
-  /// invalid_argument when the configuration is.
+  /// Answers invalid_argument for an invalid configuration.
   [[nodiscard]] static Result<TsdfMap> create(const TsdfConfig& config);
   /// Continues from a snapshot (for example a loaded map).
   explicit TsdfMap(TsdfSnapshot content);
@@ -42,7 +43,7 @@ class TsdfMap {
   TsdfMap& operator=(TsdfMap&& other) noexcept;
 
   [[nodiscard]] const TsdfConfig& config() const { return content_.config; }
-  /// The writer's own view, without a copy. Not for other threads.
+  /// Returns the writer's own view, without a copy. Not for other threads.
   [[nodiscard]] const TsdfSnapshot& content() const { return content_; }
 
   /// Fuses one depth image.  Thesis §2.2.1, eq. (2.1)–(2.3), distances along the ray; design §3.
@@ -62,7 +63,7 @@ class TsdfMap {
   /// Sets every voxel whose centre lies in the region empty: v = 1, w = W_th.
   [[nodiscard]] Status free(const Region& region);
 
-  /// O(sectors), microseconds; waits at most for the frame being fused.
+  /// Returns a snapshot. O(sectors), microseconds; waits at most for the frame that is being fused.
   [[nodiscard]] TsdfSnapshot snapshot() const;
 
  private:
@@ -72,7 +73,7 @@ class TsdfMap {
   TsdfSnapshot content_;
 };
 
-/// Unknown voxels whose centre lies in the region and in the map's workspace. O(voxels of the region).
+/// Counts the unknown voxels whose centre lies in the region and in the map's workspace. O(voxels of the region).
 [[nodiscard]] std::size_t count_unknown(const TsdfSnapshot& map, const Region& region);
 
 }  // namespace saccade

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// VoxelBlock: a brick and the voxels around it, unpacked, so that neighbours are a stride away.
+// VoxelBlock: a brick and the voxels around it, unpacked, so that neighbours are a stride apart.
 
 #include <Eigen/Core>
 #include <algorithm>
@@ -14,19 +14,19 @@
 
 namespace saccade {
 
-/// v of the voxels -1 … 9 of a brick along each axis, and whether they are known. About 4 KiB; meant to be reused.
+/// v of a brick's voxels -1 … 9 along each axis, and whether they are known. About 4 KiB; meant to be reused.
 class VoxelBlock {
  public:
   static constexpr int kFirst{-1};
   static constexpr int kEdge{kBrickEdge + 3};
   static constexpr std::int16_t kUnknown{-32768};  ///< v itself stays within ±32767
 
-  /// Reads the block around `brick`; voxels observed less than min_weight (≥ 1) times count as unknown.
+  /// Reads the block around `brick`. Voxels observed fewer than min_weight (≥ 1) times count as unknown.
   void load(const SectorTable& table, const Index3& brick, std::uint16_t min_weight) {
     constexpr int kEnd{kFirst + kEdge};
     load(table, brick, min_weight, {{kFirst, kFirst, kFirst}, {kEnd, kEnd, kEnd}});
   }
-  /// The same for the voxels of a box, and some beside them along x; others are left as they were.
+  /// Reads the voxels of a box, and some beside them along x; leaves others unchanged.
   void load(const SectorTable& table, const Index3& brick, std::uint16_t min_weight, const IndexBox& voxels) {
     const auto first = [](int lo) { return lo < 0 ? -1 : 0; };
     const auto last = [](int hi) { return hi > kBrickEdge ? 1 : 0; };
@@ -44,17 +44,18 @@ class VoxelBlock {
     }
   }
 
-  /// Only where known.
+  /// Returns v. Requires a known voxel.
   [[nodiscard]] std::int16_t v(const Index3& i) const { return values_[at(i.x, i.y, i.z)]; }
   [[nodiscard]] bool known(const Index3& i) const { return v(i) != kUnknown; }
 
-  /// Row by row, x fastest, kEdge voxels each; kUnknown where unknown.
+  /// Returns the values row by row, x fastest, kEdge voxels each; kUnknown where unknown.
   [[nodiscard]] const std::int16_t* data() const { return values_.data(); }
 
-  /// The voxels from -1 on along x.
+  /// Returns the row's voxels along x, from -1 on.
   [[nodiscard]] const std::int16_t* row(int y, int z) const { return &values_[at(kFirst, y, z)]; }
 
-  /// Bit c set: corner c of the cell whose lower corner is (x, y, z) is inside. -1 when a corner is unknown.
+  /// Returns a mask: bit c is set when corner c of the cell with the lower corner (x, y, z) is inside. -1 when a corner
+  /// is unknown.
   [[nodiscard]] int cell_signs(int x, int y, int z) const {
     const std::int16_t* p = &values_[at(x, y, z)];
     int inside{0};
@@ -66,7 +67,8 @@ class VoxelBlock {
     return inside;
   }
 
-  /// Central differences of v per voxel, one-sided next to an unknown voxel; nullopt when an axis has no neighbour.
+  /// Returns the central differences of v per voxel, one-sided next to an unknown voxel; nullopt when an axis has no
+  /// neighbour.
   [[nodiscard]] std::optional<Eigen::Vector3d> gradient(const Index3& i) const {
     Eigen::Vector3d g;
     const double here = v(i);
@@ -88,14 +90,15 @@ class VoxelBlock {
   }
 
   void copy(const BrickRef& brick, const Index3& origin, std::uint16_t min_weight, const IndexBox& voxels) {
-    switch (origin.x) {  // along x a brick gives the last of its voxels, all, or the first two
+    switch (origin.x) {  // along x a neighbouring brick contributes its last voxel, the brick itself all, the next one
+                         // its first two
       case -kBrickEdge: return copy_rows<1>(brick, origin, min_weight, voxels);
       case 0: return copy_rows<kBrickEdge>(brick, origin, min_weight, voxels);
       default: return copy_rows<2>(brick, origin, min_weight, voxels);
     }
   }
 
-  /// All bits of the value set, per value and set bit of a byte: which of 8 neighbours are known.
+  /// For each value of a byte, a mask per set bit with all bits of the value set: which of 8 neighbours are known.
   using RowMask = std::array<std::uint64_t, 2>;
   static constexpr std::array<RowMask, 256> kRowMasks = [] {
     std::array<RowMask, 256> masks{};
@@ -108,7 +111,7 @@ class VoxelBlock {
   }();
   static_assert(std::endian::native == std::endian::little, "values of a row are taken four at a time");
 
-  /// Bit i of `known`: whether value i is.
+  /// Copies a row of values; bit i of `known` tells whether value i is known.
   template <std::size_t kCount>
   static void copy_row(const std::int16_t* values, std::uint8_t known, std::int16_t* row) {
     if constexpr (kCount == kBrickEdge) {

@@ -13,14 +13,14 @@
 
 namespace saccade {
 
-constexpr int kBrickEdge{8};                                           ///< voxels along a brick
+constexpr int kBrickEdge{8};                                           ///< voxels along an edge of a brick
 constexpr int kBrickVoxels{kBrickEdge * kBrickEdge * kBrickEdge};      ///< 512
-constexpr int kSectorEdge{8};                                          ///< bricks along a sector
+constexpr int kSectorEdge{8};                                          ///< bricks along an edge of a sector
 constexpr int kSectorBricks{kSectorEdge * kSectorEdge * kSectorEdge};  ///< 512
-constexpr int kSectorVoxelEdge{kBrickEdge * kSectorEdge};              ///< 64 voxels along a sector
+constexpr int kSectorVoxelEdge{kBrickEdge * kSectorEdge};              ///< 64 voxels along an edge of a sector
 
-/// Integer lattice coordinates. Voxel (x, y, z) covers [x, x+1)·e × … with e the voxel size; its centre is at +0.5.
-/// The same type counts voxels, bricks and sectors; names say which.
+/// Integer lattice coordinates of voxels, bricks or sectors; variable names say which. Voxel (x, y, z) covers [x,
+/// x+1)·e × … where e is the voxel size; its centre is at +0.5.
 struct Index3 {
   std::int32_t x{0};
   std::int32_t y{0};
@@ -29,11 +29,11 @@ struct Index3 {
   [[nodiscard]] SACCADE_HD constexpr Index3 operator+(const Index3& o) const { return {x + o.x, y + o.y, z + o.z}; }
   [[nodiscard]] SACCADE_HD constexpr Index3 operator-(const Index3& o) const { return {x - o.x, y - o.y, z - o.z}; }
   [[nodiscard]] SACCADE_HD constexpr Index3 operator*(std::int32_t s) const { return {x * s, y * s, z * s}; }
-  /// Returns the smaller one of each coordinate.
+  /// Returns the smaller of each coordinate.
   [[nodiscard]] constexpr Index3 cwise_min(const Index3& o) const {
     return {std::min(x, o.x), std::min(y, o.y), std::min(z, o.z)};
   }
-  /// Returns the larger one of each coordinate.
+  /// Returns the larger of each coordinate.
   [[nodiscard]] constexpr Index3 cwise_max(const Index3& o) const {
     return {std::max(x, o.x), std::max(y, o.y), std::max(z, o.z)};
   }
@@ -87,7 +87,7 @@ struct IndexBox {
   [[nodiscard]] constexpr double count() const {
     return (static_cast<double>(hi.x) - lo.x) * (static_cast<double>(hi.y) - lo.y) * (static_cast<double>(hi.z) - lo.z);
   }
-  /// Returns what lies in both boxes; empty where they do not overlap.
+  /// Returns the intersection with another box; empty where they do not overlap.
   [[nodiscard]] constexpr IndexBox intersection(const IndexBox& o) const {
     return {lo.cwise_max(o.lo), hi.cwise_min(o.hi)};
   }
@@ -98,7 +98,7 @@ struct IndexBox {
     if (empty()) return o;
     return o.empty() ? *this : IndexBox{lo.cwise_min(o.lo), hi.cwise_max(o.hi)};
   }
-  /// Returns the box with `by` indices more on every side.
+  /// Returns the box grown by `by` indices on every side.
   [[nodiscard]] constexpr IndexBox grown(std::int32_t by) const {
     return {lo - Index3{by, by, by}, hi + Index3{by, by, by}};
   }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// for_each_in_row: the voxels of a row, for volumes that are made of a map.
+// for_each_in_row: the voxels of a row, for volumes derived from a map.
 
 #include <algorithm>
 

@@ -12,7 +12,7 @@
 #define SACCADE_MAP_BALL_OF_BRICK
 namespace saccade {
 
-/// A sphere as a brick's voxels see it: squared distances of their centres from its own, axis by axis, and the bounds
+/// A sphere relative to a brick's voxels: squared distances of their centres from its own, axis by axis, and the bounds
 /// between which the sum is too close to the squared radius to decide.
 struct BallOfBrick {
   alignas(64) std::array<double, kBrickEdge> x_squared;
@@ -22,7 +22,7 @@ struct BallOfBrick {
   double most_squared;
 };
 
-/// Voxels that are surely inside, and those that are not surely outside.
+/// Masks of voxels surely inside, and of voxels not surely outside.
 struct BallMasks {
   Mask512 inside;
   Mask512 touched;
@@ -69,7 +69,7 @@ namespace {
 
 HWY_EXPORT(mask_ball_simd);
 
-/// Marks the voxels of a cube in a brick whose centre the shape contains: all or none at once, or by its octants.
+/// Marks the voxels of a cube in a brick whose centre lies in the shape: all or none at once, or by its octants.
 template <class Shape>
 void mark_inside(const Shape& shape, const Index3& brick_lo, const Index3& cube, int edge, double voxel_size_m,
                  Mask512& inside) {

@@ -7,11 +7,11 @@
 
 namespace saccade {
 
-/// Voxels of the brick from voxel `lo` whose centre lies in the region: contains() of every centre, to the bit. Most
-/// are decided many at a time, with slack, and only those at the border one by one.
+/// Returns the voxels of the brick from voxel `lo` whose centre lies in the region, to the bit as contains() of every
+/// centre. Most are decided many at a time, with slack; only voxels at the border are tested one by one.
 [[nodiscard]] Mask512 voxels_inside(const Region& region, const Index3& lo, double voxel_size_m);
 
-/// Those that lie in a box of voxels.
+/// Returns the voxels of the brick that lie in a box of voxels.
 [[nodiscard]] Mask512 voxels_inside(const IndexBox& box, const Index3& lo);
 
 }  // namespace saccade

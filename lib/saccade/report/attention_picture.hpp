@@ -26,7 +26,7 @@ struct DrawnGaussian {
   bool is_poi{false};
 };
 
-/// What there is to draw besides the trajectory; any part may be empty.
+/// Items to draw besides the trajectory; any part may be empty.
 struct AttentionFindings {
   std::vector<DrawnGaussian> gaussians;
   std::vector<SmoothedPoint> motion;  ///< in which dips were looked for
@@ -35,9 +35,9 @@ struct AttentionFindings {
   std::vector<Eigen::Vector3d> labels_m;  ///< where the hand is known to have acted
 };
 
-/// What colours of draw_attention mean.
+/// Returns the meaning of the colours of draw_attention.
 struct AttentionLegend {
-  std::optional<ColorBar> time;  ///< of the trajectory, in depth_colors(); none where it has less than two samples
+  std::optional<ColorBar> time;  ///< time along the trajectory, in depth_colors(); nullopt: fewer than two samples
   std::vector<LegendEntry> entries;
 };
 
@@ -49,7 +49,7 @@ AttentionLegend draw_attention(Canvas& canvas, std::span<const HandSample> traje
 [[nodiscard]] std::vector<Eigen::Vector3d> attention_points(std::span<const HandSample> trajectory,
                                                             const AttentionFindings& findings, double region_radius_m);
 
-/// Of points of interest and their regions.
+/// Returns the colour of points of interest and their regions.
 [[nodiscard]] Rgb8 poi_color();
 
 struct AttentionPictureConfig {

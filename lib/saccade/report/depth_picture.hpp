@@ -31,20 +31,20 @@ inline constexpr Rgb8 kNoReturn{34, 36, 42};
 /// Expects equal sizes.
 [[nodiscard]] ColorImage difference_picture(const DepthImage& a, const DepthImage& b, double limit_m);
 
-/// The same as panels of a sheet, with their legends.
+/// Return the two pictures above as panels of a sheet, with their legends.
 [[nodiscard]] Panel depth_panel(const DepthImage& depth, const DepthScale& scale, std::string title);
 [[nodiscard]] Panel difference_panel(const DepthImage& a, const DepthImage& b, double limit_m, std::string title);
 
 struct FusionPictureConfig {
   std::string title{"Depth frame against the map"};
-  double limit_m{0.02};             ///< of the difference's colours
+  double limit_m{0.02};             ///< difference at which the colours end
   std::optional<DepthScale> scale;  ///< chosen from the measured depth by default
 };
 
 /// How well the map explains a frame.
 struct Residual {
-  double median_m{0.0};  ///< of |ray cast − measured| where both have a return
-  double share{0.0};     ///< of the pixels with a measured return, those where the ray cast has one too
+  double median_m{0.0};  ///< median of |ray cast − measured| over the pixels where both have a return
+  double share{0.0};     ///< share of the pixels with a measured return in which the ray cast has one too
 };
 [[nodiscard]] Residual residual(const DepthImage& measured, const DepthImage& map_cast);
 

@@ -7,6 +7,7 @@
 #include <map>
 
 #include "saccade/report/internal/canvas.hpp"
+#include "saccade/report/internal/orientation_marks.hpp"
 #include "saccade/report/sheet.hpp"
 
 namespace saccade {
@@ -105,7 +106,8 @@ ColorImage candidates_picture(const CandidatesScene& scene, const Executor& exec
                               const CandidatesPictureConfig& config) {
   const std::vector<Place> places = places_of(scene.candidates);
   const Box around = bounds(scene.region);
-  std::vector<Eigen::Vector3d> shown{around.min, around.max, scene.T_world_chosen.translation()};
+  std::vector<Eigen::Vector3d> shown = corners_of(around);
+  shown.push_back(scene.T_world_chosen.translation());
   for (const Place& place : places) shown.push_back(place.p_world);
   Box box = around;
   for (const Eigen::Vector3d& p : shown) {
@@ -130,6 +132,7 @@ ColorImage candidates_picture(const CandidatesScene& scene, const Executor& exec
     canvas.frustum(config.sensor, T_world_camera, 0.75 * frustum_m, {kEarlier, 1.4, 0.3});
   }
   canvas.frustum(config.sensor, scene.T_world_chosen, frustum_m, {kChosen, 3.0, 0.5});
+  draw_orientation(canvas, middle);
   ColorImage map = canvas.finish();
   if (!bar) return map;
   return with_scale(map, amount_colors(), *bar, kMapGround);
@@ -144,14 +147,8 @@ ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& 
   Canvas canvas =
       draw_ternary(map, overview_with(config.robot, corners_of(box), middle, config.overview), executor, ternary);
   if (config.robot != nullptr) draw_robot(canvas, *config.robot, executor);
+  draw_orientation(canvas, middle);
   return canvas.finish();
-}
-
-std::vector<CandidateMark> candidate_marks(bool with_robot) {
-  std::vector<CandidateMark> marks{
-      {kWithoutGain, "candidates without gain", true}, {kChosen, "the view chosen"}, {kEarlier, "views before it"}};
-  if (with_robot) marks.push_back({path_color(), "the camera's way to it"});
-  return marks;
 }
 
 }  // namespace saccade

@@ -20,7 +20,7 @@ namespace saccade {
 /// if that is less. Expects depth, and colour of the same size.
 [[nodiscard]] ColorImage seen_picture(const Frame& frame, const DepthScale& scale, int panel_width = 480);
 
-/// What a view was chosen from.
+/// Candidates from which a view was chosen.
 struct CandidatesScene {
   const TsdfSnapshot& map;  ///< before the move
   Region region;
@@ -35,12 +35,12 @@ struct CandidatesPictureConfig {
   PinholeCamera sensor;  ///< shape of the frusta
   OverviewConfig overview{.width = 720, .height = 540};
   double margin_m{0.1};  ///< shown around the candidates and the region
-  int samples{1};        ///< of the map, per pixel and direction
+  int samples{1};        ///< rays through the map per pixel and direction
 };
 
 /// The map around the region as seen from outside, cut to what lies among the candidates, as in view_picture; every
 /// candidate's place in the colour of the best gain there, the chosen view as a frustum, earlier ones as thin grey
-/// ones. The same picture for every thread count.
+/// ones. The thread count does not change the picture.
 [[nodiscard]] ColorImage candidates_picture(const CandidatesScene& scene, const Executor& executor,
                                             const CandidatesPictureConfig& config = {});
 
@@ -51,19 +51,10 @@ struct MapPictureConfig {
   const RobotDrawing* robot{nullptr};  ///< drawn into the map; not owned
 };
 
-/// The map in a box, usually the workspace, as seen from outside; unknown nearly black. The same place for the same
-/// box, base and p_world_shown of a robot, so that pictures of a run can be compared. The same picture for every
-/// thread count.
+/// The map in a box, usually the workspace, as seen from outside; unknown as a veil. One place for one box and one
+/// base of a robot, so that pictures of a run can be compared. The thread count does not
+/// change the picture.
 [[nodiscard]] ColorImage map_picture(const TsdfSnapshot& map, const Box& box, const Executor& executor,
                                      const MapPictureConfig& config = {});
-
-/// A mark in candidates_picture beside those coloured by gain.
-struct CandidateMark {
-  Rgb8 color;
-  std::string text;
-  bool is_point{false};  ///< else a frustum
-};
-/// @param with_robot  with that of the camera's path.
-[[nodiscard]] std::vector<CandidateMark> candidate_marks(bool with_robot = false);
 
 }  // namespace saccade

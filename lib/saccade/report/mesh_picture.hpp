@@ -17,7 +17,7 @@ struct MeshPictureConfig {
 };
 
 /// Adds the mesh to the canvas, shaded by its normals (by its faces where it has none). Triangles that reach behind the
-/// camera are left out. The same picture for every thread count. O(triangles + covered pixels).
+/// camera are left out. The thread count does not change the picture. O(triangles + covered pixels).
 void draw_mesh(Canvas& canvas, const TriangleMesh& mesh, const Executor& executor,
                const MeshPictureConfig& config = {});
 

@@ -9,7 +9,7 @@
 #include <string_view>
 
 #include "saccade/core/result.hpp"
-#include "saccade/report/html_text.hpp"
+#include "saccade/report/internal/xml_text.hpp"
 
 namespace saccade {
 namespace {
@@ -24,7 +24,7 @@ constexpr std::array<std::string_view, 4> kDashes{"", "7 4", "2 3", "9 3 2 3"};
 constexpr double kMarginTop_px{40.0};
 constexpr double kMarginBottom_px{52.0};
 constexpr double kMarginRight_px{18.0};
-constexpr double kDigit_px{7.0};  // of a text of 12 px, on average
+constexpr double kDigit_px{7.0};  // average width of a letter in a text of 12 px
 constexpr double kLegendRow_px{20.0};
 
 /// With at most that many decimals, trailing zeros cut, in any locale. "0" for what is not finite.
@@ -132,7 +132,7 @@ class Drawing {
     const std::string height = std::to_string(plot_.height_px);
     svg_ = "<svg xmlns=\"http://www.w3.org/2000/svg\" role=\"img\" width=\"" + width + "\" height=\"" + height +
            "\" viewBox=\"0 0 " + width + ' ' + height + "\" font-family=\"sans-serif\" font-size=\"12\">\n<title>" +
-           html_escaped(plot_.title) + "</title>\n<rect width=\"" + width + "\" height=\"" + height +
+           xml_escaped(plot_.title) + "</title>\n<rect width=\"" + width + "\" height=\"" + height +
            "\" fill=\"#ffffff\"/>\n";
     draw_axes();
     for (std::size_t i = 0; i < plot_.series.size(); ++i) draw_band(i);
@@ -170,7 +170,7 @@ class Drawing {
 
   void text(double u, double v, std::string_view anchor, const std::string& content, std::string_view more = "") {
     svg_ += "<text" + attribute("x", u) + attribute("y", v) + " text-anchor=\"" + std::string{anchor} + '"' +
-            std::string{more} + '>' + html_escaped(content) + "</text>\n";
+            std::string{more} + '>' + xml_escaped(content) + "</text>\n";
   }
 
   void line(const Point& a, const Point& b, std::string_view stroke) {

@@ -35,7 +35,7 @@ struct Plot {
 /// The plot as one <svg> element that stands alone or in a page: no ids, scripts, styles or fonts of its own. Series
 /// differ in colour (Okabe and Ito's, which colour-blind readers tell apart too), dashes and markers; what lies beyond
 /// a given range is cut off. Text is UTF-8 and escaped. Expects series of matching lengths, ranges that rise, and at
-/// least 200 × 150 pixels. The same text for the same plot, in any locale.
+/// least 200 × 150 pixels. Equal plots give equal text, in any locale.
 [[nodiscard]] std::string plot_svg(const Plot& plot);
 
 }  // namespace saccade

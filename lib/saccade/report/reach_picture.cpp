@@ -188,9 +188,9 @@ std::vector<double> distinct(const std::vector<ReachScene::Direction>& direction
 }
 
 /// Shares over latitude and longitude, as rings and sectors.
-class Sky {
+class DirectionHemisphere {
  public:
-  explicit Sky(const std::vector<ReachScene::Direction>& directions)
+  explicit DirectionHemisphere(const std::vector<ReachScene::Direction>& directions)
       : latitudes_{distinct(directions, &ReachScene::Direction::latitude_rad)},
         longitudes_{distinct(directions, &ReachScene::Direction::longitude_rad)},
         shares_(latitudes_.size() * longitudes_.size(), 0.0) {
@@ -231,7 +231,7 @@ Panel sky_panel(const ReachScene& scene) {
   constexpr int kSide_px{2 * kRadius_px + 72};
   constexpr int kMiddle{kSide_px / 2};
   constexpr int kAcross{3};  // samples per pixel and direction
-  const Sky sky{scene.directions};
+  const DirectionHemisphere sky{scene.directions};
   const double zenith_to_rim = 0.5 * pi - sky.rim_rad();
   ColorImage panel{kSide_px, kSide_px, kPaper};
   for (int v = 0; v < kSide_px; ++v) {

@@ -42,7 +42,7 @@ void draw_robot(Canvas& canvas, const RobotDrawing& robot, const Executor& execu
 Rgb8 path_color() { return kPath; }
 
 double azimuth_beside(const Eigen::Vector3d& p_world_base, const Eigen::Vector3d& p_world_middle, double azimuth_rad) {
-  constexpr double kApart{100_deg};
+  constexpr double kApart{125_deg};
   const Eigen::Vector3d to_base = p_world_base - p_world_middle;
   if (to_base.head<2>().norm() < 1e-6) return azimuth_rad;
   const double base_rad = std::atan2(to_base.y(), to_base.x());
@@ -53,9 +53,7 @@ double azimuth_beside(const Eigen::Vector3d& p_world_base, const Eigen::Vector3d
 Viewpoint overview_with(const RobotDrawing* robot, std::vector<Eigen::Vector3d> points_world,
                         const Eigen::Vector3d& p_world_middle, OverviewConfig config) {
   if (robot != nullptr) {
-    points_world.insert(points_world.end(), robot->p_world_shown.begin(), robot->p_world_shown.end());
     if (robot->p_world_base) {
-      points_world.push_back(*robot->p_world_base);
       config.azimuth_rad = azimuth_beside(*robot->p_world_base, p_world_middle, config.azimuth_rad);
     }
   }

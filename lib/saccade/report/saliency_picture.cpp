@@ -4,6 +4,7 @@
 #include <algorithm>
 
 #include "saccade/report/internal/canvas.hpp"
+#include "saccade/report/internal/orientation_marks.hpp"
 #include "saccade/report/mesh_picture.hpp"
 #include "saccade/report/sheet.hpp"
 
@@ -50,6 +51,7 @@ ColorImage saliency_picture(const SaliencyScene& scene, const Executor& executor
   draw_mesh(canvas, mesh, executor);
   draw_contours(canvas, scene.contours);
   canvas.frustum(scene.sensor, scene.T_world_chosen, kFrustum_m, {kChosenView, 2.2, 0.4});
+  draw_orientation(canvas, 0.5 * (scene.workspace.min + scene.workspace.max));
   return with_scale(canvas.finish(), amount_colors(), bar, kBackdrop);
 }
 

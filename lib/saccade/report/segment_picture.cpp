@@ -8,6 +8,7 @@
 
 #include "saccade/cloud/point_cloud.hpp"
 #include "saccade/report/internal/canvas.hpp"
+#include "saccade/report/internal/orientation_marks.hpp"
 #include "saccade/report/internal/shading.hpp"
 #include "saccade/report/mesh_picture.hpp"
 
@@ -40,7 +41,9 @@ const Rgb8& color_of(std::uint32_t label, std::span<const Rgb8> colors) {
 void draw_points(Canvas& canvas, const DrawnSegments& segments, std::span<const Rgb8> colors) {
   constexpr double kOverlap{1.5};  // so that no gaps show between discs
   constexpr double kLeast_px{1.2};
+  constexpr double kMostOfWidth{0.03};  // limit where points are few or coincide, and the camera is near
   const Viewpoint& view = canvas.view();
+  const double most_px = std::max(kLeast_px, kMostOfWidth * view.camera.width);
   const Pose T_camera_world = view.T_world_camera.inverse(Eigen::Isometry);
   const Eigen::Vector3d lamp = lamp_of(view);
   for (std::size_t i = 0; i < segments.positions_m.size(); ++i) {
@@ -54,7 +57,7 @@ void draw_points(Canvas& canvas, const DrawnSegments& segments, std::span<const 
       const Eigen::Vector3d direction = p - view.T_world_camera.translation();
       if (normal.allFinite()) color = shaded(color, normal.stableNormalized(), direction, lamp, kColorLight);
     }
-    canvas.point(p, std::max(kLeast_px, kOverlap * segments.spacing_m * view.camera.fx / z_m), color);
+    canvas.point(p, std::clamp(kOverlap * segments.spacing_m * view.camera.fx / z_m, kLeast_px, most_px), color);
   }
 }
 
@@ -79,6 +82,18 @@ Canvas canvas_with(const DrawnSegments& segments, const Viewpoint& view, std::sp
     draw_triangles(canvas, segments, colors, executor);
   }
   return canvas;
+}
+
+/// The mean of the finite points; none without one.
+std::optional<Eigen::Vector3d> middle_of(std::span<const Eigen::Vector3f> positions_m) {
+  Eigen::Vector3d sum{0.0, 0.0, 0.0};
+  double count{0.0};
+  for (const Eigen::Vector3f& p : positions_m) {
+    if (!p.allFinite()) continue;
+    sum += p.cast<double>();
+    count += 1.0;
+  }
+  return count > 0.0 ? std::optional{Eigen::Vector3d{sum / count}} : std::nullopt;
 }
 
 /// The segments with the most points, equal ones in their order.
@@ -199,6 +214,7 @@ Panel segments_panel(const DrawnSegments& segments, std::span<const SegmentMeasu
   const std::vector<Rgb8> colors = segment_colors(measures.size());
   Canvas canvas = canvas_with(segments, view, colors, executor);
   name_segments(canvas, segments, measures);
+  if (const auto middle = middle_of(segments.positions_m)) draw_orientation(canvas, *middle);
   return {
       canvas.finish(), std::to_string(measures.size()) + (measures.size() == 1 ? " segment" : " segments"), {}, {}, {}};
 }
@@ -274,6 +290,16 @@ Viewpoint overview_of_points(std::span<const Eigen::Vector3f> positions_m, const
     if ((p.array() >= low - margin).all() && (p.array() <= high + margin).all()) most.push_back(p);
   }
   return overview_of(most.empty() ? points : most, config);
+}
+
+Viewpoint upright_view_of(std::span<const Eigen::Vector3f> positions_m, const Upright& upright, int width, int height) {
+  if (upright.source == UprightSource::camera_frame) return camera_view_of(positions_m, width, height);
+  OverviewConfig config;
+  config.width = width;
+  config.height = height;
+  config.up = upright.up;
+  if (upright.towards_viewer) config.azimuth_rad = azimuth_towards(*upright.towards_viewer, upright.up);
+  return overview_of_points(positions_m, config);
 }
 
 }  // namespace saccade

@@ -11,6 +11,7 @@
 #include <vector>
 
 #include "saccade/attention/segmented_points.hpp"
+#include "saccade/cloud/upright.hpp"
 #include "saccade/core/executor.hpp"
 #include "saccade/map/mesh.hpp"
 #include "saccade/report/sheet.hpp"
@@ -53,17 +54,22 @@ struct DrawnSegments {
 /// overview_of for points, of which at least one is finite, but for outliers far from the others.
 [[nodiscard]] Viewpoint overview_of_points(std::span<const Eigen::Vector3f> positions_m, const OverviewConfig& config);
 
+/// camera_view_of for points in a camera's frame unless `up` was stated, else overview_of_points from the side that
+/// they were seen from.
+[[nodiscard]] Viewpoint upright_view_of(std::span<const Eigen::Vector3f> positions_m, const Upright& upright, int width,
+                                        int height);
+
 /// A point at the border of what is known, and the direction to look at it from.
 struct DrawnContour {
   Eigen::Vector3d p_world{Eigen::Vector3d::Zero()};
   Eigen::Vector3d normal_world{Eigen::Vector3d::UnitZ()};
-  bool chosen{false};  ///< of the segment that the view is of
+  bool chosen{false};  ///< on the segment that the view is to show
 };
 
 struct SaliencyScene {
   const TriangleMesh& mesh;               ///< the map's, before the move
   std::span<const std::uint32_t> labels;  ///< segment of each vertex; others than those with a saliency: grey
-  std::span<const double> saliency;       ///< of each segment
+  std::span<const double> saliency;       ///< one for each segment
   std::span<const DrawnContour> contours;
   const Box& workspace;  ///< all of the surface in it is in the picture
   Pose T_world_chosen{Pose::Identity()};
@@ -71,7 +77,7 @@ struct SaliencyScene {
 };
 
 /// The surface from outside, the more salient the brighter; contour points, those of the chosen segment with their
-/// normals; the chosen view as a frustum. The same picture for every thread count.
+/// normals; the chosen view as a frustum. The thread count does not change the picture.
 [[nodiscard]] ColorImage saliency_picture(const SaliencyScene& scene, const Executor& executor,
                                           const OverviewConfig& config = {.width = 720, .height = 540});
 

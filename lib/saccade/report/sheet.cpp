@@ -2,6 +2,7 @@
 #include "saccade/report/sheet.hpp"
 
 #include <algorithm>
+#include <cmath>
 
 #include "saccade/report/internal/font.hpp"
 
@@ -15,6 +16,7 @@ constexpr Rgb8 kFrame{206, 210, 216};
 constexpr int kMargin{16};
 constexpr int kLegendRow{20};
 constexpr int kBarHeight{56};
+constexpr double kPanelTitle_px{10.5};
 
 /// Where each entry of a legend goes, row by row.
 struct LegendPlace {
@@ -43,8 +45,30 @@ int legend_height(const Panel& panel, int width) {
   return (panel.bar ? kBarHeight : 0) + (rows > 0 ? rows * kLegendRow + 8 : 0);
 }
 
+/// Repeats each pixel.
+ColorImage enlarged(const ColorImage& image, int times) {
+  ColorImage out{times * image.width(), times * image.height()};
+  for (int v = 0; v < out.height(); ++v) {
+    for (int u = 0; u < out.width(); ++u) out(u, v) = image(u / times, v / times);
+  }
+  return out;
+}
+
+/// Enlarges images beside which the titles of panels would overlap, all of a size by as much.
+void enlarge_small_panels(std::vector<Panel>& panels) {
+  double needed_px = 0.0;
+  for (const Panel& panel : panels) {
+    needed_px = std::max(needed_px, text_width(panel.title, {.size_px = kPanelTitle_px}));
+    if (panel.bar) needed_px = std::max(needed_px, text_width(panel.bar->title, {.size_px = panel.bar->text_px}));
+  }
+  for (Panel& panel : panels) {
+    if (panel.image.empty() || panel.image.width() + kMargin > needed_px) continue;
+    panel.image = enlarged(panel.image, static_cast<int>(std::ceil(needed_px / panel.image.width())));
+  }
+}
+
 void draw_panel(ColorImage& page, int x, int y, const Panel& panel) {
-  draw_text(page, x, y - 8, panel.title, {.size_px = 10.5, .color = kSheetInk});
+  draw_text(page, x, y - 8, panel.title, {.size_px = kPanelTitle_px, .color = kSheetInk});
   const int w = panel.image.width();
   const int h = panel.image.height();
   fill_rect(page, x - 1, y - 1, w + 2, h + 2, kFrame);
@@ -87,7 +111,8 @@ ColorImage with_scale(const ColorImage& picture, const ColorMap& colors, const C
   return page;
 }
 
-ColorImage compose(const Sheet& sheet) {
+ColorImage compose(Sheet sheet) {
+  enlarge_small_panels(sheet.panels);
   const bool has_titles =
       std::any_of(sheet.panels.begin(), sheet.panels.end(), [](const Panel& panel) { return !panel.title.empty(); });
   const int top = kMargin + (sheet.title.empty() ? 0 : 30) + (has_titles ? 20 : 0);

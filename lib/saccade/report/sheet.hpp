@@ -68,7 +68,7 @@ struct Panel {
   ColorImage image;
   std::string title;
   std::optional<ColorBar> bar;
-  std::optional<ColorMap> colors;  ///< of the bar
+  std::optional<ColorMap> colors;  ///< colours of `bar`
   std::vector<LegendEntry> legend;
 };
 
@@ -78,7 +78,7 @@ struct Sheet {
   std::string note;  ///< one line at the bottom
 };
 
-/// Lays the panels out from left to right on white.
-[[nodiscard]] ColorImage compose(const Sheet& sheet);
+/// Lays the panels out from left to right on white. Repeats the pixels of images that are narrower than their titles.
+[[nodiscard]] ColorImage compose(Sheet sheet);
 
 }  // namespace saccade

@@ -17,7 +17,7 @@ struct SurfelPictureConfig {
 };
 
 /// Each disc in its colour, without shading: fused colours carry their own light. What is seen is what view_surfels
-/// says. Expects a colour per disc. The same picture for every thread count.
+/// says. Expects a colour per disc. The thread count does not change the picture.
 [[nodiscard]] ColorImage draw_surfels(const SurfelDiscs& discs, std::span<const Rgb8> colors, const Viewpoint& view,
                                       const Executor& executor, const SurfelPictureConfig& config = {});
 /// In their own colours.

@@ -13,15 +13,21 @@
 namespace saccade {
 namespace {
 
-/// Unknown faces across x, y, z: dark, but not the same, so that shapes can be seen.
-constexpr std::array<Rgb8, 3> kUnknownFaces{{{24, 25, 31}, {14, 14, 18}, {36, 38, 46}}};
+/// Unknown faces across x, y, z: not the same, so that shapes can be seen. What lies behind shows through.
+constexpr std::array<Rgb8, 3> kUnknownFaces{{{58, 64, 92}, {40, 45, 70}, {78, 86, 116}}};
+constexpr double kUnknownOpacity{0.5};
 constexpr LineStyle kRegionLine{{214, 92, 22}, 1.6, 0.35};
 constexpr LineStyle kWorkspaceLine{{120, 128, 140}, 1.2, 0.25};
 
 struct Hit {
   Index3 voxel;
-  bool occupied{false};
   RayEvent enter{kRayStart};
+};
+
+/// Hits of a ray: the first unknown voxel that is drawn, if it comes before the surface; and the surface.
+struct Hits {
+  std::optional<Hit> unknown;
+  std::optional<Hit> occupied;
 };
 
 class TernaryCaster {
@@ -48,26 +54,31 @@ class TernaryCaster {
   [[nodiscard]] bool empty() const { return domain_.empty(); }
 
   /// direction: world, z = 1 in the camera.
-  [[nodiscard]] std::optional<Hit> cast(const Eigen::Vector3d& direction) const {
+  [[nodiscard]] Hits cast(const Eigen::Vector3d& direction) const {
     const Eigen::Vector3f d = (direction / voxel_size_m_).cast<float>();
     const LatticeRay ray = make_lattice_ray(origin_, d.x(), d.y(), d.z());
-    std::optional<Hit> hit;
+    Hits hits;
     const auto enter_sector = [&](const Index3& index, const Sector* sector, const RaySpan&) {
       return sector != nullptr || IndexBox::cube(index * kSectorVoxelEdge, kSectorVoxelEdge).overlaps(unknown_);
     };
     const auto visit_brick = [&](const Index3& brick, const Sector* sector, int child, const RaySpan& span) {
-      return cast_in_brick(ray, brick, sector, child, span, hit);
+      return cast_in_brick(ray, brick, sector, child, span, hits);
     };
     RaySpan span = clip(ray, domain_);
     const RayEvent start = after_depth(static_cast<float>(config_.start_m));
     if (before(span.enter, start)) span.enter = start;
     walk_map(ray, span, table_, enter_sector, visit_brick);
-    return hit;
+    return hits;
   }
 
-  [[nodiscard]] Rgb8 color(const Hit& hit, const Eigen::Vector3d& direction) const {
+  [[nodiscard]] Rgb8 unknown_over(const Hit& unknown, const Rgb8& behind) const {
+    const int axis = unknown.enter.axis;
+    const Rgb8& face = axis >= 0 && axis < 3 ? kUnknownFaces[static_cast<std::size_t>(axis)] : kUnknownFaces[1];
+    return blend(behind, face, kUnknownOpacity);
+  }
+
+  [[nodiscard]] Rgb8 surface_color(const Hit& hit, const Eigen::Vector3d& direction) const {
     const int axis = hit.enter.axis;
-    if (!hit.occupied) return axis >= 0 && axis < 3 ? kUnknownFaces[static_cast<std::size_t>(axis)] : kUnknownFaces[1];
     Eigen::Vector3d normal = gradient(hit.voxel);
     if (normal.isZero(0.0) && axis >= 0 && axis < 3) normal[axis] = direction[axis] > 0.0 ? -1.0 : 1.0;
     const std::optional<Rgb8> fused = map_.grid.color(hit.voxel);
@@ -77,18 +88,18 @@ class TernaryCaster {
 
  private:
   [[nodiscard]] bool cast_in_brick(const LatticeRay& ray, const Index3& brick, const Sector* sector, int child,
-                                   const RaySpan& span, std::optional<Hit>& hit) const {
+                                   const RaySpan& span, Hits& hits) const {
     const bool unknown = (sector == nullptr || sector->has_unknown.test(child)) &&
                          IndexBox::cube(brick * kBrickEdge, kBrickEdge).overlaps(unknown_);
     const bool occupied = sector != nullptr && sector->has_occupied.test(child);
-    if (!unknown && !occupied) return false;
+    if ((!unknown || hits.unknown) && !occupied) return false;
     const BrickRef* ref = sector == nullptr ? nullptr : &sector->bricks[static_cast<std::size_t>(child)];
     return walk_cells<kVoxelLevel>(ray, span, [&](const Index3& voxel, const RaySpan& in_voxel) {
       if (ref != nullptr && ((ref->nonempty_word(voxel.z & 7) >> (child_index(voxel) & 63)) & 1U) == 0) return false;
       const bool is_occupied = ref != nullptr && ref->voxel(child_index(voxel)).w > 0;
-      if (!is_occupied && !shown(voxel)) return false;
-      hit = Hit{voxel, is_occupied, in_voxel.enter};
-      return true;
+      if (is_occupied) hits.occupied = Hit{voxel, in_voxel.enter};
+      if (!is_occupied && !hits.unknown && shown(voxel)) hits.unknown = Hit{voxel, in_voxel.enter};
+      return is_occupied;
     });
   }
 
@@ -147,7 +158,15 @@ Canvas draw_ternary(const TsdfSnapshot& map, const Viewpoint& view, const Execut
       for (int v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
         for (int u = 0; u < camera.width; ++u) {
           const Eigen::Vector3d direction = view.T_world_camera.linear() * camera.ray(u, v);
-          if (const auto hit = caster.cast(direction)) canvas.plot(u, v, hit->enter.t, caster.color(*hit, direction));
+          const Hits hits = caster.cast(direction);
+          Rgb8 color = hits.occupied ? caster.surface_color(*hits.occupied, direction) : config.background;
+          if (hits.unknown) color = caster.unknown_over(*hits.unknown, color);
+          if (!hits.occupied && !hits.unknown) continue;
+          if (hits.occupied) {
+            canvas.plot(u, v, hits.occupied->enter.t, color);
+          } else {  // what is unknown hides nothing that is drawn later
+            canvas.samples()(u, v) = color;
+          }
         }
       }
     });
@@ -168,10 +187,10 @@ ColorImage ternary_figure(const TsdfSnapshot& map, const Viewpoint& view, const 
 }
 
 std::vector<LegendEntry> ternary_legend(const TernaryPictureConfig& config) {
-  std::vector<LegendEntry> legend{
-      {kClay, "occupied (grey or in colour)"},
-      {kUnknownFaces[0], config.unknown_within.empty() ? "unknown" : "unknown, in the region"},
-      {config.background, "empty"}};
+  std::vector<LegendEntry> legend{{kClay, "occupied (grey or in colour)"},
+                                  {blend(config.background, kUnknownFaces[0], kUnknownOpacity),
+                                   config.unknown_within.empty() ? "unknown" : "unknown, in the region"},
+                                  {config.background, "empty"}};
   if (!config.unknown_within.empty()) legend.push_back({kRegionLine.color, "region"});
   return legend;
 }

@@ -1,10 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/update_report.hpp"
+#include "saccade/report/update_pictures.hpp"
 
 #include <algorithm>
 
 #include "saccade/report/internal/canvas.hpp"
-#include "saccade/report/plot.hpp"
 #include "saccade/report/view_picture.hpp"
 
 namespace saccade {
@@ -12,7 +11,7 @@ namespace {
 
 constexpr Rgb8 kRegionColor{214, 92, 22};  // that of their outlines
 
-/// The same for both pictures of a task.
+/// Returns the viewpoint that both pictures of a task share.
 Viewpoint viewpoint_of(const TaskScene& task, const TaskPictureConfig& config) {
   std::vector<Eigen::Vector3d> shown = corners_of(task.workspace);
   const auto show = [&](const std::vector<Eigen::Vector3d>& points) {
@@ -55,27 +54,6 @@ ColorImage forgotten_picture(const TsdfSnapshot& map, const TaskScene& task, con
     canvas.label(top, std::to_string(i + 1), kRegionColor, 15.0);
   }
   return canvas.finish();
-}
-
-std::string unknown_plot(std::span<const RegionUnknown> regions, const std::string& title) {
-  Plot plot;
-  plot.title = title;
-  plot.x_label = "views; 0: after the user's task";
-  plot.y_label = "unknown voxels";
-  plot.min_x_step = 1.0;
-  double highest = 1.0;
-  for (const RegionUnknown& region : regions) {
-    PlotSeries& curve = plot.series.emplace_back();
-    curve.name = region.name;
-    for (std::size_t i = 0; i < region.unknown.size(); ++i) {
-      curve.x.push_back(static_cast<double>(i));
-      curve.y.push_back(static_cast<double>(region.unknown[i]));
-      highest = std::max(highest, curve.y.back());
-    }
-  }
-  if (plot.series.empty()) return {};
-  plot.y_range = {0.0, 1.05 * highest};
-  return plot_svg(plot);
 }
 
 }  // namespace saccade

@@ -8,6 +8,7 @@
 #include <vector>
 
 #include "saccade/report/internal/canvas.hpp"
+#include "saccade/report/internal/orientation_marks.hpp"
 #include "saccade/report/sheet.hpp"
 
 namespace saccade {
@@ -85,6 +86,7 @@ ColorImage view_picture(const TsdfSnapshot& map, const Region& region, std::span
     bar = round_bar(best->gain, "gain [" + config.gain_unit + "], best of all rolls at each position");
   }
   draw_views(canvas, ranked, centers, scene, bar ? bar->high : 1.0, config);
+  draw_orientation(canvas, 0.5 * (around.min + around.max));
   std::vector<LegendEntry> legend = ternary_legend(ternary);
   legend.push_back({kBestColor, "best views, with rank"});
   legend.push_back({kNoGain, "views without gain"});

@@ -27,7 +27,8 @@ struct TernaryPictureConfig {
 };
 
 /// Draws the first voxel along each ray that is not empty (eq. 2.11): occupied in the fused colour (grey without one),
-/// shaded by the gradient of the TSDF; unknown nearly black, its faces told apart; empty to the end of the map:
+/// shaded by the gradient of the TSDF; unknown as a dark veil through which the surface behind it shows, its faces told
+/// apart; empty to the end of the map:
 /// background. Unknown voxels are drawn inside the workspace, without one up to a voxel beyond known_bounds(). Exact
 /// traversal, the same picture for every thread count. The canvas can be drawn on further.
 [[nodiscard]] Canvas draw_ternary(const TsdfSnapshot& map, const Viewpoint& view, const Executor& executor,
@@ -40,7 +41,7 @@ struct TernaryPictureConfig {
 /// The picture with a title and what its colours mean.
 [[nodiscard]] ColorImage ternary_figure(const TsdfSnapshot& map, const Viewpoint& view, const Executor& executor,
                                         const std::string& title, const TernaryPictureConfig& config = {});
-/// What the colours mean.
+/// Meaning of the colours.
 [[nodiscard]] std::vector<LegendEntry> ternary_legend(const TernaryPictureConfig& config = {});
 
 /// A view pose and its gain.

@@ -27,6 +27,12 @@ Fit fit(std::span<const Eigen::Vector3d> points, int axis, double tangent) {
 
 }  // namespace
 
+double azimuth_towards(const Eigen::Vector3d& towards_viewer, const Eigen::Vector3d& up) {
+  const Eigen::Quaterniond world_up = Eigen::Quaterniond::FromTwoVectors(Eigen::Vector3d::UnitZ(), up);
+  const Eigen::Vector3d level = world_up.inverse() * towards_viewer;
+  return level.head<2>().norm() > 1e-6 ? std::atan2(level.y(), level.x()) : OverviewConfig{}.azimuth_rad;
+}
+
 Viewpoint overview_of(std::span<const Eigen::Vector3d> points_world, const OverviewConfig& config) {
   SACCADE_EXPECTS(config.width > 0 && config.height > 0 && !points_world.empty());
   Viewpoint view;
@@ -47,7 +53,7 @@ Viewpoint overview_of(std::span<const Eigen::Vector3d> points_world, const Overv
   const Eigen::Matrix3d R = view.T_world_camera.linear();
   std::vector<Eigen::Vector3d> turned;
   for (const Eigen::Vector3d& p_world : points_world) turned.emplace_back(R.transpose() * p_world);
-  constexpr double kMargin{0.93};  // of the picture's half width
+  constexpr double kMargin{0.93};  // share of the picture's half width
   const Fit x = fit(turned, 0, kMargin * config.width / 2.0 / camera.fx);
   const Fit y = fit(turned, 1, kMargin * config.height / 2.0 / camera.fy);
   constexpr double kNearest{0.05};

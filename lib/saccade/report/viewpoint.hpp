@@ -21,16 +21,19 @@ struct Viewpoint {
 struct OverviewConfig {
   int width{960};
   int height{720};
-  double azimuth_rad{-2.2};       ///< of the camera as seen from the scene, from world +x towards +y
+  double azimuth_rad{-2.2};       ///< direction of the camera from the scene, from world +x towards +y
   double elevation_rad{0.55};     ///< above the horizontal plane
   double field_of_view_rad{0.7};  ///< across the smaller side of the picture
   Eigen::Vector3d up{Eigen::Vector3d::UnitZ()};
 };
 
+/// The azimuth of an overview whose camera stands on the side of this direction.
+[[nodiscard]] double azimuth_towards(const Eigen::Vector3d& towards_viewer, const Eigen::Vector3d& up);
+
 /// The nearest viewpoint in the given direction from which all points (at least one) are in the picture.
 [[nodiscard]] Viewpoint overview_of(std::span<const Eigen::Vector3d> points_world, const OverviewConfig& config = {});
 [[nodiscard]] std::vector<Eigen::Vector3d> corners_of(const Box& box);
-/// The same for a whole box.
+/// As overview_of above, for a whole box.
 [[nodiscard]] Viewpoint overview_of(const Box& box, const OverviewConfig& config = {});
 
 }  // namespace saccade

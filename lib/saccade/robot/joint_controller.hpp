@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// JointController: moves the joints of an arm along timed positions; SimulatedJoints does so exactly, in no time.
+// JointController: moves the joints of an arm along timed positions. SimulatedJoints does so exactly and instantly.
 
 #include <functional>
 #include <optional>
@@ -10,35 +10,35 @@
 
 namespace saccade {
 
-/// Joint positions on the way.
+/// Joint positions during a motion.
 struct JointSample {
   double t_s{0.0};  ///< since the motion began
   Configuration q;
-  std::optional<double> time_s{};  ///< on the clock of the joints, where they have one
+  std::optional<double> time_s{};  ///< on the joints' clock, where they have one
 };
 using JointObserver = std::function<Advance(const JointSample& sample)>;
 
-/// The end of a motion of joints.
+/// End of a motion of joints.
 struct JointArrival {
-  Configuration q;      ///< as they stand
-  bool stopped{false};  ///< on the way, because the observer said so or the caller cancelled
+  Configuration q;      ///< final positions
+  bool stopped{false};  ///< early, because the observer or the caller asked for it
 };
 
-/// One caller at a time.
+/// Controller of an arm's joints. One caller at a time.
 class JointController {
  public:
   virtual ~JointController() = default;
-  /// @return the joints as they stand.
+  /// Returns the current joint positions.
   [[nodiscard]] virtual Result<Configuration> position() = 0;
-  /// Follows a trajectory that begins where the joints stand; `observer` is called at samples on the way, and may stop
-  /// the motion.
-  /// @return the joints as they stand at the end. An Error means that this is not known.
+  /// Follows a trajectory that begins at the current positions. Calls `observer` at samples during the motion; it may
+  /// stop the motion.
+  /// @return the final joint positions. After an Error these are unknown.
   [[nodiscard]] virtual Result<JointArrival> execute(const Trajectory& trajectory,
                                                      const JointObserver& observer = {}) = 0;
 };
 
-/// Stands at the end of the last trajectory at once, or at the sample at which it was stopped. Samples every kSample_s
-/// of the trajectory's time, and at its end.
+/// Simulated joints that jump to the end of a trajectory, or to the sample at which it was stopped. Samples lie every
+/// kSample_s of the trajectory's time, and at its end.
 class SimulatedJoints final : public JointController {
  public:
   static constexpr double kSample_s{0.02};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Refusal: why a robot does not bring the camera to a pose; RefusalCounts: how often.
+// Refusal: why a robot cannot bring the camera to a pose. RefusalCounts: how often, by reason.
 
 #include <array>
 #include <cstddef>
@@ -16,12 +16,12 @@
 namespace saccade {
 
 enum class Refusal : std::uint8_t {
-  no_ik,               ///< no configuration of the arm has the camera there
-  outside_limits,      ///< some have, each with a joint outside its limits
-  goal_in_collision,   ///< some are within the limits, each touches something
-  start_in_collision,  ///< the arm touches something where it stands
-  no_path,             ///< none was found from where the arm stands
-  declined,            ///< the robot itself said no
+  no_ik,               ///< no configuration of the arm puts the camera there
+  outside_limits,      ///< each such configuration has a joint outside its limits
+  goal_in_collision,   ///< each configuration within the limits is in collision
+  start_in_collision,  ///< the arm is in collision where it stands
+  no_path,             ///< no path was found from the arm's position
+  declined,            ///< the robot itself declined
 };
 inline constexpr auto kRefusalNames = make_names<Refusal>({{Refusal::no_ik, "no_ik"},
                                                            {Refusal::outside_limits, "outside_limits"},
@@ -29,7 +29,7 @@ inline constexpr auto kRefusalNames = make_names<Refusal>({{Refusal::no_ik, "no_
                                                            {Refusal::start_in_collision, "start_in_collision"},
                                                            {Refusal::no_path, "no_path"},
                                                            {Refusal::declined, "declined"}});
-/// For people, behind a number of poses.
+/// Texts for people, to follow a number of poses.
 inline constexpr auto kRefusalTexts = make_names<Refusal>({{Refusal::no_ik, "out of reach"},
                                                            {Refusal::outside_limits, "beyond a joint's limits"},
                                                            {Refusal::goal_in_collision, "in collision there"},
@@ -38,11 +38,11 @@ inline constexpr auto kRefusalTexts = make_names<Refusal>({{Refusal::no_ik, "out
                                                            {Refusal::declined, "declined by the robot"}});
 [[nodiscard]] constexpr std::string_view to_string(Refusal refusal) { return kRefusalNames.of(refusal); }
 
-/// Per reason.
+/// Number of refusals per reason.
 class RefusalCounts {
  public:
   void add(Refusal refusal, std::size_t times = 1) { counts_[static_cast<std::size_t>(refusal)] += times; }
-  /// Those that have one.
+  /// Counts the poses that were refused.
   void add(std::span<const std::optional<Refusal>> refusals) {
     for (const std::optional<Refusal>& refusal : refusals) {
       if (refusal) add(*refusal);
@@ -59,7 +59,7 @@ class RefusalCounts {
   std::array<std::size_t, kRefusalNames.values.size()> counts_{};
 };
 
-/// Returns "2 out of reach, 1 without a path", in the order of the enumeration; empty where nothing was refused.
+/// Returns "2 out of reach, 1 without a path", in the order of the enumeration; empty without refusals.
 [[nodiscard]] std::string in_words(const RefusalCounts& refused);
 
 }  // namespace saccade

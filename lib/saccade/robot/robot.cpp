@@ -5,7 +5,7 @@ namespace saccade {
 
 Status Robot::follow(const TsdfSnapshot& /*map*/, const Executor& /*executor*/) { return {}; }
 
-Result<std::vector<Box>> Robot::swept_by(std::span<const Pose> /*T_world_camera*/) { return std::vector<Box>{}; }
+Result<std::vector<Box>> Robot::swept_volume(std::span<const Pose> /*T_world_camera*/) { return std::vector<Box>{}; }
 
 std::vector<std::optional<Refusal>> Robot::test(std::span<const Pose> T_world_camera,
                                                 const Executor& /*executor*/) const {
@@ -14,7 +14,7 @@ std::vector<std::optional<Refusal>> Robot::test(std::span<const Pose> T_world_ca
 
 Result<OwnBody> Robot::own_body(const PinholeCamera& /*sensor*/) const { return OwnBody{}; }
 
-std::vector<CameraSample> Robot::camera_on_way(const Motion& /*motion*/, double /*every_s*/) const { return {}; }
+std::vector<MotionSample> Robot::camera_on_way(const Motion& /*motion*/, double /*every_s*/) const { return {}; }
 
 bool Robot::still_free(const Motion& /*motion*/, double /*t_s*/) const { return true; }
 
@@ -22,7 +22,7 @@ Result<PlannedMotion> Robot::plan_to_stand_by() {
   return PlannedMotion{std::nullopt, Refusal::declined, "the robot has no stand-by"};
 }
 
-Result<std::optional<Pose>> Robot::move_to(const Pose& T_world_camera, Way way) {
+Result<std::optional<Pose>> Robot::move_to(const Pose& T_world_camera, MotionKind way) {
   SACCADE_TRY(const PlannedMotion planned, plan(std::span{&T_world_camera, 1}, way));
   if (!planned.motion) return std::optional<Pose>{};
   SACCADE_TRY(const std::optional<Arrival> arrival, execute(*planned.motion));
@@ -41,7 +41,7 @@ std::vector<std::optional<Refusal>> FreeRobot::test(std::span<const Pose> T_worl
   return refusals;
 }
 
-Result<PlannedMotion> FreeRobot::plan(std::span<const Pose> T_world_camera, Way /*way*/) {
+Result<PlannedMotion> FreeRobot::plan(std::span<const Pose> T_world_camera, MotionKind /*way*/) {
   SACCADE_EXPECTS(!T_world_camera.empty());
   for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
     if (may_be_at(T_world_camera[i])) return PlannedMotion{Motion{i, T_world_camera[i], {}}, std::nullopt, ""};
@@ -49,7 +49,7 @@ Result<PlannedMotion> FreeRobot::plan(std::span<const Pose> T_world_camera, Way 
   return PlannedMotion{std::nullopt, Refusal::goal_in_collision, "the camera may not be there"};
 }
 
-Result<std::optional<Arrival>> FreeRobot::execute(const Motion& motion, const OnWay& on_way) {
+Result<std::optional<Arrival>> FreeRobot::execute(const Motion& motion, const MotionObserver& on_way) {
   T_world_camera_ = motion.T_world_camera;
   if (on_way) on_way({0.0, T_world_camera_});
   return std::optional{Arrival{T_world_camera_, 0.0}};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Robot: what moves the camera; FreeRobot: a camera that flies.
+// Robot: moves the camera. FreeRobot: a camera that flies.
 
 #include <functional>
 #include <optional>
@@ -20,98 +20,102 @@
 
 namespace saccade {
 
-/// A motion that a robot has found for itself and has not made yet.
+/// Motion that a robot has planned and not yet executed.
 struct Motion {
-  std::size_t goal{0};                    ///< which of the poses that were asked for
+  std::size_t goal{0};                    ///< index of the requested pose that it reaches
   Pose T_world_camera{Pose::Identity()};  ///< that pose
-  Trajectory trajectory;                  ///< of an arm; empty for robots that find their own way
-  double retreat_s{0.0};                  ///< its beginning, in which an arm backs out of a contact
+  Trajectory trajectory;                  ///< the arm's motion; empty for robots that plan their own paths
+  double retreat_s{0.0};                  ///< duration of the initial retreat, in which an arm backs out of a contact
 };
 
-/// A motion, or why there is none.
+/// A motion, or the reason why there is none.
 struct PlannedMotion {
   std::optional<Motion> motion;
   std::optional<Refusal> refusal;
-  std::string why;  ///< of a refusal, for people; may be empty
+  std::string why;  ///< explanation of the refusal for people; may be empty
 };
 
-/// The end of a motion.
+/// End of a motion.
 struct Arrival {
-  Pose T_world_camera{Pose::Identity()};  ///< where the camera is, which an arm knows better than the one who asked
-  double motion_s{0.0};                   ///< what the way takes a real arm; 0 where that is not known
-  bool stopped{false};                    ///< on the way, because the observer said so or the caller cancelled
+  Pose T_world_camera{Pose::Identity()};  ///< final camera pose, as the robot measures it
+  double motion_s{0.0};                   ///< duration on a real arm; 0 where unknown
+  bool stopped{false};                    ///< early, because the observer or the caller asked for it
 };
 
-/// Where the camera is on its way.
-struct CameraSample {
+/// Camera pose during a motion.
+struct MotionSample {
   double t_s{0.0};  ///< since the motion began
   Pose T_world_camera{Pose::Identity()};
-  std::optional<double> time_s{};  ///< on the clock of the robot, where it has one
+  std::optional<double> time_s{};  ///< on the robot's clock, where it has one
 };
-using OnWay = std::function<Advance(const CameraSample& sample)>;
+using MotionObserver = std::function<Advance(const MotionSample& sample)>;
 
-enum class Way : std::uint8_t {
-  any,
-  straight,  ///< in joint space; for small corrections, where a detour would be absurd
+enum class MotionKind : std::uint8_t {
+  planned,
+  direct,  ///< in joint space; for small corrections, where a detour would be absurd
 };
 
-/// Carries the camera. One caller at a time.
+/// Robot that carries the camera. One caller at a time.
 class Robot {
  public:
   virtual ~Robot() = default;
 
-  /// How an arm stands; nullopt for what is no arm, or does not say.
+  /// Returns the arm's configuration; nullopt for robots that are not arms or do not report it.
   [[nodiscard]] virtual std::optional<Configuration> configuration() const { return std::nullopt; }
 
-  /// What the robot must not touch follows the map. Errors: those of the robot's own planner map.
+  /// Updates the robot's obstacles from the map. Errors: those of the robot's own planner map.
   [[nodiscard]] virtual Status follow(const TsdfSnapshot& map, const Executor& executor);
 
-  /// Space of an unknown map that must be free for the robot to stand where it does and to go through the poses one
-  /// after the other, those that it can reach: what the one who starts it there vouches for. Boxes without order.
-  [[nodiscard]] virtual Result<std::vector<Box>> swept_by(std::span<const Pose> T_world_camera);
+  /// Returns the volume that the robot occupies and sweeps on its way through the poses, one after the other, as far as
+  /// it can reach them. In an unknown map the caller guarantees that this volume is free. Boxes in no particular order.
+  [[nodiscard]] virtual Result<std::vector<Box>> swept_volume(std::span<const Pose> T_world_camera);
 
-  /// For each pose why it cannot be taken, as far as that can be told without looking for a path; nullopt: it may be.
+  /// Returns for each pose why it cannot be taken, without planning a path; nullopt where it may be reachable.
   [[nodiscard]] virtual std::vector<std::optional<Refusal>> test(std::span<const Pose> T_world_camera,
                                                                  const Executor& executor) const;
 
-  /// The robot's own body in the picture of a sensor that it holds, as it would stand at a pose; empty where it has
-  /// none, or does not know it. The robot outlives what is returned, which holds until it moves or follows a map. An
-  /// Error: the sensor would see nothing else.
+  /// Returns a function that renders the robot's own body in the image of a sensor that it holds, as it would stand at
+  /// a pose. The function is empty where the robot has no body or does not know it. The robot must outlive it; it is
+  /// valid until the robot moves or follows a map. Answers an Error when the sensor would see nothing but the robot.
   [[nodiscard]] virtual Result<OwnBody> own_body(const PinholeCamera& sensor) const;
 
-  /// A motion to one of the poses, which are equally good to the caller; nothing moves. Expects one pose at least. An
-  /// Error means that the robot itself failed.
-  [[nodiscard]] virtual Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) = 0;
+  /// Plans a motion to one of the poses, which are equally good to the caller. Nothing moves. Expects at least one
+  /// pose. An Error means that the robot itself failed.
+  [[nodiscard]] virtual Result<PlannedMotion> plan(std::span<const Pose> T_world_camera,
+                                                   MotionKind way = MotionKind::planned) = 0;
 
-  /// Where the camera will be on its way, at multiples of `every_s`, the end left out; empty for robots that do not
-  /// know. Expects every_s > 0.
-  [[nodiscard]] virtual std::vector<CameraSample> camera_on_way(const Motion& motion, double every_s) const;
+  /// Returns the camera's poses during a motion, at multiples of `every_s` without the end; empty where unknown.
+  /// Expects every_s > 0.
+  [[nodiscard]] virtual std::vector<MotionSample> camera_on_way(const Motion& motion, double every_s) const;
 
-  /// Whether the rest of a motion under way, from `t_s` on, touches nothing of the map that was followed last. true for
-  /// robots that do not know.
+  /// Tells whether the rest of a running motion, from `t_s` on, is free of collision in the last map followed. true
+  /// where unknown.
   [[nodiscard]] virtual bool still_free(const Motion& motion, double t_s) const;
 
-  /// A motion back to where the robot stood in the beginning; a refusal where it does not know the way, or the place.
+  /// Plans a motion back to the stand-by pose; a refusal where the robot knows no path to it, or no such pose.
   [[nodiscard]] virtual Result<PlannedMotion> plan_to_stand_by();
 
-  /// Makes the motion that was planned last. `on_way` is called at samples of the camera's path, for robots that know
-  /// it, and may stop the motion; configuration() is then that of the sample.
-  /// @return nullopt when the robot declines after all, and has not moved. An Error means that its pose is not known.
-  [[nodiscard]] virtual Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way = {}) = 0;
+  /// Executes the last planned motion. Robots that know the camera's path call `on_way` at samples of it, which may
+  /// stop the motion; configuration() is then that of the sample.
+  /// @return nullopt when the robot declines after all, and has not moved. After an Error its pose is unknown.
+  [[nodiscard]] virtual Result<std::optional<Arrival>> execute(const Motion& motion,
+                                                               const MotionObserver& on_way = {}) = 0;
 
-  /// Both: where the camera is then, nullopt when it cannot be there.
-  [[nodiscard]] Result<std::optional<Pose>> move_to(const Pose& T_world_camera, Way way = Way::any);
+  /// Plans and executes: returns the final camera pose, or nullopt when the camera cannot get there.
+  [[nodiscard]] Result<std::optional<Pose>> move_to(const Pose& T_world_camera, MotionKind way = MotionKind::planned);
 };
 
-/// Reaches every pose, at once, but for those where the camera may not be.
+/// Robot that reaches every pose at once, except where the camera may not be.
 class FreeRobot final : public Robot {
  public:
-  /// `allowed` says where the camera's centre may be; empty: anywhere.
+  /// Creates the robot. `allowed` tells where the camera's centre may be; empty means anywhere.
   explicit FreeRobot(std::function<bool(const Eigen::Vector3d& p_world)> allowed = {}) : allowed_{std::move(allowed)} {}
   [[nodiscard]] std::vector<std::optional<Refusal>> test(std::span<const Pose> T_world_camera,
                                                          const Executor& executor) const override;
-  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way = Way::any) override;
-  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way = {}) override;
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera,
+                                           MotionKind way = MotionKind::planned) override;
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion,
+                                                       const MotionObserver& on_way = {}) override;
   [[nodiscard]] const Pose& T_world_camera() const { return T_world_camera_; }
 
  private:

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Configuration: where the joints of an arm are; Trajectory: where they are at which time.
+// Configuration: joint positions of an arm. Trajectory: joint positions over time.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -8,22 +8,22 @@
 
 namespace saccade {
 
-/// Joints that an arm has at most. Arms have six or seven, a rail or a torso under them adds one or two; with a bound,
-/// configurations and Jacobians need no heap.
+/// Largest number of joints of an arm. Arms have six or seven joints; a rail or a torso adds one or two. The bound
+/// keeps configurations and Jacobians off the heap.
 constexpr int kMaxJoints{12};
 
-/// One value per joint, base first: radians, for prismatic joints metres. Eigen's dynamic vector in its own storage:
-/// copying one, or a vector of them, allocates nothing per element.
+/// One value per joint, base first: radians, or metres for prismatic joints. An Eigen vector with its own storage, so
+/// that copies allocate nothing.
 using Configuration = Eigen::Matrix<double, Eigen::Dynamic, 1, 0, kMaxJoints, 1>;
 
-/// Straight lines between configurations, the first being the start. Empty, or one configuration: no motion.
+/// Straight lines between configurations, beginning with the start. Empty, or a single configuration: no motion.
 using JointPath = std::vector<Configuration>;
 
-/// What an observer of a motion says at each sample.
+/// Answer of a motion's observer to each sample.
 enum class Advance : std::uint8_t { go_on, stop };
 
-/// A motion with constant accelerations on each of its pieces: continuous in position and speed, at rest in the
-/// beginning and at the end.
+/// Motion in pieces of constant acceleration: continuous in position and speed, at rest in the beginning and at the
+/// end.
 class Trajectory {
  public:
   struct Piece {
@@ -43,14 +43,15 @@ class Trajectory {
   [[nodiscard]] const std::vector<Piece>& pieces() const { return pieces_; }
   [[nodiscard]] bool empty() const { return pieces_.empty(); }
   [[nodiscard]] double duration_s() const { return begins_s_.empty() ? 0.0 : begins_s_.back(); }
-  /// Before the beginning and after the end the arm stands still. Expects a trajectory that is not empty. O(log pieces)
+  /// Returns the state at a time; at rest before the beginning and after the end. Expects a trajectory that is not
+  /// empty. O(log pieces)
   [[nodiscard]] State at(double t_s) const;
-  /// The last configuration.
+  /// Returns the last configuration.
   [[nodiscard]] Configuration end() const { return at(duration_s()).q; }
 
  private:
   std::vector<Piece> pieces_;
-  std::vector<double> begins_s_;  ///< of each piece, and the end
+  std::vector<double> begins_s_;  ///< beginning of each piece, then the end
 };
 
 }  // namespace saccade

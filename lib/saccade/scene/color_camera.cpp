@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::size_t kRowsAtOnce{8};
 
-/// Counter-based generator, as that of the depth noise.
+/// Counter-based generator, as for the depth noise.
 std::uint64_t scrambled(std::uint64_t x) {
   x += 0x9E3779B97F4A7C15ULL;
   x = (x ^ (x >> 30U)) * 0xBF58476D1CE4E5B9ULL;
@@ -18,7 +18,8 @@ std::uint64_t scrambled(std::uint64_t x) {
   return x ^ (x >> 31U);
 }
 
-/// Mean 0 and variance 1 from four uniform numbers of 16 bits; cut off at 3.5 by its nature.
+/// Returns a number with mean 0 and variance 1 from four uniform numbers of 16 bits; its absolute value stays below
+/// 3.5.
 double nearly_normal(std::uint64_t key) {
   const std::uint64_t bits = scrambled(key);
   double sum = 0.0;
@@ -26,7 +27,7 @@ double nearly_normal(std::uint64_t key) {
   return (sum / 65536.0 - 2.0) * 1.7320508075688772;  // √(12/4)
 }
 
-/// The nearest of the 256 codes to a linear value within 0 and 1, found from where its neighbourhood begins.
+/// Look-up of the nearest of the 256 codes for a linear value within 0 and 1, by the start of its neighbourhood.
 class SrgbCodes {
  public:
   SrgbCodes() {
@@ -110,7 +111,7 @@ ColorImage expose(const LightImage& light, const PinholeCamera& camera, const Co
         const double sigma = std::sqrt(value * config.electrons_at_white + read_variance) / config.electrons_at_white;
         value += sigma * nearly_normal(frame_key + 3U * index + k);
       }
-      value = std::clamp(value * gain, 0.0, 1.0);  // the sensor saturates before anything is corrected
+      value = std::clamp(value * gain, 0.0, 1.0);  // the sensor saturates before any correction
       if (config.vignetting == Vignetting::corrected) value = std::min(1.0, value / share);
       image(u, v)[k] = codes.of(value);
     }

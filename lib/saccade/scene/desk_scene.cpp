@@ -12,7 +12,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using Face = Patch::Face;
 
-constexpr double kWall_m{0.42};  // y of its front
+constexpr double kWall_m{0.42};  // y of the wall's front
 constexpr Rgb8 kDeskPaper{234, 232, 226};
 constexpr Rgb8 kDeskInk{48, 48, 52};
 constexpr std::array<Rgb8, 10> kCovers{{{128, 46, 44},
@@ -236,7 +236,7 @@ SurfelScene desk_scene(std::string_view name, std::size_t frames, std::uint64_t 
   made.path.azimuth_to_rad = -0.5 * std::numbers::pi + 0.7;
   made.path.elevation_from_rad = 0.25;
   made.path.elevation_to_rad = 0.95;
-  made.path.distance_from_m = 1.05;  // so that what stands in front is not too near for an Xtion
+  made.path.distance_from_m = 1.05;  // keeps objects in front from being too near for an Xtion
   made.path.distance_to_m = 1.55;
   return made;
 }

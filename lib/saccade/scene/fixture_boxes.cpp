@@ -13,7 +13,7 @@ Box around(const TriangleMesh& mesh) {
     box.min = box.min.cwiseMin(p.cast<double>());
     box.max = box.max.cwiseMax(p.cast<double>());
   }
-  // Vertices are floats: whole micrometres give the numbers of the scene back.
+  // Vertices are floats; rounding to micrometres restores the numbers of the scene.
   const auto rounded = [](const Eigen::Vector3d& p) { return Eigen::Vector3d{(p.array() * 1e6).round() / 1e6}; };
   box = {rounded(box.min), rounded(box.max)};
   const Eigen::Vector3d lacking = (kLeast_m - (box.max - box.min).array()).max(0.0).matrix();

@@ -16,7 +16,7 @@ constexpr double kPageHeight_m{0.28};
 constexpr Rgb8 kPrintInk{46, 46, 50};
 constexpr Rgb8 kPrintWhite{240, 239, 235};
 
-/// Muted, as printed colours are; some are close to each other.
+/// Muted colours, as in print; some are similar.
 constexpr std::array<Rgb8, 12> kPrints{{{172, 48, 44},
                                         {52, 84, 132},
                                         {66, 108, 78},
@@ -34,7 +34,7 @@ constexpr std::array<Rgb8, 5> kPapers{
 constexpr std::array<std::string_view, 10> kTitles{"NEXT", "GARDEN", "MOTOR", "SKY",   "HOUSE",
                                                    "COOK", "SPORT",  "RADIO", "TREND", "ALPS"};
 
-/// Earth below, sky above, something round in it.
+/// Paints earth below, sky above, and something round.
 void landscape(SceneMaker& maker, Painter& page, const Vector2d& center, const Vector2d& size) {
   constexpr std::array<Rgb8, 3> kSkies{{{150, 182, 206}, {196, 206, 210}, {222, 172, 128}}};
   constexpr std::array<Rgb8, 3> kGrounds{{{104, 122, 76}, {182, 160, 118}, {84, 104, 112}}};
@@ -89,7 +89,7 @@ double letter_height_m(std::string_view title) {
   return std::min(0.046, 0.18 / (6.2 / 7.0 * static_cast<double>(title.size())));
 }
 
-/// A masthead over a picture that fills the page, lines beside it.
+/// Paints a cover: a masthead over a picture that fills the page, with lines beside it.
 void cover(SceneMaker& maker, Painter& page, std::size_t motif, std::string_view title) {
   picture(maker, page, motif, {0.0, -0.035}, {0.2, 0.2});
   const Rgb8 band = maker.one_of(kPrints);
@@ -99,7 +99,7 @@ void cover(SceneMaker& maker, Painter& page, std::size_t motif, std::string_view
   page.print({0.075, -0.118}, {0.03, 0.018}, kPrintInk, 0.006);
 }
 
-/// A heading, a picture, columns of print, and a box.
+/// Paints an article: a heading, a picture, columns of print, and a box.
 void article(SceneMaker& maker, Painter& page, std::size_t motif, std::string_view title) {
   page.text("heading", title, {0, 0.115}, 0.75 * letter_height_m(title), maker.one_of(kPrints));
   page.rectangle("rule", {0, 0.088}, {0.18, 0.005}, kPrintInk);
@@ -112,7 +112,7 @@ void article(SceneMaker& maker, Painter& page, std::size_t motif, std::string_vi
   page.print({0.052, -0.095}, {0.07, 0.05}, kPrintInk);
 }
 
-/// A coloured page with one thing and a name.
+/// Paints an advertisement: a coloured page with one object and a name.
 void advertisement(SceneMaker& maker, Painter& page, std::string_view title) {
   const Rgb8 ground = maker.one_of(kPrints);
   page.rectangle("ground", {0, 0}, {0.2, 0.27}, ground);
@@ -153,7 +153,7 @@ SurfelScene magazine_scene(std::string_view name, int columns, int rows, std::si
                   maker.one_of(kPapers), turn_rad);
     Painter page{body, Patch::Face::plus_z};
     const std::string_view title = kTitles[(first + static_cast<std::size_t>(i)) % kTitles.size()];
-    // Covers and articles take turns: every fourth picture, they change motifs.
+    // Covers and articles alternate; after every fourth picture they swap motifs.
     const std::size_t motif = pictures + pictures / 4;
     pictures += i % 3 == 2 ? 0 : 1;
     switch (i % 3) {

@@ -13,13 +13,13 @@ using Eigen::Vector3d;
 
 struct MeshDistance::Impl {
   TriangleMesh mesh;
-  EmbreeDevice device;    // released after
-  EmbreeScene triangles;  // its triangles
+  EmbreeDevice device;    // released last
+  EmbreeScene triangles;  // scene of this device
 };
 
 namespace {
 
-/// What one search knows: Embree visits the triangles near the query's ball, which shrinks to the nearest one found.
+/// State of one search: Embree visits the triangles near the query's ball, which shrinks to the nearest one found.
 struct Search {
   const TriangleMesh& mesh;
   Vector3d p;
@@ -33,7 +33,7 @@ bool visit(RTCPointQueryFunctionArguments* arguments) {
   const double distance_m = (closest_point_on_triangle(search.p, corner(a), corner(b), corner(c)) - search.p).norm();
   if (distance_m >= search.nearest_m) return false;
   search.nearest_m = distance_m;
-  // Rounded up, and a little more: single precision must not lose a triangle that is nearer still.
+  // Rounded up with some margin: single precision must not miss a triangle that is nearer still.
   arguments->query->radius =
       std::nextafter(static_cast<float>(distance_m * (1.0 + 1e-5)), std::numeric_limits<float>::max());
   return true;

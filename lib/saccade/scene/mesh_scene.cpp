@@ -21,13 +21,14 @@ std::string extension_of(const fs::path& path) {
   return extension;
 }
 
-bool y_is_up(const fs::path& path, std::optional<UpAxis> up) {
-  if (up) return *up == UpAxis::y;
-  const std::string extension = extension_of(path);
-  return extension == ".glb" || extension == ".gltf";
+/// Returns the vertex in axes whose z points up.
+Eigen::Vector3f upright_vertex(const Eigen::Vector3f& vertex, char up) {
+  if (up == 'y') return {vertex.x(), -vertex.z(), vertex.y()};
+  if (up == 'x') return {-vertex.z(), vertex.y(), vertex.x()};
+  return vertex;
 }
 
-/// Whether an object of this size has its place on the table.
+/// Tells whether an object of this size fits on the table.
 bool fits(const Eigen::Vector3d& size_m) {
   return size_m.x() <= kMostMeshLength_m && size_m.y() <= kMostMeshWidth_m && size_m.z() <= kMostMeshHeight_m &&
          size_m.maxCoeff() >= kLeastMeshSize_m;
@@ -40,7 +41,7 @@ std::string size_text(const Eigen::Vector3d& size_m) {
   return text.str();
 }
 
-/// The unit that the file is likely to be in; empty: none would do.
+/// Returns a hint with the likely unit of the file; empty where none would fit.
 std::string scale_hint(const Eigen::Vector3d& size_units) {
   struct Unit {
     double scale;
@@ -69,11 +70,11 @@ Result<Scene> mesh_scene(const fs::path& path, const MeshSceneConfig& config) {
   SACCADE_CHECK(config.validate());
   SACCADE_TRY(TriangleMesh mesh, read_any_mesh(path));
   if (mesh.triangles.empty()) return Error{Errc::corrupt_data, "the file has no triangles", path.string()};
-  const bool turned = y_is_up(path, config.up);
+  const char up = config.up ? (*config.up == UpAxis::y ? 'y' : 'z') : stated_up_axis(path).value_or('z');
   bool finite{true};
   Eigen::AlignedBox3d bounds;
   for (Eigen::Vector3f& vertex : mesh.vertices) {
-    if (turned) vertex = Eigen::Vector3f{vertex.x(), -vertex.z(), vertex.y()};
+    vertex = upright_vertex(vertex, up);
     finite = finite && vertex.allFinite();
     bounds.extend(vertex.cast<double>());
   }
@@ -81,12 +82,13 @@ Result<Scene> mesh_scene(const fs::path& path, const MeshSceneConfig& config) {
   const Eigen::Vector3d size_m = config.scale * bounds.sizes();
   if (!fits(size_m)) {
     const std::string hint = scale_hint(bounds.sizes());
-    return Error{Errc::invalid_argument,
-                 "the object measures " + size_text(size_m) + "; on the table there is room for " +
-                     size_text({kMostMeshLength_m, kMostMeshWidth_m, kMostMeshHeight_m}) + ", and " +
-                     std::to_string(std::lround(100.0 * kLeastMeshSize_m)) + " cm are the least" +
-                     (hint.empty() ? "; scale it" : "; a scale of " + hint + " would do"),
-                 path.string()};
+    return Error{
+        Errc::invalid_argument,
+        "the object measures " + size_text(size_m) + "; on the table there is room for " +
+            size_text({kMostMeshLength_m, kMostMeshWidth_m, kMostMeshHeight_m}) + ", and " +
+            std::to_string(std::lround(100.0 * kLeastMeshSize_m)) + " cm are the least" +
+            (hint.empty() ? "; scale it" : "; a scale of " + hint + " would do: --mesh-scale of explore and compare"),
+        path.string()};
   }
   const Eigen::Vector3d foot{bounds.center().x(), bounds.center().y(), bounds.min().z()};
   for (Eigen::Vector3f& vertex : mesh.vertices) {

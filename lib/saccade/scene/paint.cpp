@@ -14,9 +14,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kFacing{0.7};  // of the cosine between a face's axis and the normals that count as looking along it
+constexpr double kFacing{0.7};  // smallest cosine between a face's axis and the normals that belong to it
 
-/// Seven rows of five cells, from the top; # is ink.
+/// Glyphs of seven rows of five cells, from the top; # is ink.
 constexpr std::string_view kLetters{"ABCDEFGHIJKLMNOPQRSTUVWXYZ0123456789"};
 constexpr std::array<std::string_view, 36> kCells{
     ".###. #...# #...# ##### #...# #...# #...#", "####. #...# #...# ####. #...# #...# ####.",
@@ -38,7 +38,7 @@ constexpr std::array<std::string_view, 36> kCells{
     "..##. .#... #.... ####. #...# #...# .###.", "##### ....# ...#. ...#. ..#.. ..#.. ..#..",
     ".###. #...# #...# .###. #...# #...# .###.", ".###. #...# #...# .#### ....# ...#. .##.."};
 
-/// One axis of the body's frame, one way or the other.
+/// Axis of the body's frame, in either direction.
 struct Axis {
   Eigen::Index index;
   double sign;
@@ -51,7 +51,7 @@ struct Axes {
   Axis out;
 };
 
-/// By Patch::Face.
+/// Axes by Patch::Face.
 constexpr std::array<Axes, 6> kAxes{{{{1, 1.0}, {2, 1.0}, {0, 1.0}},
                                      {{1, -1.0}, {2, 1.0}, {0, -1.0}},
                                      {{0, -1.0}, {2, 1.0}, {1, 1.0}},
@@ -66,7 +66,7 @@ bool glyph_has(char glyph, double x, double y) {
   return cells[6 * row + column] == '#';  // five cells and a blank
 }
 
-/// Words of one to eight steps in lines that fill two fifths of their pitch.
+/// Tells whether print has ink at a point: words of one to eight steps, in lines that fill two fifths of their pitch.
 bool print_has(const Patch& patch, const Vector2d& at_m) {
   const double lines = (0.5 * patch.size_m.y() - at_m.y()) / patch.line_m;
   if (lines - std::floor(lines) > 0.4) return false;
@@ -78,7 +78,7 @@ bool print_has(const Patch& patch, const Vector2d& at_m) {
   return key % 6U != 0;  // one step in six is a gap between words
 }
 
-/// Whether the patch covers the point; for print, whether the point lies in its rectangle.
+/// Tells whether the patch covers the point; for print, whether the point lies in its rectangle.
 bool covers(const Patch& patch, const Vector2d& at_m) {
   const Vector2d unit = at_m.cwiseQuotient(patch.size_m);
   if (unit.cwiseAbs().maxCoeff() > 0.5) return false;

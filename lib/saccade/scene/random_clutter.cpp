@@ -16,7 +16,7 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-/// A body, and the radius of the circle around its foot.
+/// Body, and the radius of the circle around its foot.
 struct Body {
   Shape shape;
   double reach_m{0.0};
@@ -69,7 +69,7 @@ Rgb8 draw_color(SeededRandom& random) {
 
 Scene random_clutter(std::uint64_t seed, int objects) {
   SACCADE_EXPECTS(objects >= 1 && objects <= 16);
-  const Vector2d kHalfTable_m{0.45, 0.28};  // where bodies stand, away from the edges
+  const Vector2d kHalfTable_m{0.45, 0.28};  // area for bodies, away from the edges
   constexpr double kGap_m{0.03};
   constexpr int kTries{200};
   SeededRandom random{seed};

@@ -18,22 +18,22 @@ using Eigen::Vector3d;
 struct RayScene::Impl {
   Scene scene;
   std::vector<ObjectMesh> meshes;
-  EmbreeDevice device;    // released after
-  EmbreeScene triangles;  // its triangles
+  EmbreeDevice device;    // released last
+  EmbreeScene triangles;  // scene of this device
 
   [[nodiscard]] Rgb8 color_at(const TriangleHit& hit, const Vector3d& p_world) const;
 };
 
 namespace {
 
-/// Towards the light; fixed, so that pictures of scenes compare.
+/// Returns the direction to the light, fixed so that pictures of scenes compare.
 const Vector3d& to_light_world() {
   static const Vector3d direction = Vector3d{0.3, -0.5, 0.8}.normalized();
   return direction;
 }
 constexpr double kAmbient{0.35};
 
-/// In double precision: the plane of the triangle, crossed by the ray.
+/// Intersects the ray with the triangle's plane in double precision.
 TriangleHit exact_hit(const TriangleMesh& mesh, std::size_t object, std::size_t triangle, const Vector3d& origin,
                       const Vector3d& direction) {
   const auto& [ia, ib, ic] = mesh.triangles[triangle];
@@ -87,7 +87,7 @@ Result<RayScene> RayScene::build(Scene scene) {
   if (!device) return embree_failed(nullptr);
   EmbreeScene triangles{rtcNewScene(device.get())};
   if (!triangles) return embree_failed(device.get());
-  rtcSetSceneFlags(triangles.get(), RTC_SCENE_FLAG_ROBUST);  // no ray slips between neighbouring triangles
+  rtcSetSceneFlags(triangles.get(), RTC_SCENE_FLAG_ROBUST);  // no ray passes between neighbouring triangles
   for (std::size_t i = 0; i < meshes.size(); ++i) {
     if (!attach_mesh(device.get(), triangles.get(), meshes[i].mesh, static_cast<unsigned>(i)))
       return embree_failed(device.get());

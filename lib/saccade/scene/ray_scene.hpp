@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RayScene: the triangles of a Scene, ready for rays; rendering of exact depth, colour and labels; scene_hash: tells
-// whether two scenes are the same to a depth camera.
+// RayScene: the triangles of a Scene, ready for ray casting; rendering of exact depth, colour and labels. scene_hash:
+// equal for scenes that a depth camera cannot tell apart.
 
 #include <memory>
 #include <optional>
@@ -13,11 +13,11 @@
 
 namespace saccade {
 
-/// Where a ray meets a surface first, from outside or inside.
+/// First intersection of a ray with a surface, from outside or inside.
 struct TriangleHit {
   double t{0.0};                                          ///< p = origin + t·direction
-  Eigen::Vector3d normal_world{Eigen::Vector3d::Zero()};  ///< of the triangle, outward, length 1
-  Eigen::Vector2d barycentric{Eigen::Vector2d::Zero()};   ///< weights of its second and third vertex
+  Eigen::Vector3d normal_world{Eigen::Vector3d::Zero()};  ///< outward normal of the triangle, length 1
+  Eigen::Vector2d barycentric{Eigen::Vector2d::Zero()};   ///< weights of the triangle's second and third vertex
   std::size_t object{0};
   std::size_t triangle{0};  ///< within the object's mesh
 };
@@ -26,25 +26,27 @@ struct ExactFrame {
   DepthImage depth;               ///< metres along z; 0 where nothing is hit within the camera's range
   ColorImage color;               ///< Lambert shaded; black where depth is 0
   Image<int> object;              ///< index into Scene::objects; −1 where depth is 0
-  Image<float> incidence_cosine;  ///< of the angle between ray and normal; 0 where depth is 0
+  Image<float> incidence_cosine;  ///< cosine of the angle between ray and normal; 0 where depth is 0
 };
 
-/// Immutable, cheap to copy, safe for concurrent use. Rays find their triangle with Embree in single precision, and the
-/// distance to it is then computed in double precision.
+/// Ray casting scene: immutable, cheap to copy, safe for concurrent use. Embree finds a ray's triangle in single
+/// precision; the distance to it is then computed in double precision.
 class RayScene {
  public:
-  /// Errors: those of Scene::validate, and unavailable when Embree does not start. O(triangles · log triangles).
+  /// Builds the scene. Errors: those of Scene::validate, and unavailable when Embree does not start. O(triangles · log
+  /// triangles).
   [[nodiscard]] static Result<RayScene> build(Scene scene);
 
   [[nodiscard]] const Scene& scene() const;
-  /// The triangles, one mesh per object in the scene's order.
+  /// Returns the triangles, one mesh per object in the scene's order.
   [[nodiscard]] const std::vector<ObjectMesh>& meshes() const;
 
-  /// The nearest hit with t > 0 of origin + t·direction. Expects finite numbers and a direction that is not zero.
+  /// Returns the nearest hit with t > 0 of origin + t·direction. Expects finite numbers and a direction that is not
+  /// zero.
   [[nodiscard]] std::optional<TriangleHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
 
-  /// What a perfect camera sees, pixel (u, v) along the ray through (u, v). Expects a valid camera and a finite pose.
-  /// O(pixels · log triangles), the same for every thread count.
+  /// Renders the view of a perfect camera, pixel (u, v) along the ray through (u, v). Expects a valid camera and a
+  /// finite pose. O(pixels · log triangles). The thread count never changes the result.
   [[nodiscard]] ExactFrame render(const PinholeCamera& camera, const Pose& T_world_camera,
                                   const Executor& executor = {}) const;
 
@@ -54,9 +56,9 @@ class RayScene {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// 16 hexadecimal digits from all that changes an exploration of the scene and its measurement: triangles, which
-/// objects are supports or fixtures, workspace, regions, and the poses of the initial scan. Names, colours and textures
-/// do not. A 64-bit FNV-1a hash: against mistakes, not against forgers. O(triangles).
+/// Returns 16 hexadecimal digits, a hash of everything that affects an exploration of the scene and its measurement:
+/// triangles, supports and fixtures, workspace, regions, and the poses of the initial scan. Names, colours and textures
+/// are excluded. A 64-bit FNV-1a hash: it detects mistakes, not forgeries. O(triangles).
 [[nodiscard]] std::string scene_hash(const RayScene& scene);
 
 }  // namespace saccade

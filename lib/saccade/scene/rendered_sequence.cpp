@@ -14,10 +14,10 @@ using Eigen::Vector3d;
 
 constexpr std::size_t kRowsPerChunk{8};
 constexpr int kRaysAcrossPixel{4};
-constexpr double kLampShare{0.45};  // of the light at the middle of the scene; the rest comes from everywhere
+constexpr double kLampShare{0.45};  // lamp's share of the light at the middle of the scene; the rest is ambient
 constexpr double kLampDistance_m{2.5};
 
-/// Mean 0, standard deviation 1, never beyond ±6: the sum of twelve uniform numbers.
+/// Returns a number with mean 0 and standard deviation 1, never beyond ±6: the sum of twelve uniform numbers.
 double bounded_normal(SeededRandom& random) {
   double sum = 0.0;
   for (int i = 0; i < 12; ++i) sum += random.unit();
@@ -82,7 +82,7 @@ Sample sample_at(const RayScene& scene, const std::vector<Pose>& T_object_world,
   return sample;
 }
 
-/// Whether the pixel's colour takes more rays than one.
+/// Tells whether the pixel's colour needs more than one ray.
 bool mixed(const Image<Sample>& centers, int u, int v) {
   const Sample& here = centers(u, v);
   if (here.fine) return true;
@@ -144,7 +144,7 @@ std::vector<Pose> with_noise(const std::vector<Pose>& T_world_camera, const Pose
     while (knots.size() < k + 2) knots.push_back(draw());
     const double s = place - static_cast<double>(k);
     const double w = s * s * (3.0 - 2.0 * s);
-    const double norm = std::hypot(1.0 - w, w);  // so that the variance is the same between the knots
+    const double norm = std::hypot(1.0 - w, w);  // keeps the variance constant between the knots
     const Vector3d m = ((1.0 - w) * knots[k].m + w * knots[k + 1].m) / norm + noise.jitter_m * bounded_normals(jitter);
     const Vector3d rad =
         ((1.0 - w) * knots[k].rad + w * knots[k + 1].rad) / norm + noise.jitter_rad * bounded_normals(jitter);
@@ -251,7 +251,7 @@ Result<std::optional<Frame>> RenderedSequence::next() {
   const Pose& T_world_camera = true_poses_[next_];
   const LightImage light = render_light(T_world_camera);
   const double mean = mean_light(light, config_.camera, config_.color);
-  // The first frame is exposed as after a while before the same view.
+  // The first frame is exposed as if the camera had seen this view for a while.
   if (next_ == 0 && config_.color.automatic_gain) {
     gain_ = std::clamp(config_.color.target_light / std::max(mean, 1e-6), 1.0 / config_.color.max_gain,
                        config_.color.max_gain);

@@ -6,6 +6,8 @@
 #include <cmath>
 #include <set>
 
+#include "saccade/core/length_limit.hpp"
+
 namespace saccade {
 namespace {
 
@@ -13,8 +15,6 @@ using Eigen::Vector3d;
 
 // Keeps patterns from flickering on faces that lie on their lattice.
 constexpr double kLatticeShift{0.37};
-// Beyond it, single precision is coarser than a tenth of a millimetre.
-constexpr float kFarthest_m{1000.0F};
 
 Error bad(const std::string& what, const std::string& where) { return Error{Errc::invalid_argument, what, where}; }
 
@@ -24,7 +24,7 @@ Status check_object(const SceneObject& object) {
   const std::string where = "object " + object.name;
   if (const Status shape = validate(object.shape); !shape.ok()) return bad(shape.error().message, where);
   if (!is_rigid(object.T_world_object)) {
-    return bad("its pose is no rigid motion", where);
+    return bad("its pose is not a rigid motion", where);
   }
   if (!(std::isfinite(object.texture.size_m) && object.texture.size_m > 0.0)) {
     return bad("the size of a texture must be positive", where);
@@ -63,8 +63,13 @@ bool dark(const Texture& texture, const Vector3d& p_object) {
   return (key >> 33U) % 3U == 0;
 }
 
+bool is_near(const Box& box) {
+  return std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff()) <= kMaxLength_m;
+}
+
 Status check_workspace(const Box& workspace, const std::string& where) {
   if (!workspace.min.allFinite() || !workspace.max.allFinite()) return bad("the workspace is not finite", where);
+  if (!is_near(workspace)) return bad("the workspace reaches farther than a kilometre from the origin", where);
   constexpr std::array<const char*, 3> kAxisNames{"x", "y", "z"};
   for (int axis = 0; axis < 3; ++axis) {
     if (workspace.min[axis] < workspace.max[axis]) continue;
@@ -89,11 +94,15 @@ Status Scene::validate() const {
   for (const Region& region : regions) {
     if (const Status good = saccade::validate(region); !good.ok())
       return bad(good.error().message, where + ", regions");
+    if (!is_near(bounds(region))) return bad("a region reaches farther than a kilometre from the origin", where);
     if (!boxes_meet(bounds(region), workspace)) return bad("a region lies outside the workspace", where);
   }
   for (const Pose& T_world_camera : scan) {
     if (!is_rigid(T_world_camera)) {
-      return bad("a pose of the initial scan is no rigid motion", where);
+      return bad("a pose of the initial scan is not a rigid motion", where);
+    }
+    if (T_world_camera.translation().cwiseAbs().maxCoeff() > kMaxLength_m) {
+      return bad("a pose of the initial scan is farther than a kilometre from the origin", where);
     }
   }
   if (!(std::isfinite(max_deviation_m) && max_deviation_m > 0.0)) return bad("the deviation must be positive", where);
@@ -108,7 +117,7 @@ Result<std::vector<ObjectMesh>> true_meshes(const Scene& scene) {
     SACCADE_TRY(TriangleMesh mesh, tessellate(object.shape, scene.max_deviation_m));
     for (Eigen::Vector3f& vertex : mesh.vertices)
       vertex = (object.T_world_object * vertex.cast<double>()).cast<float>();
-    const auto near = [](const Eigen::Vector3f& vertex) { return vertex.allFinite() && vertex.norm() <= kFarthest_m; };
+    const auto near = [](const Eigen::Vector3f& vertex) { return vertex.allFinite() && vertex.norm() <= kMaxLength_m; };
     if (!std::all_of(mesh.vertices.begin(), mesh.vertices.end(), near)) {
       return bad("it reaches farther than a kilometre from the origin", "object " + object.name);
     }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Scene: named objects with poses, colours and textures, and what an exploration of it is told; Shape: the bodies that
-// they are made of; what is painted on them; scenes drawn from a seed.
+// Scene: named objects with poses, colours and textures, and the settings of an exploration. Shape: the objects'
+// bodies. Patch: painted parts. random_clutter: scenes drawn from a seed.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -40,15 +40,15 @@ struct ConeShape {
   double height_m{0.0};
 };
 
-/// (|x/a|^(2/e₂) + |y/b|^(2/e₂))^(e₂/e₁) + |z/c|^(2/e₁) ≤ 1 (Barr 1981): exponents 1 and 1 make an ellipsoid, small
-/// ones a box with rounded edges, 2 and 2 an octahedron.
+/// Superquadric (|x/a|^(2/e₂) + |y/b|^(2/e₂))^(e₂/e₁) + |z/c|^(2/e₁) ≤ 1 (Barr 1981). Exponents 1 and 1 make an
+/// ellipsoid, small ones a box with rounded edges, 2 and 2 an octahedron.
 struct SuperquadricShape {
   Eigen::Vector3d semi_axes_m{Eigen::Vector3d::Zero()};
   double vertical_exponent{1.0};    ///< e₁, within 0.1 and 2
   double horizontal_exponent{1.0};  ///< e₂, within 0.1 and 2
 };
 
-/// Turns a profile of (radius, height) points, lowest first, around the z axis. With a wall, it is a vessel: open at
+/// Profile of (radius, height) points, lowest first, revolved around the z axis. With a wall, it is a vessel: open at
 /// the top, wall_m thick all around and at the bottom. Without, it is solid.
 struct RevolutionShape {
   std::vector<Eigen::Vector2d> profile_m;
@@ -60,11 +60,11 @@ struct JugShape {
   RevolutionShape body;
   double handle_bottom_m{0.0};
   double handle_top_m{0.0};
-  double handle_reach_m{0.0};  ///< how far the bar's axis stands off the body
+  double handle_reach_m{0.0};  ///< distance of the bar's axis from the body
   double handle_radius_m{0.0};
 };
 
-/// Triangles in the object's frame, as they are.
+/// Triangles in the object's frame, used unchanged.
 struct MeshShape {
   TriangleMesh mesh;
 };
@@ -72,17 +72,17 @@ struct MeshShape {
 using Shape = std::variant<BoxShape, CylinderShape, SphereShape, ConeShape, SuperquadricShape, RevolutionShape,
                            JugShape, MeshShape>;
 
-/// invalid_argument when a size is not finite, zero or negative, a profile does not rise or leaves no room for its
-/// wall, a handle does not sit within the wall, or a mesh has no triangles or names vertices that it does not have.
+/// Answers invalid_argument when a size is not finite, zero or negative, a profile does not rise or leaves no room for
+/// its wall, a handle does not sit within the wall, or a mesh has no triangles or invalid indices.
 [[nodiscard]] Status validate(const Shape& shape);
 
-/// A closed mesh, counter-clockwise seen from outside, without normals or colours; a jug is two closed parts, the bar's
-/// ends inside the wall. Circles and spheres stay within max_deviation_m of the true ones, superquadrics are at
-/// least as fine as such an ellipsoid. A MeshShape is returned as it is.
-/// Errors: those of validate, and a deviation that is not positive. O(triangles).
+/// Returns a closed mesh, counter-clockwise seen from outside, without normals or colours. A jug is two closed parts,
+/// with the bar's ends inside the wall. Circles and spheres stay within max_deviation_m of the true ones; superquadrics
+/// are at least as fine as such an ellipsoid. A MeshShape is returned unchanged. Errors: those of validate, and a
+/// deviation that is not positive. O(triangles).
 [[nodiscard]] Result<TriangleMesh> tessellate(const Shape& shape, double max_deviation_m = 1e-4);
 
-/// A pattern through the body, in its own frame, so that every face has some.
+/// Solid texture: a pattern through the body in its own frame, so that every face shows it.
 struct Texture {
   enum class Kind { plain, checker, stripes, speckle };
   Kind kind{Kind::plain};
@@ -94,11 +94,11 @@ inline constexpr auto kTextureNames = make_names<Texture::Kind>({{Texture::Kind:
                                                                  {Texture::Kind::stripes, "stripes"},
                                                                  {Texture::Kind::speckle, "speckle"}});
 
-/// Something painted on the faces of a body that look along one axis of its frame; it has no thickness. Later ones
-/// cover earlier ones. Seen from outside, the faces ±x and ±y have z upwards and ±z has y upwards (−z: −y).
+/// Paint on the faces of a body that look along one axis of its frame; it has no thickness. Later patches cover earlier
+/// ones. Seen from outside, the faces ±x and ±y have z upwards and ±z has y upwards (−z: −y).
 struct Patch {
   enum class Face { plus_x, minus_x, plus_y, minus_y, plus_z, minus_z };
-  /// `glyph` is a letter or a digit of 5×7 cells; `print` is lines of small print, of the segment that it is on.
+  /// `glyph` is a letter or a digit of 5×7 cells; `print` is lines of small print, which belong to the segment below.
   enum class Kind { rectangle, ellipse, glyph, print };
   Face face{Face::plus_z};
   Kind kind{Kind::rectangle};
@@ -106,8 +106,8 @@ struct Patch {
   Eigen::Vector2d size_m{0.1, 0.1};
   Rgb8 color{40, 40, 40};
   char glyph{'A'};       ///< A to Z, 0 to 9
-  double line_m{0.004};  ///< from line to line of print
-  std::string segment;   ///< what an annotator would call it; not used by print
+  double line_m{0.004};  ///< line spacing of print
+  std::string segment;   ///< segment name that an annotator would use; not used by print
 };
 
 struct SceneObject {
@@ -116,86 +116,87 @@ struct SceneObject {
   Pose T_world_object{Pose::Identity()};
   Rgb8 color{200, 200, 200};
   Texture texture{};
-  std::string segment{};         ///< the true segment of its unpainted surface; empty: its name
-  std::vector<Patch> patches{};  ///< what is painted on it
-  bool support{false};           ///< what objects stand on or lean at, such as a table or a wall; no object of interest
-  bool fixture{false};           ///< known beforehand: what moves the camera keeps clear of it
+  std::string segment{};         ///< true segment of its unpainted surface; empty: its name
+  std::vector<Patch> patches{};  ///< painted parts
+  bool support{false};           ///< surface that objects stand on or lean at, such as a table or a wall; no object of
+                                 ///< interest
+  bool fixture{false};           ///< known beforehand: the robot avoids it
 };
 
 /// Lengths in metres, world frame with z up.
 struct Scene {
   std::string name;
   std::vector<SceneObject> objects;
-  Box workspace;                 ///< where space counts as unknown until it is seen
-  std::vector<Region> regions;   ///< where to look; none: the whole workspace
+  Box workspace;                 ///< space that counts as unknown until it is seen
+  std::vector<Region> regions;   ///< regions to explore; none: the whole workspace
   std::vector<Pose> scan;        ///< camera poses of the initial scan
-  double max_deviation_m{1e-4};  ///< of the tessellation
+  double max_deviation_m{1e-4};  ///< tolerance of the tessellation
 
-  /// invalid_argument, naming the object: a bad shape, texture or pose, a name that is empty or not unique; an empty
-  /// workspace, a bad region, or a region outside the workspace. A cell with a real camera has no objects.
+  /// Answers invalid_argument, naming the object: a bad shape, texture or pose, a name that is empty or not unique; an
+  /// empty workspace, a bad region, or a region outside the workspace. A cell with a real camera has no objects.
   [[nodiscard]] Status validate() const;
 };
 
-/// The triangles of one object, world frame.
+/// Triangles of one object, world frame.
 struct ObjectMesh {
   std::string name;
   TriangleMesh mesh;
   bool support{false};
 };
 
-/// The true surfaces, one mesh per object in the scene's order. Errors: those of Scene::validate, and
+/// Returns the true surfaces, one mesh per object in the scene's order. Errors: those of Scene::validate, and
 /// invalid_argument for a scene without objects or an object that reaches farther than a kilometre from the origin.
 /// O(triangles).
 [[nodiscard]] Result<std::vector<ObjectMesh>> true_meshes(const Scene& scene);
 
-/// Colour of a point of the object's surface, before lighting.
+/// Returns the colour of a point of the object's surface, before lighting.
 [[nodiscard]] Rgb8 surface_color(const SceneObject& object, const Eigen::Vector3d& p_object);
 
-/// invalid_argument for sizes that are not positive, a glyph that there is none of, or a patch without a segment.
+/// Answers invalid_argument for sizes that are not positive, an unknown glyph, or a patch without a segment.
 [[nodiscard]] Status validate(const Patch& patch);
 
 struct Paint {
   Rgb8 color{};                  ///< before lighting
-  std::size_t segment_patch{0};  ///< 1 + index of the patch whose segment it is; 0: the body's
-  bool fine{false};              ///< within small print: one ray does not tell a pixel's colour
+  std::size_t segment_patch{0};  ///< 1 + index of the patch that gives the segment; 0: the body
+  bool fine{false};              ///< within small print: a pixel needs more than one ray
 };
 
-/// A point of the object's surface, both in the object's frame. O(patches).
+/// Returns the paint at a point of the object's surface; point and normal in the object's frame. O(patches).
 [[nodiscard]] Paint paint_at(const SceneObject& object, const Eigen::Vector3d& p_object,
                              const Eigen::Vector3d& normal_object);
 
-/// The true segments of a scene, numbered from 1 in the order of its objects and their patches. Segments of one name
+/// True segments of a scene, numbered from 1 in the order of its objects and their patches. Segments with equal names
 /// are one segment.
 class SegmentTable {
  public:
   explicit SegmentTable(const Scene& scene);
-  /// By label; that of label 0, nothing, is empty.
+  /// Returns the names by label. Label 0 is nothing; its name is empty.
   [[nodiscard]] const std::vector<std::string>& names() const { return names_; }
-  /// Expects an object of the scene, and a Paint of it.
+  /// Returns the label of a paint. Expects an object of the scene, and a Paint on it.
   [[nodiscard]] std::uint16_t label(std::size_t object, const Paint& paint) const {
     return labels_[object][paint.segment_patch];
   }
 
  private:
   std::vector<std::string> names_;
-  std::vector<std::vector<std::uint16_t>> labels_;  ///< of each object: the body, then its patches
+  std::vector<std::vector<std::uint16_t>> labels_;  ///< per object: the body, then its patches
 };
 
-/// An object that is a fixture or a support.
+/// Object that is a fixture or a support.
 struct FixtureBox {
   std::string name;
   Box box;
   bool support{false};
 };
 
-/// The bounding boxes, along the world's axes, of a scene's fixtures and supports, in the scene's order; what leans is
-/// given more room than it takes. Whole micrometres; no side is shorter than a millimetre. Errors: those of
-/// true_meshes.
+/// Returns the axis-aligned bounding boxes of a scene's fixtures and supports, in the scene's order. A leaning object
+/// gets more room than it occupies. Coordinates are whole micrometres; no side is shorter than a millimetre. Errors:
+/// those of true_meshes.
 [[nodiscard]] Result<std::vector<FixtureBox>> fixture_boxes(const Scene& scene);
 
-/// Bodies of every procedural kind, standing apart on a table of 1.2 × 0.8 m with its top at z = 0 in a room, and an
-/// initial scan from one side of the table. 1 ≤ objects ≤ 16; fewer are placed when the table is full. The same on
-/// every machine.
+/// Draws a scene: bodies of every procedural kind, standing apart on a table of 1.2 × 0.8 m with its top at z = 0 in a
+/// room, and an initial scan from one side of the table. 1 ≤ objects ≤ 16; fewer are placed when the table is full.
+/// Equal on every machine.
 [[nodiscard]] Scene random_clutter(std::uint64_t seed, int objects = 8);
 
 }  // namespace saccade

@@ -9,6 +9,7 @@
 #include <utility>
 
 #include "saccade/core/angle.hpp"
+#include "saccade/core/nearest_word.hpp"
 #include "saccade/devices/cell.hpp"
 #include "saccade/io/clouds/any_mesh.hpp"
 #include "saccade/io/files/file_io.hpp"
@@ -47,7 +48,7 @@ MeshShape read_mesh_shape(YamlMap& map, const fs::path& folder) {
   return shape;
 }
 
-/// The kinds of bodies, by their keys.
+/// Returns the readers of bodies by their keys.
 using ShapeReader = std::function<Shape(YamlMap&, const fs::path&)>;
 const std::vector<std::pair<std::string, ShapeReader>>& shape_readers() {
   static const std::vector<std::pair<std::string, ShapeReader>> readers{
@@ -112,7 +113,7 @@ Rgb8 read_rgb(const YAML::Node& node) {
 }
 
 Texture read_texture(const YAML::Node& node) {
-  YamlMap map{node, "a texture"};
+  YamlMap map{node, "a texture", {"kind", "size", "darkening"}};
   Texture texture;
   const YAML::Node kind = map.need("kind");
   const auto found = kTextureNames.find(yaml_text(kind));
@@ -132,11 +133,13 @@ bool read_flag(YamlMap& map, const char* key) {
 }
 
 SceneObject read_object(const YAML::Node& node, const fs::path& folder) {
-  YamlMap map{node, "an object"};
+  std::vector<std::string_view> known{"name", "at", "turn_deg", "color", "texture", "support", "fixture"};
+  for (const auto& reader : shape_readers()) known.emplace_back(reader.first);
+  YamlMap map{node, "an object", std::move(known)};
   SceneObject object;
   object.name = yaml_text(map.need("name"));
   object.shape = read_shape(map, folder);
-  object.T_world_object.translation() = yaml_point(map.need("at"));
+  object.T_world_object.translation() = yaml_place(map.need("at"), "an object");
   if (const YAML::Node turn = map.find("turn_deg"); turn.IsDefined()) {
     const Vector3d degrees = yaml_point(turn);
     object.T_world_object.linear() = (Eigen::AngleAxisd{to_rad(degrees.z()), Vector3d::UnitZ()} *
@@ -153,14 +156,14 @@ SceneObject read_object(const YAML::Node& node, const fs::path& folder) {
 }
 
 Box read_box(const YAML::Node& node, const std::string& what) {
-  YamlMap map{node, what};
-  const Box box{yaml_point(map.need("min")), yaml_point(map.need("max"))};
+  YamlMap map{node, what, {"min", "max"}};
+  const Box box{yaml_place(map.need("min"), what), yaml_place(map.need("max"), what)};
   map.finish();
   return box;
 }
 
 Region read_region(const YAML::Node& node) {
-  YamlMap map{node, "a region"};
+  YamlMap map{node, "a region", {"sphere", "box", "cylinder"}};
   const YAML::Node sphere = map.find("sphere");
   const YAML::Node box = map.find("box");
   const YAML::Node cylinder = map.find("cylinder");
@@ -170,22 +173,23 @@ Region read_region(const YAML::Node& node) {
   }
   if (box.IsDefined()) return read_box(box, "a box");
   if (cylinder.IsDefined()) {
-    YamlMap can{cylinder, "a cylinder"};
-    const Cylinder region{yaml_point(can.need("base")), yaml_point(can.need("top")), yaml_number(can.need("radius"))};
+    YamlMap can{cylinder, "a cylinder", {"base", "top", "radius"}};
+    const Cylinder region{yaml_place(can.need("base"), "a cylinder"), yaml_place(can.need("top"), "a cylinder"),
+                          yaml_number(can.need("radius"))};
     can.finish();
     return region;
   }
-  YamlMap ball{sphere, "a sphere"};
-  const Sphere region{yaml_point(ball.need("center")), yaml_number(ball.need("radius"))};
+  YamlMap ball{sphere, "a sphere", {"center", "radius"}};
+  const Sphere region{yaml_place(ball.need("center"), "a sphere"), yaml_number(ball.need("radius"))};
   ball.finish();
   return region;
 }
 
 Pose read_scan_pose(const YAML::Node& node) {
-  YamlMap map{node, "a pose of the scan"};
+  YamlMap map{node, "a pose of the scan", {"from", "look_at"}};
   const YAML::Node from = map.need("from");
-  const Vector3d position = yaml_point(from);
-  const Vector3d target = yaml_point(map.need("look_at"));
+  const Vector3d position = yaml_place(from, "a pose of the scan");
+  const Vector3d target = yaml_place(map.need("look_at"), "a pose of the scan");
   map.finish();
   if ((target - position).norm() < 1e-6) yaml_problem(from, "a camera looks at something else than its own place");
   return look_at(position, target);
@@ -199,11 +203,13 @@ void read_list(const YAML::Node& node, const Read& read) {
 }
 
 Scene read_document(const YAML::Node& document, const fs::path& folder) {
-  YamlMap map{document, "a scene"};
+  std::vector<std::string_view> known{"cell", "scene", "workspace", "max_deviation", "objects", "regions", "scan"};
+  known.insert(known.end(), kCellKeys.begin(), kCellKeys.end());
+  YamlMap map{document, "a scene", std::move(known)};
   Scene scene;
   const YAML::Node cell = map.find("cell");
   scene.name = yaml_text(cell.IsDefined() ? cell : map.need("scene"));
-  for (const std::string_view key : kCellKeys) static_cast<void>(map.find(std::string{key}));  // read_cell's
+  for (const std::string_view key : kCellKeys) static_cast<void>(map.find(std::string{key}));  // read_cell reads these
   scene.workspace = read_box(map.need("workspace"), "the workspace");
   scene.max_deviation_m = map.number("max_deviation", scene.max_deviation_m);
   read_list(map.find("objects"), [&](const YAML::Node& item) { scene.objects.push_back(read_object(item, folder)); });
@@ -229,8 +235,7 @@ Result<Scene> parse_scene(std::string_view yaml, const fs::path& folder) {
 }
 
 Result<Scene> read_scene(const fs::path& path) {
-  constexpr std::uintmax_t kMaxBytes{std::uintmax_t{16} << 20U};
-  SACCADE_TRY(const std::string text, read_text_file(path, kMaxBytes));
+  SACCADE_TRY(const std::string text, read_yaml_file(path));
   auto scene = parse_scene(text, path.parent_path());
   if (scene) return scene;
   Error error = scene.error();
@@ -238,7 +243,7 @@ Result<Scene> read_scene(const fs::path& path) {
   return error;
 }
 
-Result<Scene> find_scene(const std::string& name_or_path) {
+Result<Scene> find_scene(const std::string& name_or_path, const MeshSceneConfig& mesh) {
   std::string known;
   for (const BuiltinScene& builtin : builtin_scenes()) {
     if (builtin.name == name_or_path) return parse_scene(builtin.yaml);
@@ -257,8 +262,15 @@ Result<Scene> find_scene(const std::string& name_or_path) {
     if (!number) return Error{Errc::invalid_argument, "a seed is a whole number: clutter:7", name_or_path};
     return random_clutter(std::stoull(digits));
   }
-  if (fs::exists(name_or_path)) return read_scene(name_or_path);
-  return Error{Errc::not_found, "no such scene; there are " + known + "clutter:SEED, and files", name_or_path};
+  if (fs::exists(name_or_path)) {
+    return is_mesh_file(name_or_path) ? mesh_scene(name_or_path, mesh) : read_scene(name_or_path);
+  }
+  std::vector<std::string_view> names{kSurfelScenes.begin(), kSurfelScenes.end()};
+  for (const BuiltinScene& builtin : builtin_scenes()) names.push_back(builtin.name);
+  return Error{Errc::not_found,
+               "no such scene; there are " + known + "clutter:SEED, and files (YAML, meshes)" +
+                   did_you_mean(name_or_path, names),
+               name_or_path};
 }
 
 }  // namespace saccade

@@ -82,7 +82,7 @@ Status check(const JugShape& jug) {
         jug.handle_top_m - jug.handle_bottom_m > 2.0 * jug.handle_radius_m)) {
     return refused("a handle starts and ends on the body, its ends apart");
   }
-  // The flat ends of the bar must not come through to the inside: half the wall is all the room they have.
+  // The flat ends of the bar must not protrude into the vessel: they have half the wall's thickness.
   for (const double z : {jug.handle_bottom_m, jug.handle_top_m}) {
     const double body_radius_m = profile_radius_m(jug.body.profile_m, z);
     if (jug.handle_radius_m * jug.handle_radius_m >= body_radius_m * jug.body.wall_m) {
@@ -129,7 +129,7 @@ TriangleMesh triangles_of(const CylinderShape& cylinder, double max_deviation_m)
 }
 
 TriangleMesh triangles_of(const SphereShape& sphere, double max_deviation_m) {
-  // Both directions deviate: each gets half of it.
+  // Both directions deviate, so each gets half of the tolerance.
   const int sides = sides_of_circle(sphere.radius_m, 0.5 * max_deviation_m);
   const int rings = (sides + 1) / 2;
   std::vector<Vector2d> profile;
@@ -141,16 +141,16 @@ TriangleMesh triangles_of(const SphereShape& sphere, double max_deviation_m) {
   return turned(profile, sides);
 }
 
-/// The point of the superellipse |x|^(2/e) + |y|^(2/e) = 1 in a direction.
+/// Returns the point of the superellipse |x|^(2/e) + |y|^(2/e) = 1 in a direction.
 Vector2d on_superellipse(double angle_rad, double exponent) {
   const Vector2d direction{std::cos(angle_rad), std::sin(angle_rad)};
   const Vector2d powers = direction.cwiseAbs().array().pow(2.0 / exponent);
   return direction * std::pow(powers.sum(), -0.5 * exponent);
 }
 
-/// The grid of the sphere, moved onto the superquadric: the product of two superellipses (Barr 1981).
+/// Tessellates as a sphere's grid moved onto the superquadric: the product of two superellipses (Barr 1981).
 TriangleMesh triangles_of(const SuperquadricShape& body, double max_deviation_m) {
-  constexpr int kFewestSides{128};  // for rounded edges, whose radius the deviation of a circle says nothing about
+  constexpr int kFewestSides{128};  // needed for rounded edges, which the deviation of a circle does not bound
   const int sides =
       std::max(kFewestSides, 4 * ((sides_of_circle(body.semi_axes_m.maxCoeff(), 0.5 * max_deviation_m) + 3) / 4));
   const int rings = sides / 2;

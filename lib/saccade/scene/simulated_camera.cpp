@@ -12,7 +12,7 @@ namespace {
 constexpr double kNearest_m{1e-4};
 constexpr Rgb8 kBeforeColor{70, 72, 76};
 
-/// Sees as far as anything shows that the space before it is free.
+/// Returns the camera with a range that reaches as far as returns show free space.
 PinholeCamera far_sighted(const SimulatedCameraConfig& config) {
   PinholeCamera camera = config.camera;
   camera.max_range_m = std::max(config.reach_m, config.camera.max_range_m);
@@ -54,7 +54,7 @@ Frame SimulatedCamera::capture(const Pose& T_world_camera, const Executor& execu
 Frame SimulatedCamera::capture(const Pose& T_world_camera, const DepthImage& before, const Executor& executor) {
   SACCADE_EXPECTS(before.width() == config_.camera.width && before.height() == config_.camera.height);
   PinholeCamera all_seeing = far_sighted(config_);
-  all_seeing.min_range_m = kNearest_m;  // what is too near to be measured hides things too
+  all_seeing.min_range_m = kNearest_m;  // objects too near to be measured still hide others
   ExactFrame exact = scene_.render(all_seeing, T_world_camera, executor);
   const auto min_range_m = static_cast<float>(config_.camera.min_range_m);
   for (std::size_t i = 0; i < before.size(); ++i) {

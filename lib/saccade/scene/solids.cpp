@@ -36,8 +36,8 @@ Result<Solids> Solids::build(const RayScene& scene, const std::function<bool(con
 }
 
 bool Solids::contain(const Eigen::Vector3d& p) const {
-  // The ray upwards leaves a closed body that p lies in more often than it enters it; where two closed parts of one
-  // body run into each other, such as a handle and the wall it sits on, by more than one.
+  // A ray upwards from p inside a closed body leaves the body more often than it enters it. Where two closed parts of
+  // one body overlap, such as a handle and its wall, the difference exceeds one.
   constexpr double kStep_m{1e-6};
   const auto inside = [&p](const RayScene& body) {
     int left = 0;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// MeshDistance: how far points are from the nearest triangle; Solids: whether a point lies in a body of a scene, and
-// how far it is from one.
+// MeshDistance: distance of points from the nearest triangle. Solids: whether a point lies inside a body of a scene,
+// and its distance from the bodies.
 
 #include <functional>
 #include <memory>
@@ -13,14 +13,14 @@
 
 namespace saccade {
 
-/// Distances to the surface of a mesh; triangles, not vertices. Immutable, cheap to copy, safe for concurrent use.
+/// Distances to the surface of a mesh: to triangles, not vertices. Immutable, cheap to copy, safe for concurrent use.
 class MeshDistance {
  public:
-  /// invalid_argument for a mesh without triangles or with indices out of range; unavailable when Embree does not
-  /// start. O(triangles · log triangles).
+  /// Builds the search tree. Answers invalid_argument for a mesh without triangles or with indices out of range;
+  /// unavailable when Embree does not start. O(triangles · log triangles).
   [[nodiscard]] static Result<MeshDistance> build(const TriangleMesh& mesh);
 
-  /// Distance to the nearest triangle, or `beyond_m` where none is nearer. Computed in double precision.
+  /// Returns the distance to the nearest triangle, or `beyond_m` where none is nearer. Computed in double precision.
   [[nodiscard]] double distance_m(const Eigen::Vector3d& p, double beyond_m) const;
 
  private:
@@ -29,27 +29,27 @@ class MeshDistance {
   std::shared_ptr<const Impl> impl_;
 };
 
-/// Some of the objects in one mesh, world frame.
+/// Joins the objects for which `wanted` holds to one mesh, world frame.
 [[nodiscard]] TriangleMesh joined_mesh(const std::vector<ObjectMesh>& meshes,
                                        const std::function<bool(std::size_t object)>& wanted);
 
 /// Closed bodies of a scene. Immutable, cheap to copy, safe for concurrent use.
 class Solids {
  public:
-  /// The objects for which `wanted` holds; there may be none. Errors: those of RayScene::build.
+  /// Builds the bodies for which `wanted` holds; there may be none. Errors: those of RayScene::build.
   [[nodiscard]] static Result<Solids> build(const RayScene& scene,
                                             const std::function<bool(const SceneObject&)>& wanted);
 
-  /// Whether p lies in one of them, counted body by body, since surfaces coincide where one stands on another.
+  /// Tells whether p lies inside a body. Tested body by body, since surfaces coincide where one stands on another.
   /// O(bodies · log triangles).
   [[nodiscard]] bool contain(const Eigen::Vector3d& p) const;
-  /// Distance to the nearest surface, or `beyond_m` where none is nearer.
+  /// Returns the distance to the nearest surface, or `beyond_m` where none is nearer.
   [[nodiscard]] double distance_m(const Eigen::Vector3d& p, double beyond_m) const;
 
  private:
   Solids(std::vector<RayScene> bodies, std::optional<MeshDistance> surface)
       : bodies_{std::move(bodies)}, surface_{std::move(surface)} {}
-  std::vector<RayScene> bodies_;  // each object alone
+  std::vector<RayScene> bodies_;  // one per object
   std::optional<MeshDistance> surface_;
 };
 

@@ -9,8 +9,8 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Evenly spread positions on the upper half sphere (golden angle), in an order that jumps around it, so that what can
-/// be seen is found early.
+/// Returns evenly spread positions on the upper half sphere (golden angle), in an order that jumps around it, so that
+/// visible samples are found early.
 std::vector<Vector3d> free_positions(const Box& workspace, const ObservabilityConfig& config) {
   const Vector3d base{0.5 * (workspace.min.x() + workspace.max.x()), 0.5 * (workspace.min.y() + workspace.max.y()),
                       workspace.min.z()};
@@ -31,7 +31,7 @@ std::vector<Vector3d> free_positions(const Box& workspace, const ObservabilityCo
   return positions;
 }
 
-/// Whether the bounds of the triangle abc do not meet the box.
+/// Tells whether the bounds of the triangle abc miss the box.
 bool apart(const Box& box, const Vector3d& a, const Vector3d& b, const Vector3d& c) {
   const Vector3d low = a.cwiseMin(b).cwiseMin(c);
   const Vector3d high = a.cwiseMax(b).cwiseMax(c);
@@ -81,7 +81,7 @@ std::vector<std::uint8_t> observable(const RayScene& scene, const SurfaceSamples
   SACCADE_EXPECTS(config.positions >= 1 && config.clearance_m >= 0.0);
   const std::vector<Vector3d> positions = free_positions(scene.scene().workspace, config);
   const double least_cosine = std::cos(config.max_incidence_rad);
-  constexpr double kTolerance{1e-5};  // of the distance: the sample's own triangle is no obstacle
+  constexpr double kTolerance{1e-5};  // share of the distance: the sample's own triangle is no obstacle
   const auto seen_from = [&](std::size_t i, const Vector3d& position) {
     const Vector3d p = samples.points[i].cast<double>();
     const Vector3d to_sample = p - position;

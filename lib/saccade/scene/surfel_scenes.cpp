@@ -17,7 +17,7 @@ Error unknown(std::string_view what, std::string_view name, std::span<const std:
   return {Errc::not_found, "no such " + std::string{what} + "; there are " + joined(known), std::string{name}};
 }
 
-/// f·b = 580 px · 75 mm in steps of an eighth of a pixel.
+/// Disparity steps of f·b = 580 px · 75 mm, an eighth of a pixel each.
 constexpr double kDisparityStepPerM{348.0};
 constexpr double kLateralNoise_px{0.8};
 

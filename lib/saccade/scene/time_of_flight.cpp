@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kTouching_m{0.002};  // a surface does not shade itself from so near
+constexpr double kTouching_m{0.002};  // a surface does not shade itself within this distance
 constexpr int kMaxSamples{16};
 constexpr double kMaxFootprint_px{5.0};
 constexpr std::size_t kRowsPerTask{8};
@@ -37,7 +37,7 @@ class Sensor {
     emitter_world_ = T_world_camera * Eigen::Vector3d{x_m, 0.0, 0.0};
   }
 
-  /// Without noise.
+  /// Measures a pixel without noise.
   [[nodiscard]] Measurement at(int u, int v) const {
     const float z = exact_(u, v);
     if (!(z > 0.0F)) return {};
@@ -62,7 +62,7 @@ class Sensor {
     return !hit || (1.0 - hit->t) * way.norm() < kTouching_m;
   }
 
-  /// Whether a neighbour within the footprint lies at another depth.
+  /// Tells whether a neighbour within the footprint lies at another depth.
   [[nodiscard]] bool may_hold_edge(int u, int v) const {
     const int reach = static_cast<int>(std::ceil(0.5 * config_.footprint_px));
     for (int j = std::max(0, v - reach); j <= std::min(exact_.height() - 1, v + reach); ++j) {

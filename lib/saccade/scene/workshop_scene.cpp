@@ -12,7 +12,7 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 
 constexpr double kPanelWidth_m{0.9};
-constexpr double kThickness_m{0.03};  // of the panels, as the thesis says
+constexpr double kThickness_m{0.03};  // thickness of the panels in the thesis
 constexpr double kGap_m{0.06};
 
 constexpr std::array<Rgb8, 9> kGrips{{{176, 44, 40},
@@ -31,7 +31,7 @@ constexpr Rgb8 kRubber{48, 48, 50};
 constexpr Rgb8 kLabelPaper{232, 228, 214};
 constexpr Rgb8 kLabelInk{44, 44, 48};
 
-/// Where a tool hangs: `at` is the lowest point of its slot on the panel's front, whose outside is −y.
+/// Slot for a tool: `at` is its lowest point on the panel's front, whose outside is −y.
 struct Slot {
   std::string name;
   Vector3d at;
@@ -40,7 +40,7 @@ struct Slot {
   [[nodiscard]] Vector3d point(double x_m, double off_m, double z_m) const { return at + Vector3d{x_m, -off_m, z_m}; }
 };
 
-/// A shaft, a ring and a grip, such as screwdrivers, chisels and files have.
+/// Hangs up a tool with a shaft, a ring and a grip, such as a screwdriver, a chisel or a file.
 void hang_driver(SceneMaker& maker, const Slot& slot, const Rgb8& grip, const Rgb8& ring) {
   const double radius_m = maker.within(0.012, 0.018);
   const double off_m = 1.1 * radius_m;
@@ -81,7 +81,7 @@ void hang_brush(SceneMaker& maker, const Slot& slot) {
             0.012, maker.shade(maker.below(2) == 0 ? kWoods[0] : Rgb8{170, 52, 46}));
 }
 
-/// A roll of tape, its axis across the panel.
+/// Hangs up a roll of tape, its axis across the panel.
 void hang_tape(SceneMaker& maker, const Slot& slot, const Rgb8& board) {
   const double radius_m = maker.within(0.042, 0.052);
   const Vector3d center = slot.point(0, 0.0, 0.55 * slot.height_m);
@@ -170,7 +170,7 @@ SurfelScene workshop_scene(std::string_view name, const WorkshopPlan& plan, std:
     front.rectangle("sign", {0.0, plan.height_m - 0.035}, {0.3, 0.05}, kLabelPaper);
     front.text("sign", k == 0 ? "A1" : "A2", {0.0, plan.height_m - 0.035}, 0.036, kLabelInk);
     const double pitch_m = (plan.height_m - 0.1) / plan.rows;
-    // Every kind of tool comes once before any comes again.
+    // Each kind of tool occurs once before any occurs again.
     std::size_t kind = maker.below(10);
     for (int row = 0; row < plan.rows; ++row) {
       for (int i = 0; i < plan.tools_per_row; ++i) {

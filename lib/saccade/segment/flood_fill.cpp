@@ -11,14 +11,14 @@ namespace {
 
 bool is_known(const Eigen::Vector3f& normal) { return normal.allFinite() && !normal.isZero(0.0F); }
 
-/// What eq. (4.14) compares, by node.
+/// Values that eq. (4.14) compares, by node.
 struct Look {
   Eigen::Vector3f color{Eigen::Vector3f::Zero()};
   Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
   float has_normal{0.0F};  ///< 1 or 0
 };
 
-/// surfel_difference, where it is known whether normals are known.
+/// As surfel_difference, with known validity of the normals.
 double difference_of(const Look& a, const Look& b, const FloodFillConfig& config) {
   const double of_colors = (a.color.cast<double>() - b.color.cast<double>()).norm();
   const double of_normals = 1.0 - a.normal.cast<double>().dot(b.normal.cast<double>());
@@ -47,7 +47,7 @@ std::vector<Look> looks_of(const SurfelGraph& graph, const PointCloud& cloud) {
 Status FloodFillConfig::validate() const {
   for (const double number : {color_weight, normal_weight, threshold}) {
     if (!(std::isfinite(number) && number >= 0.0)) {
-      return Error{Errc::invalid_argument, "a number that is not finite, or negative", "flood fill"};
+      return Error{Errc::invalid_argument, "a number is not finite, or negative", "flood fill"};
     }
   }
   return {};

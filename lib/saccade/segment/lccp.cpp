@@ -14,8 +14,8 @@ namespace saccade {
 
 namespace {
 
-/// The least angle between the line of centroids and the line in which the two planes meet, for normals `angle_rad`
-/// apart (Stein et al., section 3.2, with the constants given there).
+/// Returns the smallest allowed angle between the line of centroids and the intersection of the two planes, for normals
+/// `angle_rad` apart (Stein et al., section 3.2, with the constants given there).
 double least_sane_angle_rad(double angle_rad) {
   constexpr double kMost_rad{60_deg};
   constexpr double kMiddle_deg{25.0};
@@ -23,7 +23,7 @@ double least_sane_angle_rad(double angle_rad) {
   return kMost_rad / (1.0 + std::exp(-kSlope_per_deg * (angle_rad / 1_deg - kMiddle_deg)));
 }
 
-/// Of those edges, the ones whose ends have a common neighbour by others of them.
+/// Keeps those convex edges whose ends have a common neighbour connected by convex edges.
 std::vector<bool> with_common_neighbour(const SupervoxelResult& from, const std::vector<bool>& convex) {
   std::vector<std::vector<std::uint32_t>> neighbours(from.supervoxels.size());  // sorted, as the edges are
   for (std::size_t e = 0; e < convex.size(); ++e) {
@@ -46,11 +46,11 @@ std::vector<bool> with_common_neighbour(const SupervoxelResult& from, const std:
   return kept;
 }
 
-/// The least segment that is too small joins the largest one next to it, until there is none.
+/// Joins the smallest segment that is too small to its largest neighbour, until there is none.
 void join_small(const SupervoxelResult& from, std::size_t min_supervoxels, DisjointSets& sets) {
   const std::size_t count = from.supervoxels.size();
-  std::vector<std::size_t> sizes(count, 0);                // of a set, at its root
-  std::vector<std::vector<std::uint32_t>> next_to(count);  // supervoxels next to a set, and some of its own
+  std::vector<std::size_t> sizes(count, 0);                // size of a set, at its root
+  std::vector<std::vector<std::uint32_t>> next_to(count);  // supervoxels adjacent to a set, and some of its own
   for (std::uint32_t s = 0; s < count; ++s) sizes[sets.root(s)] += 1;
   for (const auto& [first, second] : from.edges) {
     const std::uint32_t a = sets.root(first);
@@ -74,7 +74,7 @@ void join_small(const SupervoxelResult& from, std::size_t min_supervoxels, Disjo
         largest = root;
       }
     }
-    if (largest == kUnlabelled) continue;  // nothing next to it
+    if (largest == kUnlabelled) continue;  // no neighbour
     small.erase({sizes[largest], largest});
     sets.join(least, largest);
     const std::uint32_t both = sets.root(least);
@@ -93,7 +93,7 @@ void join_small(const SupervoxelResult& from, std::size_t min_supervoxels, Disjo
 Status LccpConfig::validate() const {
   for (const double number : {concavity_tolerance_rad, smoothness}) {
     if (!(std::isfinite(number) && number >= 0.0)) {
-      return Error{Errc::invalid_argument, "a number that is not finite, or negative", "LCCP"};
+      return Error{Errc::invalid_argument, "a number is not finite, or negative", "LCCP"};
     }
   }
   return {};
@@ -109,7 +109,7 @@ bool is_convex(const Supervoxel& a, const Supervoxel& b, const LccpConfig& confi
   const double angle_rad = std::atan2(n_a.cross(n_b).norm(), n_a.dot(n_b));
 
   if (config.smooth) {
-    // On a surface that bends evenly a patch lies off the other's plane by half of this.
+    // On an evenly curved surface a patch lies off the other's plane by half of this.
     const double bend_m = distance_m * (n_a - n_b).norm();
     const double step_m = std::min(std::abs(n_a.dot(between_m)), std::abs(n_b.dot(between_m)));
     if (step_m > bend_m + config.smoothness * voxel_size_m) return false;

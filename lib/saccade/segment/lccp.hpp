@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// find_supervoxels: VCCS, patches of a cloud that keep within surfaces; segment_by_convexity: LCCP, these joined where
-// surfaces bend outwards; segment_by_sv_lccp: by colours as well.
+// find_supervoxels: VCCS, patches of a cloud that respect surface borders. segment_by_convexity: LCCP, patches joined
+// across convex edges. segment_by_sv_lccp: LCCP that also uses colours.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -20,22 +20,22 @@ namespace saccade {
 /// Parameters of find_supervoxels.
 struct SupervoxelConfig {
   VoxelCloudConfig voxels{};
-  double seed_spacing_m{0.03};  ///< edge length of the cells with a seed each
-  double spatial_weight{1.0};   ///< of the distance from the centre, in seed spacings
-  double normal_weight{4.0};    ///< of 1 − cos of the angle between normals
-  double color_weight{0.0};     ///< of the distance between colours
+  double seed_spacing_m{0.03};  ///< edge length of the cells that get one seed each
+  double spatial_weight{1.0};   ///< weight of the distance from the centre, in seed spacings
+  double normal_weight{4.0};    ///< weight of 1 − cos of the angle between normals
+  double color_weight{0.0};     ///< weight of the distance between colours
   double min_seed_share{
-      0.3};       ///< of the voxels that a plane fills within half a seed spacing: a seed with fewer is dropped
-  int rounds{1};  ///< of growth; before each but the first, supervoxels are taken to be at the means of their voxels
+      0.3};       ///< share of the voxels that a plane fills within half a seed spacing; seeds with fewer are dropped
+  int rounds{1};  ///< rounds of growth; before each but the first, supervoxels move to the means of their voxels
 
   /// @return invalid_argument for a number that is not finite or negative, all weights zero, seeds closer than voxels,
   /// or rounds that are not from 1 to 100.
   [[nodiscard]] Status validate() const;
-  /// Voxels within half a seed spacing, given in voxels, that a seed needs.
+  /// Returns the number of voxels that a seed needs within half a seed spacing, which is given in voxels.
   [[nodiscard]] double fewest_around_seed(double spacing_vox) const;
 };
 
-/// A patch of a surface.
+/// Patch of a surface.
 struct Supervoxel {
   Eigen::Vector3f centroid_m;  ///< mean of its voxels
   Eigen::Vector3f normal;      ///< mean of its voxels, of unit length
@@ -44,82 +44,80 @@ struct Supervoxel {
   std::uint32_t points{0};
 };
 
-/// Labels count supervoxels from 0.
+/// Supervoxels of a cloud. Labels count from 0.
 struct SupervoxelResult {
-  std::vector<std::uint32_t> labels;  ///< one per point; kUnlabelled where there is no point
+  std::vector<std::uint32_t> labels;  ///< one per point; kUnlabelled where it is no point
   std::vector<Supervoxel> supervoxels;
-  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  ///< supervoxels that touch, (a, b) with a < b, sorted
+  std::vector<std::pair<std::uint32_t, std::uint32_t>> edges;  ///< touching supervoxels, (a, b) with a < b, sorted
   std::size_t voxels{0};
   double voxel_size_m{0.0};
 };
 
-/// Voxel cloud connectivity segmentation (Papon et al., CVPR 2013): seeds on a regular grid, moved to where normals and
-/// colours change least, grow from voxel to neighbouring voxel, each voxel going to the nearest seed that reaches it.
-/// Unless there are more rounds, seeds stay where they are, unlike the paper's: docs/segmentation.md says what that is
-/// good for. A connected part without a seed becomes a supervoxel of its own, so that every point has a label.
-/// @return an error of the cloud or the config; no points: no supervoxels.
-/// O(points + voxels × rounds). The thread count never changes a bit of the result.
+/// Voxel cloud connectivity segmentation (Papon et al., CVPR 2013). Seeds on a regular grid, moved to where normals and
+/// colours change least, grow from voxel to neighbouring voxel; each voxel goes to the nearest seed that reaches it.
+/// With one round, seeds stay where they are, unlike the paper's: docs/guides/segmentation.md gives the reasons. A
+/// connected part without a seed becomes a supervoxel of its own, so every point has a label.
+/// @return an error of the cloud or the config. No points: no supervoxels. O(points + voxels × rounds). The thread
+/// count never changes a bit of the result.
 [[nodiscard]] Result<SupervoxelResult> find_supervoxels(const PointCloud& cloud, const SupervoxelConfig& config,
                                                         const Executor& executor);
 
 /// Parameters of segment_by_convexity.
 struct LccpConfig {
   double concavity_tolerance_rad{10_deg};  ///< a smaller angle between normals counts as convex
-  bool sanity{true};                       ///< supervoxels that touch in one point only are kept apart
-  bool extended_convexity{false};          ///< a convex edge needs a third supervoxel with convex edges to both
-  bool smooth{true};                       ///< supervoxels with a step between them are kept apart
-  double smoothness{0.1};                  ///< the step that is allowed, in voxels
-  std::size_t min_supervoxels{0};          ///< a segment with fewer joins the largest one that it touches
+  bool sanity{true};                       ///< separates supervoxels that touch in one point only
+  bool extended_convexity{false};          ///< a convex edge requires a third supervoxel with convex edges to both
+  bool smooth{true};                       ///< separates supervoxels with a step between them
+  double smoothness{0.1};                  ///< largest step allowed, in voxels
+  std::size_t min_supervoxels{0};          ///< a segment with fewer joins the largest neighbouring one
 
   /// @return invalid_argument for a number that is not finite or negative.
   [[nodiscard]] Status validate() const;
 };
 
-/// Labels count segments from 0, in the order of their first supervoxels.
+/// Segments of supervoxels. Labels count from 0, in the order of their first supervoxels.
 struct LccpResult {
-  std::vector<std::uint32_t> labels;      ///< one per point; kUnlabelled where there is no point
+  std::vector<std::uint32_t> labels;      ///< one per point; kUnlabelled where it is no point
   std::vector<std::uint32_t> segment_of;  ///< per supervoxel
-  std::vector<bool> convex;               ///< per edge of the supervoxels: joined
+  std::vector<bool> convex;               ///< per edge of the supervoxels: whether it joins them
   std::size_t segments{0};
 };
 
-/// Whether the edge between two supervoxels that touch joins them (Stein et al., CVPR 2014, section 3), common
-/// neighbours aside. The order of the two changes nothing.
+/// Tells whether the edge between two touching supervoxels joins them (Stein et al., CVPR 2014, section 3), regardless
+/// of common neighbours. Symmetric.
 [[nodiscard]] bool is_convex(const Supervoxel& a, const Supervoxel& b, const LccpConfig& config, double voxel_size_m);
 
-/// The segments that result from edges being convex or not, `convex` as many as edges. Extended convexity and the least
-/// size are heeded here.
-/// O(points + edges · degree), one thread, deterministic.
+/// Returns the segments that result from convex and concave edges; `convex` has one entry per edge. Applies extended
+/// convexity and the smallest size. O(points + edges · degree), one thread, deterministic.
 [[nodiscard]] LccpResult join_convex(const SupervoxelResult& supervoxels, std::vector<bool> convex,
                                      const LccpConfig& config);
 
-/// Locally convex connected patches (Stein et al., CVPR 2014): edges between supervoxels are convex or concave by their
-/// centroids and normals, and what convex edges connect is a segment.
-/// @return invalid_argument for a bad config.
-/// O(points + edges · degree); one thread, deterministic.
+/// Locally convex connected patches (Stein et al., CVPR 2014). Edges between supervoxels are convex or concave by their
+/// centroids and normals; convex edges connect the supervoxels of a segment.
+/// @return invalid_argument for a bad config. O(points + edges · degree); one thread, deterministic.
 [[nodiscard]] Result<LccpResult> segment_by_convexity(const SupervoxelResult& supervoxels,
                                                       const LccpConfig& config = {});
 
-/// Parameters of segment_by_sv_lccp: thesis Table 4.2. What it leaves open is as for LCCP, but for the rounds, which
-/// are those of the paper of VCCS: a seed's own colour says less of what is around it than the mean does.
+/// Parameters of segment_by_sv_lccp: thesis Table 4.2. Others are as for LCCP, except for the rounds, which are those
+/// of the VCCS paper: a seed's own colour represents its surroundings worse than their mean does.
 struct SvLccpConfig {
   SvLccpConfig();
 
   SupervoxelConfig supervoxels;  ///< V_lccp 1 cm, S_lccp 5 cm, weights α_p 0.1, α_n 0.5, α_c 1; 5 rounds
   LccpConfig lccp;
-  double max_color_difference{0.1};  ///< T_lccp, between colours in [0, 1]
+  double max_color_difference{0.1};  ///< T_lccp, for colours in [0, 1]
 
-  /// @return an error of the parts; invalid_argument for a T_lccp that is negative or no number.
+  /// @return an error of the parts; invalid_argument for a T_lccp that is negative or not a number.
   [[nodiscard]] Status validate() const;
 };
 
 struct SvLccpResult {
-  SupervoxelResult supervoxels;  ///< with the edges that are left
+  SupervoxelResult supervoxels;  ///< with the remaining edges
   LccpResult segments;
 };
 
-/// Takes away the edges between supervoxels whose colours are farther apart: ‖c₁ − c₂‖ > T_lccp, thesis eq. (4.15).
-/// Where the cloud has no colours none is.
+/// Removes the edges between supervoxels whose colours differ too much: ‖c₁ − c₂‖ > T_lccp, thesis eq. (4.15). Removes
+/// none where the cloud has no colours.
 void prune_by_color(SupervoxelResult& supervoxels, double max_difference);
 
 /// SV-LCCP with colours (thesis §4.1.2): find_supervoxels, prune_by_color, segment_by_convexity.

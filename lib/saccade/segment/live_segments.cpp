@@ -23,7 +23,7 @@ std::size_t voxels_in(const SurfaceBlocks& blocks, std::span<const std::uint32_t
   return voxels;
 }
 
-/// Means of the points of each voxel, of which there are `mask`.
+/// Computes the means of the points of each voxel in `mask`.
 void make_voxels(SurfaceBlock& block) {
   const auto count = static_cast<std::size_t>(block.mask.count());
   std::vector<Eigen::Matrix<double, 9, 1>> sums(count, Eigen::Matrix<double, 9, 1>::Zero());
@@ -41,7 +41,7 @@ void make_voxels(SurfaceBlock& block) {
     voxel.position_m = mean.head<3>().cast<float>();
     voxel.place = voxel.position_m;
     const double length = mean.segment<3>(3).norm();
-    voxel.normal = Eigen::Vector3f::UnitZ();  // where they cancel out
+    voxel.normal = Eigen::Vector3f::UnitZ();  // fallback where the normals cancel out
     if (length > 0.0) voxel.normal = (mean.segment<3>(3) / length).cast<float>();
     voxel.color =
         block.colors.empty() ? Eigen::Vector3f::Constant(0.5F) : Eigen::Vector3f{mean.tail<3>().cast<float>()};
@@ -111,7 +111,7 @@ MapSegmentsUpdate LiveSegments::update(const TsdfSnapshot& map, const Executor& 
   return done;
 }
 
-/// Of the blocks that have a surface in these bricks, or had.
+/// Returns the keys of the blocks that have or had a surface in these bricks.
 std::vector<Index3> LiveSegments::keys_of(const SectorTable& table, std::span<const SectorBricks> stale) const {
   std::vector<Index3> keys;
   for (const SectorBricks& sector : stale) {
@@ -169,7 +169,7 @@ SurfaceBlock LiveSegments::read_block(const SectorTable& table, const Index3& ke
   return block;
 }
 
-/// @return the blocks whose surface changed; those that lost it are empty.
+/// @return the blocks whose surface changed; those without a surface now are empty.
 LiveSegments::Slots LiveSegments::renew_surface(const TsdfSnapshot& map, std::span<const SectorBricks> stale,
                                                 const Executor& executor) {
   const SectorTable table{map.grid};
@@ -195,13 +195,13 @@ LiveSegments::Slots LiveSegments::renew_surface(const TsdfSnapshot& map, std::sp
 
 std::uint32_t LiveSegments::number(VoxelName name) const {
   const std::uint32_t slot = name / kBrickVoxels;
-  const std::vector<SurfaceBlock::Own>& own = (*blocks_)[slot].own;
+  const std::vector<SurfaceBlock::OwnedSupervoxel>& own = (*blocks_)[slot].own;
   std::uint32_t position{0};
   while (own[position].name != name) ++position;
   return first_number_[slot] + position;
 }
 
-/// Takes out blocks that are empty and puts in those that are new.
+/// Removes empty blocks and inserts new ones.
 void LiveSegments::reorder(const Slots& renewed) {
   std::erase_if(order_, [&](std::uint32_t slot) { return (*blocks_)[slot].voxels.empty(); });
   std::vector<bool> known(blocks_->slots());
@@ -252,7 +252,7 @@ void LiveSegments::join(const Executor& executor) {
   segments_ = join_convex(supervoxels_, {convex.begin(), convex.end()}, config_.lccp);
 }
 
-/// Of the supervoxel of each voxel.
+/// Reads the number of each voxel's supervoxel.
 void LiveSegments::read_numbers(const SurfaceBlock& block, Slots& numbers) const {
   numbers.clear();
   for (const VoxelName name : block.labels) numbers.push_back(number(name));

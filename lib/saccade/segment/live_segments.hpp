@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// MapSegmentsConfig, segment_map: the surface of a map in segments; LiveSegments: those of a map that goes on changing.
+// MapSegmentsConfig, segment_map: segments of a map's surface. LiveSegments: segments of a map that keeps changing.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -23,66 +23,68 @@ struct SurfaceBlock;
 
 /// Parameters of segment_map.
 struct MapSegmentsConfig {
-  double voxel_size_m{0.0075};  ///< wanted; it becomes 1, 2, 4 or 8 voxels of the map, the nearest. Seeds: one per 4³
+  double voxel_size_m{0.0075};  ///< desired; becomes 1, 2, 4 or 8 voxels of the map, whichever is nearest. Seeds: one
+                                ///< per 4³
   double spatial_weight{1.0};   ///< this and the next three as in SupervoxelConfig
   double normal_weight{4.0};
   double color_weight{0.0};
   double min_seed_share{0.3};
   std::uint16_t min_weight{1};  ///< voxels of the map observed less often count as unknown
-  /// Surface away from this box does not count: blocks of 8³ voxels that do not meet it.
+  /// Box of interest: blocks of 8³ voxels outside it are ignored.
   std::optional<Box> within{};
   LccpConfig lccp{};
 
-  /// @return invalid_argument as of SupervoxelConfig and LccpConfig, and for a box that is none.
+  /// @return invalid_argument as SupervoxelConfig and LccpConfig do, and for an invalid box.
   [[nodiscard]] Status validate() const;
-  /// For a map with such voxels; voxel_size_m and seed_spacing_m are those that are taken.
+  /// Returns the parameters for a map with this voxel size; voxel_size_m and seed_spacing_m hold the values in use.
   [[nodiscard]] SupervoxelConfig supervoxels(double map_voxel_size_m) const;
 };
 
-/// Labels are per point, as of find_supervoxels and segment_by_convexity.
+/// Segments of a map. Labels are per point, as in find_supervoxels and segment_by_convexity.
 struct MapSegments {
-  PointCloud points;  ///< those of surface_points, by blocks of 8³ voxels in z-y-x order, by voxels within
+  PointCloud points;  ///< as in surface_points, by blocks of 8³ voxels in z-y-x order, by voxels within
   SupervoxelResult supervoxels;
   LccpResult segments;
 };
 
-/// Voxels in place of their points: what saliency needs, in less time.
+/// Voxels instead of their points: sufficient for saliency, and faster.
 struct VoxelSegments {
   std::vector<Eigen::Vector3f> positions_m;  ///< means of the points, in the order of MapSegments' voxels
-  std::vector<std::uint32_t> labels;         ///< segment of each
+  std::vector<std::uint32_t> labels;         ///< segment of each voxel
   std::size_t segments{0};
 };
 
-/// What LiveSegments::update did.
+/// Changes made by LiveSegments::update.
 struct MapSegmentsUpdate {
-  std::size_t bricks_changed{0};   ///< in the map
-  std::size_t voxels_changed{0};   ///< of the blocks whose surface changed
-  std::size_t voxels_labelled{0};  ///< whose supervoxel was looked for anew
+  std::size_t bricks_changed{0};   ///< changed bricks of the map
+  std::size_t voxels_changed{0};   ///< voxels in blocks whose surface changed
+  std::size_t voxels_labelled{0};  ///< voxels whose supervoxel was searched again
   double ms{0.0};
 };
 
-/// Follows a map from snapshot to snapshot. After update(map), segments() equals segment_map(map) to the bit, which is
-/// the first update of a new one. Thesis §3.1.2.
+/// Segments that follow a map from snapshot to snapshot. After update(map), segments() equals segment_map(map) to the
+/// bit; segment_map is the first update of a new LiveSegments. Thesis §3.1.2.
 ///
-/// Supervoxels are found as in find_supervoxels, but so that what a voxel belongs to depends on nothing more than two
-/// blocks of 8³ voxels away: the cells of seeds lie within blocks, a seed reaches eight voxels, and voxels that none
-/// reaches are a supervoxel per cell. So after a change blocks up to two away are labelled anew, all others are kept;
-/// which supervoxels convexity joins is found for the whole map, from edges that are kept as well.
-/// Const use from many threads is safe, one writer at a time. It holds the snapshot.
+/// Supervoxels are found as in find_supervoxels, but a voxel's label depends only on blocks of 8³ voxels up to two
+/// blocks away. The cells of seeds lie within blocks, a seed reaches eight voxels, and voxels that no seed reaches form
+/// one supervoxel per cell. After a change only blocks up to two away are labelled anew. Joining by convexity runs on
+/// the whole map, from stored edges.
+/// Const use from many threads is safe, with one writer at a time. LiveSegments holds the snapshot.
 class LiveSegments {
  public:
-  /// invalid_argument when the configuration is.
+  /// Answers invalid_argument for an invalid configuration.
   [[nodiscard]] static Result<LiveSegments> create(const MapSegmentsConfig& config = {});
 
-  /// Follows the map to this state, any later or earlier one, or that of another map of the same voxel size (contract).
-  /// O(changed_sectors + voxels around changed ones + supervoxels). The same for every thread count.
+  /// Brings the segments to this state of the map, later or earlier, or to another map with the same voxel size
+  /// (contract). O(changed_sectors + voxels around changed ones + supervoxels). The thread count never changes the
+  /// result.
   MapSegmentsUpdate update(const TsdfSnapshot& map, const Executor& executor);
 
-  /// How many segments there are, without going through points.
+  /// Returns the number of segments, without visiting points.
   [[nodiscard]] std::size_t segment_count() const { return segments_.segments; }
-  /// All voxels with their segments. O(voxels).
+  /// Returns all voxels with their segments. O(voxels).
   [[nodiscard]] VoxelSegments voxels(const Executor& executor) const;
-  /// All points with their labels. O(points).
+  /// Returns all points with their labels. O(points).
   [[nodiscard]] MapSegments segments(const Executor& executor) const;
 
  private:
@@ -106,15 +108,15 @@ class LiveSegments {
   MapSegmentsConfig config_;
   TsdfSnapshot map_;
   SupervoxelConfig supervoxel_config_;
-  int shift_{0};  ///< log2 of the voxels of the map along one of ours
+  int shift_{0};  ///< log2 of the map's voxels along one of ours
   Hidden<SurfaceBlocks> blocks_;
   Slots order_;                              ///< blocks in z-y-x order
-  std::vector<std::uint32_t> first_number_;  ///< per slot: of its own supervoxels
+  std::vector<std::uint32_t> first_number_;  ///< per slot: number of its first own supervoxel
   SupervoxelResult supervoxels_;             ///< without labels
   LccpResult segments_;                      ///< without labels
 };
 
-/// The surface of a map in segments, straight from its voxels and the gradient of its TSDF. Thesis §3.1.2, line 3 and 4
+/// Segments the surface of a map, directly from its voxels and the gradient of its TSDF. Thesis §3.1.2, lines 3 and 4
 /// of Algorithm 4.
 /// @return invalid_argument for a bad config; a map without a surface: no points.
 /// O(bricks near the surface + points). The thread count never changes a bit of the result.

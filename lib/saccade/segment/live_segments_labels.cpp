@@ -15,25 +15,25 @@ constexpr std::size_t kLabelledGrain{32};
 constexpr int kTileShift{4};  // tiles of 16³ blocks are labelled at once
 constexpr double kReach_vox{8.0};
 constexpr double kSeedRadius_vox{2.0};
-constexpr VoxelName kNobody{~VoxelName{0}};
+constexpr VoxelName kNoSupervoxel{~VoxelName{0}};
 
 Index3 tile_of(const Index3& key) { return {key.x >> kTileShift, key.y >> kTileShift, key.z >> kTileShift}; }
 
-/// The cell with a seed, of the eight in a block, in which a voxel lies.
+/// Returns the seed cell, of the eight in a block, that a voxel lies in.
 std::size_t seed_cell(std::size_t child) {
   const Index3 i = child_offset(static_cast<int>(child));
   return static_cast<std::size_t>(((i.z >> 2) << 2) | ((i.y >> 2) << 1) | (i.x >> 2));
 }
 
-/// The voxels of some blocks as a cloud, and the cells of seeds that they lie in.
+/// Voxels of some blocks as a cloud, with their seed cells.
 struct BlockCloud {
   VoxelCloud cloud;
   std::vector<std::uint32_t> cell_of;
   std::size_t cells{0};
   std::vector<VoxelName> names;         ///< per voxel
-  std::vector<std::uint32_t> first_of;  ///< per slot: the first voxel of its block; kUnlabelled: not in the cloud
+  std::vector<std::uint32_t> first_of;  ///< per slot: first voxel of its block; kUnlabelled: not in the cloud
 
-  /// Slots by the keys of their blocks in z-y-x order.
+  /// Adds the slots by the keys of their blocks in z-y-x order.
   BlockCloud(const SurfaceBlocks& blocks, std::span<const std::uint32_t> slots)
       : first_of(blocks.slots(), kUnlabelled) {
     std::size_t voxels{0};
@@ -75,9 +75,9 @@ struct BlockCloud {
   }
 };
 
-/// What supervoxels have in a block.
-std::vector<SurfaceBlock::Part> parts_of(const SurfaceBlock& block) {
-  std::vector<SurfaceBlock::Part> parts;
+/// Returns the parts of supervoxels in a block.
+std::vector<SurfaceBlock::SupervoxelPart> parts_of(const SurfaceBlock& block) {
+  std::vector<SurfaceBlock::SupervoxelPart> parts;
   std::size_t last{0};
   for (std::size_t v = 0; v < block.voxels.size(); ++v) {
     const VoxelName name = block.labels[v];
@@ -86,7 +86,7 @@ std::vector<SurfaceBlock::Part> parts_of(const SurfaceBlock& block) {
       while (last < parts.size() && parts[last].supervoxel != name) ++last;
       if (last == parts.size()) parts.push_back({name, 0, 0, Eigen::Matrix<double, 9, 1>::Zero()});
     }
-    SurfaceBlock::Part& part = parts[last];
+    SurfaceBlock::SupervoxelPart& part = parts[last];
     const CloudVoxel& voxel = block.voxels[v];
     part.voxels += 1;
     part.points += voxel.points;
@@ -99,7 +99,7 @@ std::vector<SurfaceBlock::Part> parts_of(const SurfaceBlock& block) {
 
 using NamePairs = std::vector<std::pair<VoxelName, VoxelName>>;
 
-/// Pairs of a label in the block and another next to it, sorted.
+/// Finds the pairs of a label in the block and an adjacent one, sorted.
 void find_touching(const SurfaceBlock& block, const PaddedBlock& near, NamePairs& touching) {
   touching.clear();
   PaddedBlock::Neighbours found;
@@ -118,12 +118,12 @@ void find_touching(const SurfaceBlock& block, const PaddedBlock& near, NamePairs
   touching.erase(std::unique(touching.begin(), touching.end()), touching.end());
 }
 
-/// Supervoxels with their seeds in the block, from their parts in it and next to it.
-std::vector<SurfaceBlock::Own> own_of(const SurfaceBlocks& blocks, std::uint32_t slot) {
-  std::vector<SurfaceBlock::Part> sums;
+/// Returns the supervoxels with seeds in the block, from their parts in it and around it.
+std::vector<SurfaceBlock::OwnedSupervoxel> own_of(const SurfaceBlocks& blocks, std::uint32_t slot) {
+  std::vector<SurfaceBlock::SupervoxelPart> sums;
   for (const std::uint32_t other : blocks.around(slot)) {
     if (other == SurfaceBlocks::kNone) continue;
-    for (const SurfaceBlock::Part& part : blocks[other].parts) {
+    for (const SurfaceBlock::SupervoxelPart& part : blocks[other].parts) {
       if (part.supervoxel / kBrickVoxels != slot) continue;
       const auto sum =
           std::find_if(sums.begin(), sums.end(), [&](const auto& s) { return s.supervoxel == part.supervoxel; });
@@ -137,8 +137,8 @@ std::vector<SurfaceBlock::Own> own_of(const SurfaceBlocks& blocks, std::uint32_t
     }
   }
   std::sort(sums.begin(), sums.end(), [](const auto& a, const auto& b) { return a.supervoxel < b.supervoxel; });
-  std::vector<SurfaceBlock::Own> own;
-  for (const SurfaceBlock::Part& sum : sums) {
+  std::vector<SurfaceBlock::OwnedSupervoxel> own;
+  for (const SurfaceBlock::SupervoxelPart& sum : sums) {
     const Eigen::Matrix<double, 9, 1> mean = sum.sum / static_cast<double>(sum.voxels);
     const double length = mean.segment<3>(3).norm();
     own.push_back(
@@ -174,7 +174,7 @@ std::vector<SurfaceBlock::Edge> edges_of(const SurfaceBlocks& blocks, std::uint3
 }
 
 const Supervoxel& supervoxel_of(const SurfaceBlocks& blocks, VoxelName name) {
-  for (const SurfaceBlock::Own& own : blocks[name / kBrickVoxels].own) {
+  for (const SurfaceBlock::OwnedSupervoxel& own : blocks[name / kBrickVoxels].own) {
     if (own.name == name) return own.supervoxel;
   }
   SACCADE_EXPECTS(false);
@@ -183,7 +183,7 @@ const Supervoxel& supervoxel_of(const SurfaceBlocks& blocks, VoxelName name) {
 
 }  // namespace
 
-/// The labels of these blocks of one tile, from the voxels up to two blocks away.
+/// Labels these blocks of one tile, from the voxels up to two blocks away.
 void LiveSegments::label_blocks(std::span<const std::uint32_t> slots) {
   Slots region = blocks_->with_rings(slots, 2);
   std::sort(region.begin(), region.end(),
@@ -192,15 +192,15 @@ void LiveSegments::label_blocks(std::span<const std::uint32_t> slots) {
   SupervoxelGrowth growth{part.cloud, VoxelDifference{supervoxel_config_, supervoxel_config_.seed_spacing_m}};
   growth.seed(part.cell_of, part.cells, kSeedRadius_vox * supervoxel_config_.voxels.voxel_size_m,
               supervoxel_config_.fewest_around_seed(2.0 * kSeedRadius_vox), Executor{});
-  // What a seed brings about in the blocks beyond the first ring does not come here within its reach.
+  // Effects of a seed on blocks beyond the first ring do not come back here within its reach.
   std::vector<std::uint8_t> outside(part.names.size(), 1);
   for (const std::uint32_t slot : blocks_->with_rings(slots, 1)) {
     std::fill_n(outside.begin() + part.first_of[slot], (*blocks_)[slot].voxels.size(), std::uint8_t{0});
   }
   const SupervoxelGrowth::Grown grown = growth.grow(kReach_vox, outside);
   for (const std::uint32_t slot : slots) {
-    std::array<VoxelName, 8> rest;  // per cell: the first voxel that no seed reached
-    rest.fill(kNobody);
+    std::array<VoxelName, 8> rest;  // per cell: first voxel that no seed reached
+    rest.fill(kNoSupervoxel);
     std::vector<VoxelName>& labels = (*blocks_)[slot].labels;
     labels.clear();
     const std::uint32_t first = part.first_of[slot];
@@ -210,13 +210,13 @@ void LiveSegments::label_blocks(std::span<const std::uint32_t> slots) {
         continue;
       }
       VoxelName& name = rest[seed_cell(part.names[v] % kBrickVoxels)];
-      if (name == kNobody) name = part.names[v];
+      if (name == kNoSupervoxel) name = part.names[v];
       labels.push_back(name);
     }
   }
 }
 
-/// @return the blocks with a label that changed.
+/// @return the blocks with changed labels.
 LiveSegments::Slots LiveSegments::renew_labels(const Slots& slots, const Executor& executor) {
   Slots by_tile = slots;
   std::sort(by_tile.begin(), by_tile.end(), [&](std::uint32_t a, std::uint32_t b) {
@@ -225,7 +225,7 @@ LiveSegments::Slots LiveSegments::renew_labels(const Slots& slots, const Executo
     return tile_a == tile_b ? a < b : zyx_less(tile_a, tile_b);
   });
   std::vector<std::vector<VoxelName>> before;
-  std::vector<std::size_t> tiles;  // where they begin, and the end
+  std::vector<std::size_t> tiles;  // first slot of each tile, then the end
   for (std::size_t i = 0; i < by_tile.size(); ++i) {
     before.push_back(std::move((*blocks_)[by_tile[i]].labels));
     if (i == 0 || !(tile_of((*blocks_)[by_tile[i]].key) == tile_of((*blocks_)[by_tile[i - 1]].key))) tiles.push_back(i);
@@ -258,7 +258,7 @@ void LiveSegments::renew_parts(const Slots& slots, const Executor& executor) {
   });
 }
 
-/// Supervoxels with their seeds in these blocks, and edges, with those of others to them.
+/// Renews the supervoxels with seeds in these blocks, and their edges, including those from other blocks.
 void LiveSegments::renew_own(const Slots& slots, const Executor& executor) {
   executor.parallel_for(slots.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) (*blocks_)[slots[i]].own = own_of(*blocks_, slots[i]);
@@ -268,7 +268,7 @@ void LiveSegments::renew_own(const Slots& slots, const Executor& executor) {
   });
   std::vector<bool> renewed(blocks_->slots());
   for (const std::uint32_t slot : slots) renewed[slot] = true;
-  const Slots all = blocks_->with_rings(slots, 3);  // a supervoxel touches others whose seeds lie up to 17 voxels away
+  const Slots all = blocks_->with_rings(slots, 3);  // touching supervoxels have seeds up to 17 voxels apart
   executor.parallel_for(all.size(), kLabelledGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       SurfaceBlock& block = (*blocks_)[all[i]];

@@ -16,7 +16,7 @@ struct Labelling {
   std::size_t segments{0};
 };
 
-/// `segment(threshold)` gives a Result<Labelling>.
+/// Computes a curve; `segment(threshold)` returns a Result<Labelling>.
 template <class Segment>
 Result<ScoreCurve> curve_over(std::span<const double> thresholds, const SegmentationTruth& truth,
                               const Executor& executor, const Progress& progress, const Segment& segment) {
@@ -80,7 +80,7 @@ Result<ScoreCurve> sv_lccp_curve(const SupervoxelResult& supervoxels, const Segm
                                  std::span<const double> thresholds, const LccpConfig& config, const Executor& executor,
                                  const Progress& progress) {
   return curve_over(thresholds, truth, executor, progress, [&](double threshold) -> Result<Labelling> {
-    if (!(threshold >= 0.0)) return Error{Errc::invalid_argument, "a threshold that is negative or no number", "curve"};
+    if (!(threshold >= 0.0)) return Error{Errc::invalid_argument, "a threshold is negative or not a number", "curve"};
     SupervoxelResult pruned = supervoxels;
     prune_by_color(pruned, threshold);
     SACCADE_TRY(LccpResult found, segment_by_convexity(pruned, config));

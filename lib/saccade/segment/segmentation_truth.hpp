@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SegmentationTruth: what a surfel cloud should be divided into, and how well segmentations do; curves over thresholds.
+// SegmentationTruth: the true segments of a surfel cloud, and scores of segmentations; curves over thresholds.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -20,9 +20,9 @@ class BoundaryFinder;
 
 /// Parameters of match_boundaries.
 struct BoundaryMatchingConfig {
-  double tolerance_m{0.02};  ///< T_eval: no farther apart are the two of a pair (thesis Table 4.2)
-  /// Of a cluster of points that could be paired, directly or by way of others: with more points than this in it, the
-  /// distances are not the least.
+  double tolerance_m{0.02};  ///< T_eval: largest distance between the two points of a pair (thesis Table 4.2)
+  /// Largest cluster of points that could be paired, directly or by way of others, for which the sum of distances is
+  /// exactly minimal.
   std::size_t exact_cluster{256};
 
   /// @return invalid_argument for a tolerance that is not finite and positive, or clusters beyond 4096 points.
@@ -31,42 +31,42 @@ struct BoundaryMatchingConfig {
 
 /// Parameters of SegmentationTruth.
 struct SegmentationTruthConfig {
-  BoundaryMatchingConfig matching;  ///< T_eval is that of the boundaries as well
-  bool split{true};                 ///< true labels whose surfels do not touch become several; needs radii
+  BoundaryMatchingConfig matching;  ///< T_eval also applies to the boundaries
+  bool split{true};                 ///< splits true labels whose surfels do not touch; needs radii
 };
 
-/// Of one segmentation. Thesis §4.1.2.
+/// Score of one segmentation. Thesis §4.1.2.
 struct SegmentationScore {
   std::size_t boundary{0};       ///< surfels of its boundary
-  std::size_t true_boundary{0};  ///< of the truth's
+  std::size_t true_boundary{0};  ///< surfels of the truth's boundary
   std::size_t matched{0};        ///< pairs of them: true positives
   double distance_m{0.0};        ///< mean over the pairs
   double bce{0.0};
 
-  /// Share of its boundary that is matched; none without a boundary.
+  /// Returns the share of its boundary that is matched; none without a boundary.
   [[nodiscard]] std::optional<double> precision() const;
-  /// Share of the truth's boundary that is matched; none where the truth has no boundary.
+  /// Returns the share of the truth's boundary that is matched; none where the truth has no boundary.
   [[nodiscard]] std::optional<double> recall() const;
-  /// Harmonic mean of both: 2 · matched / (boundary + true boundary); none where neither has a boundary.
+  /// Returns the harmonic mean of both: 2 · matched / (boundary + true boundary); none where neither has a boundary.
   [[nodiscard]] std::optional<double> f() const;
 };
 
 class SegmentationTruth {
  public:
-  /// @param cloud   places; and radii, where truth is to be split.
-  /// @param labels  one per point; points without one, or without a finite place, are left out of everything.
+  /// @param cloud   positions; and radii, where the truth is to be split.
+  /// @param labels  one per point; points without a label or a finite position are ignored.
   /// @return an error of the cloud or the config; size_mismatch unless there is one label per point.
   [[nodiscard]] static Result<SegmentationTruth> create(const PointCloud& cloud, std::span<const std::uint32_t> labels,
                                                         const SegmentationTruthConfig& config,
                                                         const Executor& executor);
 
-  /// Points that count.
+  /// Returns the number of points that count.
   [[nodiscard]] std::size_t points() const { return points_; }
-  /// Of the truth, after it was split.
+  /// Returns the number of true segments after splitting.
   [[nodiscard]] std::size_t segments() const { return segments_; }
   [[nodiscard]] std::span<const std::uint32_t> boundary() const { return boundary_; }
 
-  /// @param labels  as many as the truth's; points without one are one segment together.
+  /// @param labels  one per point of the truth; points without one form one segment.
   /// @return size_mismatch for another number of labels. The thread count never changes a bit of the result.
   [[nodiscard]] Result<SegmentationScore> score(std::span<const std::uint32_t> labels, const Executor& executor) const;
 

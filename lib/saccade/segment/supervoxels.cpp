@@ -12,9 +12,9 @@ namespace saccade {
 
 namespace {
 
-constexpr int kMostRounds{100};  // they stand still long before
+constexpr int kMostRounds{100};  // converged long before
 
-/// The number of the grid's cell in which each voxel lies, and how many there are.
+/// Returns the number of the grid cell of each voxel, and the number of cells.
 std::pair<std::vector<std::uint32_t>, std::size_t> seed_cells(const VoxelCloud& cloud, double spacing) {
   CellIndex index;
   std::vector<std::uint32_t> cell_of(cloud.voxels.size());
@@ -24,7 +24,7 @@ std::pair<std::vector<std::uint32_t>, std::size_t> seed_cells(const VoxelCloud& 
   return {std::move(cell_of), index.cells().size()};
 }
 
-/// A label for every voxel: voxels that no seed reached in time go on growing, connected parts without a seed become
+/// Labels every voxel: voxels that no seed reached in time continue to grow; connected parts without a seed become
 /// supervoxels.
 std::vector<std::uint32_t> with_rest(const VoxelCloud& cloud, SupervoxelGrowth::Grown grown) {
   std::vector<std::uint32_t>& labels = grown.labels;
@@ -101,7 +101,7 @@ Status SupervoxelConfig::validate() const {
   SACCADE_CHECK(voxels.validate());
   const auto error = [](const char* message) { return Error{Errc::invalid_argument, message, "supervoxels"}; };
   for (const double number : {seed_spacing_m, spatial_weight, normal_weight, color_weight, min_seed_share}) {
-    if (!(std::isfinite(number) && number >= 0.0)) return error("a number that is not finite, or negative");
+    if (!(std::isfinite(number) && number >= 0.0)) return error("a number is not finite, or negative");
   }
   if (spatial_weight + normal_weight + color_weight == 0.0) return error("all weights are zero");
   if (seed_spacing_m < voxels.voxel_size_m) return error("seed_spacing_m must be at least voxel_size_m");

@@ -19,7 +19,7 @@ const BrickRef* find(const SectorTable& table, const Index3& brick) {
   return sector == nullptr ? nullptr : &sector->bricks[static_cast<std::size_t>(child_index(brick))];
 }
 
-/// Mean of the zero crossings on the edges of a cell, in voxels from its lower corner.
+/// Returns the mean of the zero crossings on the edges of a cell, in voxels from its lower corner.
 Eigen::Vector3f mean_crossing(const std::array<float, 8>& v) {
   Eigen::Vector3f sum = Eigen::Vector3f::Zero();
   float crossings{0.0F};
@@ -40,7 +40,7 @@ Eigen::Vector3f mean_crossing(const std::array<float, 8>& v) {
   return sum / crossings;
 }
 
-/// Eq. 3.4 at the two middle ones of four voxels in a row, added up; the outer ones may be unknown.
+/// Returns the sum of eq. 3.4 at the two middle voxels of four in a row; the outer ones may be unknown.
 int gradient_sum(const std::int16_t* first, int stride) {
   const int b = first[stride];
   const int c = first[2 * stride];

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// surface_points: the surface of a map as a point cloud; SurfaceExtraction: the same brick by brick.
+// surface_points: the surface of a map as a point cloud. SurfaceExtraction: this cloud brick by brick.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,8 +13,8 @@
 
 namespace saccade {
 
-/// One point per surface voxel: per cell between eight neighbouring voxel centres, all known, at least one of them
-/// occupied and one empty (the cells of marching cubes). Unknown space bounds no surface.
+/// Returns one point per surface voxel: per cell between eight neighbouring voxel centres, all known, at least one of
+/// them occupied and one empty (the cells of marching cubes). Unknown space bounds no surface.
 ///
 /// A point lies at the mean of the zero crossings on the cell's edges, so that the points of a plane lie in it. Its
 /// normal is the TSDF's gradient (thesis eq. 3.3 with six neighbours, eq. 3.4), the mean of those at the eight voxels,
@@ -26,7 +26,8 @@ namespace saccade {
 [[nodiscard]] PointCloud surface_points(const TsdfSnapshot& map, const Executor& executor,
                                         std::uint16_t min_weight = 1);
 
-/// Points of one brick after the other. One per thread; borrows the map, which must not be written meanwhile.
+/// Extraction of one brick's points after the other. One per thread; borrows the map, which must not be written
+/// meanwhile.
 class SurfaceExtraction {
  public:
   SurfaceExtraction(const SectorTable& table, double voxel_size_m, std::uint16_t min_weight);
@@ -38,7 +39,7 @@ class SurfaceExtraction {
     Eigen::Vector3f color;
     bool colored{false};
   };
-  /// Those of cells whose lower corner lies in the brick; valid until the next call.
+  /// Returns the points of cells whose lower corner lies in the brick; valid until the next call.
   [[nodiscard]] const std::vector<Point>& points_of(const Index3& brick);
 
  private:
@@ -49,7 +50,7 @@ class SurfaceExtraction {
   double voxel_size_m_;
   std::uint16_t min_weight_;
   VoxelBlock block_;
-  bool has_colors_{false};  ///< some brick that the block reads has
+  bool has_colors_{false};  ///< whether a brick that the block reads has colours
   std::vector<Point> points_;
 };
 

@@ -18,7 +18,7 @@ Status SvLccpConfig::validate() const {
   SACCADE_CHECK(supervoxels.validate());
   SACCADE_CHECK(lccp.validate());
   if (max_color_difference >= 0.0) return {};
-  return Error{Errc::invalid_argument, "a difference of colours that is negative or no number", "SV-LCCP"};
+  return Error{Errc::invalid_argument, "the largest difference of colours is negative or not a number", "SV-LCCP"};
 }
 
 void prune_by_color(SupervoxelResult& supervoxels, double max_difference) {

@@ -60,7 +60,7 @@ std::optional<ShapeHit> hit(const Cylinder& cylinder, const Vector3d& origin, co
   const Vector3d to_origin = origin - cylinder.base;
   const double start = axis.dot(to_origin);
   const double rate = axis.dot(direction);
-  // Within the slab between the end faces, and within the infinite tube: the later of the two entries counts.
+  // Inside the slab between the end faces and inside the infinite tube: the later of the two entries counts.
   ShapeHit entry{-std::numeric_limits<double>::infinity(), Vector3d::Zero()};
   double exit = std::numeric_limits<double>::infinity();
   if (rate != 0.0) {

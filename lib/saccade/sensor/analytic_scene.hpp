@@ -17,7 +17,7 @@
 
 namespace saccade {
 
-/// Half space below the plane normal·p = offset_m; its surface is seen from above. The normal has length 1.
+/// Half space below the plane normal·p = offset_m; its surface is visible from above. The normal has length 1.
 struct HalfSpace {
   Eigen::Vector3d normal{Eigen::Vector3d::UnitZ()};
   double offset_m{0.0};
@@ -36,7 +36,7 @@ struct AnalyticObject {
   Checker checker{};
 };
 
-/// A point where a ray meets a surface.
+/// Point where a ray meets a surface.
 struct SurfaceHit {
   double t{0.0};                                          ///< p = origin + t·direction
   Eigen::Vector3d normal_world{Eigen::Vector3d::Zero()};  ///< outward, length 1
@@ -56,26 +56,27 @@ struct AnalyticScene {
   Eigen::Vector3d to_light_world{0.3, -0.5, 0.8};
   double ambient{0.35};
 
-  /// Nearest hit with t > 0 of the ray origin + t·direction, entering an object from outside; the first object at a
-  /// tie.
+  /// Returns the nearest hit with t > 0 of the ray origin + t·direction, entering an object from outside; the first
+  /// object at a tie.
   [[nodiscard]] std::optional<SurfaceHit> cast(const Eigen::Vector3d& origin, const Eigen::Vector3d& direction) const;
-  /// Signed distance to the union's surface, negative inside; exact outside, a lower bound of the depth inside.
+  /// Returns the signed distance to the union's surface, negative inside; exact outside, a lower bound of the depth
+  /// inside.
   [[nodiscard]] double signed_distance_m(const Eigen::Vector3d& p_world) const;
-  /// Checks sizes and names of all objects; invalid_argument.
+  /// Checks sizes and names of all objects. Answers invalid_argument.
   [[nodiscard]] Status validate() const;
 };
 
-/// What the camera sees: pixel (u, v) is the ray through (u, v), exact to rounding. invalid_argument for a bad camera.
-/// O(pixels · objects), the same for every thread count.
+/// Renders the camera's view: pixel (u, v) is the ray through (u, v), exact to rounding. Answers invalid_argument for a
+/// bad camera. O(pixels · objects). The thread count never changes the result.
 [[nodiscard]] Result<RenderedFrame> render(const AnalyticScene& scene, const PinholeCamera& camera,
                                            const Pose& T_world_camera, const Executor& executor = {});
 
-/// A table slab with its top at z = 0, 1.2 × 0.8 m around the origin, four objects of different shape and colour on it,
-/// a floor and a back wall. Checkered, so that pictures and tracking have texture.
+/// Returns a scene: a table slab with its top at z = 0, 1.2 × 0.8 m around the origin, four objects of different shape
+/// and colour on it, a floor and a back wall. Checkered, so that pictures and tracking have texture.
 [[nodiscard]] AnalyticScene sample_tabletop();
 
-/// n ≥ 1 poses on an arc of 140° around the table at 0.75 to 0.95 m, looking at a point 5 cm above its centre; height
-/// and distance vary smoothly. With n = 60, neighbours differ by about 4 cm and 2.5°.
+/// Returns n ≥ 1 poses on an arc of 140° around the table at 0.75 to 0.95 m, looking at a point 5 cm above its centre.
+/// Height and distance vary smoothly. With n = 60, neighbours differ by about 4 cm and 2.5°.
 [[nodiscard]] std::vector<Pose> sample_trajectory(std::size_t n);
 
 }  // namespace saccade

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Frame: what a depth camera delivers; CameraSource: where frames come from; Camera: takes frames where it is moved to;
-// OwnBody: what a robot would see of itself.
+// Frame: one image of a depth camera. CameraSource: a stream of frames. Camera: takes frames where it is moved to.
+// OwnBody: the robot's body in the camera's image.
 
 #include <functional>
 #include <memory>
@@ -18,8 +18,8 @@ namespace saccade {
 
 /// One RGB-D frame; depth and colour share the camera.
 struct Frame {
-  std::size_t index{0};  ///< position in the source, counting the skipped ones
-  std::string name;      ///< what a person would call it, for messages (a file stem, a time stamp)
+  std::size_t index{0};  ///< position in the source, counting skipped frames
+  std::string name;      ///< name for messages (a file stem, a time stamp)
   std::optional<double> time_s;
   DepthImage depth;
   std::optional<ColorImage> color;
@@ -31,24 +31,24 @@ class CameraSource {
  public:
   virtual ~CameraSource() = default;
   [[nodiscard]] virtual const PinholeCamera& camera() const = 0;
-  /// Frames in all, where that is known beforehand.
+  /// Returns the number of frames, where it is known beforehand.
   [[nodiscard]] virtual std::optional<std::size_t> size() const = 0;
-  /// The next frame; nullopt at the end. A frame that is missing or corrupt is an error that names it; the source has
+  /// Returns the next frame; nullopt at the end. A missing or corrupt frame is an error that names it. The source has
   /// then moved past it, and the next call delivers the following frame.
   [[nodiscard]] virtual Result<std::optional<Frame>> next() = 0;
 };
 
-/// A depth camera that is asked for frames one by one. One caller at a time.
+/// A depth camera that takes frames on request. One caller at a time.
 class Camera {
  public:
   virtual ~Camera() = default;
   [[nodiscard]] virtual const PinholeCamera& intrinsics() const = 0;
-  /// @param T_world_camera where the robot says that the camera is; the frame may know better.
+  /// @param T_world_camera the camera's pose as reported by the robot; the frame may hold a better one.
   [[nodiscard]] virtual Result<Frame> capture(const Pose& T_world_camera) = 0;
 };
 
-/// Returns the depth of a robot's own body along z, metres, as the camera that it holds sees it from a pose; 0: none
-/// there. nullopt: no body is in the picture.
+/// Returns the depth of a robot's own body along z in metres, as the camera that it holds sees it from a pose; 0 where
+/// there is none. nullopt: no part of the body is in the image.
 using OwnBody = std::function<std::optional<DepthImage>(const Pose& T_world_camera)>;
 
 /// Calls a function for each frame; without one it sees nothing: no pixel has a return.

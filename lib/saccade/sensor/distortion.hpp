@@ -26,7 +26,7 @@ struct Distortion {
   [[nodiscard]] Eigen::Vector2d distort(const Eigen::Vector2d& ideal) const;
   /// The inverse, by Newton's method to 1e-12; nullopt beyond the radius up to which the model is one to one.
   [[nodiscard]] std::optional<Eigen::Vector2d> undistort(const Eigen::Vector2d& distorted) const;
-  /// Whether the model is one to one at this ideal point (its Jacobian is positive there and on the way to it).
+  /// Tells whether the model is one to one at this ideal point (its Jacobian is positive there and on the way to it).
   [[nodiscard]] bool regular_at(const Eigen::Vector2d& ideal) const;
 
   [[nodiscard]] bool is_zero() const { return *this == Distortion{}; }

@@ -11,11 +11,11 @@ namespace {
 constexpr int kMaxGap_px{64};
 
 struct Neighbour {
-  int distance_px{0};  ///< 0: there is none
+  int distance_px{0};  ///< 0 where there is none
   float depth_m{0.0F};
 };
 
-/// The nearest return in one direction, at most `reach` pixels away.
+/// Returns the nearest return in one direction, at most `reach` pixels away.
 Neighbour nearest_return(const DepthImage& depth, int u, int v, int du, int dv, int reach) {
   for (int distance = 1; distance <= reach; ++distance) {
     u += du;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HandTracker: where a hand's motion comes from, sample by sample; RecordedHand plays a recording.
+// HandTracker: source of a hand's motion, sample by sample. RecordedHand: plays a recording.
 
 #include <optional>
 
@@ -9,7 +9,7 @@
 
 namespace saccade {
 
-/// One caller at a time.
+/// Source of hand samples. One caller at a time.
 class HandTracker {
  public:
   virtual ~HandTracker() = default;
@@ -18,7 +18,7 @@ class HandTracker {
   [[nodiscard]] virtual Result<std::optional<HandSample>> next() = 0;
 };
 
-/// An empty recording is a hand that never comes.
+/// Recorded hand. With an empty recording the hand never appears.
 class RecordedHand final : public HandTracker {
  public:
   explicit RecordedHand(HandTrajectory trajectory = {}) : trajectory_{std::move(trajectory)} {}

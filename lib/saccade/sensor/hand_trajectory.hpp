@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HandTrajectory: where a hand was, sample after sample; HandAction: where and when it did something; check_samples,
-// usable_samples: what is wrong with samples, and what a detector can work with.
+// HandTrajectory: positions of a hand, sample by sample. HandAction: place and time of an action. check_samples,
+// usable_samples: faults of samples, and the samples that detectors can use.
 
 #include <Eigen/Core>
 #include <Eigen/Geometry>
@@ -19,13 +19,13 @@ namespace saccade {
 struct HandSample {
   double time_s{0.0};
   Eigen::Vector3d position_m{Eigen::Vector3d::Zero()};  ///< in the world frame
-  std::optional<Eigen::Quaterniond> R_world_hand{};     ///< where the sensor gives it
+  std::optional<Eigen::Quaterniond> R_world_hand{};     ///< where the sensor measures it
 };
 
-/// A task of the hand, by increasing time.
+/// Samples of one task of the hand, by increasing time.
 using HandTrajectory = std::vector<HandSample>;
 
-/// A place where the hand may have changed something: a point of interest (POI) of thesis §2.2.4.
+/// Place where the hand may have changed something: a point of interest (POI) of thesis §2.2.4.
 struct HandAction {
   Eigen::Vector3d position_m{Eigen::Vector3d::Zero()};
   double time_s{0.0};
@@ -40,7 +40,7 @@ struct LabelledTrajectory {
   std::vector<Eigen::Vector3d> labels_m;
 };
 
-/// What a motion sensor delivered besides good samples. Repeats and gaps are normal for such sensors.
+/// Faults among the samples of a motion sensor. Repeats and gaps are normal for such sensors.
 struct SampleReport {
   std::size_t samples{0};
   std::size_t not_finite{0};      ///< NaN or infinite time or position
@@ -54,17 +54,18 @@ struct SampleReport {
 
   [[nodiscard]] std::size_t bad() const { return not_finite + not_increasing; }
   [[nodiscard]] std::size_t good() const { return samples - bad(); }
-  /// One line for people: "830 samples, 10 ms apart; 2 not finite, 118 repeats"; what did not occur is left out.
+  /// Returns one line for people: "830 samples, 10 ms apart; 2 not finite, 118 repeats". Faults that did not occur are
+  /// omitted.
   [[nodiscard]] std::string to_string() const;
 };
 
-/// O(n).
+/// Counts the faults. O(n).
 [[nodiscard]] SampleReport check_samples(std::span<const HandSample> samples);
 
-/// The samples without those that SampleReport counts as bad; repeats stay. O(n).
+/// Returns the samples without those that SampleReport counts as bad; repeats stay. O(n).
 [[nodiscard]] HandTrajectory usable_samples(std::span<const HandSample> samples);
 
-/// Ok when no sample is bad; otherwise invalid_argument naming the first, from 0. What detectors ask for. O(n).
+/// Answers invalid_argument for the first bad sample, with its number from 0. Detectors require that none is bad. O(n).
 [[nodiscard]] Status validate(std::span<const HandSample> trajectory);
 
 }  // namespace saccade

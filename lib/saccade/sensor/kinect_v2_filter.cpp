@@ -6,7 +6,7 @@
 #include <limits>
 #include <string>
 
-#include "saccade/sensor/internal/shadow_doubt.hpp"
+#include "saccade/sensor/internal/shadow_likelihood.hpp"
 
 namespace saccade {
 namespace {
@@ -30,7 +30,7 @@ struct RowCounts {
   std::size_t veil_points{0};
 };
 
-/// Clears what was removed, and counts.
+/// Clears removed pixels and counts them.
 RowCounts remove_marked(const FilteredPixel* pixels, int width, float* z) {
   RowCounts counts;
   for (int u = 0; u < width; ++u) {
@@ -85,7 +85,7 @@ DepthFilter::DepthFilter(const PinholeCamera& camera, const DepthFilterConfig& c
       step_x_{1.0 / camera.fx},
       step_y_{1.0 / camera.fy} {}
 
-/// Algorithm 5. β' = x'/z = x/z + Δ/z; for an emitter on the right, the same in the mirrored row.
+/// Algorithm 5. β' = x'/z = x/z + Δ/z; for an emitter on the right, in the mirrored row.
 void DepthFilter::mark_shadow_points(const float* z, FilteredPixel* pixels) const {
   const std::size_t width = x_.size();
   const bool left = config_.emitter_side == EmitterSide::left;
@@ -135,17 +135,17 @@ Result<FilteredDepth> DepthFilter::filter(const DepthImage& depth, const Executo
   }
   FilteredDepth result{depth, {width, height}};
   const bool by_surface = config_.method == DepthFilterMethod::surface;
-  const bool judges_shadows = by_surface && config_.remove_shadow_points;
-  const Image<ShadowVerdict> verdicts = judges_shadows ? judge_shadows(depth, executor) : Image<ShadowVerdict>{};
+  const bool classifies_shadows = by_surface && config_.remove_shadow_points;
+  const Image<ShadowState> states = classifies_shadows ? classify_shadows(depth, executor) : Image<ShadowState>{};
   std::vector<RowCounts> counts(y_.size());
   executor.parallel_for(counts.size(), kRowGrain, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       const int v = static_cast<int>(i);
       FilteredPixel* pixels = result.pixels.row(v);
       std::transform(depth.row(v), depth.row(v) + width, pixels, as_it_came);
-      if (judges_shadows) mark_unlit_points(depth, verdicts, v, pixels);
+      if (classifies_shadows) mark_unlit_points(depth, states, v, pixels);
       if (config_.remove_shadow_points && !by_surface) mark_shadow_points(depth.row(v), pixels);
-      if (config_.remove_veil_points && by_surface) mark_unsupported_points(depth, verdicts, v, pixels);
+      if (config_.remove_veil_points && by_surface) mark_unsupported_points(depth, states, v, pixels);
       if (config_.remove_veil_points && !by_surface) mark_veil_points(depth, v, pixels);
       counts[i] = remove_marked(pixels, width, result.depth.row(v));
     }

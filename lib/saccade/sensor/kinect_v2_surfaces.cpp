@@ -1,32 +1,30 @@
 // SPDX-License-Identifier: Apache-2.0
-// DepthFilter's method surface: what Algorithm 5 and eq. 3.19 would remove stays where it lies on a surface.
+// DepthFilter's method surface: points that Algorithm 5 and eq. 3.19 would remove stay where they lie on a surface.
 #include <algorithm>
 #include <cmath>
 #include <limits>
 
-#include "saccade/sensor/internal/shadow_doubt.hpp"
+#include "saccade/sensor/internal/shadow_likelihood.hpp"
 #include "saccade/sensor/kinect_v2_filter.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kRowsAtOnce{16};
-constexpr int kHalf{4};  // of eight neighbours
+constexpr int kHalf{4};  // half of eight neighbours
 constexpr int kMost{6};
 
 bool is_return(float z) { return z > 0.0F && z <= std::numeric_limits<float>::max(); }
 
-/// 0 outside the image too.
+/// Returns the depth at a pixel; 0 outside the image too.
 float return_at(const DepthImage& depth, int u, int v) {
   const bool inside = u >= 0 && v >= 0 && u < depth.width() && v < depth.height();
   return inside && is_return(depth(u, v)) ? depth(u, v) : 0.0F;
 }
 
-bool is_doubted(ShadowVerdict verdict) {
-  return verdict == ShadowVerdict::suspect || verdict == ShadowVerdict::in_shadow;
-}
+bool is_doubted(ShadowState state) { return state == ShadowState::suspect || state == ShadowState::in_shadow; }
 
-/// How many of the pixels around (u, v) `is` true of.
+/// Counts the pixels around (u, v) that satisfy `is`.
 template <typename Is>
 int count_around(int u, int v, int width, int height, const Is& is) {
   int count = 0;
@@ -38,13 +36,13 @@ int count_around(int u, int v, int width, int height, const Is& is) {
   return count;
 }
 
-/// A gap of one column between an object and its shadow.
-bool is_column_cleared(const Image<ShadowVerdict>& verdicts, int u, int v) {
-  return v > 0 && v + 1 < verdicts.height() && verdicts(u, v - 1) == ShadowVerdict::cleared &&
-         verdicts(u, v + 1) == ShadowVerdict::cleared;
+/// Tells whether a pixel is a gap of one column between an object and its shadow.
+bool is_column_cleared(const Image<ShadowState>& states, int u, int v) {
+  return v > 0 && v + 1 < states.height() && states(u, v - 1) == ShadowState::cleared &&
+         states(u, v + 1) == ShadowState::cleared;
 }
 
-/// A point and the two next to it on one side: whether they are one flat surface. Depths; 0 where there is none.
+/// Tests whether a point and the two next to it on one side form one flat surface. Depths are 0 where missing.
 struct SupportTest {
   float jump_per_m;
   double tolerance_m;
@@ -59,7 +57,7 @@ struct SupportTest {
     const double off = 1.0 / at - 2.0 / static_cast<double>(z_next) + 1.0 / static_cast<double>(z_second);
     return std::abs(off) * at * at <= tolerance_m + tolerance_per_m * at;  // 1/z is linear on a plane
   }
-  /// Whether the point hangs between surfaces along an axis: b is before it, f behind it.
+  /// Tells whether the point hangs between surfaces along an axis: b is before it, f behind it.
   [[nodiscard]] bool is_loose(float b2, float b1, float z, float f1, float f2) const {
     const bool jumps_before = jumps(z, b1);
     const bool jumps_behind = jumps(z, f1);
@@ -70,7 +68,7 @@ struct SupportTest {
   }
 };
 
-/// 1 for the pixels of a row that jump to one of their four neighbours, and for some beside no return.
+/// Returns 1 for the pixels of a row that jump to one of their four neighbours, and for some beside no return.
 std::vector<std::uint8_t> may_be_loose(const DepthImage& depth, int v, float across, float down) {
   const auto width = static_cast<std::size_t>(depth.width());
   const float* row = depth.row(v);
@@ -91,17 +89,17 @@ std::vector<std::uint8_t> may_be_loose(const DepthImage& depth, int v, float acr
 
 }  // namespace
 
-Image<ShadowVerdict> DepthFilter::judge_shadows(const DepthImage& depth, const Executor& executor) const {
+Image<ShadowState> DepthFilter::classify_shadows(const DepthImage& depth, const Executor& executor) const {
   const int width = depth.width();
   const bool left = config_.emitter_side == EmitterSide::left;
   std::vector<double> x = x_;
   if (!left) std::transform(x_.rbegin(), x_.rend(), x.begin(), [](double at) { return -at; });
-  const ShadowDoubt doubt{{config_.baseline_m, config_.baseline_uncertainty, step_x_, jump_per_m(step_x_),
-                           config_.tolerance_m, config_.tolerance_per_m},
-                          std::move(x)};
-  Image<ShadowVerdict> verdicts{width, depth.height()};
+  const ShadowLikelihood doubt{{config_.baseline_m, config_.baseline_uncertainty, step_x_, jump_per_m(step_x_),
+                                config_.tolerance_m, config_.tolerance_per_m},
+                               std::move(x)};
+  Image<ShadowState> states{width, depth.height()};
   executor.parallel_for(y_.size(), kRowsAtOnce, [&](std::size_t begin, std::size_t end) {
-    ShadowDoubt of_rows = doubt;
+    ShadowLikelihood of_rows = doubt;
     std::vector<float> mirrored(left ? 0 : x_.size());
     for (auto v = static_cast<int>(begin); v < static_cast<int>(end); ++v) {
       const float* z = depth.row(v);
@@ -109,45 +107,45 @@ Image<ShadowVerdict> DepthFilter::judge_shadows(const DepthImage& depth, const E
         std::reverse_copy(z, z + width, mirrored.begin());
         z = mirrored.data();
       }
-      ShadowVerdict* row = verdicts.row(v);
+      ShadowState* row = states.row(v);
       std::transform(z, z + width, row,
-                     [](float at) { return is_return(at) ? ShadowVerdict::clear : ShadowVerdict::no_return; });
-      of_rows.judge(z, row);
+                     [](float at) { return is_return(at) ? ShadowState::clear : ShadowState::no_return; });
+      of_rows.classify(z, row);
       if (!left) std::reverse(row, row + width);
     }
   });
-  return verdicts;
+  return states;
 }
 
-/// The angle of eq. 3.19 as a step in depth to a neighbour, per metre of depth; near the axis the same.
+/// Returns the angle of eq. 3.19 as a step in depth to a neighbour, per metre of depth; equivalent near the axis.
 float DepthFilter::jump_per_m(double step) const { return static_cast<float>(step / std::tan(config_.veil_angle_rad)); }
 
-void DepthFilter::mark_unlit_points(const DepthImage& depth, const Image<ShadowVerdict>& verdicts, int v,
+void DepthFilter::mark_unlit_points(const DepthImage& depth, const Image<ShadowState>& states, int v,
                                     FilteredPixel* pixels) const {
   const int width = depth.width();
   const int height = depth.height();
-  const int away = config_.emitter_side == EmitterSide::left ? 1 : -1;  // from the emitter
+  const int away = config_.emitter_side == EmitterSide::left ? 1 : -1;  // direction away from the emitter
   const SupportTest test{jump_per_m(step_x_), config_.tolerance_m, config_.tolerance_per_m};
   const auto is_lit_beside = [&](int u) {
     const float z = depth(u, v);
     return test.is_straight(z, return_at(depth, u + away, v), return_at(depth, u + 2 * away, v)) &&
            count_around(u, v, width, height, [&](int i, int j) {
-             return is_return(depth(i, j)) && !is_doubted(verdicts(i, j)) && !test.jumps(z, depth(i, j));
+             return is_return(depth(i, j)) && !is_doubted(states(i, j)) && !test.jumps(z, depth(i, j));
            }) >= kMost;
   };
   const auto is_alone = [&](int u) {
-    return !is_column_cleared(verdicts, u, v) &&
-           count_around(u, v, width, height, [&](int i, int j) { return is_doubted(verdicts(i, j)); }) >= kHalf;
+    return !is_column_cleared(states, u, v) &&
+           count_around(u, v, width, height, [&](int i, int j) { return is_doubted(states(i, j)); }) >= kHalf;
   };
   for (int u = 0; u < width; ++u) {
-    const ShadowVerdict verdict = verdicts(u, v);
-    const bool unlit = is_doubted(verdict) || (verdict == ShadowVerdict::cleared && is_alone(u)) ||
-                       (verdict == ShadowVerdict::beyond && !is_lit_beside(u));
+    const ShadowState state = states(u, v);
+    const bool unlit = is_doubted(state) || (state == ShadowState::cleared && is_alone(u)) ||
+                       (state == ShadowState::beyond && !is_lit_beside(u));
     if (unlit) pixels[u] = FilteredPixel::shadow_point;
   }
 }
 
-void DepthFilter::mark_unsupported_points(const DepthImage& depth, const Image<ShadowVerdict>& verdicts, int v,
+void DepthFilter::mark_unsupported_points(const DepthImage& depth, const Image<ShadowState>& states, int v,
                                           FilteredPixel* pixels) const {
   const int width = depth.width();
   const SupportTest across{jump_per_m(step_x_), config_.tolerance_m, config_.tolerance_per_m};
@@ -156,8 +154,8 @@ void DepthFilter::mark_unsupported_points(const DepthImage& depth, const Image<S
   for (int u = 0; u < width; ++u) {
     if (may[static_cast<std::size_t>(u)] == 0 || pixels[u] != FilteredPixel::kept) continue;
     const auto at = [&](int i, int j) { return return_at(depth, i, j); };
-    // A point that was cleared lies on a surface of its row, and may be next to an object and to its shadow.
-    const bool is_cleared = !verdicts.empty() && verdicts(u, v) == ShadowVerdict::cleared;
+    // A cleared point lies on a surface of its row, and may be next to an object and to its shadow.
+    const bool is_cleared = !states.empty() && states(u, v) == ShadowState::cleared;
     const float z = depth(u, v);
     const bool loose = (!is_cleared && across.is_loose(at(u - 2, v), at(u - 1, v), z, at(u + 1, v), at(u + 2, v))) ||
                        down.is_loose(at(u, v - 2), at(u, v - 1), z, at(u, v + 1), at(u, v + 2));

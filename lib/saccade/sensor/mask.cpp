@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-/// Where the polygons' edges cross the row of pixel centres v, ascending.
+/// Returns where the polygons' edges cross the row of pixel centres v, ascending.
 std::vector<double> row_crossings(std::span<const PixelPolygon> polygons, double v) {
   std::vector<double> crossings;
   for (const PixelPolygon& polygon : polygons) {
@@ -23,7 +23,7 @@ std::vector<double> row_crossings(std::span<const PixelPolygon> polygons, double
   return crossings;
 }
 
-/// First pixel centre at or right of x, within [0, width].
+/// Returns the first pixel centre at or right of x, within [0, width].
 int first_pixel(double x, int width) { return static_cast<int>(std::clamp(std::ceil(x), 0.0, double(width))); }
 
 }  // namespace

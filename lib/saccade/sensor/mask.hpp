@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Pixels that must not count: masks from polygons, applied to depth; depths outside of the camera's range.
+// Pixels that must not count: masks from polygons, applied to depth, and depths outside the camera's range.
 
 #include <Eigen/Core>
 #include <span>
@@ -15,17 +15,18 @@ namespace saccade {
 /// Closed polygon in image coordinates; the last vertex is joined to the first.
 using PixelPolygon = std::vector<Eigen::Vector2d>;
 
-/// Mask that ignores (0) the pixels whose centres lie inside the polygons and uses (255) all others. Even-odd over all
-/// polygons together, so that a polygon within another is a hole; a centre on an edge belongs to the right and lower
-/// side. invalid_argument for fewer than 3 vertices, a coordinate that is not finite, or an image without pixels.
+/// Makes a mask that ignores (0) the pixels whose centres lie inside the polygons and uses (255) all others. Even-odd
+/// over all polygons together, so that a polygon within another is a hole. A centre on an edge belongs to the right and
+/// lower side. Answers invalid_argument for fewer than 3 vertices, a coordinate that is not finite, or an image without
+/// pixels.
 [[nodiscard]] Result<MaskImage> mask_from_polygons(int width, int height, std::span<const PixelPolygon> ignored);
 
 /// Sets the ignored pixels to 0 (no return), free claims (d < 0) included: the camera's own robot neither occupies nor
-/// frees space. size_mismatch when the sizes differ.
+/// frees space. Answers size_mismatch when the sizes differ.
 [[nodiscard]] Status apply_mask(const MaskImage& mask, DepthImage& depth);
 
-/// A return outside of [min_range_m, max_range_m] counts as none and becomes 0, as do NaN and infinity. A free claim
-/// (d < 0) beyond the maximum is shortened to it; one nearer than the minimum becomes 0.
+/// Sets returns outside [min_range_m, max_range_m], NaN and infinity to 0 (no return). Shortens free claims (d < 0)
+/// beyond the maximum to it; nearer than the minimum they become 0.
 void clip_to_range(const PinholeCamera& camera, DepthImage& depth);
 
 }  // namespace saccade

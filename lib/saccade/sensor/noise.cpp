@@ -18,15 +18,15 @@ std::uint64_t mixed(std::uint64_t x) {
 /// Uniform in [0, 1).
 double unit(std::uint64_t bits) { return static_cast<double>(bits >> 11U) * 0x1.0p-53; }
 
-/// Roughly normal with mean 0 and variance 1: the sum of twelve uniform numbers, cut off at 6 by its nature. It needs
-/// no transcendental function, whose last bit differs between C libraries.
+/// Returns a roughly normal number with mean 0 and variance 1: the sum of twelve uniform numbers, which never exceeds
+/// 6. It needs no transcendental function, whose last bit differs between C libraries.
 double normal(std::uint64_t key) {
   double sum = 0.0;
   for (std::uint64_t i = 0; i < 12; ++i) sum += unit(mixed(key + i));
   return sum - 6.0;
 }
 
-/// Share of the returns that are lost at an angle of incidence: 0 up to grazing_from_rad, then linear up to 1 at 90°.
+/// Returns the share of lost returns at an angle of incidence: 0 up to grazing_from_rad, then linear up to 1 at 90°.
 double lost_share(const DepthNoise& noise, double incidence_cosine) {
   const double angle_rad = std::acos(std::clamp(incidence_cosine, 0.0, 1.0));
   const double span_rad = 90_deg - noise.grazing_from_rad;

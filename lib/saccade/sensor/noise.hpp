@@ -10,9 +10,9 @@
 
 namespace saccade {
 
-/// Axial noise of a structured-light camera: σ(z) = base_m + quadratic_per_m · (z − offset_m)², with the figures that
-/// Nguyen, Izadi and Lovell (3DIMPVT 2012) measured on a Kinect v1. Optionally rounded to disparity steps, with pixels
-/// lost anywhere, and with pixels lost on surfaces seen at a grazing angle.
+/// Axial noise of a structured-light camera: σ(z) = base_m + quadratic_per_m · (z − offset_m)², with the values that
+/// Nguyen, Izadi and Lovell (3DIMPVT 2012) measured on a Kinect v1. Optionally rounds to disparity steps, and loses
+/// pixels at random or on surfaces seen at a grazing angle.
 struct DepthNoise {
   double base_m{0.0012};
   double quadratic_per_m{0.0019};
@@ -22,18 +22,18 @@ struct DepthNoise {
   double grazing_from_rad{90_deg};   ///< angle of incidence from which returns get lost, all at 90°
   std::uint64_t seed{1};
 
-  /// invalid_argument for negative or infinite parameters, or a dropout above 1.
+  /// Answers invalid_argument for negative or infinite parameters, or a dropout above 1.
   [[nodiscard]] Status validate() const;
-  /// Standard deviation at depth z.
+  /// Returns the standard deviation at depth z.
   [[nodiscard]] double sigma_m(double z_m) const {
     return base_m + quadratic_per_m * (z_m - offset_m) * (z_m - offset_m);
   }
 };
 
-/// The image with noise; pixels without a return (≤ 0, NaN) are kept. Each pixel's noise depends only on the seed, the
-/// frame number and its index, so the result is the same on every machine and for every order of frames. Expects a
-/// valid noise. incidence_cosine: of the angle between each pixel's ray and the surface's normal, of the image's size;
-/// without it, nothing is lost for grazing. O(pixels).
+/// Returns the image with noise; pixels without a return (≤ 0, NaN) are kept. Each pixel's noise depends only on the
+/// seed, the frame number and its index, so the result is equal on every machine and for every order of frames. Expects
+/// valid noise. incidence_cosine: cosine of the angle between each pixel's ray and the surface's normal, an image of
+/// equal size. Without it, no grazing returns are lost. O(pixels).
 [[nodiscard]] DepthImage with_noise(const DepthImage& depth, const DepthNoise& noise, std::uint64_t frame = 0,
                                     const Image<float>* incidence_cosine = nullptr);
 

@@ -17,10 +17,20 @@ Status PinholeCamera::validate() const {
                 std::to_string(height));
   }
   if (!std::isfinite(fx) || !std::isfinite(fy) || fx <= 0.0 || fy <= 0.0) return fail("focal lengths must be positive");
+  constexpr double kMaxRatio{1000.0};  // focal length divided by image size; fields of view from 0.06° to 179.9°
+  const auto sensible = [](double f, int size) { return f * kMaxRatio >= size && f <= size * kMaxRatio; };
+  if (!sensible(fx, width) || !sensible(fy, height)) {
+    return fail("focal lengths must be from a thousandth of the image's size to a thousand times it, pixels");
+  }
   if (!std::isfinite(cx) || !std::isfinite(cy)) return fail("the principal point must be finite");
+  if (!(std::abs(cx) <= width * kMaxRatio && std::abs(cy) <= height * kMaxRatio)) {
+    return fail("the principal point must be within a thousand image sizes of the corner, pixels");
+  }
   if (!(min_range_m >= 0.0) || !(max_range_m > min_range_m) || !std::isfinite(max_range_m)) {
     return fail("ranges must satisfy 0 <= min < max");
   }
+  constexpr double kMaxRange_m{1e6};
+  if (max_range_m > kMaxRange_m) return fail("the maximum range must be at most a million metres");
   return {};
 }
 

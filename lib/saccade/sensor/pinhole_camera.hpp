@@ -22,17 +22,17 @@ struct PinholeCamera {
   double min_range_m{0.4};  ///< along z; nearer returns are not trusted
   double max_range_m{6.0};  ///< along z; farther returns are not trusted
 
-  /// invalid_argument for non-positive sizes or focal lengths, NaN, or a range that is empty.
+  /// Answers invalid_argument for sizes, focal lengths, principal points and ranges that no camera has, such as NaN.
   [[nodiscard]] Status validate() const;
 
-  /// Direction through image point (u, v), scaled to z = 1.
+  /// Returns the direction through image point (u, v), scaled to z = 1.
   [[nodiscard]] Eigen::Vector3d ray(double u, double v) const { return {(u - cx) / fx, (v - cy) / fy, 1.0}; }
-  /// Image point of p_camera; only for p_camera.z() > 0.
+  /// Returns the image point of p_camera. Expects p_camera.z() > 0.
   [[nodiscard]] Eigen::Vector2d project(const Eigen::Vector3d& p_camera) const {
     return {fx * p_camera.x() / p_camera.z() + cx, fy * p_camera.y() / p_camera.z() + cy};
   }
 
-  /// Returns the camera with an image of another size, in pixels; field of view and range stay.
+  /// Returns the camera with another image size in pixels; field of view and range stay.
   [[nodiscard]] PinholeCamera scaled_to(int new_width, int new_height) const;
   /// Returns the camera with `new_width` ≥ 1 pixels across and the nearest whole number of them down.
   [[nodiscard]] PinholeCamera scaled_to_width(int new_width) const;
@@ -47,11 +47,11 @@ struct CameraPreset {
   PinholeCamera camera;
 };
 [[nodiscard]] const std::vector<CameraPreset>& camera_presets();
-/// not_found, with the known names in the message.
+/// Answers not_found with the known names in the message.
 [[nodiscard]] Result<PinholeCamera> camera_preset(std::string_view name);
 
-/// The camera seen through a tilt of ±tilt_rad about its x axis (thesis §2.2): same focal lengths, more rows above and
-/// below, so that the vertical field of view grows by tilt_rad on either side. Range limits are kept.
+/// Returns the camera widened by a tilt of ±tilt_rad about its x axis (thesis §2.2): equal focal lengths, more rows
+/// above and below, so that the vertical field of view grows by tilt_rad on either side. Range limits are kept.
 [[nodiscard]] PinholeCamera widened_vertically(const PinholeCamera& camera, double tilt_rad);
 
 }  // namespace saccade

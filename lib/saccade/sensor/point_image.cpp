@@ -18,12 +18,12 @@ namespace {
 constexpr int kMaxLanes{16};
 /// Normals span a few pixels: depth is quantised, and neighbouring pixels alone give steps for normals.
 constexpr int kHalfBaseline{3};
-constexpr int kRowMargin{32};         ///< pixels of no return before and after a row, for vectors that begin in it
+constexpr int kRowMargin{32};         ///< pixels without return before and after a row, for vectors that begin in it
 constexpr float kLargestStep{0.03F};  ///< relative to depth
 static_assert(kRowMargin >= kMaxLanes + kHalfBaseline);
 
-/// Three rows of depths, kHalfBaseline apart, and where the middle one's normals go. The rows are readable kRowMargin
-/// pixels before and after their ends, and are zero there and where there is no return.
+/// Three rows of depths, kHalfBaseline apart, and the output for the middle row's normals. The rows are readable
+/// kRowMargin pixels before and after their ends, and are zero there and where there is no return.
 struct NormalRow {
   const float* above;
   const float* here;
@@ -48,7 +48,7 @@ namespace hn = hwy::HWY_NAMESPACE;
 using Tag = hn::CappedTag<float, kMaxLanes>;
 using V = hn::Vec<Tag>;
 
-/// Drops depths outside the range.
+/// Sets depths outside the range to zero.
 void keep_range(const float* depth, int width, float nearest, float farthest, float* out) {
   const Tag d;
   const int lanes = static_cast<int>(hn::Lanes(d));
@@ -86,7 +86,7 @@ void normal_row(const NormalRow& row) {
     const V column = hn::Iota(d, static_cast<float>(u));
     const V ray_x = hn::Mul(hn::Sub(column, cx), inverse_fx);
 
-    // Neighbours across a depth step, or without return, give way to the pixel itself.
+    // Neighbours across a depth step, or without return, are replaced by the pixel itself.
     V za = hn::LoadU(d, row.above + u);
     V zb = hn::LoadU(d, row.below + u);
     auto a_near = hn::And(hn::Gt(za, zero), hn::Lt(hn::Abs(hn::Sub(za, z)), limit));
@@ -141,7 +141,7 @@ PointImage planes(int width, int height) {
           Image<float>{width, height}};
 }
 
-/// The depths within range of row v and those around it that normals need, with margins of no return.
+/// Window of the depths within range in row v and the rows that its normals need, with margins of no return.
 class RowWindow {
  public:
   RowWindow(const DepthImage& depth, const PinholeCamera& camera)
@@ -151,7 +151,7 @@ class RowWindow {
         stride_{static_cast<std::size_t>(depth.width()) + 2 * kRowMargin},
         rows_(kRows * stride_) {}
 
-  /// Rows outside the image have no returns.
+  /// Fills a row; rows outside the image have no returns.
   void fill(int v) {
     float* to = slot(v);
     if (v >= 0 && v < depth_.height()) {

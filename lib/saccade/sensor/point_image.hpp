@@ -16,8 +16,9 @@ struct PointImage {
   Image<float> nz;
 };
 
-/// Points and normals (from differences across a few pixels, none across depth steps) of a depth image. Returns
-/// outside the camera's range are dropped. O(pixels). Neither threads nor simd_target() change a bit of the result.
+/// Computes the points and normals of a depth image. Normals come from differences across a few pixels, and are missing
+/// across depth steps. Returns outside the camera's range are dropped. O(pixels). Neither threads nor simd_target()
+/// change a bit of the result.
 [[nodiscard]] PointImage to_points(const DepthImage& depth, const PinholeCamera& camera, const Executor& executor);
 
 }  // namespace saccade

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// sRGB (IEC 61966-2-1): between encoded values and linear light, both 0 to 1.
+// sRGB (IEC 61966-2-1): conversion between encoded values and linear light, both 0 to 1.
 
 #include <cmath>
 

@@ -13,7 +13,7 @@ namespace {
 
 bool is_finite(const HandSample& sample) { return std::isfinite(sample.time_s) && sample.position_m.allFinite(); }
 
-/// With the six digits that say enough of any time.
+/// Formats a time with six digits, which suffice for any time.
 std::string milliseconds(double time_s) {
   std::ostringstream text;
   text << 1e3 * time_s << " ms";

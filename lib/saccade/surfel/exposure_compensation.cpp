@@ -17,10 +17,10 @@ constexpr int kFits{4};
 constexpr std::size_t kRatioBins{1024};
 constexpr float kWeightUnits{16777216.0F};
 constexpr float kOffset{static_cast<float>(kSrgbOffset)};
-/// A code above it may stand for any brighter light.
+/// Largest code that stands for one brightness; codes above may stand for any brighter light.
 constexpr std::uint8_t kLastUnsaturated{250};
 
-/// Of what a gain makes of the values of sRGB, + 0.055.
+/// Returns the factor of the sRGB values, + 0.055, that a gain causes, and the inverse.
 double factor_of(double gain) { return std::pow(gain, 1.0 / kSrgbExponent); }
 double gain_of(double factor) { return std::pow(factor, kSrgbExponent); }
 
@@ -28,8 +28,8 @@ std::uint8_t code_of(double encoded) {
   return static_cast<std::uint8_t>(std::lround(std::clamp(encoded, 0.0, 1.0) * 255.0));
 }
 
-/// What divided light looks like, by the code before. Rounded to the nearest code a small gain would change nothing,
-/// and the averages would follow it: so frames round at different places.
+/// Returns the codes of the divided light by code. If every frame rounded to the nearest code, a small gain would
+/// change nothing, and the averages would follow it. So frames round at different places.
 std::array<std::uint8_t, 256> divided_codes(double gain, std::size_t frame) {
   constexpr std::array<double, 4> kRoundUpFrom{0.375, 0.875, 0.125, 0.625};
   const double up = 1.0 - kRoundUpFrom[frame % kRoundUpFrom.size()];
@@ -41,7 +41,7 @@ std::array<std::uint8_t, 256> divided_codes(double gain, std::size_t frame) {
   return codes;
 }
 
-/// What is saturated in a brighter frame may be as bright as its surfel.
+/// Corrects a row: a pixel saturated in a brighter frame may be as bright as its surfel.
 void correct_row(const SurfelAssociation& seen, const SurfelMap& map, const std::array<std::uint8_t, 256>& codes,
                  bool is_brighter, int v, ColorImage& color) {
   Rgb8* pixels = color.row(v);
@@ -98,7 +98,7 @@ void ExposureCompensation::collect(const SurfelAssociation& seen, const SurfelMa
         if (u + ahead < color.width() && ids[u + ahead] < seen.first_new) {
           __builtin_prefetch(&map.colors[ids[u + ahead]]);
         }
-        if (ids[u] >= seen.first_new) continue;  // none, or new
+        if (ids[u] >= seen.first_new) continue;  // no surfel, or a new one
         const SurfelColor& surfel = map.colors[ids[u]];
         if (surfel.weight <= 0.0F) continue;
         const Eigen::Vector3f of_frame = unit_color(color(u, v));
@@ -112,7 +112,7 @@ void ExposureCompensation::collect(const SurfelAssociation& seen, const SurfelMa
   });
 }
 
-/// Weighted, of frame / surfel.
+/// Returns the weighted median of frame / surfel.
 double ExposureCompensation::median_factor(const Executor& executor) const {
   const double most = factor_of(config_.max_gain);
   const auto bins_per_unit = static_cast<float>(double{kRatioBins} / most);
@@ -138,7 +138,7 @@ double ExposureCompensation::median_factor(const Executor& executor) const {
 ExposureCompensation::Fit ExposureCompensation::fit(double factor, const Executor& executor) const {
   const auto inverse = static_cast<float>(1.0 / factor);
   const auto outlier = static_cast<float>(config_.outlier_color);
-  // Of a surfel's value, so that the frame's would be within the range.
+  // Range of a surfel's value for which the frame's value would be within the valid range.
   const auto least = static_cast<float>((config_.darkest + kSrgbOffset) / factor);
   const auto most = static_cast<float>((config_.brightest + kSrgbOffset) / factor);
   std::vector<Fit> fits(samples_.size());
@@ -170,7 +170,7 @@ ExposureCompensation::Fit ExposureCompensation::fit(double factor, const Executo
   return all;
 }
 
-/// Least squares, weighed anew by each result, for the 1 / factor that brings the frame to the surfels.
+/// Estimates by reweighted least squares the 1 / factor that brings the frame to the surfels.
 void ExposureCompensation::estimate(const Executor& executor, ExposureReport& report) const {
   const double most = factor_of(config_.max_gain);
   double factor = median_factor(executor);

@@ -18,7 +18,8 @@ namespace saccade {
 namespace {
 
 constexpr double kLeastSigma{1e-4};
-constexpr std::size_t kGuidedRowsPerTask{32};  // even; who takes the next ones too goes on where it stopped
+constexpr std::size_t kGuidedRowsPerTask{
+    32};  // even; a filter that also takes the next rows continues where it stopped
 
 template <class T>
 hwy::AlignedFreeUniquePtr<T[]> zeros(std::size_t count) {
@@ -28,7 +29,7 @@ hwy::AlignedFreeUniquePtr<T[]> zeros(std::size_t count) {
   return made;
 }
 
-/// The images of one call.
+/// Images of one call.
 struct Images {
   int height{0};
   guided::RowShape shape;
@@ -42,8 +43,8 @@ struct Images {
 
 namespace guided {
 
-/// Runs the filter down some rows of an image, two at a time: loads them, fits the two that are R or R + 1 above, and
-/// enhances the two as far above those. Where it stopped it can go on.
+/// Filter that moves down the rows of an image, two at a time: loads them, fits the two rows R and R + 1 above, and
+/// enhances the two as far above those. It can continue where it stopped.
 class RowFilter {
  public:
   RowFilter(const guided::RowShape& shape, const guided::Disc& disc)
@@ -58,7 +59,7 @@ class RowFilter {
         row_window_(static_cast<std::size_t>(2 * disc.radius_px + 2)),
         fit_window_(static_cast<std::size_t>(2 * disc.radius_px + 2)) {}
 
-  /// Rows [begin, end) of the output; begin is even.
+  /// Filters rows [begin, end) of the output; begin is even.
   void run(const Images& images, const guided::Variances& variances, int begin, int end) {
     int v = begin == next_ ? begin + 2 * lag_ : begin - 2 * lag_;
     for (; v < end + 2 * lag_; v += 2) {
@@ -70,7 +71,7 @@ class RowFilter {
     next_ = end;
   }
 
-  /// Where it goes on at little cost, or none.
+  /// Returns the row where it continues at little cost, or kNone.
   [[nodiscard]] int next() const { return next_; }
   void forget() { next_ = kNone; }
 
@@ -80,7 +81,7 @@ class RowFilter {
   [[nodiscard]] float* row(int v) const { return rows_.get() + slot(v) * guided::kChannels * shape_.stride; }
   [[nodiscard]] double* fits(int v) const { return fits_.get() + slot(v) * guided::kFits * shape_.stride; }
 
-  /// Rows outside the image have no pixel that is used.
+  /// Loads a row; rows outside the image have no used pixel.
   void load(const Images& images, int v) {
     if (v < 0 || v >= images.height) {
       std::fill_n(row(v), guided::kChannels * shape_.stride, 0.0F);
@@ -90,7 +91,7 @@ class RowFilter {
     guided::load_row(shape_, images.depth_m + first, images.guidance + 4 * first, images.used + first, row(v));
   }
 
-  /// Rows v and v + 1.
+  /// Fits rows v and v + 1.
   void fit(int v, const guided::Variances& variances) {
     for (int i = 0; i <= 2 * disc_.radius_px + 1; ++i) {
       row_window_[static_cast<std::size_t>(i)] = row(v - disc_.radius_px + i);
@@ -140,14 +141,14 @@ guided::RowShape shape_of(int width) {
 
 }  // namespace
 
-/// Row filters for images of one width: as many as have run at once.
+/// Row filters for images of one width, one per row range that ran at once.
 struct GuidedFilter::Memory {
   guided::Disc disc;
   guided::RowShape shape;
   std::mutex mutex;
   std::vector<std::unique_ptr<guided::RowFilter>> idle;
 
-  /// If there is one, the filter that has stopped at row `begin`.
+  /// Returns the filter that stopped at row `begin`, if there is one.
   std::unique_ptr<guided::RowFilter> take(int begin) {
     {
       const std::lock_guard lock{mutex};

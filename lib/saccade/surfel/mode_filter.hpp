@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ModeFilter: several colours and positions per surfel, of which the most frequent wins.  Thesis §4.1.1, Algorithm 6.
+// ModeFilter: several colours and positions per surfel, the most frequent of which wins.  Thesis §4.1.1, Algorithm 6.
 
 #include <cstddef>
 #include <cstdint>
@@ -15,61 +15,63 @@
 
 namespace saccade {
 
-/// Parameters of sharpened modes: modes of the neighbours decide as well (decision 19).
+/// Parameters of sharpened modes, to which modes of the neighbours contribute (decision 19).
 struct ModeSharpeningConfig {
-  double strength{2.0};      ///< λ; 0: every surfel by itself
-  double reach_m{0.02};      ///< as far as wrong poses carry colours
-  double color_sigma{0.06};  ///< colours that count as one, in [0, 1] as colours are
+  double strength{2.0};      ///< λ; 0: neighbours do not contribute
+  double reach_m{0.02};      ///< distance over which wrong poses spread colours
+  double color_sigma{0.06};  ///< spread of colours that count as one, in the unit of colours, [0, 1]
 
-  /// invalid_argument for a strength that is negative, a reach or σ that is not positive, or any that is not finite.
+  /// Answers invalid_argument for a negative strength, a reach or σ that is not positive, or any that is not finite.
   [[nodiscard]] Status validate() const;
 };
 
 /// Parameters of ModeFilter: Table 4.2. (σ_img is SurfelFusionConfig::image_sigma: both weigh pixels alike.)
 struct ModeFilterConfig {
-  GuidedFilterConfig guided{};  ///< R_m, σ_c and σ_d; σ_c is that of the modes too
-  double color_sigmas{5.0};     ///< K: a colour farther from all modes is a new one; infinity: one mode for all
+  GuidedFilterConfig guided{};  ///< R_m, σ_c and σ_d; σ_c also applies to the modes
+  double color_sigmas{5.0};     ///< K: a colour farther from all modes starts a new one; infinity: one mode for all
   int max_modes{10};            ///< M_max
-  bool enhance_depth{true};     ///< lines 16–19; without: d′_e = d′
-  /// A depth that the guided filter moves farther is taken as it was measured; infinity: all are moved, as printed.
+  bool enhance_depth{true};     ///< lines 16–19; false: d′_e = d′
+  /// Limit of the change by the guided filter; where it moves a depth farther, the measured depth is kept. Infinity: no
+  /// limit, as printed.
   double max_depth_change_m{0.01};
-  /// What a surfel is in the end: where its modes are densest, seen through a Gaussian of so many σ_c (densest_mode);
-  /// 0: its heaviest mode, eq. 4.11 as printed.
+  /// Width in σ_c of the Gaussian under which a surfel's modes are densest (densest_mode), which gives its final
+  /// colour; 0: its heaviest mode, eq. 4.11 as printed.
   double choice_sigmas{8.0};
-  ModeSharpeningConfig sharpening{};  ///< modes of the neighbours decide as well; of no use to the heaviest one
+  ModeSharpeningConfig sharpening{};  ///< contribution of the neighbours' modes; no effect on the heaviest mode
 
-  /// invalid_argument for a bad guided filter, K or a change of depth that is not positive, M_max outside 1 to 32, or
-  /// choice_sigmas that are negative or not finite, or bad sharpening.
+  /// Answers invalid_argument for a bad guided filter or bad sharpening, K or a change of depth that is not positive,
+  /// M_max outside 1 to 32, or choice_sigmas that are negative or not finite.
   [[nodiscard]] Status validate() const;
 };
 
-/// What became of one frame.
+/// Result of filtering one frame.
 struct ModeFilterReport {
-  bool has_color{false};  ///< false: nothing was done
-  std::size_t pixels{0};  ///< associated ones
-  std::size_t guided{0};  ///< of these, with a mode at the frame's beginning: their depths were enhanced
+  bool has_color{false};  ///< false: the frame was ignored
+  std::size_t pixels{0};  ///< pixels associated with a surfel
+  std::size_t guided{0};  ///< among these, pixels with a mode at the frame's beginning: their depths were enhanced
   std::size_t new_modes{0};
-  std::size_t merged_modes{0};   ///< by compression
-  std::size_t evicted_modes{0};  ///< for want of room, line 10
+  std::size_t merged_modes{0};   ///< merged by compression
+  std::size_t evicted_modes{0};  ///< evicted for lack of space, line 10
   double evicted_weight{0.0};
   double integrate_ms{0.0};      ///< lines 1–15 and 20–26, with measured depths
   double guided_filter_ms{0.0};  ///< lines 16–18
   double move_ms{0.0};           ///< line 19: positions move to the enhanced depths
 };
 
-/// What modes say about the pixels of a frame.
+/// Guidance of the pixels of a frame by modes.
 struct ModeGuidance {
   static constexpr std::uint8_t kNoMode{255};
 
   std::vector<Eigen::Vector4f> values;      ///< colour in [0, 1] and depth of the nearest mode
-  std::vector<std::uint8_t> used;           ///< 0: there is none
-  std::vector<std::uint8_t> mode_of_pixel;  ///< the mode that the pixel went into, or kNoMode; where it saw a surfel
+  std::vector<std::uint8_t> used;           ///< 0 where there is no mode
+  std::vector<std::uint8_t> mode_of_pixel;  ///< mode that the pixel was merged into, or kNoMode; set where it saw a
+                                            ///< surfel
 };
 
-/// Runs beside SurfelFusion, frame by frame. Guidance comes from the modes at the frame's beginning; then each pixel
-/// goes through Algorithm 6, several pixels of one surfel in row-major order. No line of it asks for a position but
-/// the averages of eq. 4.6, which are linear: so modes take the measured points first, in one pass through memory, and
-/// where the filtered depths differ from the measured ones their share is added afterwards.
+/// Runs beside SurfelFusion, frame by frame. Guidance comes from the modes at the frame's beginning. Then each pixel
+/// goes through Algorithm 6, several pixels of one surfel in row-major order. The algorithm uses positions only in the
+/// averages of eq. 4.6, which are linear. Modes therefore take the measured points first, in one pass through memory;
+/// where the filtered depths differ from the measured ones, their share is added afterwards.
 /// A pixel without guidance keeps its depth. The average without enhancement (eq. 4.12) is the colour and position of
 /// the SurfelMap itself, as long as all frames have colour.
 /// One caller at a time. Neither threads nor simd_target() change a bit of the result.
@@ -77,17 +79,17 @@ class ModeFilter {
  public:
   [[nodiscard]] static Result<ModeFilter> create(const ModeFilterConfig& config = {});
 
-  /// The frame that SurfelFusion took last, and what it made of it. O(pixels · modes).
+  /// Adds the frame that SurfelFusion processed last, with its association. O(pixels · modes).
   /// @return size_mismatch if frame and association differ in size.
   [[nodiscard]] Result<ModeFilterReport> add_frame(const Frame& frame, const SurfelAssociation& seen,
                                                    const Executor& executor);
 
-  /// One surfel's modes, in the order in which they came.
+  /// Returns one surfel's modes in the order of their creation.
   [[nodiscard]] std::vector<SurfelMode> modes(SurfelId id) const;
-  /// What each surfel is in the end (choice_sigmas, sharpening); weight 0 where there is no mode.
+  /// Returns the final colour and position of each surfel (choice_sigmas, sharpening); weight 0 where it has no mode.
   [[nodiscard]] std::vector<SurfelMode> winners(const Executor& executor) const;
   [[nodiscard]] std::size_t size() const { return store_.size(); }
-  /// Of the modes.
+  /// Returns the memory of the modes.
   [[nodiscard]] std::size_t memory_bytes() const { return store_.memory_bytes(); }
   [[nodiscard]] const ModeFilterConfig& config() const { return config_; }
 
@@ -100,7 +102,7 @@ class ModeFilter {
   ModeFilterConfig config_;
   GuidedFilter guided_;
   ModeStore store_;
-  float lightest_{1.0F};  ///< weight of a pixel so far
+  float lightest_{1.0F};  ///< smallest weight of a pixel so far
   ModeGuidance guidance_;
   std::vector<float> enhanced_m_;
 };

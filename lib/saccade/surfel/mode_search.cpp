@@ -24,7 +24,7 @@ HWY_INLINE W squared(W difference) {
   return hn::MulEven(hn::BitCast(halves, difference), hn::BitCast(halves, difference));
 }
 
-/// Of the colours that begin at `packed`, as many as there are lanes.
+/// Computes the squared distances of the next colours from `packed`, one per lane.
 HWY_INLINE W squared_distances(const std::uint64_t* packed, W r, W g, W b) {
   const Wide d;
   const auto colors = hn::LoadU(UnsignedWide{}, packed);
@@ -45,7 +45,7 @@ HWY_INLINE void fetch(const ColorQuery& query, std::size_t room) {
 void nearest_kernel(std::span<ColorQuery> queries, std::size_t room) {
   const Wide d;
   const W lane = hn::Iota(d, 0);
-  const std::size_t last = std::max(room, hn::Lanes(d)) - hn::Lanes(d);  // the last vector ends where the room does
+  const std::size_t last = std::max(room, hn::Lanes(d)) - hn::Lanes(d);  // the last vector ends with `room`
   const ColorQuery* ahead = queries.data() + std::min(kQueriesAhead, queries.size());
   const ColorQuery* const end_of_queries = queries.data() + queries.size();
   for (ColorQuery& query : queries) {
@@ -55,7 +55,7 @@ void nearest_kernel(std::span<ColorQuery> queries, std::size_t room) {
     const W b = hn::Set(d, query.color.b);
     const W end = hn::Set(d, static_cast<std::int64_t>(query.count));
     W least = hn::Set(d, std::numeric_limits<std::int64_t>::max());
-    for (std::size_t i = 0; i < room; i += hn::Lanes(d)) {  // always as often: nothing to guess
+    for (std::size_t i = 0; i < room; i += hn::Lanes(d)) {  // fixed number of rounds: no unpredictable branch
       const std::size_t first = std::min(i, last);
       const W index = hn::Add(lane, hn::Set(d, static_cast<std::int64_t>(first)));
       const W key = hn::Or(hn::ShiftLeft<kIndexBits>(squared_distances(query.packed + first, r, g, b)), index);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ColorUnits: a colour in whole numbers; find_nearest and find_nearby: searches in the colours of a surfel's modes.
+// ColorUnits: a colour in integers. find_nearest and find_nearby: searches among the colours of a surfel's modes.
 
 #include <cmath>
 #include <cstddef>
@@ -9,7 +9,7 @@
 
 namespace saccade {
 
-/// A colour, a channel in 8192nds of an 8-bit level: fine enough for means of 10⁵ frames, and distances are exact.
+/// Colour with channels in 8192nds of an 8-bit level: fine enough for means of 10⁵ frames, with exact distances.
 struct ColorUnits {
   static constexpr int kPerLevel{8192};
   static constexpr int kBits{21};
@@ -27,7 +27,7 @@ struct ColorUnits {
   }
 };
 
-/// Weighted mean, in whole units: `share` of the way from a to b.
+/// Returns the weighted mean in integer units, at `share` of the way from a to b.
 inline ColorUnits mean_color(const ColorUnits& a, const ColorUnits& b, float share) {
   const auto between = [share](std::int32_t from, std::int32_t to) {
     return from + static_cast<std::int32_t>(std::nearbyintf(static_cast<float>(to - from) * share));
@@ -45,22 +45,22 @@ struct NearestColor {
   std::int64_t squared_units;
 };
 
-/// Among which colours a colour's nearest is wanted, and the answer.
+/// Colours to search, the colour whose nearest is wanted, and the answer.
 struct ColorQuery {
   const std::uint64_t* packed;
   std::size_t count;  ///< 0 to 32
   ColorUnits color;
-  NearestColor nearest;  ///< argmin_i ‖c_i − c‖, the first of those that are equally near; unset for no colours
+  NearestColor nearest;  ///< argmin_i ‖c_i − c‖, the first at a tie; unset without colours
 };
 
-/// Answers queries. Of each query's packed colours `room`, and at least eight, must be readable; those from its count
-/// on are ignored. One after the other is much quicker than one alone: searches overlap. simd_target() changes nothing.
-/// Memory is asked for the colours of later queries meanwhile, kQueriesAhead before they are read: much farther ahead
-/// they would be gone from the nearest cache by then. Those of the first so many the caller may ask for.
+/// Answers queries. Of each query's packed colours, `room` and at least eight must be readable; those beyond its count
+/// are ignored. Many queries in a row are much faster than single ones, because searches overlap. simd_target() changes
+/// nothing. Prefetches the colours of later queries, kQueriesAhead before they are read: much earlier they would be
+/// evicted from the nearest cache again. The caller may prefetch the colours of the first kQueriesAhead queries.
 void find_nearest(std::span<ColorQuery> queries, std::size_t room);
 constexpr std::size_t kQueriesAhead{32};
 
-/// Which colours are how near to a colour, and the answer.
+/// Colours to search, a colour and a distance, and the answer.
 struct NearbyQuery {
   const std::uint64_t* packed;
   std::size_t count;  ///< 1 to 32
@@ -69,7 +69,7 @@ struct NearbyQuery {
   std::uint32_t nearby;  ///< bit i: ‖c_i − c‖² ≤ squared_units
 };
 
-/// Answers queries; at least eight colours must be readable. As find_nearest, but asks for no memory.
+/// Answers queries as find_nearest does, without prefetching; at least eight colours must be readable.
 void find_nearby(std::span<NearbyQuery> queries);
 
 }  // namespace saccade

@@ -16,18 +16,18 @@
 namespace saccade {
 namespace {
 
-/// Bit i: the i-th pixel around a cell, row by row, saw the cell's surfel. kMadeOwn: the pixel made its own.
+/// Bit i: the i-th pixel around a cell, row by row, saw the cell's surfel. kMadeOwn: the pixel created its own.
 constexpr unsigned kAround{9};
 constexpr unsigned kMadeOwn{1U << kAround};
-constexpr std::size_t kMargin{16};  ///< pixels on either side of a row: as many as the widest vector has lanes
+constexpr std::size_t kMargin{16};  ///< pixels on either side of a row: the lanes of the widest vector
 
-/// Which pixels of three rows saw the surfels of the middle row's cells.
+/// Pixels of three rows that saw the surfels of the middle row's cells.
 struct SeenRow {
   std::array<const SurfelId*, 3> pixels{};  ///< with kMargin readable on either side
-  const SurfelId* cells{nullptr};           ///< as well
+  const SurfelId* cells{nullptr};           ///< likewise with kMargin
   SurfelId first_new{0};
   std::size_t width{0};
-  std::uint32_t* bits{nullptr};  ///< as well
+  std::uint32_t* bits{nullptr};  ///< likewise with kMargin
 };
 
 }  // namespace
@@ -67,7 +67,7 @@ namespace {
 
 HWY_EXPORT(seen_by_kernel);
 
-/// A row with nothing on either side.
+/// Row with empty margins.
 class WideRow {
  public:
   explicit WideRow(std::size_t width) : ids_(width + 2 * kMargin, kNoSurfel) {}
@@ -79,7 +79,8 @@ class WideRow {
   std::vector<SurfelId> ids_;
 };
 
-/// The pixel around (u, v) that the lowest bit stands for. (u, v): v in the upper half, so that steps are sums.
+/// Returns the pixel around (u, v) that the lowest bit stands for. uv holds v in its upper half, so that steps are
+/// sums.
 SurfelPixel pixel_around(SurfelId id, unsigned bits, std::uint32_t uv) {
   constexpr std::array<std::uint32_t, kAround> kSteps = [] {
     std::array<std::uint32_t, kAround> steps{};

@@ -18,7 +18,7 @@ namespace {
 constexpr std::size_t kRowsPerTask{16};
 constexpr std::size_t kSurfelsPerTask{4096};
 constexpr double kLeastFactor{1e-18};
-constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};  ///< farther than any; its id is kNoSurfel
+constexpr std::uint64_t kEmptyCell{~std::uint64_t{0}};  ///< farther than any surfel; its id is kNoSurfel
 
 Status check_frame(const Frame& frame, const PinholeCamera& camera) {
   SACCADE_CHECK(camera.validate());
@@ -36,7 +36,7 @@ Status check_frame(const Frame& frame, const PinholeCamera& camera) {
   return {};
 }
 
-/// One factor of eq. 4.2, never so small that a product of two is 0.
+/// Returns one factor of eq. 4.2 for each index, never so small that a product of two is 0.
 std::vector<float> axis_weights(int count, double squared_diagonal, double sigma) {
   std::vector<float> weights(static_cast<std::size_t>(count));
   for (int i = 0; i < count; ++i) {
@@ -87,10 +87,10 @@ void SurfelFusion::prepare(const PinholeCamera& camera, const Pose& T_world_came
   seen.first_new = map_.size();
 }
 
-/// The index image: every surfel that faces the camera, in the cell that its centre projects into.
+/// Fills the index image: each surfel that faces the camera, in the cell that its centre projects into.
 void SurfelFusion::project(const PointImage& points, const Executor& executor) {
   const FloatView view{association_};
-  const auto enter = [&](const Landing& landing) {
+  const auto enter = [&](const ProjectedSurfel& landing) {
     const float measured = points.z.data()[landing.cell];
     const float key = measured > 0.0F ? std::abs(landing.z - measured) : landing.z;
     const std::uint64_t wanted = (std::uint64_t{std::bit_cast<std::uint32_t>(key)} << 32U) | landing.id;
@@ -100,15 +100,15 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
     }
   };
   executor.parallel_for(map_.size(), kSurfelsPerTask, [&](std::size_t begin, std::size_t end) {
-    // Some at a time: an exchange waits for its cell, and lets nothing pass.
-    std::array<std::array<Landing, kMostLandings>, 2> landings;
+    // In batches, since an atomic exchange waits for its cell and blocks other work.
+    std::array<std::array<ProjectedSurfel, kMaxProjected>, 2> landings;
     std::array<std::size_t, 2> counts{};
     std::size_t now{0};
     const auto enter_all = [&](std::size_t which) {
       for (std::size_t i = 0; i < counts[which]; ++i) enter(landings[which][i]);
     };
-    for (std::size_t first = begin; first < end; first += kMostLandings, now = 1 - now) {
-      const std::size_t discs = std::min(kMostLandings, end - first);
+    for (std::size_t first = begin; first < end; first += kMaxProjected, now = 1 - now) {
+      const std::size_t discs = std::min(kMaxProjected, end - first);
       counts[now] = project_discs(view, {&map_.discs[first], discs}, static_cast<SurfelId>(first), landings[now]);
       for (std::size_t i = 0; i < counts[now]; ++i) {
         __builtin_prefetch(&cells_[landings[now][i].cell], 1);
@@ -122,7 +122,7 @@ void SurfelFusion::project(const PointImage& points, const Executor& executor) {
   executor.parallel_for(static_cast<std::size_t>(view.height), kRowsPerTask, [&](std::size_t begin, std::size_t end) {
     SurfelId* ids = association_.of_cell.data();
     for (std::size_t i = begin * width; i < end * width; ++i) ids[i] = static_cast<SurfelId>(cells_[i]);
-    std::fill_n(cells_.data() + begin * width, (end - begin) * width, kEmptyCell);  // for the next frame
+    std::fill_n(cells_.data() + begin * width, (end - begin) * width, kEmptyCell);  // ready for the next frame
   });
 }
 
@@ -161,7 +161,7 @@ void SurfelFusion::associate(const PointImage& points, const Executor& executor,
   number_new_surfels(created, executor);
 }
 
-/// Ids for the pixels that make surfels, in row-major order. `created`: how many per task.
+/// Numbers the pixels that create surfels, in row-major order. `created`: their number per task.
 void SurfelFusion::number_new_surfels(const std::vector<std::size_t>& created, const Executor& executor) {
   SurfelAssociation& seen = association_;
   std::vector<std::size_t> first(created.size());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfelFusion: RGB-D frames with poses in, a map of surfels out, frame by frame.  Thesis §4.1.1, eq. 4.1, 4.2.
+// SurfelFusion: fuses RGB-D frames with poses into a map of surfels, frame by frame.  Thesis §4.1.1, eq. 4.1, 4.2.
 
 #include <atomic>
 #include <cstddef>
@@ -25,35 +25,35 @@ struct SurfelFusionConfig {
   double depth_tolerance_m{0.02};
   double depth_tolerance_growth_per_m{0.005};  ///< a structured-light camera's noise grows with z²
   double max_normal_angle_rad{0.8};
-  double max_view_angle_rad{1.4};  ///< between normal and view: what is seen flatter makes no surfel
+  double max_view_angle_rad{1.4};  ///< between normal and view; flatter views create no surfel
   double max_radius_m{0.05};
 
-  /// invalid_argument for values that are not finite or not positive, or angles of 90° and more.
+  /// Answers invalid_argument for values that are not finite or not positive, or angles of 90° and more.
   [[nodiscard]] Status validate() const;
 };
 
-/// What became of one frame.
+/// Result of fusing one frame.
 struct SurfelFusionReport {
   bool has_color{false};        ///< false: colours stay as they were
   std::size_t points{0};        ///< pixels with depth within range and a normal
-  std::size_t associated{0};    ///< of these, to surfels that were there
+  std::size_t associated{0};    ///< points associated with existing surfels
   std::size_t created{0};       ///< new surfels
-  std::size_t contradicted{0};  ///< a surfel lies there, but its normal differs: nothing is done
+  std::size_t contradicted{0};  ///< points at a surfel with a different normal, which are ignored
   double points_ms{0.0};
   double index_ms{0.0};
   double associate_ms{0.0};
   double exposure_ms{0.0};
   double integrate_ms{0.0};
-  std::optional<ExposureReport> exposure{};  ///< of a frame with colour that was compensated
+  std::optional<ExposureReport> exposure{};  ///< set for frames with colour that were compensated
 };
 
-/// Fuses frames. The method is the published one (Keller et al., 3DV 2013; Whelan et al., RSS 2015), with an index
-/// image at the camera's resolution. Of the surfels that project into a pixel's cell, the one whose depth is nearest to
-/// the measured depth fills it (without a measurement: the nearest), so that two surfaces that are seen there by turns
-/// keep a surfel each. A pixel takes the surfel of its own cell; else, among the cells around, the one nearest to its
-/// ray of those whose discs cover it: so there are no holes while the camera comes nearer, up to about half the
-/// distance. Beyond that new, smaller surfels fill them. Where a surfel lies at the measured depth no other is made,
-/// whatever its normal, so that a camera at rest adds none.
+/// Fusion of frames. The method is the published one (Keller et al., 3DV 2013; Whelan et al., RSS 2015), with an index
+/// image at the camera's resolution. Of the surfels that project into a pixel's cell, the one nearest to the measured
+/// depth fills it (without a measurement: the one nearest to the camera). Two surfaces that are visible there
+/// alternately thus keep a surfel each. A pixel takes the surfel of its own cell; otherwise, of the surfels around
+/// whose discs cover its ray, the one nearest to the ray. So no holes open while the camera approaches, up to about
+/// half the distance. Beyond that, new, smaller surfels fill them. No surfel is created at the depth of an existing
+/// one, whatever its normal, so a camera at rest adds none.
 /// One caller at a time. Neither threads nor simd_target() change a bit of the result.
 class SurfelFusion {
  public:
@@ -64,19 +64,19 @@ class SurfelFusion {
   ///         finite; size_mismatch if depth or colour differ from the camera's size.
   [[nodiscard]] Result<SurfelFusionReport> add_frame(const Frame& frame, const PinholeCamera& camera,
                                                      const Executor& executor);
-  /// The same, with the frame's colours brought to the exposure of the map before they are averaged: so `frame` has
-  /// them afterwards, for the mode filter.
+  /// Fuses one frame as above, after adapting its colours to the exposure of the map. Afterwards `frame` holds the
+  /// adapted colours, for the mode filter.
   [[nodiscard]] Result<SurfelFusionReport> add_frame(Frame& frame, const PinholeCamera& camera,
                                                      ExposureCompensation& exposure, const Executor& executor);
 
   [[nodiscard]] const SurfelFusionConfig& config() const { return config_; }
   [[nodiscard]] const SurfelMap& map() const { return map_; }
-  /// Of the last frame.
+  /// Returns the association of the last frame.
   [[nodiscard]] const SurfelAssociation& association() const { return association_; }
 
  private:
   explicit SurfelFusion(const SurfelFusionConfig& config) : config_{config} {}
-  /// All but integrate().
+  /// Performs all of add_frame except integrate().
   [[nodiscard]] Result<SurfelFusionReport> associate(const Frame& frame, const PinholeCamera& camera,
                                                      const Executor& executor);
   void prepare(const PinholeCamera& camera, const Pose& T_world_camera);
@@ -88,8 +88,8 @@ class SurfelFusion {
   SurfelFusionConfig config_;
   SurfelMap map_;
   SurfelAssociation association_;
-  PointImage points_;                 ///< of the last frame
-  std::vector<std::uint64_t> cells_;  ///< (bits of the depth's difference, id): the least one fills the cell
+  PointImage points_;                 ///< points of the last frame
+  std::vector<std::uint64_t> cells_;  ///< (bits of the difference in depth, id); the smallest fills the cell
 };
 
 }  // namespace saccade

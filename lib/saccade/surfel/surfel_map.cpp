@@ -7,7 +7,7 @@ namespace saccade {
 
 void SurfelMap::resize(std::size_t surfels) {
   SACCADE_EXPECTS(surfels < kNoSurfel);
-  if (surfels > discs.capacity()) {  // by a sixteenth: there may be millions
+  if (surfels > discs.capacity()) {  // grows by a sixteenth, since there may be millions
     discs.reserve(surfels + surfels / 16);
     colors.reserve(surfels + surfels / 16);
   }

@@ -1,21 +1,21 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfelMap: small coloured discs on surfaces; Surfel: one of them.
+// SurfelMap: small coloured discs on surfaces (surfels).
 
 #include <Eigen/Core>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 
-#include "saccade/core/unset_vector.hpp"
+#include "saccade/core/uninitialized_vector.hpp"
 
 namespace saccade {
 
-/// A surfel's number in its map. It never changes, and no surfel is removed.
+/// Number of a surfel in its map. It never changes, and no surfel is removed.
 using SurfelId = std::uint32_t;
 inline constexpr SurfelId kNoSurfel{std::numeric_limits<SurfelId>::max()};
 
-/// Where a surfel is; world frame. Half a cache line.
+/// Position and size of a surfel in the world frame. Half a cache line.
 struct SurfelDisc {
   Eigen::Vector3f position_m;
   float radius_m{0.0F};
@@ -28,7 +28,7 @@ struct SurfelColor {
   float weight{0.0F};     ///< sum of the weights of the observations that had a colour
 };
 
-/// A disc on a surface (thesis §4.1.1).
+/// Disc on a surface (thesis §4.1.1).
 struct Surfel {
   SurfelDisc disc;
   SurfelColor color;
@@ -36,12 +36,13 @@ struct Surfel {
 
 /// Surfels by id; both arrays are equally long. 48 bytes per surfel.
 struct SurfelMap {
-  UnsetVector<SurfelDisc> discs;
-  UnsetVector<SurfelColor> colors;
+  UninitializedVector<SurfelDisc> discs;
+  UninitializedVector<SurfelColor> colors;
 
   [[nodiscard]] std::size_t size() const { return discs.size(); }
   [[nodiscard]] Surfel surfel(SurfelId id) const { return {discs[id], colors[id]}; }
-  /// New surfels at the end have no value until they are set. ContractViolation for more than ids.
+  /// Changes the number of surfels. New surfels at the end have no value until they are set. Throws ContractViolation
+  /// beyond the range of ids.
   void resize(std::size_t surfels);
   [[nodiscard]] std::size_t memory_bytes() const;
 };

@@ -12,9 +12,9 @@ namespace {
 
 constexpr std::size_t kDiscsPerTask{4096};
 constexpr int kBandRows{16};
-constexpr float kEdgeOn{1e-3F};  ///< cosine between ray and disc below which nothing is seen
+constexpr float kEdgeOn{1e-3F};  ///< cosine between ray and disc below which a disc is invisible
 
-/// A disc in the camera's frame, and the pixels that it may cover; none where it is behind or turned away.
+/// Disc in the camera's frame, and the pixels that it may cover; none where it is behind or turned away.
 struct ProjectedDisc {
   Eigen::Vector3f p_camera;
   Eigen::Vector3f n_camera;
@@ -26,7 +26,7 @@ ProjectedDisc project_disc(const PinholeCamera& camera, const Eigen::Vector3f& p
                            float radius_m) {
   ProjectedDisc disc{p, n, radius_m};
   if (!p.allFinite() || !(radius_m > 0.0F) || !(n.dot(p) < 0.0F) || !(p.z() > 2.0F * radius_m)) return disc;
-  // Of the ball around it: with its nearest depth, so never too few.
+  // Bounds of the ball around the disc, at its nearest depth, hence never too small.
   const auto cover = [&](double focal, double center, float offset, int size, int& first, int& last) {
     const double at = focal * static_cast<double>(offset / p.z()) + center;
     const double reach = focal * static_cast<double>(radius_m * (1.0F + std::abs(offset) / p.z()) / (p.z() - radius_m));
@@ -39,7 +39,8 @@ ProjectedDisc project_disc(const PinholeCamera& camera, const Eigen::Vector3f& p
   return disc;
 }
 
-/// Calls visit(u, v, depth, squared distance from the disc's centre) for the pixels of rows [begin, end) that see it.
+/// Calls visit(u, v, depth, squared distance from the disc's centre) for the pixels of rows [begin, end) that see the
+/// disc.
 template <class Visit>
 void for_each_pixel(const ProjectedDisc& disc, const PinholeCamera& camera, int begin, int end, const Visit& visit) {
   const float to_plane = disc.n_camera.dot(disc.p_camera);

@@ -41,28 +41,29 @@ Status check_views(const HandEyeInput& input) {
   };
   for (const StillView& view : input.still) {
     if (!fits(view.depth)) return Error{Errc::size_mismatch, "a depth image and the camera differ in size", {}};
-    if (!is_rigid(view.T_base_flange)) return fail("a flange pose is no rigid transform");
+    if (!is_rigid(view.T_base_flange)) return fail("a flange pose is not a rigid transform");
   }
   for (const MovingView& view : input.moving) {
     if (!fits(view.depth)) return Error{Errc::size_mismatch, "a depth image and the camera differ in size", {}};
     if (view.time_s && !std::isfinite(*view.time_s)) return fail("a frame's time is not finite");
   }
   for (std::size_t i = 0; i < input.flange.size(); ++i) {
-    if (!is_rigid(input.flange[i].T_base_flange)) return fail("a flange pose is no rigid transform");
+    if (!is_rigid(input.flange[i].T_base_flange)) return fail("a flange pose is not a rigid transform");
     if (!std::isfinite(input.flange[i].time_s)) return fail("a flange pose's time is not finite");
     if (i > 0 && !(input.flange[i].time_s > input.flange[i - 1].time_s)) return fail("the flange's times do not rise");
   }
-  if (input.T_flange_camera_guess && !is_rigid(*input.T_flange_camera_guess)) return fail("the guess is no pose");
+  if (input.T_flange_camera_guess && !is_rigid(*input.T_flange_camera_guess))
+    return fail("the guess is not a rigid transform");
   return {};
 }
 
-/// Frames that could be tracked, by index, and where their cameras were.
+/// Frames that could be tracked, by index, and their camera poses.
 struct Track {
   std::vector<std::size_t> frames;
   std::vector<Pose> T_world_camera;
 };
 
-/// Goes through one calibration, filling the result.
+/// One calibration in progress, which fills the result.
 class HandEyeCalibration {
  public:
   HandEyeCalibration(const HandEyeInput& input, const Executor& executor, const HandEyeConfig& config,
@@ -94,7 +95,7 @@ class HandEyeCalibration {
     return {};
   }
 
-  /// Tracks frames against the map of those before. moved(last, k): motion of the camera from frame to frame, roughly.
+  /// Tracks frames against the map of those before. moved(last, k): approximate camera motion from frame to frame.
   template <class DepthOf, class Moved>
   Result<Track> track(const char* stage, std::size_t count, DepthOf&& depth_of, Moved&& moved) const {
     ReconstructionConfig config;
@@ -134,7 +135,7 @@ class HandEyeCalibration {
     return {};
   }
 
-  /// Finds the clock offset, too.
+  /// Tracks the moving views and finds the clock offset.
   Status track_moving() {
     if (input_.moving.empty() || input_.flange.size() < 2) {
       result_.why_no_clock = "there are no frames taken in motion, or no record of the flange's motion";
@@ -144,7 +145,7 @@ class HandEyeCalibration {
       result_.why_no_clock = "frames taken in motion carry no time";
       return {};
     }
-    // The clocks are not known to agree yet; a motion a little early or late is still a better start than none.
+    // The clocks are not known to agree yet, but a motion that is slightly early or late is a better start than none.
     const auto moved = [&](std::size_t last, std::size_t k) {
       const double from_s = *input_.moving[last].time_s;
       const double to_s = *input_.moving[k].time_s;
@@ -257,7 +258,7 @@ class HandEyeCalibration {
     return agreement_of(all, input_.camera, poses, pairs, executor_);
   }
 
-  /// Starts where views agree better: with the guess or with stage 1's mount.
+  /// Chooses the start at which views agree better: the guess or stage 1's mount.
   bool choose_start(const std::optional<Pose>& tracked) {
     const std::optional<Pose>& guess = input_.T_flange_camera_guess;
     if (!tracked && !guess) {

@@ -5,8 +5,9 @@
 #include <Eigen/Eigenvalues>
 #include <algorithm>
 #include <cmath>
+#include <optional>
 
-#include "saccade/tracking/internal/alignment.hpp"
+#include "saccade/tracking/internal/align_loop.hpp"
 
 namespace saccade {
 namespace {
@@ -19,7 +20,7 @@ double constraint(const Matrix6d& JtJ) {
   return largest > 0.0 ? solver.eigenvalues()[0] / largest : 0.0;
 }
 
-/// Share at the model's depth among the measured points that its camera sees where it has a surface.
+/// Returns the share at the model's depth, among the measured points that its camera sees where it has a surface.
 /// Measured on recorded sequences (7-Scenes kitchen, RealSense box, shelf): 0.87 and more where ICP found the pose,
 /// from frames up to 20 cm apart; 0.71 and less where it settled 6 to 37 cm beside it.
 double agreement(const LevelPoints& measured, const PointImage& model, const PinholeCamera& camera,
@@ -78,21 +79,20 @@ Status IcpConfig::validate() const {
   return {};
 }
 
-IcpResult align(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,
-                const Pose& T_model_camera_start, const Executor& executor, const IcpConfig& config) {
+Result<IcpResult> align_by(const Linearization& linearize, const PointImage& measured, const PointImage& model,
+                           const PinholeCamera& camera, const Pose& T_model_camera_start, const IcpConfig& config) {
   SACCADE_EXPECTS(measured.z.width() == camera.width && measured.z.height() == camera.height);
   SACCADE_EXPECTS(model.z.width() == camera.width && model.z.height() == camera.height);
-  const Alignment alignment{model, camera, {config.max_distance_m, config.max_normal_angle_rad}};
   IcpResult result;
   result.T_model_camera = T_model_camera_start;
   NormalEquations sums;
   for (std::size_t stage = 0; stage < config.strides.size(); ++stage) {
-    const Level level{measured, config.strides[stage]};
+    const int stride = config.strides[stage];
     const bool finest = stage + 1 == config.strides.size();
-    const double settled = config.converged_m * config.strides[stage];  // finer levels correct what is left
+    const double settled = config.converged_m * stride;  // finer levels correct what is left
     bool converged{false};
     for (int i = 0; i < config.iterations[stage] && !converged; ++i) {
-      sums = alignment.linearize(result.T_model_camera, level, executor);
+      SACCADE_TRY(sums, linearize(result.T_model_camera, stride));
       if (sums.pairs < 6) break;
       const Eigen::LDLT<Matrix6d> factorised{sums.JtJ.selfadjointView<Eigen::Lower>()};
       const Vector6d step = factorised.solve(-sums.Jtr);
@@ -102,9 +102,10 @@ IcpResult align(const PointImage& measured, const PointImage& model, const Pinho
       converged = step.norm() < settled;
     }
     if (!finest) continue;
-    if (!converged)
-      sums = alignment.linearize(result.T_model_camera, level, executor);  // else: the last step changed nothing
-    sums.measured = level.measured();
+    if (!converged) {  // not needed otherwise: the last step changed nothing
+      SACCADE_TRY(sums, linearize(result.T_model_camera, stride));
+    }
+    sums.measured = Level{measured, stride}.measured();
   }
   if (sums.measured > 0) result.inlier_share = static_cast<double>(sums.pairs) / static_cast<double>(sums.measured);
   if (sums.pairs > 0) result.rmse_m = std::sqrt(sums.squared_residuals / static_cast<double>(sums.pairs));
@@ -113,6 +114,18 @@ IcpResult align(const PointImage& measured, const PointImage& model, const Pinho
   result.why = judge(sums, result, T_model_camera_start, config);
   result.converged = result.why.empty();
   return result;
+}
+
+IcpResult align(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,
+                const Pose& T_model_camera_start, const Executor& executor, const IcpConfig& config) {
+  const Alignment alignment{model, camera, {config.max_distance_m, config.max_normal_angle_rad}};
+  std::optional<Level> level;
+  int level_stride{0};
+  const auto linearize = [&](const Pose& T_model_camera, int stride) -> Result<NormalEquations> {
+    if (stride != level_stride) level.emplace(measured, level_stride = stride);
+    return alignment.linearize(T_model_camera, *level, executor);
+  };
+  return align_by(linearize, measured, model, camera, T_model_camera_start, config).value();
 }
 
 }  // namespace saccade

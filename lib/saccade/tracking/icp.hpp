@@ -14,35 +14,36 @@ namespace saccade {
 
 struct IcpConfig {
   std::array<int, 3> strides{4, 2, 1};      ///< levels, coarse to fine: every n-th pixel of every n-th row
-  std::array<int, 3> iterations{10, 6, 4};  ///< at most, per level
-  double max_distance_m{0.10};              ///< farther pairs are no pairs
-  double max_normal_angle_rad{0.6};         ///< pairs whose normals differ more are no pairs
+  std::array<int, 3> iterations{10, 6, 4};  ///< limit per level
+  double max_distance_m{0.10};              ///< pairs farther apart are rejected
+  double max_normal_angle_rad{0.6};         ///< pairs with a larger angle between normals are rejected
   double converged_m{2e-5};        ///< a level ends when a step moves and turns (in rad) less than this · stride
-  double min_inlier_share{0.25};   ///< lost: fewer of the measured pixels found a partner
-  double min_agreement{0.78};      ///< lost: fewer of the measured pixels before the map's surface lie at its depth
+  double min_inlier_share{0.25};   ///< lost: a smaller share of the measured pixels found a partner
+  double min_agreement{0.78};      ///< lost: a smaller share of the measured pixels in front of the map's surface lie
+                                   ///< at its depth
   double max_rmse_m{0.03};         ///< lost: the weighted residual stays above
-  double max_translation_m{0.20};  ///< lost: farther from the start than a camera moves between frames
-  double max_rotation_rad{0.35};   ///< lost: turned farther than that
-  double min_constraint{1e-5};     ///< lost: smallest to largest eigenvalue of the normal equations
+  double max_translation_m{0.20};  ///< lost: the camera moved farther from the start
+  double max_rotation_rad{0.35};   ///< lost: the camera turned farther from the start
+  double min_constraint{1e-5};     ///< lost: smaller ratio of smallest to largest eigenvalue of the normal equations
 
   [[nodiscard]] Status validate() const;
 };
 
 struct IcpResult {
-  Pose T_model_camera{Pose::Identity()};  ///< where the depth image was taken, seen from the model's camera
-  bool converged{false};                  ///< false: lost; `why` says how
+  Pose T_model_camera{Pose::Identity()};  ///< pose of the depth image relative to the model's camera
+  bool converged{false};                  ///< false: lost, for the reason in `why`
   std::string why;
   int iterations{0};
   double inlier_share{0.0};  ///< pairs / measured pixels, at the finest level
-  double agreement{0.0};     ///< of the measured pixels seen where the model has a surface: share at its depth
-  double rmse_m{0.0};        ///< of the point-to-plane distances
+  double agreement{0.0};     ///< share at the model's depth, among measured pixels where the model has a surface
+  double rmse_m{0.0};        ///< root mean square of the point-to-plane distances
 };
 
 /// Aligns measured points to a surface seen by the same camera from a known pose. Thesis §2.2.1 "Camera tracking".
 /// Pairs by projection into the model; minimises point-to-plane distances, weighted by the depth noise (growing with
 /// z²) and a Huber loss, with Gauss–Newton steps on SE(3).
-/// In a wrong place, too, ICP finds planes to slide on: a quarter to a half of the pixels then have partners. What
-/// tells is how many of the others contradict the model (agreement), rather than meet space it has no surface in.
+/// Even at a wrong pose ICP finds planes to slide on, and a quarter to a half of the pixels have partners. The decisive
+/// measure is the share of the others that contradict the model (agreement), rather than meet space without a surface.
 /// @param T_model_camera_start first guess.
 /// A failed alignment is a result (converged = false), not an error.
 /// O(pixels · iterations). Sums run in fixed lanes and chunks: neither threads nor simd_target() change a bit of the

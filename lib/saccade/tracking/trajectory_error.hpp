@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// TrajectoryError: a tracked trajectory against the true one; DepthResidual: how far the map's surface lies from
-// measured depths.
+// TrajectoryError: a tracked trajectory compared with the true one. DepthResidual: distances between the map's surface
+// and measured depths.
 
 #include <cstddef>
 #include <cstdint>
@@ -28,18 +28,19 @@ struct TrajectoryError {
 [[nodiscard]] Result<TrajectoryError> trajectory_error(std::span<const Pose> T_world_estimated,
                                                        std::span<const Pose> T_world_true);
 
-/// Gathers |ray cast − measured| along z. A pixel is valid when its measured depth is a return (> 0, finite); it takes
-/// part when the ray cast met a surface there. One thread.
+/// Collects |ray cast − measured| along z. A pixel is valid when its measured depth is a return (> 0, finite); it
+/// counts when the ray cast met a surface there. One thread.
 class DepthResidual {
  public:
-  /// size_mismatch when the images differ in size; then nothing is added. O(pixels).
+  /// Adds an image pair. Answers size_mismatch when the sizes differ; then nothing is added. O(pixels).
   [[nodiscard]] Status add(const DepthImage& measured, const DepthImage& map_cast);
 
   [[nodiscard]] std::uint64_t valid() const { return valid_; }
   [[nodiscard]] std::uint64_t taking_part() const { return taking_part_; }
-  /// Share of the valid pixels that took part; 0 without valid pixels.
+  /// Returns the share of the valid pixels that count; 0 without valid pixels.
   [[nodiscard]] double share() const;
-  /// Median of the residuals, to half of kStep_m; residuals beyond kLargest_m count as kLargest_m. 0 without any.
+  /// Returns the median residual, to half of kStep_m; residuals beyond kLargest_m count as kLargest_m. 0 without
+  /// residuals.
   [[nodiscard]] double median_m() const;
 
   static constexpr double kStep_m{1e-5};

@@ -54,7 +54,7 @@ void bind(SqliteStatement& statement, const CampaignKey& key) {
   statement.bind(key.settings);
 }
 
-/// Binds measures against a truth, which every run of a campaign has.
+/// Binds measures that need a ground truth, which every run of a campaign has.
 void bind(SqliteStatement& statement, const Measures& measures) {
   statement.bind(measures.coverage.value_or(0.0));
   statement.bind(whole(measures.unknown_left));
@@ -173,7 +173,7 @@ Result<CampaignEntry> entry_of(const SqliteFile& file, SqliteStatement& row) {
   entry.key.settings = row.text();
   const std::string reason = row.text();
   const auto stopped_because = kStopReasonNames.find(reason);
-  if (!stopped_because) return Error{Errc::corrupt_data, "there is no reason to stop called \"" + reason + "\"", ""};
+  if (!stopped_because) return Error{Errc::corrupt_data, "unknown reason to stop: \"" + reason + "\"", ""};
   entry.run.stopped_because = *stopped_because;
   entry.seconds = row.real();
   entry.program_version = row.text();

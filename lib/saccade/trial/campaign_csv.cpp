@@ -10,7 +10,7 @@ namespace {
 constexpr std::array<std::string_view, 5> kKeyColumns{"scene", "scene_hash", "strategy", "noise", "seed"};
 constexpr std::array<std::string_view, 6> kMapColumns{"coverage",   "unknown_left", "unknown_near_objects",
                                                       "accuracy_m", "chamfer_m",    "f_score"};
-/// Of a view, between its number and its phases.
+/// Columns of a view, between its number and its phases.
 constexpr std::array<std::string_view, 11> kViewColumns{
     "region",          "gain",   "gain_observed", "candidates", "evaluated", "refused", "frames", "points_at_object",
     "looks_at_object", "path_m", "motion_s"};
@@ -68,7 +68,7 @@ CsvTable views_csv(std::span<const CampaignEntry> runs) {
   for (const CampaignEntry& entry : runs) {
     add_key(table, entry.key);
     table.add(std::uint64_t{0});
-    // What a scan does not have.
+    // Columns that a scan lacks.
     for (std::size_t i = 0; i < kViewColumns.size() + kPhaseNames.values.size(); ++i) table.add(std::nullopt);
     add_map(table, entry.run.scan.measures);
     table.end_row();
@@ -84,7 +84,7 @@ CsvTable views_csv(std::span<const CampaignEntry> runs) {
 
 namespace {
 
-/// The figures of a calibration are of views together, so that they have neither a mean over runs nor an interval.
+/// Adds a calibration. Its measures cover all views together, so they have neither a mean over runs nor an interval.
 void add_calibration(CsvTable& table, const CampaignSummary& summary) {
   const Calibration& calibration = summary.calibration;
   const auto add = [&](std::string_view figure, std::optional<double> value) {

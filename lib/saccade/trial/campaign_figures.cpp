@@ -13,13 +13,13 @@ using Value = std::optional<double>;
 
 constexpr double kPercent{100.0};
 constexpr double kMillimetres{1000.0};
-constexpr double kSeconds{1e-3};  // of milliseconds
+constexpr double kSeconds{1e-3};  // from milliseconds
 
 Value number(std::size_t count) { return static_cast<double>(count); }
 
 Value number(const std::optional<std::size_t>& count) { return count ? number(*count) : std::nullopt; }
 
-/// The sum over all views.
+/// Returns the sum over all views.
 template <class Of>
 double sum_of(const Run& run, Of of) {
   double sum = 0.0;
@@ -27,7 +27,7 @@ double sum_of(const Run& run, Of of) {
   return sum;
 }
 
-bool points_at_object(const ViewRecord& view) { return view.reveals_object.value_or(false); }
+bool reveals_object(const ViewRecord& view) { return view.reveals_object.value_or(false); }
 
 auto first_views_end(const Run& run) {
   return run.run.views.begin() + static_cast<std::ptrdiff_t>(std::min(kFirstViews, run.run.views.size()));
@@ -136,12 +136,12 @@ double coverage_area(const CampaignEntry& run, std::size_t budget) {
 }
 
 std::size_t object_views(const CampaignEntry& run) {
-  return static_cast<std::size_t>(std::count_if(run.run.views.begin(), first_views_end(run), points_at_object));
+  return static_cast<std::size_t>(std::count_if(run.run.views.begin(), first_views_end(run), reveals_object));
 }
 
 std::optional<bool> objects_come_first(const CampaignEntry& run) {
-  if (run.run.views.empty()) return std::nullopt;
-  return std::is_partitioned(run.run.views.begin(), first_views_end(run), points_at_object);
+  if (std::none_of(run.run.views.begin(), run.run.views.end(), reveals_object)) return std::nullopt;
+  return std::is_partitioned(run.run.views.begin(), first_views_end(run), reveals_object);
 }
 
 std::span<const RunFigure> run_figures() {

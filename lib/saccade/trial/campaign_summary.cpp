@@ -24,7 +24,7 @@ Runs runs_of(std::span<const CampaignEntry> runs, const CampaignGroup& group) {
   return chosen;
 }
 
-/// The mean of what `figure` makes of each run, or of each scene; those without that figure are left out.
+/// Returns the mean of `figure` over runs, or over scenes, without those that lack it.
 template <class Figure>
 MeanEstimate mean_of(const Runs& runs, bool by_scene, const Figure& figure) {
   std::vector<std::string> scenes;

@@ -13,8 +13,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Points of the mesh inside the workspace that do not lie on a support.
-std::vector<Eigen::Vector3f> points_off_supports(const Truth& truth, const TriangleMesh& mesh, double voxel_size_m) {
+/// Returns the points of the mesh inside the workspace that do not lie on a support.
+std::vector<Eigen::Vector3f> points_off_supports(const GroundTruth& truth, const TriangleMesh& mesh,
+                                                 double voxel_size_m) {
   const Box& workspace = truth.scene().scene().workspace;
   std::vector<Eigen::Vector3f> points;
   for (const Eigen::Vector3f& point : sample_surfaces({{"mesh", mesh, false}}, truth.spacing_m(), workspace).points) {
@@ -25,7 +26,7 @@ std::vector<Eigen::Vector3f> points_off_supports(const Truth& truth, const Trian
 
 }  // namespace
 
-Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Executor& executor) {
+Result<GroundTruth> GroundTruth::build(const RayScene& scene, double spacing_m, const Executor& executor) {
   if (!(std::isfinite(spacing_m) && spacing_m > 0.0)) {
     return Error{Errc::invalid_argument, "the spacing of the samples must be positive", "truth"};
   }
@@ -54,18 +55,20 @@ Result<Truth> Truth::build(const RayScene& scene, double spacing_m, const Execut
     return Error{Errc::invalid_argument,
                  "no surface of an object can be seen in the workspace; move the workspace or the objects", "truth"};
   }
-  return Truth{std::make_shared<const Data>(std::move(data))};
+  return GroundTruth{std::make_shared<const Data>(std::move(data))};
 }
 
-double Truth::to_objects_m(const Vector3d& p, double beyond_m) const { return data_->objects.distance_m(p, beyond_m); }
+double GroundTruth::to_objects_m(const Vector3d& p, double beyond_m) const {
+  return data_->objects.distance_m(p, beyond_m);
+}
 
-double Truth::to_supports_m(const Vector3d& p, double beyond_m) const {
+double GroundTruth::to_supports_m(const Vector3d& p, double beyond_m) const {
   return data_->supports ? data_->supports->distance_m(p, beyond_m) : beyond_m;
 }
 
-bool Truth::inside_solid(const Vector3d& p) const { return data_->bodies.contain(p); }
+bool GroundTruth::inside_solid(const Vector3d& p) const { return data_->bodies.contain(p); }
 
-std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+std::size_t unknown_near_objects(const GroundTruth& truth, const TsdfSnapshot& map, const Executor& executor) {
   const double e = map.config.voxel_size_m;
   const Box& workspace = truth.scene().scene().workspace;
   Vector3d low = Vector3d::Constant(std::numeric_limits<double>::infinity());
@@ -98,12 +101,12 @@ std::size_t unknown_near_objects(const Truth& truth, const TsdfSnapshot& map, co
   return std::accumulate(layers.begin(), layers.end(), std::size_t{0});
 }
 
-NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,
-                       const Executor& executor) {
+ObservedGain newly_known(const GroundTruth& truth, const TsdfSnapshot& before, const TsdfSnapshot& after,
+                         const Executor& executor) {
   const double e = after.config.voxel_size_m;
   const IndexBox box = voxels_with_center_in(truth.scene().scene().workspace, e);
   if (box.empty()) return {};
-  std::vector<NewlyKnown> layers(static_cast<std::size_t>(box.size().z));
+  std::vector<ObservedGain> layers(static_cast<std::size_t>(box.size().z));
   const auto add_layer = [&](std::size_t layer) {
     box.layer(layer).for_each([&](const Index3& voxel) {
       if (after.grid.state(voxel) == VoxelState::unknown || before.grid.state(voxel) != VoxelState::unknown) return;
@@ -115,15 +118,15 @@ NewlyKnown newly_known(const Truth& truth, const TsdfSnapshot& before, const Tsd
   executor.parallel_for(layers.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t layer = begin; layer < end; ++layer) add_layer(layer);
   });
-  NewlyKnown total;
-  for (const NewlyKnown& layer : layers) {
+  ObservedGain total;
+  for (const ObservedGain& layer : layers) {
     total.voxels += layer.voxels;
     total.near_objects += layer.near_objects;
   }
   return total;
 }
 
-bool looks_at_object(const Truth& truth, const Pose& T_world_camera) {
+bool looks_at_object(const GroundTruth& truth, const Pose& T_world_camera) {
   constexpr double kStep_m{0.01};
   const Box& workspace = truth.scene().scene().workspace;
   const Vector3d origin = T_world_camera.translation();
@@ -141,7 +144,7 @@ bool looks_at_object(const Truth& truth, const Pose& T_world_camera) {
   return is_near(end_m);
 }
 
-Metrics measure(const Truth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {
+Metrics measure(const GroundTruth& truth, const TsdfSnapshot& map, const TriangleMesh& mesh, const Executor& executor) {
   Metrics metrics;
   metrics.unknown_near_objects = unknown_near_objects(truth, map, executor);
   if (mesh.triangles.empty()) return metrics;

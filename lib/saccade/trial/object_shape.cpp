@@ -16,9 +16,9 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// The greatest value but for the `trimmed` greatest.
+/// Returns the largest value after dropping the `trimmed` largest.
 float highest(const std::vector<float>& values, std::size_t trimmed) {
-  constexpr float kNearEnd_m{0.01F};  // what is sorted; nearly always enough
+  constexpr float kNearEnd_m{0.01F};  // range of values to sort; nearly always enough
   const float end = *std::max_element(values.begin(), values.end());
   std::vector<float> top;
   std::copy_if(values.begin(), values.end(), std::back_inserter(top),
@@ -29,7 +29,7 @@ float highest(const std::vector<float>& values, std::size_t trimmed) {
   return *at;
 }
 
-/// How far the points reach along a horizontal direction.
+/// Returns the extent of the points along a horizontal direction.
 double reach_m(const std::vector<Eigen::Vector3f>& points, double direction_deg, std::size_t trimmed,
                std::vector<float>& scratch) {
   const auto x = static_cast<float>(std::cos(to_rad(direction_deg)));
@@ -44,15 +44,14 @@ struct Axes {
   double minor_m;
 };
 
-/// The least width, to 0.1°: first in whole degrees, then around the best of these. A handle does not show from where
-/// it hides behind the body, and so does not say which of the directions in which it hides is meant: the one that it is
-/// the longest across.
+/// Finds the smallest width, to 0.1°: first in whole degrees, then around the best. A handle hidden behind the body
+/// leaves several directions of smallest width; the one with the largest length across is chosen.
 Axes axes_of(const std::vector<Eigen::Vector3f>& points, std::size_t trimmed) {
   constexpr std::size_t kHalfTurn{180};
   constexpr double kAsNarrow_m{0.002};
   std::vector<float> scratch;
   scratch.reserve(points.size());
-  // Between two vertical planes that hold the points between them.
+  // Width between two vertical planes that enclose the points.
   const auto width_at_m = [&](double degrees) {
     return reach_m(points, degrees, trimmed, scratch) + reach_m(points, degrees + kHalfTurn, trimmed, scratch);
   };
@@ -137,7 +136,7 @@ std::optional<ObjectShape> ObjectShapes::measure(std::size_t object, const Trian
     const double to_object_m = surfaces_[object].distance_m(p, 2.0 * config_.reach_m);
     if (to_object_m > config_.reach_m) return false;
     for (std::size_t other = 0; other < surfaces_.size(); ++other) {
-      // What is as far from another surface counts as that one's, so that a foot is not taken from the table.
+      // Points equally near to another surface belong to that one, so that a foot does not take part of the table.
       if (other != object && surfaces_[other].distance_m(p, 2.0 * config_.reach_m) <= to_object_m) return false;
     }
     return true;

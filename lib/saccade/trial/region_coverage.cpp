@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// How many of the points have the mesh that near.
+/// Counts the points within that distance of the mesh.
 std::size_t covered(const std::vector<Eigen::Vector3f>& points, const MeshDistance& mesh, double within_m,
                     const Executor& executor) {
   std::vector<std::uint8_t> near(points.size());

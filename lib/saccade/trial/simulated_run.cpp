@@ -9,11 +9,12 @@
 #include "saccade/scene/scene.hpp"
 #include "saccade/trial/internal/oracle_gain.hpp"
 #include "saccade/trial/internal/pair_oracle.hpp"
+#include "saccade/trial/recorded_run.hpp"
 
 namespace saccade {
 namespace {
 
-/// What carries the camera in run_simulated.
+/// Returns the robot that carries the camera in run_simulated.
 Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRunConfig& config) {
   if (!config.arm) {
     SACCADE_TRY(FreeRobot robot, flying_camera(scene));
@@ -21,14 +22,13 @@ Result<std::unique_ptr<Robot>> carrier(const RayScene& scene, const SimulatedRun
   }
   PlannedArmConfig robot_config = config.arm_robot;
   robot_config.planner.seed = config.seed;
-  // A search that ran out of time would depend on the machine and on what else runs there.
+  // No time limit: a search that runs out of time would depend on the machine and its load.
   robot_config.planner.budget_s = std::numeric_limits<double>::infinity();
   SACCADE_TRY(PlannedArm robot, planned_arm(*config.arm, scene.scene(), config, std::move(robot_config)));
   return std::unique_ptr<Robot>{std::make_unique<PlannedArm>(std::move(robot))};
 }
 
-/// Fills in the straight ways of a camera that flies. It begins at the last pose of the scan, unless one was passed
-/// over.
+/// Fills in the straight paths of a flying camera. It begins at the last pose of the scan, unless one was skipped.
 void measure_flights(RunRecord& run, const std::vector<Pose>& scan) {
   std::optional<Eigen::Vector3d> last;
   if (!scan.empty() && run.scan.refused.total() == 0) last = scan.back().translation();
@@ -86,7 +86,7 @@ std::vector<Region> regions_of(const Scene& scene, const NamedPlanner& planner) 
 }
 
 ViewPlanner make_planner(const SimulatedRunConfig& config, const PinholeCamera& camera, std::span<const Region> regions,
-                         const Truth* truth) {
+                         const GroundTruth* truth) {
   SACCADE_EXPECTS(!regions.empty() && (truth != nullptr || !config.strategy.needs_truth));
   PlannerSetup setup;
   setup.gain.sensor = camera.scaled_to_width(std::min(config.gain_width_px, camera.width));
@@ -138,7 +138,7 @@ Result<PlannedArm> planned_arm(const ArmModel& arm, const Scene& scene, const Si
   return PlannedArm::create(arm, map, robot, std::move(joints));
 }
 
-Measures measure_map(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+Measures measure_map(const GroundTruth& truth, const TsdfSnapshot& map, const Executor& executor) {
   const Metrics metrics = measure(truth, map, extract_mesh(map, executor), executor);
   return {metrics.coverage,
           count_unknown(map, truth.scene().scene().workspace),
@@ -156,21 +156,33 @@ Status TruthMeter::scanned(ScanRecord& scan, const TsdfSnapshot& map) {
 
 Status TruthMeter::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<const Frame> /*frames*/) {
   view.measures = measure_map(truth_, map, executor_);
-  view.reveals_object = newly_known(truth_, before_, map, executor_).points_at_object();
+  view.reveals_object = newly_known(truth_, before_, map, executor_).reveals_object();
   view.looks_at_object = looks_at_object(truth_, view.T_world_camera);
   before_ = map;
   return {};
 }
 
-Result<RunRecord> run_simulated(const Truth& truth, const SimulatedRunConfig& config, const Executor& executor,
+Result<RunRecord> run_simulated(const GroundTruth& truth, const SimulatedRunConfig& config, const Executor& executor,
                                 const Progress& progress) {
-  SACCADE_CHECK(config.validate());
-  ViewPlanner planner = make_planner(config, config.camera, regions_of(truth.scene().scene(), config.strategy), &truth);
-  return run_simulated(truth, config, planner, executor, progress);
+  Recorder unheard;
+  return run_recorded(truth, config, unheard, executor, progress);
 }
 
-Result<RunRecord> run_simulated(const Truth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
+Result<RunRecord> run_simulated(const GroundTruth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
                                 const Executor& executor, const Progress& progress) {
+  Recorder unheard;
+  return run_recorded(truth, config, planner, unheard, executor, progress);
+}
+
+Result<RunRecord> run_recorded(const GroundTruth& truth, const SimulatedRunConfig& config, Recorder& recorder,
+                               const Executor& executor, const Progress& progress) {
+  SACCADE_CHECK(config.validate());
+  ViewPlanner planner = make_planner(config, config.camera, regions_of(truth.scene().scene(), config.strategy), &truth);
+  return run_recorded(truth, config, planner, recorder, executor, progress);
+}
+
+Result<RunRecord> run_recorded(const GroundTruth& truth, const SimulatedRunConfig& config, ViewPlanner& planner,
+                               Recorder& recorder, const Executor& executor, const Progress& progress) {
   SACCADE_CHECK(config.validate());
   const Scene& scene = truth.scene().scene();
   TsdfConfig map_config = config.map();
@@ -178,10 +190,11 @@ Result<RunRecord> run_simulated(const Truth& truth, const SimulatedRunConfig& co
   SACCADE_TRY(TsdfMap map, TsdfMap::create(map_config));
   SACCADE_TRY(SimulatedCamera sensor, simulated_camera(truth.scene(), config));
   SACCADE_TRY(std::unique_ptr<Robot> robot, carrier(truth.scene(), config));
-  SACCADE_TRY(CarriedCamera camera,
-              CarriedCamera::create(std::move(sensor), std::move(robot), config.arm.get(), executor));
+  SACCADE_TRY(MaskedCamera camera,
+              MaskedCamera::create(std::move(sensor), std::move(robot), config.arm.get(), executor));
   TruthMeter meter{truth, executor};
-  Explorer explorer{{map, camera, camera.robot(), executor, &meter, nullptr, {}, &progress}, config.exploration};
+  Recorders recorders{&meter, &recorder};
+  Explorer explorer{{map, camera, camera.robot(), executor, &recorders, nullptr, {}, &progress}, config.exploration};
   RunRecord run;
   SACCADE_TRY(run.scan, explorer.scan(scene.scan));
   if (!run.scan.complete) {

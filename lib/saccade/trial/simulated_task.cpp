@@ -29,7 +29,7 @@ bool is_known(const Scene& scene, const std::string& name) {
   return found != scene.objects.end() && (found->support || found->fixture);
 }
 
-/// Where the sensor is while the object is held there.
+/// Returns the sensor's position while the object is held there.
 Vector3d held_at(const Box& object, const Vector3d& user_m, const SimulatedHandConfig& config) {
   Vector3d grip = 0.5 * (object.min + object.max);
   grip.z() = object.min.z() + config.grip_share * (object.max.z() - object.min.z());
@@ -40,7 +40,7 @@ Vector3d held_at(const Box& object, const Vector3d& user_m, const SimulatedHandC
   return grip + half_m * Vector3d::UnitZ() + std::sqrt(3.0) * half_m * beside;
 }
 
-/// What the sensor must stay above so that neither the hand nor what it carries comes near the object.
+/// Returns the box that the sensor must stay above, so that neither the hand nor its load comes near the object.
 Box to_pass_over(const Box& object, const Vector3d& carried_m, const SimulatedHandConfig& config) {
   const double half_m = 0.5 * std::max(carried_m.x(), carried_m.y());
   const double below_m = config.grip_share * carried_m.z() + 0.5 * config.wrist_m + config.clearance_m;
@@ -95,7 +95,7 @@ Result<SimulatedHand> simulated_hand(const Scene& before, const std::vector<Scen
   if (changes.empty()) return bad("nothing changes in the scene \"" + before.name + "\"");
   constexpr double kBeside_m{0.2};
   SeededRandom random{seed};
-  MadeUpWay way;
+  SyntheticHandPath way;
   way.outside_m = config.user_m + kBeside_m * Vector3d{random.uniform(-1.0, 1.0), 0.0, random.uniform(-0.5, 0.5)};
   SimulatedHand hand;
   Vector3d largest_m = Vector3d::Zero();
@@ -115,7 +115,7 @@ Result<SimulatedHand> simulated_hand(const Scene& before, const std::vector<Scen
     if (!stays || before.objects[i].support || before.objects[i].fixture) continue;
     way.obstacles.push_back(to_pass_over(bounds_of(meshes[i].mesh), largest_m, config));
   }
-  hand.trajectory = made_up_task(way, seed, config.motion).trajectory;
+  hand.trajectory = synthetic_task(way, seed, config.motion).trajectory;
   return hand;
 }
 

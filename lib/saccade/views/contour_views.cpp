@@ -16,7 +16,7 @@ double rolls_of(double step_rad) { return std::max(1.0, std::ceil(360_deg / step
 bool is_distance(double x) { return std::isfinite(x) && x > 0.0; }
 Error fail(const char* what) { return {Errc::invalid_argument, what, "contour views"}; }
 
-/// The normal, and those tilted towards the right, top, left and bottom of an image taken along it.
+/// Returns the normal, and directions tilted towards the right, top, left and bottom of an image taken along it.
 std::array<Eigen::Vector3d, kDirections> directions_around(const Eigen::Vector3d& normal, double cone_rad) {
   const Eigen::Matrix3d axes = look_at(normal, Eigen::Vector3d::Zero()).linear();
   const Eigen::Vector3d ahead = std::cos(cone_rad) * normal;

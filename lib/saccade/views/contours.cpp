@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-/// Contour voxels by cells of a cube, so that those within a distance are in 27 cells. Voxels are taken out of it.
+/// Contour voxels in cells of a cube, so that all within a distance lie in 27 cells. Voxels can be removed.
 class VoxelCells {
  public:
   VoxelCells(std::span<const ContourVoxel> voxels, double distance_vox) {
@@ -19,7 +19,7 @@ class VoxelCells {
     for (std::size_t i = 0; i < voxels.size(); ++i) cells_[cell_of(voxels[i].voxel)].push_back(i);
   }
 
-  /// Takes out those near a voxel for which `take` answers true, in a fixed order.
+  /// Removes the voxels near a voxel for which `take` returns true, in a fixed order.
   template <class Take>
   void take_near(const Index3& voxel, const Take& take) {
     const Index3 middle = cell_of(voxel);
@@ -32,7 +32,7 @@ class VoxelCells {
   }
 
  private:
-  /// Rounded towards zero: the cells around zero are larger, which does no harm.
+  /// Rounds towards zero. The cells around zero are larger, which does no harm.
   [[nodiscard]] Index3 cell_of(const Index3& voxel) const {
     return {voxel.x / edge_, voxel.y / edge_, voxel.z / edge_};
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// contour_voxels, contour_points: empty voxels at the border of incomplete surfaces, and groups of them; LiveContours:
-// those of a map that goes on changing; contour_views: view poses that look at them.
+// contour_voxels, contour_points: empty voxels at the border of incomplete surfaces, and groups of them. LiveContours:
+// contours of a map that keeps changing. contour_views: view poses that look at contours.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -23,114 +23,117 @@ struct ContourConfig {
   double group_distance_m{0.03};   ///< D_th: voxels of a group are nearer to its first one
   double group_angle_rad{30_deg};  ///< A_th: their normals are nearer to its normal
 
-  /// invalid_argument for a weight of zero, a distance that is not positive or an angle outside (0, 90°].
+  /// Answers invalid_argument for a weight of zero, a distance that is not positive or an angle outside (0, 90°].
   [[nodiscard]] Status validate() const;
 };
 
-/// An empty voxel next to unknown space and near an occupied voxel. Its normal points towards known empty space.
+/// Empty voxel next to unknown space and near an occupied voxel. Its normal points towards known empty space.
 struct ContourVoxel {
   Index3 voxel;
-  Eigen::Vector3f normal{Eigen::Vector3f::Zero()};  ///< of the frontier (eq. 3.5), unit length
+  Eigen::Vector3f normal{Eigen::Vector3f::Zero()};  ///< normal of the frontier (eq. 3.5), unit length
   [[nodiscard]] bool operator==(const ContourVoxel&) const = default;
 };
 
-/// All contour voxels of a map. Thesis §3.1.1, eq. 3.2, 3.5, 3.6.
+/// Returns all contour voxels of a map. Thesis §3.1.1, eq. 3.2, 3.5, 3.6.
 ///
-/// Known is a voxel observed known_weight times or more, by the map's weights; where the map's free_weight is less than
-/// that, only voxels within the truncation are ever known to be empty. Outside the map's workspace nothing is unknown:
-/// a voxel there is no contour voxel, makes none, and counts nothing in a normal unless it is known. In eq. 3.6 free
-/// space whose weight is saturated counts W_th (docs/decisions/0009-contours.md). A voxel whose normal vanishes
-/// says nothing about where to look from, and is left out.
+/// A voxel is known when the map's weights show known_weight observations or more. Where the map's free_weight is
+/// smaller, only voxels within the truncation are ever known to be empty. Nothing outside the map's workspace is
+/// unknown: a voxel there is no contour voxel, causes none, and enters a normal only if it is known. In eq. 3.6 free
+/// space with a saturated weight counts W_th (docs/decisions/0009-contours.md). A voxel whose normal vanishes gives no
+/// direction to look from, and is omitted.
 /// @return by sector, brick and voxel, each in z-y-x order; invalid_argument for a bad config.
 /// O(bricks near the surface + contour voxels). The thread count never changes a bit of the result.
 [[nodiscard]] Result<std::vector<ContourVoxel>> contour_voxels(const TsdfSnapshot& map, const ContourConfig& config,
                                                                const Executor& executor);
 
-/// The contour voxels of these bricks, per sector; the sectors need not exist. For a valid configuration (contract).
+/// Returns the contour voxels of these bricks, per sector; the sectors need not exist. Requires a valid configuration
+/// (contract).
 [[nodiscard]] std::vector<std::vector<ContourVoxel>> contour_voxels_in(const TsdfSnapshot& map,
                                                                        std::span<const SectorBricks> sectors,
                                                                        const ContourConfig& config,
                                                                        const Executor& executor);
 
-/// A group of similar contour voxels: their mean.
+/// Mean of a group of similar contour voxels.
 struct ContourPoint {
   Eigen::Vector3d position_m{Eigen::Vector3d::Zero()};
   Eigen::Vector3d normal{Eigen::Vector3d::Zero()};  ///< unit length
-  std::uint32_t voxels{0};                          ///< how many there are
+  std::uint32_t voxels{0};                          ///< number of voxels in the group
   [[nodiscard]] bool operator==(const ContourPoint&) const = default;
 };
 
-/// Similar contour voxels, each group as one point. Thesis §3.1.1, eq. 3.7, whose second line is meant as "the angle
+/// Groups similar contour voxels into one point each. Thesis §3.1.1, eq. 3.7, whose second line is read as "the angle
 /// between the normals is less than A_th": as printed, opposite normals would be alike.
 ///
-/// The first voxel that is in no group yet starts one and takes all that are in none and similar to itself. Similarity
-/// to the first one bounds a group: if similar voxels were chained, one group would run along a whole edge, or all
-/// around a round thing, and its mean would lie on neither. So no group is wider than 2 D_th, no two of its normals
+/// The first ungrouped voxel starts a group and takes all ungrouped voxels that are similar to it. Similarity to the
+/// first voxel bounds a group. If similar voxels were chained instead, one group would run along a whole edge, or
+/// around a round object, and its mean would lie on neither. No group is wider than 2 D_th, no two of its normals
 /// differ by 2 A_th, and their mean never vanishes (docs/decisions/0009-contours.md).
-/// Groups are in the order of their first voxels. For a valid configuration and voxels with unit normals (contract).
-/// O(voxels · groups within D_th of each). One thread.
+/// Groups are in the order of their first voxels. Requires a valid configuration and unit normals (contract). O(voxels
+/// · groups within D_th of each). One thread.
 [[nodiscard]] std::vector<ContourPoint> contour_points(std::span<const ContourVoxel> voxels, double voxel_size_m,
                                                        const ContourConfig& config);
 
-/// What LiveContours::update did.
+/// Changes made by LiveContours::update.
 struct ContoursUpdate {
-  std::size_t bricks_changed{0};  ///< in the map
+  std::size_t bricks_changed{0};  ///< changed bricks of the map
   double ms{0.0};
 };
 
-/// Follows a map from snapshot to snapshot. After update(map), voxels() equals contour_voxels(map) to the bit.
-/// Thesis §3.1.1.
+/// Contours that follow a map from snapshot to snapshot. After update(map), voxels() equals contour_voxels(map) to the
+/// bit. Thesis §3.1.1.
 ///
-/// Whether a voxel belongs to a contour, and its normal, depend on voxels next to it alone, so those of a changed brick
-/// and of the up to 26 around it are found anew, all others are kept. Const use from many threads is safe, one writer
-/// at a time. It holds the snapshot.
+/// Whether a voxel belongs to a contour, and its normal, depend only on its neighbours. After a change, the contours of
+/// changed bricks and their up to 26 neighbours are found anew; all others are kept. Const use from many threads is
+/// safe, with one writer at a time. LiveContours holds the snapshot.
 class LiveContours {
  public:
-  /// invalid_argument when the configuration is.
+  /// Answers invalid_argument for an invalid configuration.
   [[nodiscard]] static Result<LiveContours> create(const ContourConfig& config = {});
 
-  /// Follows the map to this state, any later or earlier one, or that of another map; where the configurations of both
-  /// maps differ, from scratch. O(changed_sectors + bricks around changed ones). The same for every thread count.
+  /// Brings the contours to this state of the map, later or earlier, or to another map; from scratch where the
+  /// configurations of both maps differ. O(changed_sectors + bricks around changed ones). The thread count never
+  /// changes the result.
   ContoursUpdate update(const TsdfSnapshot& map, const Executor& executor);
 
-  /// All contour voxels. O(voxels).
+  /// Returns all contour voxels. O(voxels).
   [[nodiscard]] std::vector<ContourVoxel> voxels() const;
-  /// Groups of them, as of contour_points.
+  /// Returns their groups, as contour_points does.
   [[nodiscard]] std::vector<ContourPoint> points() const;
 
  private:
   struct Sector {
     Index3 key;
-    std::vector<ContourVoxel> voxels;  ///< by brick and voxel
+    std::vector<ContourVoxel> voxels;  ///< sorted by brick and voxel
   };
   explicit LiveContours(const ContourConfig& config) : config_{config} {}
   void replace(const SectorBricks& stale, const std::vector<ContourVoxel>& fresh);
 
   ContourConfig config_;
   TsdfSnapshot map_;
-  std::vector<Sector> sectors_;  ///< that have contour voxels, in z-y-x order
+  std::vector<Sector> sectors_;  ///< sectors with contour voxels, in z-y-x order
 };
 
 /// Sampling of views around the direction of a contour point. Thesis §3.1, Fig. 3.2; the defaults give 40 per point.
 struct ContourViewConfig {
   std::vector<double> distances_m{0.8};
-  double cone_rad{15_deg};  ///< four further directions are tilted by this
+  double cone_rad{15_deg};  ///< tilt of the four further directions
   double roll_step_rad{45_deg};
 
-  /// invalid_argument for distances or a step that are not positive, a cone outside (0, 90°) or more than 10⁷ poses.
+  /// Answers invalid_argument for distances or a step that are not positive, a cone outside (0, 90°) or more than 10⁷
+  /// poses.
   [[nodiscard]] Status validate() const;
-  /// Five directions · rolls · distances. For a valid configuration.
+  /// Returns five directions · rolls · distances. Requires a valid configuration.
   [[nodiscard]] std::size_t views_per_point() const;
 };
 
-/// Poses that look at each point from along its normal, and from four directions tilted away from it. Thesis §3.1,
+/// Returns poses that look at each point along its normal, and from four directions tilted away from it. Thesis §3.1,
 /// GetViewpoints of Algorithm 4. Direction 0 is the normal n: the camera stands at p + distance · n and looks along -n.
 /// The others are tilted towards the right, the top, the left and the bottom of its image at roll 0. At roll 0 the
 /// image's up is the world's, as in view_sphere; for a camera that looks straight up or down it is world +y. Roll turns
 /// the camera about its optical axis.
 /// Index order: ((point · distances + distance) · 5 + direction) · rolls + roll.
-/// @return world ← camera; invalid_argument for a bad configuration, a point or normal that is not finite, a normal
-///         without length, or more than 10⁷ poses.
+/// @return world ← camera; invalid_argument for a bad configuration, a point or normal that is not finite, a normal of
+/// length zero, or more than 10⁷ poses.
 [[nodiscard]] Result<std::vector<Pose>> contour_views(std::span<const ContourPoint> points,
                                                       const ContourViewConfig& config = {});
 

@@ -19,14 +19,14 @@ namespace {
 
 constexpr float kLeastCosine{0.17364818F};  // the cosine of 80°
 
-/// The area of a voxel's exposed faces across its normal, which points towards where they are exposed.
+/// Area of a voxel's exposed faces across its normal, which points to their open side.
 struct Exposed {
   std::uint32_t voxel{0};
   Eigen::Vector3f normal;
   float area_vox{0.0F};  ///< faces
 };
 
-/// What is exposed of an unknown voxel where is_free(neighbour's index) holds; `strides` as of a volume.
+/// Returns the exposed part of an unknown voxel where is_free(neighbour's index) holds; `strides` as in a volume.
 template <class IsFree>
 std::optional<Exposed> exposed_at(const StateVolume& volume, std::size_t voxel, const IsFree& is_free) {
   const std::ptrdiff_t row = volume.row();
@@ -55,19 +55,19 @@ std::optional<Exposed> exposed_at(const StateVolume& volume, std::size_t voxel, 
     }
   }
   if (normal.squaredNorm() < 1e-6F) normal = faces;
-  if (normal.squaredNorm() < 1e-6F) return std::nullopt;  // a sheet between empty voxels faces nowhere
+  if (normal.squaredNorm() < 1e-6F) return std::nullopt;  // a sheet between empty voxels has no direction
   normal.normalize();
   return Exposed{static_cast<std::uint32_t>(voxel), normal, std::max(faces.cwiseAbs().dot(normal.cwiseAbs()), 0.5F)};
 }
 
-/// Merges what lies in one block of `block` voxels an edge and faces the same octant.
+/// Merges exposed voxels that lie in one block with an edge of `block` voxels and face the same octant.
 std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const Exposed> exposed, std::int32_t block) {
   struct Keyed {
     std::uint64_t key;
     std::uint32_t index;
   };
   std::vector<Keyed> order(exposed.size());
-  const Index3 blocks = parents(volume.box()).size() * kBrickEdge;  // more than there are along each axis
+  const Index3 blocks = parents(volume.box()).size() * kBrickEdge;  // exceeds the number along each axis
   for (std::size_t i = 0; i < exposed.size(); ++i) {
     const Index3 at = volume.voxel(exposed[i].voxel) - volume.box().lo;
     const auto& n = exposed[i].normal;
@@ -113,7 +113,7 @@ std::vector<ExpectedPoint> merged(const StateVolume& volume, std::span<const Exp
   return points;
 }
 
-/// Area of the occupied voxels' faces towards empty ones.
+/// Returns the area of the occupied voxels' faces towards empty ones.
 double seen_area_cm2(const StateVolume& volume, std::span<const std::uint32_t> seen, const Executor& executor) {
   constexpr std::size_t kChunk{4096};
   const IndexBox inner = volume.box().grown(-1);
@@ -140,8 +140,8 @@ Box bounds_m(const IndexBox& voxels, double voxel_m) {
   return {corner_m(voxels.lo), corner_m(voxels.hi)};
 }
 
-/// Calls add(index, x) for the unknown voxels of a row, but for its ends, that are beside something open: those in an
-/// object beside anything, those outside beside empty voxels. `marks` is room for as many.
+/// Calls add(index, x) for the exposed unknown voxels of a row, except its ends: those in an object beside anything
+/// open, those outside beside empty voxels. `marks` is working memory of equal length.
 template <class Add>
 void for_exposed(const StateVolume& volume, const VoxelRole* all_roles, std::size_t row,
                  std::vector<std::uint8_t>& marks, const Add& add) {
@@ -167,7 +167,7 @@ void for_exposed(const StateVolume& volume, const VoxelRole* all_roles, std::siz
   }
 }
 
-/// Tells each point the highest support below it.
+/// Finds the highest support below each point.
 void find_supports_below(const StateVolume& volume, std::span<const std::vector<std::int32_t>> tops,
                          std::vector<ExpectedPoint>& points) {
   const auto layer = static_cast<std::size_t>(volume.layer());
@@ -184,8 +184,8 @@ void find_supports_below(const StateVolume& volume, std::span<const std::vector<
   }
 }
 
-/// Whether an empty voxel lies in a cavity: whichever way one goes along x and y within its object's hull, something
-/// ends the empty space, and on two sides at least that was seen.
+/// Tells whether an empty voxel lies in a cavity: in each direction along x and y within its object's hull, the empty
+/// space ends, and on at least two sides at seen surface.
 bool is_in_cavity(const StateVolume& volume, const VoxelRole* roles, std::size_t voxel) {
   int seen{0};
   for (const std::ptrdiff_t step : {std::ptrdiff_t{1}, std::ptrdiff_t{-1}, volume.row(), -volume.row()}) {
@@ -197,7 +197,7 @@ bool is_in_cavity(const StateVolume& volume, const VoxelRole* roles, std::size_t
   return seen >= 2;
 }
 
-/// Whether an unknown voxel closes a cavity towards what is known to be empty in it.
+/// Tells whether an unknown voxel closes a cavity towards known empty space.
 bool closes_cavity(const StateVolume& volume, const VoxelRole* roles, std::size_t voxel) {
   const std::array<std::ptrdiff_t, 6> steps{volume.layer(), 1, -1, volume.row(), -volume.row(), -volume.layer()};
   const auto open = std::find_if(steps.begin(), steps.end(), [&](std::ptrdiff_t step) {
@@ -280,7 +280,7 @@ Result<ExpectedSurface> expected_surface(const TsdfSnapshot& map, const Expected
   const DistanceToObjects distance{volume, objects.seen, config.reach_m, executor};
   const VoxelRole* roles = objects.roles.data();
 
-  // Layers and rows at the border have no neighbours: what lies there is expected nowhere.
+  // Layers and rows at the border lack neighbours, so no surface is expected there.
   const Index3 size = box.size();
   const std::int32_t block = std::max(1, static_cast<std::int32_t>(std::lround(config.spacing_m / voxel_m)));
   std::vector<Points> slabs(static_cast<std::size_t>((size.z - 1) / block + 1));

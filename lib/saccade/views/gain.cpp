@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kMostLooks{128};  // views whose credit is looked into thoroughly
+constexpr std::size_t kMostLooks{128};  // views whose credit is examined thoroughly
 
 std::vector<Pose> poses_of(std::span<const RankedView> views) {
   std::vector<Pose> poses;
@@ -21,7 +21,7 @@ std::vector<Pose> poses_of(std::span<const RankedView> views) {
   return poses;
 }
 
-/// Fills in the gains of the first views.
+/// Computes the gains of the first views.
 Status tell_gains(Gain& gain, const PlanningContext& context, const RegionOfInterest& region,
                   std::span<RankedView> views) {
   const std::vector<Pose> poses = poses_of(views);
@@ -33,7 +33,7 @@ Status tell_gains(Gain& gain, const PlanningContext& context, const RegionOfInte
   return {};
 }
 
-/// Infinite and negative gains are no promises.
+/// Reduces a gain to a share. Infinite and negative gains are not promises.
 double discounted(double gain, double share) {
   if (!(gain > 0.0)) return gain;
   return share > 0.0 ? share * gain : 0.0;
@@ -88,7 +88,7 @@ Result<RankedViews> Gain::best(const PlanningContext& context, const RegionOfInt
   const std::vector<CredibleRays::Glance> glances = rays.glances(poses, context.executor);
   std::vector<RankedView> glanced = ranked.views;
   for (std::size_t i = 0; i < glanced.size(); ++i) glanced[i].gain = discounted(glanced[i].gain, glances[i].credit);
-  // A thorough look at the views that seem best.
+  // Looks thoroughly at the views that seem best.
   std::vector<std::size_t> order(glanced.size());
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(),

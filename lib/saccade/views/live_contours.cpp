@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-/// Whether contours mean the same in both, so that those of one can become those of the other.
+/// Tells whether contours mean the same in both maps, so that contours of one can be updated to the other.
 bool same_terms(const TsdfConfig& a, const TsdfConfig& b) {
   if (a.voxel_size_m != b.voxel_size_m || a.free_weight != b.free_weight) return false;
   if (a.workspace.has_value() != b.workspace.has_value()) return false;

@@ -11,7 +11,7 @@ double Promise::worth() const {
   return sum;
 }
 
-double Promise::kept(const TsdfGrid& map) const {
+double Promise::kept_share(const TsdfGrid& map) const {
   const double promised = worth();
   SACCADE_EXPECTS(promised > 0.0);
   double known{0.0};

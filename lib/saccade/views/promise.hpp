@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Promise: what a view is expected to make known, voxel by voxel, so that it can be checked afterwards.
+// Promise: voxels that a view is expected to make known, so that the result can be checked.
 
 #include <vector>
 
@@ -8,19 +8,19 @@
 
 namespace saccade {
 
-/// An unknown voxel that a view is expected to make known.
+/// Unknown voxel that a view is expected to make known.
 struct PromisedVoxel {
   Index3 voxel{};
   double worth{0.0};  ///< share of the view's gain, in any unit
 };
 
-/// Voxels may come more than once.
+/// Promise of a view. Voxels may occur more than once.
 struct Promise {
   std::vector<PromisedVoxel> voxels{};
 
   [[nodiscard]] double worth() const;
-  /// The share of its worth that the map knows by now: empty or occupied. Expects some worth. O(voxels).
-  [[nodiscard]] double kept(const TsdfGrid& map) const;
+  /// Returns the share of its worth that the map knows by now: empty or occupied. Expects a positive worth. O(voxels).
+  [[nodiscard]] double kept_share(const TsdfGrid& map) const;
 };
 
 }  // namespace saccade

@@ -13,20 +13,20 @@
 namespace saccade {
 namespace {
 
-constexpr double kBroken{0.25};       // share of a promise below which the map cannot be relied on, from then on
-constexpr double kDisappointed{0.5};  // the same for the next view
+constexpr double kBroken{0.25};       // share of a promise below which the map stays unreliable
+constexpr double kDisappointed{0.5};  // share below which it is unreliable for the next view
 
-/// Poses of one camera centre, and the most that one of them can gain.
+/// Poses of one camera centre, and the largest gain that one of them can have.
 struct Center {
   std::size_t begin{0};
   std::size_t end{0};
   double most{0.0};
 };
 
-/// Sets the gain of each pose to what `sights` show of it.
+/// Sets the gain of each pose to the area that `sights` show in it.
 template <class Views>
-double fill_in(const SurfaceProspect& prospect, std::span<const SurfaceProspect::Sight> sights, const Center& center,
-               Views& views) {
+double fill_in(const SurfaceProspect& prospect, std::span<const SurfaceProspect::TileVisibility> sights,
+               const Center& center, Views& views) {
   double most{0.0};
   for (std::size_t i = center.begin; i < center.end; ++i) {
     views[i].gain = prospect.area_in_picture(sights, views[i].T_world_camera);
@@ -35,13 +35,13 @@ double fill_in(const SurfaceProspect& prospect, std::span<const SurfaceProspect:
   return most;
 }
 
-/// Gains of poses whose centres come near the best, by decreasing gain.
+/// Gains of poses whose centres are close to the best, by decreasing gain.
 struct Sighted {
   std::vector<RankedView> views{};
-  double beyond{-std::numeric_limits<double>::infinity()};  ///< bounds the gains of all others
+  double beyond{-std::numeric_limits<double>::infinity()};  ///< upper bound of the gains of all others
 };
 
-/// Bounds each pose by what faces its camera, and follows lines of sight from the centres that come near the best.
+/// Bounds each pose by the surface that faces its camera, and traces lines of sight from the centres close to the best.
 Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_camera, std::size_t count, bool one_roll,
                 const Executor& executor) {
   std::vector<RankedView> views;
@@ -83,14 +83,14 @@ Sighted sighted(const SurfaceProspect& prospect, std::span<const Pose> T_world_c
   return result;
 }
 
-/// Fills in gains, with the robot's own body heeded.
+/// Computes gains, with the robot's own body taken into account.
 void tell_gains(const SurfaceProspect& prospect, std::span<RankedView> views, const Executor& executor) {
   executor.parallel_for(views.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) views[i].gain = prospect.promise(views[i].T_world_camera).worth();
   });
 }
 
-/// Takes off what the robot's own body hides, and drops views that others might beat.
+/// Subtracts what the robot's own body hides, and drops views that others might beat.
 void without_body(const SurfaceProspect& prospect, Sighted& sighted, std::size_t count, const Executor& executor) {
   std::vector<RankedView>& views = sighted.views;
   if (!prospect.knows_body()) {
@@ -105,13 +105,13 @@ void without_body(const SurfaceProspect& prospect, Sighted& sighted, std::size_t
                    .firm);
 }
 
-/// Whether there is more to see than the known empty space lets one expect.
+/// Tells whether there may be more to see than the known empty space suggests.
 bool is_doubtful(std::span<const CheckedView> checked) {
-  if (!checked.empty() && checked.back().kept < kDisappointed) return true;
-  return std::any_of(checked.begin(), checked.end(), [](const CheckedView& view) { return view.kept < kBroken; });
+  if (!checked.empty() && checked.back().kept_share < kDisappointed) return true;
+  return std::any_of(checked.begin(), checked.end(), [](const CheckedView& view) { return view.kept_share < kBroken; });
 }
 
-/// Whether a view that was not attempted promises enough.
+/// Tells whether a view that was not attempted promises enough.
 bool is_worth_going(const PlanningContext& context, const RankedViews& ranked) {
   return std::any_of(ranked.views.begin(), ranked.views.end(), [&](const RankedView& view) {
     return view.gain > 0.0 && view.gain >= ranked.least_gain && !context.was_attempted(view.T_world_camera);

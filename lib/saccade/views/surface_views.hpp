@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfaceViews: views of contours, and spheres of views around what is expected to be missing.
+// SurfaceViews: views of contours, and spheres of views around missing surface.
 
 #include "saccade/views/expected_surface.hpp"
 #include "saccade/views/view_generator.hpp"
@@ -8,24 +8,24 @@
 namespace saccade {
 
 struct SurfaceViewsConfig {
-  /// Around each cell; coarser than a sphere that stands alone, since cells lie side by side.
+  /// Sphere around each cell; coarser than a single sphere, since cells are adjacent.
   ViewSphereConfig sphere{.latitude_step_rad = 15_deg, .roll_step_rad = 90_deg};
   double cell_m{0.15};
-  double least_cm2{5.0};  ///< cells where less surface is expected get no sphere
+  double least_cm2{5.0};  ///< cells with less expected surface get no sphere
   ExpectedSurfaceConfig surface{};
 
-  /// invalid_argument for a cell or an area that is not positive and finite; errors of its parts.
+  /// Answers invalid_argument for a cell or an area that is not positive and finite; errors of its parts.
   [[nodiscard]] Status validate() const;
 };
 
-/// Contours lie where the seen surface ends, and views of them come from where it faces. A sphere looks at what is
-/// missing from all around: over a rim, or between two things.
+/// Views of contours and spheres. Contours lie where the seen surface ends, and their views come from where it faces. A
+/// sphere looks at missing surface from all around: over a rim, or between two objects.
 class SurfaceViews final : public ViewGenerator {
  public:
   /// Expects a valid configuration.
   SurfaceViews(std::shared_ptr<ViewGenerator> contours, const SurfaceViewsConfig& config = {});
-  /// Views of contours first, then a sphere about the mean of the expected points in each cell of the workspace.
-  /// Errors of both, and of expected_surface.
+  /// Returns the views of contours first, then a sphere about the mean of the expected points in each cell of the
+  /// workspace. Errors of both, and of expected_surface.
   [[nodiscard]] Result<ViewCandidates> views(const PlanningContext& context, const RegionOfInterest& region) override;
 
  private:

@@ -6,14 +6,16 @@
 
 #include "saccade/core/clock.hpp"
 #include "saccade/views/internal/gain_problem.hpp"
+#include "saccade/views/internal/no_gain.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr int kBandRows{64};
-constexpr std::size_t kManyJobs{64};  // so many keep all threads busy uncut, and each footprint is drawn once
+constexpr std::size_t kManyJobs{
+    64};  // number of jobs that keeps all threads busy uncut, with each footprint drawn once
 
-/// A band of rows of a job; the whole window where distinct voxels are counted, or footprints drawn for many jobs.
+/// Band of rows of a job; the whole window where distinct voxels are counted, or footprints drawn for many jobs.
 struct Band {
   std::size_t job;
   int row_begin;
@@ -56,7 +58,7 @@ BandTally cast_band(const Band& band, const GainProblem& problem, GainCount coun
   return {seen ? seen->count() : caster.scored(), caster.rays_cast()};
 }
 
-/// Casts all bands; gains in the order of the bands, whatever the threads.
+/// Casts all bands. Gains are in the order of the bands for every thread count.
 Status cast_jobs(const GainProblem& problem, GainCount count, const Executor& executor, const Progress& progress,
                  GainResult& result) {
   const std::vector<Band> bands = make_bands(problem, count);
@@ -92,6 +94,9 @@ Result<GainResult> evaluate_views(const TsdfSnapshot& map, const Region& region,
   Stopwatch clock;
   SACCADE_CHECK(cast_jobs(problem, config.count, executor, progress, result));
   result.evaluate_ms = clock.lap_ms();
+  if (std::all_of(result.gains.begin(), result.gains.end(), [](std::uint64_t gain) { return gain == 0; })) {
+    result.no_gain = why_no_gain(map, region, T_world_camera, config);
+  }
   return result;
 }
 

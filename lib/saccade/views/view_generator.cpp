@@ -34,7 +34,7 @@ ContourViews::ContourViews(ContourViewConfig views, const ContourConfig& contour
 }
 
 void ContourViews::follow(const PlanningContext& context, const std::shared_ptr<const SalientSurface>& surface) {
-  if (surface && surface == surface_) return;  // a surface is that of one state of the map
+  if (surface && surface == surface_) return;  // a surface belongs to one state of the map
   contours_.update(context.map, context.executor);
   set_ = std::make_shared<const ContourSet>(surface ? contours_of(contours_.points(), *surface, context.executor)
                                                     : ContourSet{contours_.points(), {}});

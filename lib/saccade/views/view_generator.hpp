@@ -12,36 +12,36 @@
 
 namespace saccade {
 
-/// Contour points of a map, and the segments that they lie at.
+/// Contour points of a map, and their segments.
 struct ContourSet {
   std::vector<ContourPoint> points;
-  /// Segment of the surface point nearest to each; kUnlabelled: no surface is near. Empty where there are no segments.
+  /// Segment of the surface point nearest to each; kUnlabelled: no surface is near. Empty without segments.
   std::vector<std::uint32_t> segment_of_point;
 
-  /// Indices of the points of each of `segments` segments, in their order.
+  /// Returns the indices of the points of each of `segments` segments, in their order.
   [[nodiscard]] std::vector<std::vector<std::uint32_t>> points_of_segments(std::size_t segments) const;
 };
 /// Finds the segment of each point. O(points · log surface).
 [[nodiscard]] ContourSet contours_of(std::vector<ContourPoint> points, const SalientSurface& surface,
                                      const Executor& executor);
 
-/// View poses, and what the record of a view says about them.
+/// View poses, and data about them for the record of a view.
 struct ViewCandidates {
   std::vector<Pose> T_world_camera;
-  std::size_t in_all{0};                         ///< poses of all regions of the map, where that is known
-  std::shared_ptr<const ContourSet> contours{};  ///< contours that the poses look at; nullptr: at none
+  std::size_t in_all{0};                         ///< poses of all regions of the map, where known
+  std::shared_ptr<const ContourSet> contours{};  ///< contours that the poses look at; nullptr: none
 };
 
-/// One caller at a time; the views depend on the context and the region alone.
+/// Generator of views. One caller at a time; the views depend on the context and the region alone.
 class ViewGenerator {
  public:
   virtual ~ViewGenerator() = default;
-  /// @return poses from which the region might be looked at, whether the robot can take them or not.
+  /// @return poses from which the region might be visible, whether the robot can reach them or not.
   [[nodiscard]] virtual Result<ViewCandidates> views(const PlanningContext& context,
                                                      const RegionOfInterest& region) = 0;
 };
 
-/// A view sphere around the centre of the region's box. Thesis §2.2.3, Fig. 2.5.
+/// View sphere around the centre of the region's box. Thesis §2.2.3, Fig. 2.5.
 class SphereViews final : public ViewGenerator {
  public:
   explicit SphereViews(ViewSphereConfig sphere = {}) : sphere_{std::move(sphere)} {}
@@ -52,8 +52,8 @@ class SphereViews final : public ViewGenerator {
   ViewSphereConfig sphere_;
 };
 
-/// Views of the contours nearest to the region's segment (thesis §3.1, Algorithm 4, lines 8 and 9); of all contours of
-/// the map for a region without a segment. Follows the map from call to call.
+/// Views of the contours nearest to the region's segment (thesis §3.1, Algorithm 4, lines 8 and 9), or of all contours
+/// of the map for a region without a segment. Follows the map from call to call.
 class ContourViews final : public ViewGenerator {
  public:
   /// Expects valid configurations.
@@ -66,8 +66,8 @@ class ContourViews final : public ViewGenerator {
 
   ContourViewConfig views_;
   LiveContours contours_;
-  std::shared_ptr<const ContourSet> set_;          ///< contours of the map that was seen last
-  std::shared_ptr<const SalientSurface> surface_;  ///< that set_ belongs to
+  std::shared_ptr<const ContourSet> set_;          ///< contours of the last map seen
+  std::shared_ptr<const SalientSurface> surface_;  ///< surface that set_ belongs to
   std::vector<std::vector<std::uint32_t>> of_segment_;
 };
 

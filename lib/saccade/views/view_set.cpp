@@ -10,14 +10,14 @@ namespace {
 
 using Key = std::array<int, 3>;
 
-/// A voxel by its number, and what a view promises of it.
+/// Voxel by its number, and a view's promise of it.
 struct Part {
   std::uint32_t voxel{0};
   double worth{0.0};
 };
 using Parts = std::vector<Part>;
 
-/// Numbers the voxels of all promises, and adds up what one says of a voxel more than once.
+/// Voxels of all promises, numbered, with repeated parts of one promise added up.
 struct Numbered {
   std::vector<Parts> promises;
   std::size_t voxels{0};
@@ -56,7 +56,7 @@ struct Numbered {
   }
 };
 
-/// The most that any view of a set promises of each voxel.
+/// Largest promise of any view of a set, per voxel.
 class Union {
  public:
   explicit Union(std::size_t voxels) : most_(voxels, 0.0) {}
@@ -79,7 +79,7 @@ struct Best {
   double adds{0.0};
 };
 
-/// Returns the view that adds most, the first of those that add as much.
+/// Returns the view that adds most, the first at a tie.
 Best best_addition(const Union& to, std::span<const Parts> views, const Executor& executor) {
   std::vector<double> adds(views.size());
   executor.parallel_for(views.size(), 16, [&](std::size_t begin, std::size_t end) {
@@ -89,7 +89,7 @@ Best best_addition(const Union& to, std::span<const Parts> views, const Executor
   return {static_cast<std::size_t>(most - adds.begin()), *most};
 }
 
-/// What a sequence of views is worth: what each adds, as often as there are views from there on.
+/// Returns the worth of a sequence: each view's addition, counted once for each view from there on.
 double worth_in_order(const Numbered& all, std::span<const std::size_t> sequence) {
   Union before{all.voxels};
   double sum = 0.0;
@@ -123,7 +123,7 @@ bool exchange(std::vector<std::size_t>& sequence, const Numbered& all, const Exe
   return exchanged;
 }
 
-/// Puts first what shows most, then what adds most to that.
+/// Sorts greedily: first the view that shows most, then each time the view that adds most.
 std::vector<std::size_t> in_greedy_order(const Numbered& all, std::vector<std::size_t> views) {
   Union before{all.voxels};
   for (auto next = views.begin(); next != views.end(); ++next) {

@@ -19,11 +19,11 @@ struct ViewSphereConfig {
   double latitude_min_rad{0.0};
   double latitude_max_rad{90_deg};  ///< straight above; keeps all its longitudes
 
-  /// invalid_argument for radii or steps that are not positive, latitudes outside ±90° or more than 10⁷ poses.
+  /// Answers invalid_argument for radii or steps that are not positive, latitudes outside ±90° or more than 10⁷ poses.
   [[nodiscard]] Status validate() const;
 };
 
-/// A candidate view pose and where on the sphere it was sampled.
+/// Candidate view pose and its coordinates on the sphere.
 struct ViewCandidate {
   Pose T_world_camera{Pose::Identity()};
   double radius_m{0.0};
@@ -32,15 +32,15 @@ struct ViewCandidate {
   double roll_rad{0.0};
 };
 
-/// Poses around `center` that look at it, world z up. At roll 0 the camera's x axis is horizontal and points towards
-/// growing longitude, so that the image's up is the world's, also in the limit at latitude 90°; roll turns the camera
-/// about its optical axis. Thesis §2.2.3, GenerateViewpointsAround of Algorithm 2.
+/// Returns poses around `center` that look at it, world z up. At roll 0 the camera's x axis is horizontal and points
+/// towards growing longitude, so that the image's up is the world's, also in the limit at latitude 90°. Roll turns the
+/// camera about its optical axis. Thesis §2.2.3, GenerateViewpointsAround of Algorithm 2.
 /// Index order: ((radius · latitudes + latitude) · longitudes + longitude) · rolls + roll.
 /// @return invalid_argument for a bad configuration or a centre that is not finite.
 [[nodiscard]] Result<std::vector<ViewCandidate>> view_sphere(const Eigen::Vector3d& center,
                                                              const ViewSphereConfig& config = {});
 
-/// The poses alone, in the same order.
+/// Returns only the poses, in their order.
 [[nodiscard]] std::vector<Pose> poses_of(const std::vector<ViewCandidate>& candidates);
 
 }  // namespace saccade

@@ -182,7 +182,7 @@ TEST_F(AnnotationTest, AMoveMovesNothingOnceWhatItMovedIsUndone) {
 
 TEST_F(AnnotationTest, RefusesWhatHasNothingToActOn) {
   EXPECT_EQ(why_not(RemoveControlPoints{{3}}), "there is no control point to remove");
-  EXPECT_EQ(why_not(MoveControlPoint{3, 4}), "point 3 is no control point that could be moved");
+  EXPECT_EQ(why_not(MoveControlPoint{3, 4}), "point 3 is not a control point, so it cannot be moved");
   apply(kAnna, SetControlPoints{{105}, 1, 0.0});
   EXPECT_EQ(why_not(RemoveControlPoints{{3, 105}}), "");
   EXPECT_NE(why_not(SetControlPoints{{kNotFinite}, 1, 0.0}).find("no neighbours"), std::string::npos);

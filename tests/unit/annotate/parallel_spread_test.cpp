@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Whoever is first: what several threads find is what one finds, and in the same order.
+// Several threads find the result of one thread, in its order, whichever comes first.
 #include "saccade/annotate/internal/parallel_spread.hpp"
 
 #include <gtest/gtest.h>

@@ -53,7 +53,7 @@ std::size_t wrong_points(const Labels& labels, const Scene& scene) {
   return wrong;
 }
 
-/// What an action does, by the tool of that name.
+/// Performs an action with the tool that it names.
 Labels painted(Labels labels, const Scene& scene, const RectangleAnnotator& annotator,
                const RectangleAnnotatorConfig& config, const RectangleAction& action) {
   const double px = config.cell_px;

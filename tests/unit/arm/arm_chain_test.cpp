@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What parse_urdf chooses where nothing says which joints are the arm's, where it ends and what the camera's frame is.
+// Choices of parse_urdf where nothing names the arm's joints, its end and the camera's frame.
 #include <gtest/gtest.h>
 
 #include <algorithm>
@@ -47,7 +47,11 @@ std::string joints(const std::string& prefix, const std::string& parent, int cou
 }
 
 Result<UrdfArm> read(const std::string& pieces, const UrdfConfig& config = {}) {
-  return parse_urdf("<robot name=\"r\"><link name=\"base\"/>" + pieces + "</robot>", {}, config);
+  return parse_urdf(
+      "<robot name=\"r\"><link name=\"base\"><collision><geometry><sphere "
+      "radius=\"0.05\"/></geometry></collision></link>" +
+          pieces + "</robot>",
+      {}, config);
 }
 
 /// Reads an arm that has to end at this link, with so much to be said about it.
@@ -79,7 +83,7 @@ TEST(ArmChain, AGripperIsNoPartOfTheArm) {
   const std::string said = "the arm ends at p_link8: a gripper's joints are none of it (open1, open2)";
   expect_tip(seven + fixed_to("p_link7", "p_link8") + fixed_to("p_link8", "hand") + kTwoFingers, "p_link8", 7, said);
   expect_tip(seven + fixed_to("p_link7", "plate") + fixed_to("plate", "hand") + kTwoFingers, "hand", 7, "at hand");
-  // What hangs on the hand apart from its fingers changes nothing.
+  // Links on the hand besides its fingers change nothing.
   const std::string hand = fixed_to("p_link7", "plate") + fixed_to("plate", "hand") + kTwoFingers;
   expect_tip(seven + hand + fixed_to("hand", "logo") + piece("propeller", "continuous", "hand", "p", kTurn), "hand", 7,
              "(open1, open2, propeller)");
@@ -144,6 +148,20 @@ TEST(ArmChain, ProposesTheTipsOfSeveralArms) {
   std::string many;
   for (int i = 10; i < 30; ++i) many += joints("a" + std::to_string(i), "base", 2);
   expect_unclear(many, "--tip a17_link2 (2 joints), …");
+}
+
+TEST(ArmChain, ProposesTheLikeliestOfSeveralTips) {
+  const std::string two = joints("a", "base", 6) + joints("b", "base", 6);
+  expect_unclear(
+      two + fixed_to("b_link6", "tool0") + fixed_to("a_link6", "a_flange"),
+      "name a tip: --tip a_flange (6 joints), --tip tool0 (6 joints); --tip tool0 is the likeliest, by its name");
+  expect_unclear(two + fixed_to("a_link6", "a_ee"), "--tip a_ee is the likeliest, by its name");
+  expect_unclear(two + fixed_to("a_link6", "camera_link"), "--tip camera_link is the likeliest, by its name");
+  const auto neither = read(two + fixed_to("a_link6", "a_tool0") + fixed_to("b_link6", "b_tool0"));
+  ASSERT_FALSE(neither);
+  EXPECT_EQ(neither.error().to_string().find("likeliest"), std::string::npos) << neither.error().to_string();
+  expect_tip(joints("a", "base", 6) + joints("cable", "base", 7) + fixed_to("a_link6", "tool0"), "cable_link7", 7,
+             "the longest chain is taken, to cable_link7; a flange by its name is elsewhere: --tip tool0 (6 joints)");
 }
 
 TEST(ArmChain, KnowsFlangesByTheirNames) {

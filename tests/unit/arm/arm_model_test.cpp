@@ -34,8 +34,8 @@ TEST(ArmModel, SaysWhatIsWrong) {
   expect_refused([](ArmDescription& d) { d.joints[1].limits.upper = -4.0; }, "lower limit must lie below");
   expect_refused([](ArmDescription& d) { d.joints[5].limits.speed = 0.0; }, "joint joint_6: its speed limit");
   expect_refused([](ArmDescription& d) { d.joints[5].limits.acceleration = kNan; }, "its acceleration limit");
-  expect_refused([](ArmDescription& d) { d.joints[0].T_parent_joint(0, 3) = kNan; }, "its origin is no rigid");
-  expect_refused([](ArmDescription& d) { d.joints[0].T_parent_joint(0, 3) = 1e308; }, "farther than 1 km");
+  expect_refused([](ArmDescription& d) { d.joints[0].T_parent_joint(0, 3) = kNan; }, "its origin is not a rigid");
+  expect_refused([](ArmDescription& d) { d.joints[0].T_parent_joint(0, 3) = 1e308; }, "longer than 1 km");
   expect_refused([](ArmDescription& d) { d.T_flange_camera(0, 0) = 2.0; }, "hand-eye transform");
   const auto with_body = [](const decltype(CollisionBody::shape)& shape) {
     return [shape](ArmDescription& d) { d.links[3].bodies.push_back({"elbow", Pose::Identity(), shape}); };

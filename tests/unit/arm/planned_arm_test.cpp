@@ -3,7 +3,7 @@
 
 #include <gtest/gtest.h>
 
-#include "saccade/arm/internal/driven_way.hpp"
+#include "saccade/arm/internal/executed_path.hpp"
 #include "saccade/arm/internal/swept_cells.hpp"
 #include "saccade/arm/motion_planner.hpp"
 #include "support/test_arms.hpp"
@@ -79,7 +79,7 @@ TEST_F(SimulatedArm, WhatTheScanSweepsIsEnoughToGoThroughItAndNoMore) {
   const std::vector<Pose> scan = poses(4);
   // In a map that knows nothing, the arm cannot stir.
   ASSERT_EQ(moving.plan(scan)->refusal, Refusal::goal_in_collision);
-  const std::vector<Box> swept = moving.swept_by(scan).value();
+  const std::vector<Box> swept = moving.swept_volume(scan).value();
   ASSERT_FALSE(swept.empty());
   double volume_m3 = 0.0;
   for (const Box& box : swept) {
@@ -100,7 +100,7 @@ TEST_F(SimulatedArm, WhatTheScanSweepsIsEnoughToGoThroughItAndNoMore) {
   EXPECT_EQ(reached, scan.size());
   EXPECT_GT(moving.motions().back().duration_s(), 0.5);
   // Nothing is swept twice.
-  EXPECT_TRUE(moving.swept_by({}).value().empty());
+  EXPECT_TRUE(moving.swept_volume({}).value().empty());
 }
 
 TEST_F(SimulatedArm, SweptCellsAreThoseThatTheArmTouches) {
@@ -137,8 +137,8 @@ TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
   const PlannedMotion planned = moving.plan(goals).value();
   ASSERT_TRUE(planned.motion);
   EXPECT_EQ(moving.configuration(), arm().middle());  // nothing has moved
-  std::vector<CameraSample> samples;
-  const auto arrival = moving.execute(*planned.motion, [&](const CameraSample& sample) {
+  std::vector<MotionSample> samples;
+  const auto arrival = moving.execute(*planned.motion, [&](const MotionSample& sample) {
     samples.push_back(sample);
     return Advance::go_on;
   });
@@ -149,7 +149,7 @@ TEST_F(SimulatedArm, MovesAlongItsPlanAndSaysHowLongThatTakes) {
   EXPECT_LT(test::miss(samples.front().T_world_camera, camera_pose(arm(), arm().middle())), 1e-9);
   EXPECT_LT(test::miss(samples.back().T_world_camera, (*arrival)->T_world_camera), 1e-9);
   for (std::size_t i = 1; i < samples.size(); ++i) EXPECT_LE(samples[i].t_s - samples[i - 1].t_s, 0.02 + 1e-12);
-  // Of several, the one that is reached soonest.
+  // Among several goals it takes the one reached soonest.
   PlannedArm again = robot(config);
   for (const Pose& goal : goals) {
     EXPECT_LE(planned.motion->trajectory.duration_s(),
@@ -181,7 +181,7 @@ TEST_F(SimulatedArm, StandsWhereItsJointsSay) {
   EXPECT_EQ(moving.configuration(), joints->q);
   const PlannedMotion planned = moving.plan(poses(3)).value();
   ASSERT_TRUE(planned.motion);
-  const auto arrival = moving.execute(*planned.motion, [](const CameraSample&) { return Advance::go_on; });
+  const auto arrival = moving.execute(*planned.motion, [](const MotionSample&) { return Advance::go_on; });
   ASSERT_TRUE(arrival && *arrival);
   EXPECT_EQ(moving.configuration(), joints->q);
   EXPECT_EQ((*arrival)->T_world_camera.matrix(), camera_pose(arm(), joints->q).matrix());
@@ -191,7 +191,8 @@ TEST_F(SimulatedArm, StandsWhereItsJointsSay) {
   EXPECT_EQ(moving.execute(*next.motion).error().message, "the bus is silent");
 }
 
-/// What was seen beside the hand of an arm that has come to the second of two poses: `ahead_m` on from where it came.
+/// Returns an obstacle seen beside the hand of an arm that has come to the second of two poses: `ahead_m` on from where
+/// it came.
 class BackingOut : public SimulatedArm {
  protected:
   PlannedArm at_second(double ahead_m, double radius_m) {
@@ -219,7 +220,7 @@ TEST_F(BackingOut, AnArmLeavesTheWayItCameAndGoesOn) {
   PlannedArm moving = at_second(0.07, 0.02);
   const ArmCollision& collision = moving.reachability().collision();
   const Configuration stood = *moving.configuration();
-  EXPECT_EQ(moving.plan(third_, Way::straight)->refusal, Refusal::start_in_collision) << "no detour was wanted";
+  EXPECT_EQ(moving.plan(third_, MotionKind::direct)->refusal, Refusal::start_in_collision) << "no detour was wanted";
   const PlannedMotion planned = moving.plan(third_).value();
   ASSERT_TRUE(planned.motion);
   const Motion& motion = *planned.motion;
@@ -260,22 +261,22 @@ TEST_F(SimulatedArm, AWayBackBeginsWhereTheArmStands) {
       ObstacleMap::create(TsdfMap::create(map_config()).value().content(), {}, Executor{}).value();
   const Configuration from = Configuration::Zero(6);
   const Configuration to = 0.2 * Configuration::Ones(6);
-  DrivenWay way;
-  EXPECT_FALSE(way.back_from(to, collision, unseen)) << "nothing was driven";
+  ExecutedPath way;
+  EXPECT_FALSE(way.retreat_from(to, collision, unseen)) << "nothing was driven";
   way.add(parametrise(arm(), {from, to}));
-  EXPECT_FALSE(way.back_from(to, collision, unseen)) << "all is unknown";
+  EXPECT_FALSE(way.retreat_from(to, collision, unseen)) << "all is unknown";
   TsdfMap map = TsdfMap::create(map_config()).value();
   ASSERT_TRUE(map.free(*map_config().workspace).ok());
   const ObstacleMap free = ObstacleMap::create(map.content(), {}, Executor{}).value();
   const Configuration nearly = to + 0.005 * Configuration::Ones(6);
-  const auto back = way.back_from(nearly, collision, free);
+  const auto back = way.retreat_from(nearly, collision, free);
   ASSERT_TRUE(back);
   EXPECT_LT(test::distance(back->at(0.0).q, nearly), 1e-12);
   EXPECT_LT(test::distance(back->end(), from), 1e-9);
-  EXPECT_FALSE(way.back_from(to + 0.02 * Configuration::Ones(6), collision, free));
-  EXPECT_FALSE(way.back_from(Configuration::Zero(5), collision, free));
-  for (std::size_t i = 0; i < DrivenWay::kMostPieces; ++i) way.add(parametrise(arm(), {to, to}));
-  const auto forgotten = way.back_from(to, collision, free);
+  EXPECT_FALSE(way.retreat_from(to + 0.02 * Configuration::Ones(6), collision, free));
+  EXPECT_FALSE(way.retreat_from(Configuration::Zero(5), collision, free));
+  for (std::size_t i = 0; i < ExecutedPath::kMostPieces; ++i) way.add(parametrise(arm(), {to, to}));
+  const auto forgotten = way.retreat_from(to, collision, free);
   ASSERT_TRUE(forgotten);
   EXPECT_LT(test::distance(forgotten->end(), to), 1e-9);
 }

@@ -20,7 +20,7 @@ struct Asked {
   bool free;
 };
 
-/// Whether a disc is between two points of a plane.
+/// Tells whether a disc is between two points of a plane.
 bool passes(const Configuration& from, const Configuration& to, const Configuration& center, double radius) {
   return test::distance_from_line(center, from, to) > radius;
 }
@@ -113,7 +113,7 @@ TEST(Shortcut, GainsTimeAlongFreeLinesAlone) {
       }
       EXPECT_TRUE(known) << "line " << line << " was never asked about";
     }
-    // What was answered free was taken: the last such line is there.
+    // Lines answered as free are used: the last one is in the path.
     const auto last = std::find_if(plane.asked.rbegin(), plane.asked.rend(), [](const Asked& one) { return one.free; });
     ASSERT_NE(last, plane.asked.rend());
     const auto from = std::find(cut.begin(), cut.end(), last->from);

@@ -49,7 +49,7 @@ bool holds(const TreeBall& ball, const Vector3d& p) {
   return (ball.center.cast<double>() - p).norm() <= static_cast<double>(ball.radius_m);
 }
 
-/// Whether p lies in the ball and, if it has balls below it, in one of those in the same way.
+/// Tells whether p lies in the ball and, if it has balls below it, in one of those in the same way.
 bool covered(std::span<const TreeBall> balls, std::uint32_t i, const Vector3d& p) {
   if (!holds(balls[i], p)) return false;
   bool leaf = true;
@@ -136,6 +136,28 @@ TEST(SphereTree, RefusesWhatIsNoBody) {
   mesh = l_shape();
   mesh.vertices[2].y() = std::numeric_limits<float>::quiet_NaN();
   EXPECT_NE(message(mesh).find("not finite"), std::string::npos);
+}
+
+/// A pyramid without its base has corners of cells that seem to lie inside it though no surface is near.
+TEST(SphereTree, AnOpenMeshIsCoveredOrRefusedWithoutEnd) {
+  for (int turn = 0; turn < 24; ++turn) {
+    SCOPED_TRACE(turn);
+    const Eigen::AngleAxisd rotation{0.26 * turn, Vector3d{1.0, -0.5, 0.2 * turn}.normalized()};
+    TriangleMesh open;
+    for (const Vector3d& p : {Vector3d{0.05, 0.05, 0.0}, Vector3d{-0.05, 0.05, 0.0}, Vector3d{-0.05, -0.05, 0.0},
+                              Vector3d{0.05, -0.05, 0.0}, Vector3d{0.0, 0.0, 0.15}}) {
+      open.vertices.push_back((rotation * p).cast<float>());
+    }
+    open.triangles = {{0, 1, 4}, {1, 2, 4}, {2, 3, 4}, {3, 0, 4}};
+    const auto tree = SphereTree::build(open);
+    if (!tree) {
+      EXPECT_EQ(tree.error().code, Errc::invalid_argument);
+      continue;
+    }
+    for (const Eigen::Vector3f& p : open.vertices) {
+      EXPECT_FALSE(tree->clear([&](const TreeBall& ball) { return (ball.center - p).norm() > ball.radius_m; }));
+    }
+  }
 }
 
 }  // namespace

@@ -31,7 +31,7 @@ const std::string kUrdf{R"(<robot name="small">
   <link name="flange"><collision><geometry><sphere radius="0.03"/></geometry></collision></link>
 </robot>)"};
 
-/// The same with more in it.
+/// Returns the URDF with more elements.
 std::string with(const std::string& more) { return replaced(kUrdf, "</robot>", more + "</robot>"); }
 
 const std::string kCamera{
@@ -143,13 +143,16 @@ TEST(Urdf, SaysWhatIsWrongAndWhere) {
   expect_bad_urdf(with(R"(<joint name="on" type="fixed"><parent link="flange"/><child link="nowhere"/></joint>)"),
                   "nowhere");
   expect_bad_urdf(replaced(kUrdf, "0 0 2", "0 0 0"), "joint turn: its axis has no length");
+  // A number that urdfdom cannot parse must not reach its messages as a format: this one wrote to memory.
+  expect_bad_urdf(replaced(kUrdf, "0 0 2", "0 %n%s%n &#37;n"), "its xyz holds a %");
+  expect_bad_urdf(replaced(kUrdf, "0 0 2", "0 &#37;n 1"), "its xyz holds a %");
   expect_bad_urdf(replaced(kUrdf, "upper=\"2\"", "upper=\"nan\""), "upper");
   expect_bad_urdf(replaced(kUrdf, "upper=\"2\"", "upper=\"-2\""), "joint turn: its lower limit must lie below");
   expect_bad_urdf(replaced(kUrdf, "velocity=\"3\"", ""), "velocity");
   expect_bad_urdf(replaced(kUrdf, "velocity=\"3\"", "velocity=\"0\""), "joint turn: its speed limit must be positive");
   expect_bad_urdf(replaced(kUrdf, "acceleration=\"4\"", "acceleration=\"-4\""), "joint turn: its acceleration limit");
   expect_bad_urdf(replaced(kUrdf, "acceleration=\"4\"", "acceleration=\"fast\""),
-                  "joint turn: acceleration is no number");
+                  "joint turn: acceleration is not a number");
   expect_bad_urdf(replaced(kUrdf, "radius=\"0.03\"", "radius=\"0\""), "link flange: the radius of a collision sphere");
   expect_bad_urdf(replaced(kUrdf, "type=\"revolute\"", "type=\"floating\""), "joint turn: only revolute, continuous",
                   Errc::unsupported);

@@ -36,7 +36,7 @@ TEST(DetectorEvaluation, ScoresByDistance) {
 std::vector<LabelledTrajectory> made_up_set(std::size_t count) {
   std::vector<LabelledTrajectory> set;
   for (std::size_t i = 0; i < count; ++i) {
-    MadeUpTask task = made_up_task(i);
+    SyntheticTask task = synthetic_task(i);
     set.push_back({"task " + std::to_string(i), std::move(task.trajectory), std::move(task.actions_m)});
   }
   return set;
@@ -78,7 +78,7 @@ TEST(DetectorEvaluation, AddsUpOverTrajectoriesAndLeavesOutTheMislabelled) {
   EXPECT_FALSE(DetectorEvaluation{}.median_ms().has_value());
 }
 
-/// What detectors are given under some conditions.
+/// Returns the input of detectors under some conditions.
 std::vector<HandTrajectory> given_under(const EvaluationConditions& conditions) {
   std::vector<HandTrajectory> given;
   const auto set = made_up_set(2);
@@ -97,7 +97,7 @@ TEST(DetectorEvaluation, NoiseComesAfterTheSpeedAndDiffersBetweenSeedsAndTraject
   const auto noisy = given_under({.speed = 0.5, .sigma_m = 0.05});
   const auto again = given_under({.speed = 0.5, .sigma_m = 0.05});
   const auto other = given_under({.speed = 0.5, .sigma_m = 0.05, .seed = 2});
-  const HandTrajectory original = made_up_task(0).trajectory;
+  const HandTrajectory original = synthetic_task(0).trajectory;
   ASSERT_EQ(noisy.size(), 2U);
   EXPECT_NEAR(static_cast<double>(noisy[0].size()), 0.5 * static_cast<double>(original.size()), 1.0);
   const auto noise = [&](const std::vector<HandTrajectory>& set, std::size_t i, std::size_t sample) {

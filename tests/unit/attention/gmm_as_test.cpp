@@ -17,7 +17,7 @@ TEST(GmmAs, FindsTheActionsOfMadeUpTasks) {
   DetectionCounts counts;
   constexpr std::uint64_t kTasks{test::kSanitized ? 10 : 40};
   for (std::uint64_t seed = 0; seed < kTasks; ++seed) {
-    const MadeUpTask task = made_up_task(seed, {.actions = 1 + static_cast<int>(seed % 2)});
+    const SyntheticTask task = synthetic_task(seed, {.actions = 1 + static_cast<int>(seed % 2)});
     const GmmAsResult result = detect_by_gmm(task.trajectory).value();
     counts += score(result.actions, task.actions_m).counts;
     for (const HandAction& action : result.actions) EXPECT_NE(action.why.find("times the mean"), std::string::npos);
@@ -29,7 +29,7 @@ TEST(GmmAs, FindsTheActionsOfMadeUpTasks) {
 
 TEST(GmmAs, TheResultTellsHowItCameAbout) {
   const GmmAsConfig config;
-  const GmmAsResult result = detect_by_gmm(made_up_task(11).trajectory, config).value();
+  const GmmAsResult result = detect_by_gmm(synthetic_task(11).trajectory, config).value();
   const std::size_t count = result.gaussians.size();
   ASSERT_GE(count, 3U);
   ASSERT_GE(result.bic.size(), count);
@@ -71,7 +71,7 @@ TEST(GmmAs, TheResultTellsHowItCameAbout) {
 }
 
 TEST(GmmAs, ThePrintedFormulaHasAUnit) {
-  HandTrajectory task = made_up_task(2).trajectory;
+  HandTrajectory task = synthetic_task(2).trajectory;
   const GmmAsResult cubed = detect_by_gmm(task).value();
   const GmmAsResult printed = detect_by_gmm(task, GmmAsConfig::as_printed()).value();
   ASSERT_EQ(cubed.gaussians.size(), printed.gaussians.size());
@@ -113,7 +113,7 @@ TEST(GmmAs, TheFirstAndTheLastGaussianHaveNoThreshold) {
 }
 
 TEST(GmmAs, TimesDoNotDependOnTheClock) {
-  const HandTrajectory task = made_up_task(6).trajectory;
+  const HandTrajectory task = synthetic_task(6).trajectory;
   HandTrajectory other = task;
   for (HandSample& sample : other) sample.time_s = 1.7e9 + 0.25 * sample.time_s;
   const GmmAsResult here = detect_by_gmm(task).value();
@@ -145,7 +145,7 @@ TEST(GmmAs, LittleOrNothingGivesNoAction) {
 }
 
 TEST(GmmAs, BadSamplesAndConfigurationsAreRefused) {
-  HandTrajectory task = made_up_task(1).trajectory;
+  HandTrajectory task = synthetic_task(1).trajectory;
   GmmAsConfig config;
   config.neighbours = 0;
   EXPECT_FALSE(detect_by_gmm(task, config));

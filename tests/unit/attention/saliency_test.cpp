@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What each heuristic makes of a table with a ball, a book, a far wall and scraps.
+// Heuristics on a table with a ball, a book, a far wall and scraps.
 #include "saccade/attention/saliency.hpp"
 
 #include <gtest/gtest.h>

@@ -112,7 +112,7 @@ TEST(Isolation, CountsPointsBeyondTheDistanceOnly) {
   EXPECT_EQ(alone.measured()[0].isolation, 1.0);
 }
 
-/// What would take hours if points were compared one by one.
+/// A cloud that would take hours if points were compared one by one.
 TEST(Isolation, TakesAMillionDuplicatesAndHugeDistances) {
   const int count = test::scaled_cases(500000);
   LabelledPoints points;

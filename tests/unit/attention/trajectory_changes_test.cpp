@@ -83,10 +83,10 @@ TEST(TrajectoryChanges, NoiseHasItsDeviationAndFollowsTheSeed) {
   EXPECT_FALSE(with_noise(still, HUGE_VAL, 7));
 }
 
-TEST(MadeUpTask, GoesWhereItSaysAndFollowsTheSeed) {
+TEST(SyntheticTask, GoesWhereItSaysAndFollowsTheSeed) {
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
     const int actions = 1 + static_cast<int>(seed % 4);
-    const MadeUpTask task = made_up_task(seed, {.actions = actions});
+    const SyntheticTask task = synthetic_task(seed, {.actions = actions});
     ASSERT_EQ(task.actions_m.size(), static_cast<std::size_t>(actions));
     for (const Eigen::Vector3d& place : task.actions_m) {
       int near{0};
@@ -100,18 +100,18 @@ TEST(MadeUpTask, GoesWhereItSaysAndFollowsTheSeed) {
     }
     EXPECT_LT(longest_m, 0.15) << "seed " << seed;  // 3 m/s, and repeats before it
   }
-  EXPECT_EQ(made_up_task(4).trajectory.back().position_m, made_up_task(4).trajectory.back().position_m);
-  EXPECT_NE(made_up_task(4).trajectory.back().position_m, made_up_task(5).trajectory.back().position_m);
+  EXPECT_EQ(synthetic_task(4).trajectory.back().position_m, synthetic_task(4).trajectory.back().position_m);
+  EXPECT_NE(synthetic_task(4).trajectory.back().position_m, synthetic_task(5).trajectory.back().position_m);
 }
 
-TEST(MadeUpTask, GoesToGivenPlacesAndPassesOverObstacles) {
-  MadeUpWay way;
+TEST(SyntheticTask, GoesToGivenPlacesAndPassesOverObstacles) {
+  SyntheticHandPath way;
   way.outside_m = {0.0, 1.0, 0.3};
   way.places_m = {{-0.4, 0.0, 0.1}, {0.4, 0.0, 0.1}, {0.0, -0.3, 0.2}};
   way.obstacles = {{{-0.1, -0.1, 0.0}, {0.1, 0.1, 0.45}}, {{0.35, -0.05, 0.0}, {0.45, 0.05, 0.06}}};
   std::size_t over{0};
   for (std::uint64_t seed = 0; seed < 50; ++seed) {
-    const MadeUpTask task = made_up_task(way, seed);
+    const SyntheticTask task = synthetic_task(way, seed);
     EXPECT_EQ(task.actions_m, way.places_m);
     EXPECT_EQ(task.trajectory.front().position_m, way.outside_m);
     EXPECT_LT((task.trajectory.back().position_m - way.outside_m).norm(), 0.05);  // its last sample may be a repeat
@@ -124,16 +124,17 @@ TEST(MadeUpTask, GoesToGivenPlacesAndPassesOverObstacles) {
     }
   }
   EXPECT_GT(over, 500U);
-  way.obstacles = {{{-0.1, -0.1, 0.0}, {0.1, 0.1, 100.0}}};  // nobody reaches as high as that
-  for (const HandSample& sample : made_up_task(way, 1).trajectory) EXPECT_LT(sample.position_m.z(), 1.4);
+  way.obstacles = {{{-0.1, -0.1, 0.0}, {0.1, 0.1, 100.0}}};  // no hand reaches this high
+  for (const HandSample& sample : synthetic_task(way, 1).trajectory) EXPECT_LT(sample.position_m.z(), 1.4);
 }
 
-TEST(MadeUpTask, NoiseIsOnEveryPositionThatIsNoRepeat) {
-  const MadeUpTask exact = made_up_task(MadeUpWay{{0.0, -1.0, 0.3}, {{0.0, 0.0, 0.1}}, {}}, 3, {.repeat_share = 0.0});
-  const MadeUpTask noisy =
-      made_up_task(MadeUpWay{{0.0, -1.0, 0.3}, {{0.0, 0.0, 0.1}}, {}}, 3, {.repeat_share = 0.0, .noise_m = 0.002});
-  EXPECT_EQ(made_up_task(3).trajectory.back().position_m,
-            made_up_task(3, {.noise_m = 0.0}).trajectory.back().position_m);
+TEST(SyntheticTask, NoiseIsOnEveryPositionThatIsNoRepeat) {
+  const SyntheticTask exact =
+      synthetic_task(SyntheticHandPath{{0.0, -1.0, 0.3}, {{0.0, 0.0, 0.1}}, {}}, 3, {.repeat_share = 0.0});
+  const SyntheticTask noisy = synthetic_task(SyntheticHandPath{{0.0, -1.0, 0.3}, {{0.0, 0.0, 0.1}}, {}}, 3,
+                                             {.repeat_share = 0.0, .noise_m = 0.002});
+  EXPECT_EQ(synthetic_task(3).trajectory.back().position_m,
+            synthetic_task(3, {.noise_m = 0.0}).trajectory.back().position_m);
   const double noise_m = noise_deviation_m(fresh_samples(noisy.trajectory));
   EXPECT_NEAR(noise_m, 0.002, 0.0005);
   EXPECT_LT(noise_deviation_m(fresh_samples(exact.trajectory)), 0.0005);

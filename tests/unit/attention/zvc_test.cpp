@@ -26,7 +26,7 @@ double plain_mean_speed(const std::vector<Eigen::Vector3d>& q, double interval_s
 }
 
 TEST(Zvc, SpeedsAreThoseOfTheFormulas) {
-  const HandTrajectory task = made_up_task(3).trajectory;
+  const HandTrajectory task = synthetic_task(3).trajectory;
   ZvcConfig config;
   const ZvcResult result = detect_by_zvc(task, config).value();
   std::vector<Eigen::Vector3d> q;
@@ -53,7 +53,7 @@ TEST(Zvc, SpeedsAreThoseOfTheFormulas) {
 TEST(Zvc, FindsTheActionsOfMadeUpTasks) {
   DetectionCounts counts;
   for (std::uint64_t seed = 0; seed < 40; ++seed) {
-    const MadeUpTask task = made_up_task(seed, {.actions = 1 + static_cast<int>(seed % 2)});
+    const SyntheticTask task = synthetic_task(seed, {.actions = 1 + static_cast<int>(seed % 2)});
     counts += score(detect_by_zvc(task.trajectory).value().actions, task.actions_m).counts;
   }
   EXPECT_EQ(counts.labels, 60U);
@@ -103,7 +103,7 @@ TEST(Zvc, LittleOrNothingGivesNoAction) {
 }
 
 TEST(Zvc, BadSamplesAndConfigurationsAreRefused) {
-  HandTrajectory task = made_up_task(1).trajectory;
+  HandTrajectory task = synthetic_task(1).trajectory;
   ZvcConfig config;
   config.far_m = config.near_m;
   EXPECT_FALSE(detect_by_zvc(task, config));

@@ -10,7 +10,7 @@
 #include <limits>
 #include <random>
 
-#include "saccade/cloud/internal/least_directions.hpp"
+#include "saccade/cloud/internal/smallest_eigenvectors.hpp"
 #include "saccade/core/simd.hpp"
 
 namespace saccade {
@@ -115,7 +115,7 @@ TEST(LeastDirections, AreEigenvectorsOfLeastEigenvalues) {
         }
       }
     }
-    const Directions directions = least_directions(covariances);
+    const Directions directions = smallest_eigenvectors(covariances);
     for (std::size_t lane = 0; lane < Covariances::kCount; ++lane) {
       const Eigen::Vector3d found{directions.xyz[0][lane], directions.xyz[1][lane], directions.xyz[2][lane]};
       const double trace = expected[lane].trace();
@@ -131,7 +131,7 @@ TEST(LeastDirections, OfWhatHasNoneAreZero) {
   for (const std::size_t diagonal : {0U, 3U, 5U}) covariances.entries[diagonal] = {0.0F, 0.0F, -1.0F, 1.0F, 1e30F};
   covariances.entries[1][3] = std::numeric_limits<float>::quiet_NaN();
   covariances.entries[4][4] = std::numeric_limits<float>::infinity();
-  const Directions directions = least_directions(covariances);
+  const Directions directions = smallest_eigenvectors(covariances);
   for (const auto& component : directions.xyz) {
     for (const float value : component) EXPECT_EQ(value, 0.0F);
   }

@@ -55,7 +55,7 @@ std::size_t cores() {
 
 constexpr const char* kRunsAgain{"SACCADE_TEST_RUNS_AGAIN"};
 
-/// Whether this process is one that run_again() started.
+/// Tells whether this process is one that run_again() started.
 bool runs_again() { return std::getenv(kRunsAgain) != nullptr; }
 
 /// Runs the current test in a process of its own, after `prepare` was called in it. Returns its exit status, or -1

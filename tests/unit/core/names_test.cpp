@@ -19,7 +19,7 @@ constexpr auto kSideNames =
     make_names<Side>({{Side::left, "left"}, {Side::right, "right"}, {Side::middle, "middle"}, {Side::left, "l"}});
 static_assert(kSideNames.of(Side::left) == "left");
 static_assert(kSideNames.find("middle") == Side::middle);
-// What make_names finds enumerators without a word by.
+// Checks by which make_names finds enumerators without a word.
 static_assert(is_enumerator<Side::left>() && is_enumerator<static_cast<Side>(2)>());
 static_assert(!is_enumerator<static_cast<Side>(3)>() && !is_enumerator<static_cast<Side>(-1)>());
 static_assert(has_every(kSideNames, std::make_index_sequence<5>{}));

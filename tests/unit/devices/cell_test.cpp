@@ -118,7 +118,7 @@ TEST(Cell, WhatIsWrongIsToldWithItsPlace) {
   expect_refused("arm: {tip: tool0}", "urdf");
   expect_refused("arm: {urdf: a.urdf, speeed: 0.1}", "unknown key speeed in an arm");
   expect_refused("arm: {urdf: a.urdf, speed: 1.5}", "at most 1");
-  expect_refused("arm: {urdf: a.urdf, T_flange_camera: [[2,0,0,0],[0,1,0,0],[0,0,1,0]]}", "no rotation");
+  expect_refused("arm: {urdf: a.urdf, T_flange_camera: [[2,0,0,0],[0,1,0,0],[0,0,1,0]]}", "not a rotation");
   expect_refused("arm: {urdf: a.urdf, base_at: [1, 2]}", "[x, y, z]");
   expect_refused("camera: {timeout: 3}", "needs the key command");
   expect_refused("camera: {command: ' '}", "the command is empty");
@@ -127,6 +127,11 @@ TEST(Cell, WhatIsWrongIsToldWithItsPlace) {
   expect_refused("arm: {urdf: a.urdf}\nrobot: {command: r}", "exclude each other");
   expect_refused("tracking: gps", "forced, hint or icp");
   expect_refused("free: [{min: [0, 0, 0], max: [0, 1, 1]}]", "the box is empty");
+  expect_refused("free: [{min: [0, 0, -1e20], max: [1, 1, 1]}]", "a box reaches to -1e+20 m");
+  expect_refused("fixtures: [{min: [0, 0, 0], max: [1, 1001, 1]}]", "within 1000 m");
+  expect_refused("arm: {urdf: a.urdf, base_at: [1e19, 0, 0]}", "farther than a kilometre");
+  expect_refused("arm: {urdf: a.urdf, T_flange_camera: [[1,0,0,0],[0,1,0,-2000],[0,0,1,0]]}",
+                 "farther than a kilometre");
   expect_refused("[1, 2", "line");
 }
 

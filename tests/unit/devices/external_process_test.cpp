@@ -143,7 +143,7 @@ TEST(ExternalProcess, RubbishIsQuoted) {
 }
 
 TEST(ExternalProcess, FloodsOfMessagesBlockNobody) {
-  // 6 MB before the answer, and as much after it, while nobody asks.
+  // 6 MB before the answer, and as much after it, while no request is pending.
   const auto process = started(
       "sh -c 'n=\"yes 012345678901234567890123456789012345678901234567890123456789\"; read a; $n | head -100000 >&2; "
       "echo ok; $n | head -100000 >&2; echo last >&2; read b; exit 5'");
@@ -155,7 +155,7 @@ TEST(ExternalProcess, FloodsOfMessagesBlockNobody) {
   EXPECT_LT(answer.error().to_string().size(), 1000U);
 }
 
-/// Whether any process of a group still runs. Its state and group follow the name, which ends with the last ')'.
+/// Tells whether any process of a group still runs. Its state and group follow the name, which ends with the last ')'.
 bool any_left(pid_t group) {
   for (const auto& entry : std::filesystem::directory_iterator{"/proc"}) {
     std::ifstream file{entry.path() / "stat"};

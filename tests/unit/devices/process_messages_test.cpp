@@ -59,7 +59,8 @@ TEST(ProcessMessages, BadHellosAreRefused) {
   for (const char* width : {"-1", "0", "4.5", "\"4\"", "20000", "99999999999999999999", "null", "[4]"}) {
     refused("width", width, Errc::corrupt_data, "width must be an integer within 1 and");
   }
-  refused("fx", "0", Errc::corrupt_data, "focal lengths must be positive");
+  refused("fx", "0", Errc::corrupt_data, "focal lengths must not be 0");
+  refused("fx", "-5", Errc::unsupported, "mirrors an axis");
   refused("cy", "\"1\"", Errc::corrupt_data, "cy is not a number");
   refused("max_range_m", "0.05", Errc::invalid_argument, "0 <= min < max");
   refused("depth", "\"feet\"", Errc::corrupt_data, R"(depth must be "float32_m" or "uint16_mm")");
@@ -70,8 +71,9 @@ TEST(ProcessMessages, BadHellosAreRefused) {
   refused("error", "5", Errc::corrupt_data, "error must be a text");
   std::string large = hello_with("width", "16384");
   large.replace(large.find("\"height\":2"), 10, "\"height\":16384");
+  for (const char* key : {"\"fx\":5", "\"fy\":5"}) large.replace(large.find(key), 6, std::string{key} + "000");
   expect_refused(parse_camera_hello(large), Errc::corrupt_data, "a frame of 536870912 bytes is more than");
-  expect_refused(parse_camera_hello("[1]"), Errc::corrupt_data, "it is no JSON object: '[1]'");
+  expect_refused(parse_camera_hello("[1]"), Errc::corrupt_data, "it is not a JSON object: '[1]'");
   expect_refused(parse_camera_hello(R"({"saccade": 1, "cx": 1e999})"), Errc::corrupt_data, "it is not JSON");
   expect_refused(parse_ready("hi\x01\xFF"), Errc::corrupt_data, "it is not JSON: 'hi ?'");
   expect_refused(parse_ready("{}"), Errc::corrupt_data, "the key saccade is missing");
@@ -92,7 +94,7 @@ TEST(ProcessMessages, BadCapturesAreRefused) {
   refused(R"({"number": 7, "bytes": 16, "time_s": "now"})", Errc::corrupt_data, "time_s must be a number");
   refused(R"({"number": 7, "bytes": 16, "T_world_camera": 3})", Errc::corrupt_data, "4x4 nested array");
   refused(R"({"number": 7, "bytes": 16, "T_world_camera": [[2,0,0,7],[0,1,0,8],[0,0,1,9],[0,0,0,1]]})",
-          Errc::invalid_argument, "T_world_camera: the pose is no rotation");
+          Errc::invalid_argument, "T_world_camera: the pose is not a rotation");
   refused(R"({"number": 7, "bytes": 16, "T_world_camera": [[1,0,0,0],[0,1,0,800],[0,0,1,0],[0,0,0,1]]})",
           Errc::corrupt_data, "T_world_camera is 800 m from the pose that was asked for");
 }
@@ -134,9 +136,9 @@ TEST(ProcessMessages, DepthInMetresAndColor) {
   EXPECT_EQ((*frame.color)(2, 1), (Rgb8{39, 40, 41}));
 }
 
-/// docs/processes.md shows what is so: "→ " is what Saccade writes, "← " what it understands.
+/// docs/guides/processes.md shows what is so: "→ " is what Saccade writes, "← " what it understands.
 TEST(ProcessMessages, TheTranscriptInTheDocumentIsSo) {
-  const auto document = read_text_file(test::source_folder() / "docs/processes.md");
+  const auto document = read_text_file(test::source_folder() / "docs/guides/processes.md");
   ASSERT_TRUE(document.ok());
   int requests = 0;
   int answers = 0;

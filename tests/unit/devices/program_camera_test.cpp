@@ -18,7 +18,7 @@ const std::string kCameraPy{"/usr/bin/python3 -B '" + (test::source_folder() / "
 const std::string kRobotPy{"/usr/bin/python3 -B '" + (test::source_folder() / "examples/external_robot.py").string() +
                            "'"};
 
-/// What the examples see.
+/// Returns the view of the examples.
 AnalyticScene ball_on_plane() {
   AnalyticScene scene;
   scene.objects.push_back({"plane", HalfSpace{}, {160, 160, 150}, {}});
@@ -146,7 +146,7 @@ TEST(ProgramCamera, AFrameOfMillimetres) {
   EXPECT_EQ(frame->depth, (DepthImage{4, 2, {0.0F, 0.0F, 0.256F, 1.0F, 0.0F, 0.0F, 0.0F, 0.512F}}));
   EXPECT_TRUE(frame->T_world_camera->translation().isApprox(Eigen::Vector3d{0.5, -0.25, 0.5}));
   EXPECT_EQ(frame->time_s, 12.5);
-  const auto more = camera->capture(above());  // an empty line follows the frame, which nobody asked for
+  const auto more = camera->capture(above());  // an unrequested empty line follows the frame
   ASSERT_FALSE(more.ok());
   expect_one_line(more.error(), Errc::corrupt_data, "");
 }

@@ -20,7 +20,7 @@ struct PipedText {
   std::string text;
 };
 
-/// What a program has read: lengths of heads, heads, strings of ROS.
+/// Data read by a program: lengths of heads, heads, strings of ROS.
 std::vector<PipedText> piped_texts(const std::vector<std::byte>& bytes, Wire wire) {
   std::vector<PipedText> all;
   for (std::size_t at = 0; at < bytes.size();) {

@@ -22,7 +22,7 @@ class Attention : public test::ScannedClutter {
   }
 };
 
-/// What there is to see in a map.
+/// Objects and contours of a map.
 struct Seen {
   std::shared_ptr<const SalientSurface> surface;
   ContourSet contours;
@@ -37,7 +37,7 @@ Seen look_at_map(const TsdfSnapshot& map, const SimulatedRunConfig& config) {
   return {std::move(surface), std::move(set)};
 }
 
-/// What each segment's best view gains, by its definition; -1: it has no contours.
+/// Returns the gain of each segment's best view, by definition; -1 without contours.
 std::vector<double> best_gains(const Seen& seen, const TsdfSnapshot& map, const SimulatedRunConfig& config,
                                const GainConfig& gain) {
   std::vector<double> best(seen.surface->measures.size(), -1.0);
@@ -187,10 +187,11 @@ class LameRobot final : public Robot {
                                                          const Executor& /*executor*/) const override {
     return std::vector<std::optional<Refusal>>(poses.size(), Refusal::no_ik);
   }
-  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> /*poses*/, Way /*way*/) override {
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> /*poses*/, MotionKind /*way*/) override {
     return PlannedMotion{std::nullopt, Refusal::no_ik, ""};
   }
-  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& /*motion*/, const OnWay& /*on_way*/) override {
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& /*motion*/,
+                                                       const MotionObserver& /*on_way*/) override {
     return std::optional<Arrival>{};
   }
 };
@@ -275,11 +276,11 @@ TEST_F(Attention, ExploresWhenTheFirstSegmentCannotBeReached) {
   class Declining final : public Robot {
    public:
     explicit Declining(std::function<bool(const Pose&)> no) : no_{std::move(no)} {}
-    Result<PlannedMotion> plan(std::span<const Pose> poses, Way /*way*/) override {
+    Result<PlannedMotion> plan(std::span<const Pose> poses, MotionKind /*way*/) override {
       if (no_(poses[0])) return PlannedMotion{std::nullopt, Refusal::no_path, ""};
       return PlannedMotion{Motion{0, poses[0], {}, 0.0}, std::nullopt, ""};
     }
-    Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& /*on_way*/) override {
+    Result<std::optional<Arrival>> execute(const Motion& motion, const MotionObserver& /*on_way*/) override {
       return std::optional{Arrival{motion.T_world_camera, 0.0}};
     }
 

@@ -28,14 +28,15 @@ std::vector<RegionOfInterest> spheres(const std::vector<Eigen::Vector3d>& center
 class OneSidedRobot final : public Robot {
  public:
   explicit OneSidedRobot(double least_x_m) : least_x_m_{least_x_m} {}
-  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way /*way*/) override {
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, MotionKind /*way*/) override {
     for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
       if (T_world_camera[i].translation().x() < least_x_m_) continue;
       return PlannedMotion{Motion{i, T_world_camera[i], {}}, {}, ""};
     }
     return PlannedMotion{{}, Refusal::no_path, "the other side"};
   }
-  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& /*on_way*/) override {
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion,
+                                                       const MotionObserver& /*on_way*/) override {
     return std::optional{Arrival{motion.T_world_camera, 0.0}};
   }
 
@@ -121,7 +122,7 @@ class EnvironmentUpdate : public ::testing::Test {
     return {*run, count_unknown(forgotten.content(), regions), meter.unknown()};
   }
 
-  /// Whether some frame could have said something about a point.
+  /// Tells whether some frame could have said something about a point.
   bool in_some_view(const Eigen::Vector3d& p) const {
     const PinholeCamera& camera = camera_->camera();
     return std::any_of(seen_from_.begin(), seen_from_.end(), [&](const Pose& T_world_camera) {
@@ -287,7 +288,7 @@ struct ArmUpdate {
   StandByResult back;
 };
 
-/// The same with the Comau, which fuses on its way or not.
+/// Updates with the Comau, fusing during motions or not.
 ArmUpdate update_with_arm(FuseWhen when, const Executor& executor, PlannedArm& robot, const RayScene& rays) {
   SimulatedRunConfig config;
   config.voxel_size_m = kVoxelOfUpdate_m;

@@ -14,7 +14,7 @@ namespace {
 
 constexpr double kVoxel_m{0.012};
 
-/// What a caller may add to an explorer.
+/// Optional parts of an explorer.
 struct Caller {
   Recorder* recorder{nullptr};
   Approve approve{};
@@ -42,8 +42,8 @@ class Explore : public ::testing::Test {
     static const RayScene built = *RayScene::build(random_clutter(5, 4));
     return built;
   }
-  static const Truth& truth() {
-    static const Truth made = *Truth::build(rays(), 0.006, Executor::with_threads(2));
+  static const GroundTruth& truth() {
+    static const GroundTruth made = *GroundTruth::build(rays(), 0.006, Executor::with_threads(2));
     return made;
   }
   static TsdfMap empty_map() {
@@ -258,14 +258,14 @@ TEST_F(Explore, RegionsAreTakenInTurn) {
 class FencedRobot final : public Robot {
  public:
   explicit FencedRobot(double max_y_m) : max_y_m_{max_y_m} {}
-  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way /*way*/) override {
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, MotionKind /*way*/) override {
     for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
       if (T_world_camera[i].translation().y() > max_y_m_) continue;
       return PlannedMotion{Motion{i, T_world_camera[i], {}}, {}, ""};
     }
     return PlannedMotion{{}, Refusal::no_path, "a fence"};
   }
-  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& /*on_way*/) override {
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const MotionObserver&) override {
     positions.push_back(motion.T_world_camera.translation());
     return std::optional{Arrival{motion.T_world_camera, 0.0}};
   }
@@ -279,9 +279,9 @@ class FencedRobot final : public Robot {
 class StiffRobot final : public Robot {
  public:
   explicit StiffRobot(double max_tilt_rad) : max_tilt_rad_{max_tilt_rad} {}
-  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way way) override {
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, MotionKind way) override {
     const Pose& wanted = T_world_camera.front();
-    if (way == Way::any) {
+    if (way == MotionKind::planned) {
       T_world_view_ = wanted;
       tilts_rad.clear();
     } else if (tilt_rad(wanted) > max_tilt_rad_) {
@@ -289,11 +289,11 @@ class StiffRobot final : public Robot {
     }
     return PlannedMotion{Motion{0, wanted, {}}, {}, ""};
   }
-  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const OnWay& on_way) override {
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& motion, const MotionObserver& on_way) override {
     if (!on_way) tilts_rad.push_back(tilt_rad(motion.T_world_camera));
     return std::optional{Arrival{motion.T_world_camera, 0.0}};
   }
-  std::vector<double> tilts_rad;  ///< of the frames of the last view
+  std::vector<double> tilts_rad;  ///< tilts of the frames of the last view
 
  private:
   [[nodiscard]] double tilt_rad(const Pose& pose) const {

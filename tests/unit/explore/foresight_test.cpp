@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What comes first when views are weighed by what comes after them, by their time, and by what is seen on the way.
+// Order of views that are weighed by later views, by their time, and by what is seen during the motion.
 #include "saccade/explore/foresight.hpp"
 
 #include <gtest/gtest.h>
@@ -18,7 +18,7 @@ Pose at(double x) {
 /// Takes as many seconds to a view as its x, and comes by the pose (0, 1, 0) on its way to those beyond 5.
 class SlowRobot final : public Robot {
  public:
-  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, Way /*way*/) override {
+  [[nodiscard]] Result<PlannedMotion> plan(std::span<const Pose> T_world_camera, MotionKind /*way*/) override {
     const double x = T_world_camera.front().translation().x();
     if (x == unreachable_x) return PlannedMotion{{}, Refusal::no_path, "no way"};
     Motion motion{0, T_world_camera.front(), {}};
@@ -26,11 +26,12 @@ class SlowRobot final : public Robot {
     motion.trajectory = Trajectory{{{x, rest, rest, rest}}};
     return PlannedMotion{motion, {}, ""};
   }
-  [[nodiscard]] std::vector<CameraSample> camera_on_way(const Motion& motion, double every_s) const override {
+  [[nodiscard]] std::vector<MotionSample> camera_on_way(const Motion& motion, double every_s) const override {
     if (motion.T_world_camera.translation().x() <= 5.0) return {};
     return {{every_s, on_way()}};
   }
-  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& /*motion*/, const OnWay& /*on_way*/) override {
+  [[nodiscard]] Result<std::optional<Arrival>> execute(const Motion& /*motion*/,
+                                                       const MotionObserver& /*on_way*/) override {
     return std::optional<Arrival>{};
   }
   static Pose on_way() {

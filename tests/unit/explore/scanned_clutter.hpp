@@ -12,7 +12,7 @@
 
 namespace saccade::test {
 
-/// Whether gains never rise.
+/// Tells whether gains never rise.
 inline bool falls(std::span<const RankedView> views) {
   return std::is_sorted(views.begin(), views.end(),
                         [](const RankedView& a, const RankedView& b) { return a.gain > b.gain; });
@@ -25,8 +25,8 @@ class ScannedClutter : public ::testing::Test {
     static const RayScene built = *RayScene::build(random_clutter(5, 4));
     return built;
   }
-  static const Truth& truth() {
-    static const Truth made = *Truth::build(rays(), 0.008, Executor::with_threads(2));
+  static const GroundTruth& truth() {
+    static const GroundTruth made = *GroundTruth::build(rays(), 0.008, Executor::with_threads(2));
     return made;
   }
   static SimulatedRunConfig config() {

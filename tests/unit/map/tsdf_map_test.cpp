@@ -27,7 +27,7 @@ TEST(TsdfMap, RefusesFramesThatSeeTooManyVoxels) {
   EXPECT_FALSE(map.content().grid.empty());
 }
 
-/// v of a voxel on a wall at 1 m after so many frames of the wall, and then of nothing before 3 m.
+/// Returns v of a voxel on a wall at 1 m after frames of the wall, and then frames that see nothing before 3 m.
 double value_after(int frames_of_wall, int frames_past_it, std::uint8_t clearing_percent) {
   TsdfConfig config;
   config.voxel_size_m = 0.01;

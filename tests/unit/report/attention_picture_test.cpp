@@ -15,7 +15,7 @@ constexpr Rgb8 kPoiColor{214, 28, 92};
 constexpr Rgb8 kLabelColor{20, 20, 24};
 
 TEST(AttentionPicture, ShowsWhatThereIs) {
-  const MadeUpTask task = made_up_task(1);
+  const SyntheticTask task = synthetic_task(1);
   const ColorImage plain = attention_picture(task.trajectory, {});
   AttentionFindings findings;
   findings.labels_m = task.actions_m;
@@ -36,7 +36,7 @@ TEST(AttentionPicture, NothingAndASinglePointHaveAPicture) {
 }
 
 TEST(SpeedPlot, MarksBothEndsOfEveryDip) {
-  const DipResult result = detect_dips(made_up_task(3, {.actions = 3}).trajectory).value();
+  const DipResult result = detect_dips(synthetic_task(3, {.actions = 3}).trajectory).value();
   ASSERT_EQ(result.dips.size(), 3U);
   ASSERT_GT(result.motion.size(), 60U);  // a curve without markers
   AttentionFindings findings;

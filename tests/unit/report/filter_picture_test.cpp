@@ -11,8 +11,9 @@ namespace {
 constexpr int kColumns{60};
 
 TEST(FilterPicture, ShowsEveryRemovedPointInItsColor) {
-  DepthImage before{200, 100, 1.0F};
-  FilteredDepth filtered{before, {200, 100, FilteredPixel::kept}};
+  // Wide enough to be shown pixel by pixel.
+  DepthImage before{400, 200, 1.0F};
+  FilteredDepth filtered{before, {400, 200, FilteredPixel::kept}};
   for (int v = 0; v < 100; ++v) {
     for (int u = 0; u < kColumns; ++u) {
       const bool shadow = u < kColumns / 3;
@@ -25,8 +26,8 @@ TEST(FilterPicture, ShowsEveryRemovedPointInItsColor) {
     return std::pair{test::count(picture, kShadowPointColor), test::count(picture, kVeilPointColor)};
   };
   const ColorImage some = filter_picture(before, filtered, "a frame");
-  const ColorImage none = filter_picture(before, {before, {200, 100, FilteredPixel::kept}}, "a frame");
-  EXPECT_GE(some.width(), 600);
+  const ColorImage none = filter_picture(before, {before, {400, 200, FilteredPixel::kept}}, "a frame");
+  EXPECT_GE(some.width(), 1200);
   EXPECT_EQ(colored(some).first - colored(none).first, filtered.shadow_points);
   EXPECT_EQ(colored(some).second - colored(none).second, filtered.veil_points);
   EXPECT_GT(test::count(some, test::is_dark), test::count(none, test::is_dark));

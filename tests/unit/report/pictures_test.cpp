@@ -18,6 +18,7 @@ namespace {
 
 using test::count;
 using test::is_dark;
+using test::is_unknown;
 using test::kSequential;
 
 using test::map_of;
@@ -77,17 +78,17 @@ TEST(TernaryPicture, EmptyIsBackgroundAndTheBallHasItsSize) {
               4.0);  // voxels stick out
 }
 
-TEST(TernaryPicture, UnknownIsBlackAroundWhatIsKnown) {
+TEST(TernaryPicture, UnknownIsAVeilAroundWhatIsKnown) {
   const ColorImage picture = ternary_picture(ball(), inside(), kSequential);
-  EXPECT_TRUE(is_dark(picture(2, 2))) << "behind the free space begins the unknown";
+  EXPECT_TRUE(is_unknown(picture(2, 2))) << "behind the free space begins the unknown";
   EXPECT_TRUE(is_bright(picture(80, 60)));
-  EXPECT_FALSE(is_dark(ternary_picture(ball(), from({1.6, 0.4, 0.6}), kSequential)(0, 0))) << "beyond the map";
+  EXPECT_FALSE(is_unknown(ternary_picture(ball(), from({1.6, 0.4, 0.6}), kSequential)(0, 0))) << "beyond the map";
 }
 
 TEST(TernaryPicture, UnknownOutsideTheWorkspaceIsNotDrawn) {
   TsdfSnapshot map = ball();
   map.config.workspace = Box{{-0.32, -0.32, -0.32}, {0.32, 0.32, 0.32}};
-  EXPECT_EQ(count(ternary_picture(map, inside(), kSequential), is_dark), 0U);
+  EXPECT_EQ(count(ternary_picture(map, inside(), kSequential), is_unknown), 0U);
 }
 
 TEST(TernaryPicture, ForgottenBallIsSeenFromWithinTheUnknown) {
@@ -100,11 +101,11 @@ TEST(TernaryPicture, ForgottenBallIsSeenFromWithinTheUnknown) {
   EXPECT_EQ(picture(0, 0), config.background);
   const double radius_px = silhouette_px(0.15, outside().T_world_camera.translation().norm());
   const double disc = std::numbers::pi * radius_px * radius_px;
-  const auto dark = static_cast<double>(count(picture, is_dark));
+  const auto dark = static_cast<double>(count(picture, is_unknown));
   EXPECT_GT(dark, 0.7 * disc);  // the outline covers the rest
   EXPECT_LT(dark, 1.05 * disc);
   EXPECT_GT(count(picture, [](const Rgb8& c) { return c[0] > 190 && c[1] < 110 && c[2] < 60; }), 20U) << "outline";
-  EXPECT_LT(count(ternary_picture(ball(), outside(), kSequential, config), is_dark), 30U) << "not forgotten: seen";
+  EXPECT_LT(count(ternary_picture(ball(), outside(), kSequential, config), is_unknown), 30U) << "not forgotten: seen";
 }
 
 TEST(TernaryPicture, UnknownFacesAreToldApart) {
@@ -117,7 +118,7 @@ TEST(TernaryPicture, UnknownFacesAreToldApart) {
   const ColorImage picture = ternary_picture(map, view, kSequential, config);
   std::vector<Rgb8> faces;
   for (const Rgb8& c : picture.pixels()) {
-    if (is_dark(c) && std::find(faces.begin(), faces.end(), c) == faces.end()) faces.push_back(c);
+    if (is_unknown(c) && std::find(faces.begin(), faces.end(), c) == faces.end()) faces.push_back(c);
   }
   EXPECT_EQ(faces.size(), 3U);
 }
@@ -224,6 +225,18 @@ TEST(FusionPicture, ShowsThreePanelsSideBySide) {
   EXPECT_GE(count(sheet, like(depth_colors()(0.5))), 2U * 60U * 40U);
 }
 
+TEST(FusionPicture, EnlargesSmallImagesToTheWidthOfTheirTitles) {
+  const DepthImage measured{60, 40, 1.0F};
+  const DepthImage cast{60, 40, 1.01F};
+  FusionPictureConfig config;
+  config.title = "";
+  config.scale = DepthScale{0.0, 2.0};
+  const ColorImage small = fusion_picture(measured, cast, config);
+  constexpr int kTimes{6};
+  const ColorImage large = fusion_picture({kTimes * 60, kTimes * 40, 1.0F}, {kTimes * 60, kTimes * 40, 1.01F}, config);
+  EXPECT_EQ(small, large);
+}
+
 TEST(ColorMaps, AreCutAtTheirEndsAndRoundBarsAreRound) {
   for (const ColorMap& map : {depth_colors(), amount_colors(), signed_colors()}) {
     EXPECT_EQ(map(-1.0), map(0.0));
@@ -255,7 +268,7 @@ TEST(ViewPicture, ShowsTheRegionTheCandidatesAndTheBestViews) {
   config.samples = 1;
   const ColorImage picture = view_picture(map.snapshot(), region, ranked, kSequential, config);
   const ColorImage none = view_picture(map.snapshot(), region, {}, kSequential, config);
-  EXPECT_GT(count(picture, is_dark), 1500U) << "the forgotten ball";
+  EXPECT_GT(count(picture, is_unknown), 1500U) << "the forgotten ball";
   constexpr Rgb8 kBest{214, 28, 92};
   constexpr Rgb8 kNoGain{176, 180, 188};
   EXPECT_GT(count(picture, like(kBest)), count(none, like(kBest)) + 150) << "frusta of the best views";

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What tests of pictures ask of pixels.
+// Checks of pixels for tests of pictures.
 
 #include <algorithm>
 #include <cstddef>
@@ -13,6 +13,8 @@ namespace saccade::test {
 inline const Executor kSequential;
 
 inline bool is_dark(const Rgb8& c) { return *std::max_element(c.begin(), c.end()) < 60; }
+/// The veil over what is unknown: bluish, whatever grey is behind it.
+inline bool is_unknown(const Rgb8& c) { return c[2] - c[0] > 13 && c[2] - c[0] < 40 && c[2] < 200; }
 
 template <class Predicate>
 std::size_t count(const ColorImage& image, const Predicate& predicate) {

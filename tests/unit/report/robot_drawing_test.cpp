@@ -105,9 +105,9 @@ TEST(RobotDrawing, ThePictureIsTakenFromBesideTheBase) {
     return std::remainder(azimuth_beside(base(base_deg), middle, wanted_deg * kDegree) / kDegree, 360.0);
   };
   EXPECT_NEAR(azimuth_deg(0.0, 150.0), 150.0, 1e-9) << "far enough";
-  EXPECT_NEAR(azimuth_deg(0.0, 30.0), 100.0, 1e-9);
-  EXPECT_NEAR(azimuth_deg(0.0, -30.0), -100.0, 1e-9);
-  EXPECT_NEAR(azimuth_deg(170.0, -170.0), -90.0, 1e-9) << "across the seam";
+  EXPECT_NEAR(azimuth_deg(0.0, 30.0), 125.0, 1e-9);
+  EXPECT_NEAR(azimuth_deg(0.0, -30.0), -125.0, 1e-9);
+  EXPECT_NEAR(azimuth_deg(170.0, -170.0), -65.0, 1e-9) << "across the seam";
   EXPECT_EQ(azimuth_beside(middle, middle, 0.3), 0.3) << "a base below everything";
 }
 
@@ -160,19 +160,23 @@ TEST(RobotDrawing, MapAndCandidatesShowTheArmAndThePathAndChangeNowhereElse) {
   EXPECT_GT(count(candidates_picture(scene, kSequential, small), path_color()), count(plain, path_color()) + 20U);
 }
 
-TEST(RobotDrawing, TheBaseIsInThePicture) {
+TEST(RobotDrawing, TheBoxFillsThePictureWhereverTheBaseIs) {
   const Box box{{-0.4, -0.4, -0.4}, {0.4, 0.4, 0.4}};
   RobotDrawing robot;
   robot.p_world_base = Vector3d{-0.6, -0.8, 0.4};
-  robot.p_world_shown = {{0.0, 0.0, 1.5}};
   const OverviewConfig config{.width = 360, .height = 270};
-  const Viewpoint view = overview_with(&robot, {box.min, box.max}, Vector3d::Zero(), config);
-  for (const Vector3d& p : {box.min, box.max, *robot.p_world_base, robot.p_world_shown[0]}) {
+  const Viewpoint view = overview_with(&robot, corners_of(box), Vector3d::Zero(), config);
+  double least_px{359.0};
+  double most_px{0.0};
+  for (const Vector3d& p : corners_of(box)) {
     const Vector3d p_camera = view.T_world_camera.inverse() * p;
     ASSERT_GT(p_camera.z(), 0.0);
     const Eigen::Vector2d at = view.camera.project(p_camera);
     EXPECT_TRUE(at.x() > 0.0 && at.x() < 359.0 && at.y() > 0.0 && at.y() < 269.0) << at.transpose();
+    least_px = std::min({least_px, at.x(), at.y()});
+    most_px = std::max({most_px, at.x(), at.y()});
   }
+  EXPECT_GT(most_px - least_px, 200.0) << "the box, not the arm's base, decides how near the camera comes";
   const Vector3d from = view.T_world_camera.translation();
   EXPECT_LT(from.head<2>().normalized().dot(robot.p_world_base->head<2>().normalized()), 0.0);
   EXPECT_EQ(overview_with(nullptr, {box.min, box.max}, Vector3d::Zero(), config).T_world_camera.matrix(),

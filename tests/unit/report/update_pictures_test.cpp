@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-#include "saccade/report/update_report.hpp"
+#include "saccade/report/update_pictures.hpp"
 
 #include <gtest/gtest.h>
 
@@ -7,7 +7,6 @@
 #include "saccade/report/view_picture.hpp"
 #include "saccade/trial/simulated_task.hpp"
 #include "unit/report/pixels.hpp"
-#include "unit/report/well_formed.hpp"
 
 namespace saccade {
 namespace {
@@ -16,7 +15,7 @@ namespace {
 struct BallTask {
   Box workspace{Eigen::Vector3d::Constant(-0.32), Eigen::Vector3d::Constant(0.32)};
   std::vector<Region> regions{Sphere{{-0.2, 0.0, 0.0}, 0.08}, Sphere{{0.2, 0.0, 0.0}, 0.08}};
-  MadeUpTask hand{made_up_task({{0.0, -0.5, 0.3}, {{-0.2, 0.0, 0.0}, {0.2, 0.0, 0.0}}, {}}, 1)};
+  SyntheticTask hand{synthetic_task({{0.0, -0.5, 0.3}, {{-0.2, 0.0, 0.0}, {0.2, 0.0, 0.0}}, {}}, 1)};
   AttentionFindings findings;
   TaskPictureConfig config;
 
@@ -54,7 +53,8 @@ TEST(ForgottenPicture, IsBlackInTheRegionsAlone) {
   const BallTask task;
   TsdfMap map = ball_map();
   const auto dark = [&] {
-    return test::count(forgotten_picture(map.snapshot(), task.scene(), test::kSequential, task.config), test::is_dark);
+    return test::count(forgotten_picture(map.snapshot(), task.scene(), test::kSequential, task.config),
+                       test::is_unknown);
   };
   EXPECT_LT(dark(), 20U) << "nothing is forgotten, and what lies in the ball is no region's";
   ASSERT_TRUE(map.forget(task.regions[0]).ok());
@@ -65,18 +65,6 @@ TEST(ForgottenPicture, IsBlackInTheRegionsAlone) {
   EXPECT_GT(both, one + 300);
   ASSERT_TRUE(map.forget(Region{Sphere{{0.0, 0.0, 0.25}, 0.05}}).ok());
   EXPECT_EQ(dark(), both) << "it lies in no region";
-}
-
-TEST(UnknownPlot, HasACurvePerRegion) {
-  const std::vector<RegionUnknown> regions{{"region 1", {900, 100, 0}}, {"<region> 2", {800, 800, 5}}};
-  const std::string svg = unknown_plot(regions, "Unknown");
-  EXPECT_EQ(test::well_formed(svg).problem, "");
-  EXPECT_NE(svg.find("region 1"), std::string::npos);
-  EXPECT_NE(svg.find("&lt;region&gt; 2"), std::string::npos);
-  EXPECT_NE(svg.find("after the user"), std::string::npos);
-  EXPECT_EQ(svg.find(">0.5<"), std::string::npos) << "there is no half a view";
-  EXPECT_TRUE(unknown_plot({}, "Unknown").empty());
-  EXPECT_EQ(test::well_formed(unknown_plot(std::vector<RegionUnknown>{{"region 1", {}}}, "Unknown")).problem, "");
 }
 
 }  // namespace

@@ -10,7 +10,7 @@
 
 namespace saccade::test {
 
-/// What a page is made of, and the first thing wrong with it.
+/// Elements of a page, and the first thing wrong with it.
 struct Markup {
   std::string problem;  ///< empty: none
   std::size_t elements{0};

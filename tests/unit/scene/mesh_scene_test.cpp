@@ -43,7 +43,7 @@ TEST(MeshScene, IsScaledAndTurned) {
   const auto path = write_box(folder, "box.ply", {300, 200, 100});
   const auto upright = mesh_scene(path, {0.001, UpAxis::y});
   ASSERT_TRUE(upright) << upright.error().to_string();
-  // What was y is z; what was z is −y.
+  // y becomes z; z becomes −y.
   EXPECT_LT((placed(*upright).max - Eigen::Vector3d{0.15, 0.05, 0.2}).norm(), 1e-6);
 }
 

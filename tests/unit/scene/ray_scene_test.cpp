@@ -135,7 +135,7 @@ TEST(Scene, SaysWhichObjectIsWrong) {
   refused(scene_of({test::placed("moon", SphereShape{0.1}, {1e200, 0.0, 0.0})}), "farther than a kilometre");
   Scene skewed = good;
   skewed.objects[0].T_world_object.linear()(0, 0) = 2.0;
-  refused(skewed, "no rigid motion");
+  refused(skewed, "not a rigid motion");
   Scene cramped = good;
   cramped.workspace.max = cramped.workspace.min;
   refused(cramped, "workspace is empty");

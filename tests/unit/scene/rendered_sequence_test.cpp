@@ -107,7 +107,7 @@ TEST(RenderedSequence, ColourNoiseHasItsSigma) {
   config.color.noise = true;
   const Frame noisy = frames_of(config, 1).front();
   const Frame exact = frames_of(quiet(), 1).front();
-  double squares = 0.0;  // of errors in multiples of the standard deviation at the pixel's light
+  double squares = 0.0;  // squared errors in multiples of the standard deviation at the pixel's light
   std::size_t count = 0;
   for (int v = 0; v < 30; ++v) {
     for (int u = 0; u < kCamera.width; ++u) {

@@ -29,6 +29,18 @@ void expect_refused(const std::string& yaml, const std::string& part, Errc code 
   EXPECT_EQ(scene.error().to_string().find('\n'), std::string::npos);
 }
 
+TEST(SceneYaml, PlacesBeyondAKilometreAreRefused) {
+  for (const std::string far : {"1e20", "-1001", "1e300"}) {
+    expect_refused("scene: test\nworkspace: {min: [-2000, -1, 0], max: [" + far + ", 1, 1]}\nobjects:\n" + kBall,
+                   "the workspace");
+    expect_refused(kHead + "  - {name: ball, at: [0, " + far + ", 0], sphere: {radius: 0.1}}\n", "an object");
+    expect_refused(kHead + kBall + "scan: [{from: [0, 0, " + far + "], look_at: [0, 0, 0]}]\n", "line 5");
+    expect_refused(kHead + kBall + "regions: [sphere: {center: [" + far + ", 0, 0], radius: 0.1}]\n", "a sphere");
+  }
+  expect_refused(kHead + kBall + "regions: [sphere: {center: [0, 0, 0], radius: 1e30}]\n", "a kilometre",
+                 Errc::invalid_argument);
+}
+
 TEST(SceneYaml, ReadsEveryKey) {
   const auto scene = parse_scene(R"(
 scene: all
@@ -78,7 +90,7 @@ TEST(SceneYaml, SaysWhatIsWrongAndWhere) {
   expect_refused(kHead + "  - {name: a, at: [0, 0, 0], sphere: {radius: 1}, texture: {kind: wood}}\n",
                  "a texture is plain");
   expect_refused(kHead + "  - {name: a, at: [0, 0, 0], sphere: {radius: 1}, color: [1, 2, 300]}\n", "from 0 to 255");
-  expect_refused("objects: [\n", "no YAML");
+  expect_refused("objects: [\n", "not valid YAML");
   expect_refused("", "a scene is a list of \"key: value\"");
   expect_refused("- 1\n- 2\n", "a scene is a list of \"key: value\"");
   expect_refused("scene: a\nworkspace: {min: [0, 0, 0], max: [1, 1, 0]}\nobjects:\n" + kBall, "workspace is empty",
@@ -117,7 +129,7 @@ TEST(SceneYaml, BuiltinScenesAreThere) {
                                              "tabletop-3", "tabletop-4"}));
 }
 
-/// Whether the ray upwards leaves the only body of the scene: it then crosses its surface an odd number of times.
+/// Tells whether the ray upwards leaves the only body of the scene: it then crosses its surface an odd number of times.
 bool inside(const RayScene& body, Eigen::Vector3d p) {
   bool odd = false;
   for (auto hit = body.cast(p, Eigen::Vector3d::UnitZ()); hit; hit = body.cast(p, Eigen::Vector3d::UnitZ())) {

@@ -50,7 +50,8 @@ TEST(SurfelScenesEvidence, HaveManySegmentsThatTheCameraSees) {
   EXPECT_EQ(scenes, 5U);
 }
 
-/// What is measured with the scenes means nothing once they have changed: docs/surfel-scenes.md says when that may be.
+/// What is measured with the scenes means nothing once they have changed: docs/guides/surfel-scenes.md says when that
+/// may be.
 TEST(SurfelScenes, AreFrozen) {
   struct Counts {
     std::size_t objects{0};

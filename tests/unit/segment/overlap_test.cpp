@@ -25,7 +25,7 @@ TEST(SegmentOverlap, IsCountedByHand) {
   const Labels segments{5, 5, 5, kUnlabelled, 5, 6};
   const SegmentOverlap all = score_segments(segments, objects).value();
   EXPECT_DOUBLE_EQ(all.over_segmentation, 1.0 - (3.0 + 1.0) / 6.0);
-  EXPECT_DOUBLE_EQ(all.under_segmentation, (1.0 + 3.0) / 6.0);  // of equal overlaps the first segment is the best
+  EXPECT_DOUBLE_EQ(all.under_segmentation, (1.0 + 3.0) / 6.0);  // at equal overlaps the first segment is the best
   EXPECT_DOUBLE_EQ(all.weighted_overlap, (4.0 * 3.0 / 5.0 + 2.0 * 1.0 / 2.0) / 6.0);
   const SegmentOverlap second = score_segments(segments, objects, 2).value();
   EXPECT_EQ(second.objects, 1U);

@@ -33,7 +33,7 @@ struct Scene {
   }
 };
 
-/// What the camera sees of a box that stands on z = 0.
+/// Returns the camera's view of a box that stands on z = 0.
 void add_box(Scene& scene, const Eigen::Vector3f& corner_m, const Eigen::Vector3f& size_m, std::uint32_t object) {
   for (float x = 0.0F; x <= size_m.x(); x += kStep_m) {
     for (float y = 0.0F; y <= size_m.y(); y += kStep_m) {

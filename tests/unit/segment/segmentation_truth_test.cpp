@@ -92,7 +92,7 @@ TEST(SegmentationTruth, LeavesOutWhatHasNoLabel) {
   for (std::size_t i = 0; i < 100; ++i) labels[i] = kUnlabelled;
   const SegmentationTruth truth = truth_of(labels);
   EXPECT_EQ(truth.points(), 300U);
-  EXPECT_EQ(truth.score(by_column({0, 5, 9, 50}), Executor{}).value().f(), 1.0);  // of columns from 25 on
+  EXPECT_EQ(truth.score(by_column({0, 5, 9, 50}), Executor{}).value().f(), 1.0);  // columns from 25 on count
   EXPECT_EQ(truth_of(Numbers(400, kUnlabelled)).points(), 0U);
 }
 

@@ -27,7 +27,7 @@ using test::luminance;
 constexpr int kEdgeWidth{120};
 constexpr int kEdgeHeight{80};
 
-/// Dark on the left, bright from column 60 on, with a ramp of so many pixels.
+/// Makes an image that is dark on the left, bright from column 60 on, with a ramp of ramp_px pixels.
 ColorImage step_image(int ramp_px) {
   ColorImage image{kEdgeWidth, kEdgeHeight};
   for (int v = 0; v < kEdgeHeight; ++v) {

@@ -22,7 +22,7 @@ constexpr PinholeCamera kSmallCamera{64, 48, 52.5, 52.5, 31.5, 23.5, 0.3, 6.0};
 struct Wall {
   PinholeCamera camera{kExposedCamera};
   int sky_rows{0};
-  double noise{0.0};  ///< of light, standard deviation
+  double noise{0.0};  ///< standard deviation of the light
 
   [[nodiscard]] double light(int u, int v, std::size_t k) const {
     if (v < sky_rows) return 3.0;
@@ -100,7 +100,7 @@ TEST(ExposureCompensation, CorrectedFramesLookLikeTheFirst) {
   }
 }
 
-/// What a brighter frame could not show keeps the colour that it had.
+/// Surfaces saturated in a brighter frame keep their colour.
 TEST(ExposureCompensation, SaturatedPixelsTakeTheirSurfelsColourIfItIsBrighter) {
   const Wall wall;
   CompensatedFusion compensated;

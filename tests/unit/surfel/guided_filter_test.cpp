@@ -20,16 +20,16 @@ using test::GuidedImages;
 
 constexpr float kNaN{std::numeric_limits<float>::quiet_NaN()};
 
-/// What the random images are made of.
+/// Parameters of the random images.
 struct Making {
   int width{67};
   int height{41};
   double share_used{0.8};
   float nearest_m{0.4F};
   float farthest_m{6.0F};
-  float noise{0.02F};  ///< of depth, colour and the guidance's depth
+  float noise{0.02F};  ///< noise of depth, colour and the guidance's depth
   bool smooth{false};  ///< no edges but those of the mask
-  bool gray{false};    ///< channels are the same, so that Σ alone is singular
+  bool gray{false};    ///< equal channels, so that Σ alone is singular
 };
 
 /// Patches of colour and depth with noise; anything where a pixel is not used.

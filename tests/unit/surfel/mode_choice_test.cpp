@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a surfel is in the end: the heaviest mode, or where modes are densest.
+// Final colour of a surfel: the heaviest mode, or where modes are densest.
 #include "saccade/surfel/internal/mode_choice.hpp"
 
 #include <gtest/gtest.h>

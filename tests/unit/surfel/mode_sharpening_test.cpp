@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What surfels are in the end when their neighbours' modes count: narrow things come back, and nothing else changes.
+// Final colours of surfels when neighbours' modes count: narrow things reappear, and nothing else changes.
 #include "saccade/surfel/internal/mode_sharpening.hpp"
 
 #include <gtest/gtest.h>
@@ -128,14 +128,14 @@ TEST(ModeSharpening, ThreadsChangeNoBit) {
   }
 }
 
-/// The same by the book: all surfels asked by all, in double precision.
+/// Reference implementation: every surfel compared with every other, in double precision.
 class NaiveSharpening {
  public:
   explicit NaiveSharpening(const std::vector<std::vector<SurfelMode>>& surfels) : surfels_{surfels} {}
 
   struct Answer {
     Eigen::Vector3f color;
-    double lead;  ///< of the best group over the next
+    double lead;  ///< lead of the best group over the next
   };
   [[nodiscard]] Answer of(std::size_t k) const {
     const ModeSharpeningConfig config;

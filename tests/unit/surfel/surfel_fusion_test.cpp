@@ -110,7 +110,7 @@ TEST(SurfelFusion, InstructionSetsChangeNoBit) {
   EXPECT_GT(first.value().map().size(), 10000U);
 }
 
-/// What SurfelFusion promises of a pixel that saw a surfel, or made one.
+/// Checks of a pixel that saw a surfel, or made one.
 TEST(SurfelFusion, PixelsSeeWhatFillsTheirCellOrCoversTheirRay) {
   SurfelFusion fusion = SurfelFusion::create().value();
   SurfelMap before;

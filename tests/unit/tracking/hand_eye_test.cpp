@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Mounts and clocks found from simulated frames of a Kinect and from the frames of a real arm, and input that
-// determines neither. The tests print what docs/calibration.md says.
+// determines neither. The tests print what docs/guides/calibration.md says.
 #include "saccade/tracking/hand_eye.hpp"
 
 #include <gtest/gtest.h>

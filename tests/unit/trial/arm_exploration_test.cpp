@@ -57,7 +57,7 @@ Explored explore_with_arm(const RayScene& rays, std::uint64_t seed, std::size_t 
 
 double coverage_of(const Explored& explored, const RayScene& rays) {
   const Executor executor = Executor::with_threads(2);
-  return measure_map(Truth::build(rays, 0.008, executor).value(), explored.map, executor).coverage.value();
+  return measure_map(GroundTruth::build(rays, 0.008, executor).value(), explored.map, executor).coverage.value();
 }
 
 const RayScene& clutter() {
@@ -94,7 +94,7 @@ TEST(ArmExploration, AnArmThatReachesIntoTheTableTouchesIt) {
   EXPECT_GT(contacts_of({parametrise(arm, {from.front(), to.front()})}, clutter()), 0U);
 }
 
-// What the arm sweeps during a scan is taken to be empty, so the scan itself must keep clear of the objects.
+// The volume swept during a scan is taken to be empty, so the scan itself must keep clear of the objects.
 TEST(ArmExploration, TheScanBeforeATaskShowsTheTableAndTouchesNothing) {
   if (test::kSanitized) GTEST_SKIP() << "several runs take long under sanitizers; other tests make one";
   for (const char* name : {"bottle-before", "jug-before"}) {

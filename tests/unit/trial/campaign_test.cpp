@@ -318,7 +318,7 @@ TEST(Campaign, AFileOfTheFirstVersionIsBroughtUpToDate) {
     EXPECT_EQ((*runs)[0].key.noise, "kinect-v1");
     EXPECT_EQ((*runs)[1].key.noise, "kinect-v2");
     EXPECT_EQ((*runs)[2].key.noise, "none");
-    EXPECT_EQ((*runs)[3].key.noise, "kinect-v1");  // its settings are no JSON
+    EXPECT_EQ((*runs)[3].key.noise, "kinect-v1");  // its settings are not JSON
     const CampaignEntry& old = runs->front();
     EXPECT_EQ(old.key.scene, "jug");
     EXPECT_EQ(old.run.scan.measures.coverage, 0.25);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the attention is compared with: standard, random-contours and oracle.
+// Planners to compare attention with: standard, random-contours and oracle.
 #include <gtest/gtest.h>
 
 #include <algorithm>

@@ -42,8 +42,8 @@ Scene small_scene() {
 
 constexpr double kSpacing_m{test::kSanitized ? 0.012 : 0.006};
 
-const Truth& truth() {
-  static const Truth made = *Truth::build(*RayScene::build(small_scene()), kSpacing_m, Executor{});
+const GroundTruth& truth() {
+  static const GroundTruth made = *GroundTruth::build(*RayScene::build(small_scene()), kSpacing_m, Executor{});
   return made;
 }
 
@@ -78,7 +78,7 @@ TsdfMap seen_from_one_side(int views) {
   return map;
 }
 
-/// Straight from the definitions in docs/metrics.md, without any search structure.
+/// Straight from the definitions in docs/reference/metrics.md, without any search structure.
 Metrics naive(const TsdfSnapshot& map, const TriangleMesh& mesh) {
   const TriangleMesh objects = joined(false);
   const TriangleMesh supports = joined(true);
@@ -185,11 +185,11 @@ TEST(Metrics, SpaceThatWasSeenIsNoLongerUnknown) {
   EXPECT_LT(three, one);
 }
 
-TEST(Truth, NeedsSomethingToSee) {
+TEST(GroundTruth, NeedsSomethingToSee) {
   Scene bare = small_scene();
   bare.objects.resize(1);
-  EXPECT_FALSE(Truth::build(*RayScene::build(bare), kSpacing_m, Executor{}));
-  EXPECT_FALSE(Truth::build(truth().scene(), 0.0, Executor{}));
+  EXPECT_FALSE(GroundTruth::build(*RayScene::build(bare), kSpacing_m, Executor{}));
+  EXPECT_FALSE(GroundTruth::build(truth().scene(), 0.0, Executor{}));
 }
 
 }  // namespace

@@ -175,7 +175,7 @@ TEST(ObjectShapes, TooLittleIsNothing) {
     EXPECT_FALSE(shapes().measure(object, TriangleMesh{}, Executor{})) << object;
   }
   TriangleMesh part = everything();
-  // Of the block, one side of six.
+  // Keeps one side of the block's six.
   const Vector3d block_at = rays().scene().objects[kBlock].T_world_object.translation();
   std::vector<std::array<std::uint32_t, 3>> kept;
   for (const auto& triangle : part.triangles) {

@@ -53,7 +53,7 @@ RegionCoverage coverage(const TriangleMesh& mesh) {
 }
 
 TEST(RegionCoverage, PointsAreThoseOfTheTruthInTheRegion) {
-  const Truth truth = *Truth::build(two_on_a_table(), kPointSpacing_m, Executor{});
+  const GroundTruth truth = *GroundTruth::build(two_on_a_table(), kPointSpacing_m, Executor{});
   std::vector<Eigen::Vector3f> expected;
   for (const Eigen::Vector3f& p : truth.observable_points()) {
     if (contains(kAroundBlock, p.cast<double>())) expected.push_back(p);

@@ -15,9 +15,9 @@ namespace {
 
 constexpr std::size_t kViews{test::kSanitized ? 1 : 2};
 
-const Truth& small_truth() {
-  static const Truth truth =
-      Truth::build(RayScene::build(random_clutter(5, 4)).value(), 0.008, Executor::with_threads(2)).value();
+const GroundTruth& small_truth() {
+  static const GroundTruth truth =
+      GroundTruth::build(RayScene::build(random_clutter(5, 4)).value(), 0.008, Executor::with_threads(2)).value();
   return truth;
 }
 

@@ -140,7 +140,7 @@ TEST(SimulatedHand, NeedsSomethingToDo) {
   EXPECT_FALSE(simulated_hand(before, changes, 1, {.motion = {.rate_hz = 0.0}}));
 }
 
-/// Whether the detector finds each place within 0.1 m, in their order, and nothing else.
+/// Tells whether the detector finds each place within 0.1 m, in their order, and nothing else.
 bool found_all(const SimulatedHand& hand) {
   const DipResult found = detect_dips(hand.trajectory).value();
   if (found.actions.size() != hand.places.size()) return false;

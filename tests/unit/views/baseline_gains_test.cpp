@@ -228,7 +228,7 @@ TEST(BaselineGains, TheNumberOfThreadsChangesNoBit) {
   }
 }
 
-/// The poses that were attempted and the best others are gone through closely, by decreasing gain.
+/// The poses that were attempted and the best others are evaluated closely, by decreasing gain.
 TEST(BaselineGains, LookCloselyAtTheBestOfManyPoses) {
   const TsdfSnapshot map = map_of(half_a_box);
   std::vector<Pose> poses;

@@ -93,7 +93,7 @@ std::vector<std::uint64_t> gains(const TsdfSnapshot& map, const Executor& execut
   return result.ok() ? result->gains : std::vector<std::uint64_t>{};
 }
 
-/// What the library makes of the views: map, gains, best views, ray cast, aligned pose.
+/// Results of the library for the views: map, gains, best views, ray cast, aligned pose.
 struct Answers {
   TsdfGrid grid;
   std::vector<std::uint64_t> gains;

@@ -59,7 +59,7 @@ TEST(ContourPoints, DoNotRunAlongAnEdge) {
   std::vector<ContourVoxel> edge;
   for (int x = -100; x < 100; ++x) edge.push_back({{x, 0, 0}, kUp});
   const auto points = group(edge);
-  EXPECT_EQ(points.size(), 34U);  // of six voxels: the first, and five within 30 mm
+  EXPECT_EQ(points.size(), 34U);  // groups of six voxels: the first, and five within 30 mm
   for (const ContourPoint& point : points) EXPECT_LE(point.voxels, 6U);
 }
 

@@ -53,7 +53,7 @@ std::vector<ContourVoxel> contours_of(const TsdfSnapshot& map, const ContourConf
   return contour_voxels(map, config, {}).value();
 }
 
-/// Whether the middle is a contour voxel.
+/// Tells whether the middle is a contour voxel.
 bool middle_is_found(const TsdfSnapshot& map) {
   for (const ContourVoxel& found : contours_of(map)) {
     if (found.voxel == kMiddle) return true;

@@ -71,7 +71,7 @@ TEST(Promises, AreKeptByVoxelsThatAreKnown) {
   promise.voxels.push_back({Index3{0, 0, 5}, 3.0});   // unknown
   promise.voxels.push_back({Index3{20, 0, 5}, 1.0});  // empty
   EXPECT_DOUBLE_EQ(promise.worth(), 4.0);
-  EXPECT_DOUBLE_EQ(promise.kept(map.grid), 0.25);
+  EXPECT_DOUBLE_EQ(promise.kept_share(map.grid), 0.25);
 }
 
 TEST(Promises, OfATablesUndersideAreNotBelieved) {

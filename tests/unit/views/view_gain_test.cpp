@@ -150,6 +150,48 @@ TEST(ViewGain, AnObservedRegionIsDoneAndAFarPoseSeesNothing) {
   EXPECT_TRUE(none->gains.empty());
 }
 
+NoGain no_gain(const TsdfMap& map, const Region& region, const Pose& pose) {
+  const auto result = evaluate_views(map.snapshot(), region, std::span{&pose, 1}, narrow(), kExecutor);
+  return result.ok() ? result->no_gain : NoGain::no_poses;
+}
+Pose at(double z_m) {
+  Pose T{in_front()};
+  T.translation().z() = z_m;
+  return T;
+}
+
+TEST(ViewGain, TellsWhyNoPoseGainsAnything) {
+  const Region region{Sphere{Eigen::Vector3d::Zero(), 0.2}};
+  TsdfMap map = free_map(cube(1.5), coarse());
+  EXPECT_EQ(no_gain(map, region, in_front()), NoGain::nothing_unknown);
+  ASSERT_TRUE(map.forget(region).ok());
+  EXPECT_EQ(no_gain(map, region, in_front()), NoGain::some_gain);
+  EXPECT_EQ(no_gain(map, region, at(-50.0)), NoGain::out_of_range);
+  EXPECT_EQ(no_gain(map, region, at(1.0)), NoGain::out_of_sight) << "it looks away";
+  EXPECT_EQ(no_gain(map, region, at(0.0)), NoGain::cameras_in_unknown);
+  EXPECT_EQ(evaluate_views(map.snapshot(), region, {}, narrow(), kExecutor)->no_gain, NoGain::no_poses);
+
+  // A map without a workspace is unknown around its cameras.
+  EXPECT_EQ(no_gain(*TsdfMap::create(coarse()), region, in_front()), NoGain::cameras_in_unknown);
+  TsdfConfig config = coarse();
+  config.workspace = cube(0.5);
+  EXPECT_EQ(no_gain(*TsdfMap::create(config), region, in_front()), NoGain::out_of_sight) << "unknown voxels hide it";
+  EXPECT_EQ(no_gain(*TsdfMap::create(config), cube(0.5), in_front()), NoGain::some_gain);
+  EXPECT_EQ(no_gain(*TsdfMap::create(config), Sphere{{2.0, 0.0, 0.0}, 0.2}, in_front()), NoGain::outside_workspace);
+
+  // One camera stands on the surface that it has just seen, the other in what lies behind.
+  const PinholeCamera camera = narrow().sensor;
+  TsdfMap seen = *TsdfMap::create(coarse());
+  ASSERT_TRUE(seen.integrate(camera, DepthImage{camera.width, camera.height, 1.0F}, at(-1.5), kExecutor).ok());
+  const std::vector<Pose> poses{at(-0.495), at(0.0)};
+  EXPECT_EQ(evaluate_views(seen.snapshot(), region, poses, narrow(), kExecutor)->no_gain, NoGain::cameras_blocked);
+  for (const NoGain reason :
+       {NoGain::no_poses, NoGain::outside_workspace, NoGain::nothing_unknown, NoGain::out_of_range,
+        NoGain::cameras_in_unknown, NoGain::cameras_blocked, NoGain::out_of_sight}) {
+    EXPECT_NE(advice(reason).find(": "), std::string_view::npos) << "says what is wrong, and what to do";
+  }
+}
+
 TEST(ViewGain, RefusesWhatMakesNoSense) {
   const TsdfMap map = free_map(cube(0.5), coarse());
   const auto code = [&](const Region& region, const Pose& pose, const GainConfig& config) {

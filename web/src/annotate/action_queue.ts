@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// Actions on their way to the disk: one at a time, none lost or done twice (docs/protocol.md).
+// Actions on their way to the disk: one at a time, none lost or done twice (docs/reference/protocol.md).
 import type { Connection } from "../connection";
 import { Disconnected } from "../connection";
 import { Refusal } from "../protocol";

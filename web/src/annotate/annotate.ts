@@ -1,7 +1,9 @@
 // SPDX-License-Identifier: Apache-2.0
 // The annotation tool: puts its parts together.
 import type { Connection, Hello } from "../connection";
+import { BusySign } from "../ui/busy";
 import { fill, h } from "../ui/dom";
+import { drawer } from "../ui/fold_menu";
 import { ProgressCard } from "../ui/progress";
 import { isBoolean, isNumber, oneOf, recall, remember } from "../ui/settings";
 import { Shortcuts } from "../ui/shortcuts";
@@ -10,6 +12,7 @@ import type { Viewer } from "../view/types";
 import { createViewer } from "../view/viewer";
 import "./annotate.css";
 import { makeBar } from "./bar";
+import { Coloring } from "./coloring";
 import { controlSection } from "./control_list";
 import { Edits } from "./edits";
 import { Files } from "./files";
@@ -34,17 +37,16 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
   viewer.element.tabIndex = 0;
   viewer.element.setAttribute("role", "application");
   viewer.element.setAttribute("aria-label", "Cloud");
-  const session = new Session(connection, store, viewer);
+  const busy = new BusySign();
+  const session = new Session(connection, store, viewer, busy);
   const edits = new Edits(store, session, viewer);
   const pointer = new Pointer(viewer, store, edits);
   const files = new Files(store, session);
+  const coloring = new Coloring(store, session, viewer);
   const guidance = new Guidance(store, session, viewer);
   const shortcuts = new Shortcuts();
   const theme = new ThemeSwitch((dark) => viewer.setTheme(dark));
-  const foldPanel = () => {
-    remember("folded", page.classList.toggle("folded"));
-  };
-  page.classList.toggle("folded", recall("folded", false, isBoolean));
+  const foldPanel = drawer(page, stage, recall("folded", false, isBoolean), (folded) => remember("folded", folded));
   shortcuts.taken = (key) => store.state.navigation === "fly" && isFlightKey(key);
   shortcuts.add(
     ...shortcutsOf({ store, edits, files, guidance, pointer, viewer, foldPanel, showHelp: () => shortcuts.showHelp() }),
@@ -55,7 +57,7 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
     actionSection(store),
     toolSection(store),
     labelSection(store, edits),
-    showSection(store),
+    showSection(store, coloring.element),
     controlSection(store, edits, viewer),
     guidance.section(),
   );
@@ -67,7 +69,7 @@ export function startAnnotate(connection: Connection, hello: Hello, app: HTMLEle
     hiddenNote(store),
     pointer.readout,
   );
-  stage.append(progressOf(store), failureOf(store));
+  stage.append(progressOf(store), busy.element, failureOf(store));
   fill(page, makeBar({ store, edits, files, shortcuts, theme, foldPanel }), panel, stage);
   fill(app, page);
 
@@ -110,6 +112,8 @@ function firstState(hello: Hello): State {
     show: { cloud: true, labels: true, controls: true },
     hidden: new Set(),
     margins: false,
+    colorBy: "own",
+    shading: false,
     navigation: recall("navigation", "orbit", oneOf("orbit", "fly")),
     pointSize: recall("pointSize", 4, isNumber),
     labelList: recall("labelList", false, isBoolean),

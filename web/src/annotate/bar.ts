@@ -2,6 +2,7 @@
 // The bar above: which cloud, undo and redo, files, how things stand.
 import { iconButton, menuButton, textButton } from "../ui/controls";
 import { h, on } from "../ui/dom";
+import { foldMenu } from "../ui/fold_menu";
 import { icon } from "../ui/icons";
 import type { Shortcuts } from "../ui/shortcuts";
 import type { ThemeSwitch } from "../ui/theme";
@@ -52,19 +53,21 @@ export function makeBar({ store, edits, files, shortcuts, theme, foldPanel }: Pa
     iconButton("panel", "Panel (\\)", foldPanel),
     cloudPart(store, files),
     h("div", { class: "bar-group" }, undo, redo),
-    h(
-      "div",
-      { class: "bar-group" },
-      save,
-      menuButton(exportButton, "Export as", () => files.exports()),
-      moreMenu,
-    ),
     h("div", { class: "bar-group push" }, people(store), status(store)),
-    h(
-      "div",
-      { class: "bar-group" },
-      theme.button,
-      iconButton("help", "Keyboard and mouse (?)", () => shortcuts.showHelp()),
+    foldMenu(
+      h(
+        "div",
+        { class: "bar-group" },
+        save,
+        menuButton(exportButton, "Export as", () => files.exports()),
+        moreMenu,
+      ),
+      h(
+        "div",
+        { class: "bar-group bar-end" },
+        theme.button,
+        iconButton("help", "Keyboard and mouse (?)", () => shortcuts.showHelp()),
+      ),
     ),
   );
 }

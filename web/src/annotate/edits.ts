@@ -1,11 +1,11 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the tools do: the actions that a click or an area means with the state as it is.
+// Effects of the tools: the actions that a click or an area means with the state as it is.
 import { toast } from "../ui/toast";
 import type { Pick, Viewer } from "../view/types";
 import type { Session } from "./session";
 import { type State, type Store, rowOf } from "./store";
 
-/** Of an area, in the words of an action: rectangle, lasso, polyline or brush. */
+/** Shape of an area as an action names it: rectangle, lasso, polyline or brush. */
 export type Shape = Record<string, unknown>;
 
 interface Definition {

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // Clouds and files: opening, saving, exporting, beginning anew.
+import { fetchFile } from "../token";
 import { type MenuItem } from "../ui/controls";
 import { confirm, openSheet } from "../ui/dialog";
 import { h, on } from "../ui/dom";
@@ -15,8 +16,8 @@ const kFormats: readonly [format: string, text: string, hint: string][] = [
   ["csv", "CSV, label in the last column", ".csv"],
   ["label", "SemanticKITTI", ".label"],
   ["npy", "NumPy array", ".npy"],
-  ["names.txt", "What labels are called, text", ".txt"],
-  ["names.json", "What labels are called, JSON", ".json"],
+  ["names.txt", "Names of labels, text", ".txt"],
+  ["names.json", "Names of labels, JSON", ".json"],
 ];
 
 export class Files {
@@ -41,7 +42,7 @@ export class Files {
     if (!cloud) return;
     toast("The file is being made …", { stays_ms: 2000 });
     try {
-      const answer = await fetch(`data/labels?cloud=${cloud.index}&format=${encodeURIComponent(format)}`);
+      const answer = await fetchFile(`data/labels?cloud=${cloud.index}&format=${encodeURIComponent(format)}`);
       if (!answer.ok) throw new Error((await answer.text()).slice(0, 400) || `the program answered ${answer.status}`);
       const name = /filename="([^"]+)"/.exec(answer.headers.get("Content-Disposition") ?? "")?.[1];
       const address = URL.createObjectURL(await answer.blob());

@@ -26,7 +26,7 @@ export interface KeyParts {
 
 const kDepths: readonly Depth[] = ["surface", "below", "deep"];
 
-/** What the camera takes itself while it flies. */
+/** Keys that the camera takes itself while it flies. */
 export function isFlightKey(key: string): boolean {
   return /^(Shift\+)?[WASDQE]$/.test(key);
 }
@@ -55,9 +55,9 @@ function actionKeys({ store, edits, pointer }: KeyParts): Shortcut[] {
     if (which === 0 || !pointer.giveUp()) store.set({ action: "none" });
   };
   return [
-    { keys: ["N", "Escape"], group, text: "None: the left button moves the view", run: none },
+    { keys: ["N", "Escape"], group, text: "Navigate: the left button moves the view", run: none },
     action("C", "set", "Set control points, or paint"),
-    action("X", "remove", "Del"),
+    action("X", "remove", "Delete"),
     action("I", "pick", "Pick a label"),
     tool("P", "point", "Point"),
     tool("R", "rectangle", "Rectangle"),
@@ -162,12 +162,12 @@ function fileKeys({ store, files }: KeyParts): Shortcut[] {
   ];
 }
 
-/** Of two keys the first goes back, the second on. */
+/** Returns the direction of a pair of keys: the first goes back, the second forward. */
 function sign(which: number): 1 | -1 {
   return which === 0 ? -1 : 1;
 }
 
-/** What the view has itself. */
+/** Keys of the view itself. */
 function mouse(): Gesture[] {
   const group = "Mouse and cursor";
   const row = (shown: string, text: string): Gesture => ({ group, text, shown });

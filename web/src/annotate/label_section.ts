@@ -87,7 +87,7 @@ function gridPart(store: Store): HTMLElement {
     "div",
     { class: "label-part" },
     new LabelGrid(store).element,
-    h("div", { class: "label-pages" }, previous, range, next, h("span", { class: "soft push" }, "Empty:"), ...jumps),
+    h("div", { class: "label-pages" }, previous, range, next, h("span", { class: "soft push" }, "Empty label:"), ...jumps),
   );
 }
 

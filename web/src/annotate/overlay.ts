@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a tool draws over the view while it is used. Thesis Fig. 4.16: a yellow rectangle.
+// Shapes that a tool draws over the view while it is used. Thesis Fig. 4.16: a yellow rectangle.
 import { h, svg } from "../ui/dom";
 
 export type ScreenPoint = readonly [number, number]; // css pixels of the view

@@ -19,7 +19,7 @@ export class Pointer {
   private navigating = false; // while Space is held
   private frame = 0;
   private at: ScreenPoint | null = null;
-  private cursor: ScreenPoint | null = null; // of the keyboard
+  private cursor: ScreenPoint | null = null; // moved by the keyboard
   private treeTimer = 0;
   private treeOf: number | null = null;
 
@@ -190,6 +190,6 @@ function describe(state: Readonly<State>, pick: Pick, viewer: Viewer): string {
   const label = control?.label ?? viewer.cloud.labelOf(pick.point);
   const row = rowOf(state, label);
   const name = label === 0 ? "no label" : row.name ? `${label} ${row.name}` : `label ${label}`;
-  const place = pick.position.map((c) => c.toFixed(3)).join("  ");
+  const place = pick.position.map((c, axis) => (c + (state.cloud?.offset?.[axis] ?? 0)).toFixed(3)).join("  ");
   return `${name}${control ? ", control point" : ""}   ·   point ${pick.point}   ·   ${place} m`;
 }

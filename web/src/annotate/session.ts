@@ -3,6 +3,7 @@
 import { type Connection, Disconnected } from "../connection";
 import type { ControlPoint, LabelRow, Message } from "../protocol";
 import { Refusal } from "../protocol";
+import type { BusySign } from "../ui/busy";
 import { toast } from "../ui/toast";
 import type { Viewer } from "../view/types";
 import { type ActionObject, ActionQueue, type ActionResult } from "./action_queue";
@@ -13,7 +14,25 @@ import { type OpenCloud, type Store, isEmpty } from "./store";
 const kFirstChunk = 65_536; // something to see soon
 const kChunk = 262_144;
 const kInFlight = 3;
+const kFlash_ms = 450;
 const kControlWords = 6;
+const kActionTexts: Record<string, string> = {
+  set: "Spreading the label",
+  paint: "Painting the area",
+  remove: "Removing",
+  erase: "Removing paint",
+  clear: "Clearing all labels",
+  undo: "Undoing",
+  redo: "Redoing",
+};
+const kQuestionTexts: Record<string, string> = {
+  margins: "Finding where labels are in doubt",
+  next_best_click: "Looking for the best place for a click",
+  root: "Finding the control point",
+  tree: "Finding what the control point labels",
+  save: "Writing the labels",
+  field: "Bringing the numbers of the field",
+};
 const kClosed = "The program was started anew and does not let this page in any more. Open the address that it printed.";
 
 /** Points that this page holds: about 100 bytes each, on both sides of the graphics driver. */
@@ -24,6 +43,7 @@ export function pointBudget(): number {
 
 export class Session {
   readonly queue: ActionQueue;
+  private flashTimer = 0;
   private opening = 0; // counts up: an older one gives up
   private wanted = 0; // the cloud that is open, or will be
   private sequence = -1;
@@ -35,6 +55,7 @@ export class Session {
     readonly connection: Connection,
     private readonly store: Store,
     private readonly viewer: Viewer,
+    readonly busy: BusySign,
   ) {
     this.queue = new ActionQueue(connection, (pending, answer) => {
       store.set({ pending });
@@ -76,7 +97,7 @@ export class Session {
       return null;
     }
     try {
-      return await this.queue.submit(action, options);
+      return await this.busy.during(kActionTexts[action.do] ?? "Working", this.queue.submit(action, options));
     } catch (error) {
       const nothing = error instanceof Refusal && error.message.startsWith("nothing is selected");
       if (nothing)
@@ -93,7 +114,7 @@ export class Session {
   /** A question whose refusal is said. */
   async ask(question: Record<string, unknown> & { type: string }): Promise<Message | null> {
     try {
-      return await this.connection.ask(question);
+      return await this.busy.during(kQuestionTexts[question.type] ?? "Asking the program", this.connection.ask(question));
     } catch (error) {
       toast(error instanceof Disconnected ? "The program cannot be reached at the moment." : textOf(error), {
         kind: "error",
@@ -203,7 +224,7 @@ export class Session {
     for (const control of this.store.state.controls.values()) view.setControlPoint(control);
     for (const label of this.store.state.hidden) view.setLabelVisible(label, false);
     if (pose) this.viewer.camera.setPoseRows(pose);
-    else firstLook(this.viewer.camera, cloud.up);
+    else firstLook(this.viewer.camera, cloud.up, cloud.towards_viewer);
   }
 
   private async bringPoints(mine: number, total: number): Promise<void> {
@@ -234,7 +255,7 @@ export class Session {
     this.complete = true;
   }
 
-  /** Of a large cloud, what was not known when it was opened. */
+  /** Takes the facts about a large cloud that were not known when it was opened. */
   private takeReady(message: Message): void {
     const { head } = message;
     this.store.set({ ready: true, readOnly: typeof head["read_only"] === "string" ? head["read_only"] : null });
@@ -271,11 +292,25 @@ export class Session {
       if (selected !== null && !controls.has(selected)) this.store.set({ selected: null });
     }
     let at = 4 * kControlWords * count;
+    const first = at;
     for (const [label, points] of head["groups"] as [number, number][]) {
       view.setLabel(label, new Uint32Array(body, at, points));
       at += 4 * points;
     }
+    if (at > first) this.flash(new Uint32Array(body, first, (at - first) / 4));
     this.changed();
+  }
+
+  /** Marks what an action changed, for a moment: also what it took from elsewhere. */
+  private flash(points: Uint32Array): void {
+    const { element, cloud } = this.viewer;
+    clearTimeout(this.flashTimer);
+    cloud.highlight(points);
+    element.dataset["flash"] = String(points.length);
+    this.flashTimer = window.setTimeout(() => {
+      delete element.dataset["flash"];
+      cloud.highlight(new Uint32Array());
+    }, kFlash_ms);
   }
 
   private takeUndo(head: Record<string, unknown>): void {

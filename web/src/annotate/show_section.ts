@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 // What is drawn, and the buttons at the lower edge of the view.
-import { iconButton, section, segmented, slider, toggleButton } from "../ui/controls";
+import { checkbox, iconButton, section, segmented, slider, toggleButton } from "../ui/controls";
 import { h, on } from "../ui/dom";
 import { icon } from "../ui/icons";
 import type { Viewer } from "../view/types";
@@ -15,7 +15,7 @@ export function toggleShown(store: Store, what: Shown): void {
   store.set({ show: { ...store.state.show, [what]: !store.state.show[what] } });
 }
 
-export function showSection(store: Store): HTMLElement {
+export function showSection(store: Store, coloring: HTMLElement): HTMLElement {
   const toggles: [Shown, string, string][] = [
     [
       "cloud",
@@ -38,7 +38,13 @@ export function showSection(store: Store): HTMLElement {
     (pointSize) => store.set({ pointSize }),
   );
   store.watch(["pointSize"], ({ pointSize }) => size.set(pointSize, `${pointSize} px`));
-  return section("Show", {}, row, size.element);
+  const shading = checkbox(
+    "Shading",
+    "Shades points by their depth, so that shapes are seen without colours (eye-dome lighting)",
+    (on) => store.set({ shading: on }),
+  );
+  store.watch(["shading"], (state) => shading.set(state.shading));
+  return section("Show", {}, row, coloring, size.element, shading.element);
 }
 
 export function viewBar(store: Store, viewer: Viewer): HTMLElement {
@@ -78,12 +84,12 @@ export function viewBar(store: Store, viewer: Viewer): HTMLElement {
   return bar;
 }
 
-/** What to do first, until something was done. */
+/** Hint for the first action, shown until something was done. */
 export function firstNote(store: Store): HTMLElement {
   const note = h(
     "p",
     { class: "floating first-note", hidden: true },
-    "Choose a label and Set, and click a point of the table; then another label for each object.",
+    "Choose Set and a label, and click an object or a surface; then another label for each of the others.",
   );
   store.watch(["cloud", "ready", "progress", "readOnly", "labels", "canUndo", "canRedo", "pending"], (state) => {
     const untouched = !state.canUndo && !state.canRedo && state.pending === 0;

@@ -7,7 +7,7 @@ import type { CloudInfo, Navigation } from "../view/types";
 export type Action = "none" | "set" | "remove" | "pick";
 export type Tool = "point" | "rectangle" | "polyline" | "lasso" | "brush";
 export type Depth = "surface" | "below" | "deep";
-/** What Del takes away in an area. */
+/** Items that Delete removes in an area. */
 export type Removal = "control" | "trees" | "paint";
 
 export interface CloudEntry {
@@ -21,6 +21,10 @@ export interface OpenCloud extends CloudInfo {
   name: string;
   finite: number;
   has_colors: boolean;
+  has_normals?: boolean;
+  fields?: readonly string[]; // numbers of each point
+  towards_viewer?: readonly [number, number, number];
+  offset?: readonly [number, number, number]; // to add to every place, metres
   maxPath: number; // Ω_max
 }
 
@@ -44,7 +48,7 @@ export interface State {
   canUndo: boolean;
   canRedo: boolean;
   labels: ReadonlyMap<number, LabelRow>;
-  colors: readonly string[]; // of labels from 1, as long as nobody chose others
+  colors: readonly string[]; // default colours of the labels from 1
   controls: ReadonlyMap<number, ControlPoint>; // by point
   action: Action;
   tool: Tool;
@@ -60,6 +64,8 @@ export interface State {
   show: Readonly<{ cloud: boolean; labels: boolean; controls: boolean }>;
   hidden: ReadonlySet<number>;
   margins: boolean;
+  colorBy: string;
+  shading: boolean; // by depth
   navigation: Navigation;
   pointSize: number;
   labelList: boolean; // instead of the grid
@@ -67,13 +73,13 @@ export interface State {
 
 export const kPage = 20;
 export const kMaxLabel = 4294967294;
-const kColorToCome = "#9aa0a6"; // of a label that gets one with its first point
+const kColorToCome = "#9aa0a6"; // shown until a label gets its colour with its first point
 
 export function pageOf(label: number): number {
   return Math.floor((label - 1) / kPage) * kPage + 1;
 }
 
-/** The row of any label; of one that nobody has used, what it would be. */
+/** Returns the row of any label; for an unused label, the row that it would have. */
 export function rowOf(state: Readonly<State>, label: number): LabelRow {
   return (
     state.labels.get(label) ?? {

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What a click means, with what tool, and the tool's options. Thesis Fig. 4.17.
+// Section of the sidebar for the tool: action of a click, choice of the tool and its options. Thesis Fig. 4.17.
 import { checkbox, section, segmented, slider } from "../ui/controls";
 import { h } from "../ui/dom";
 import { type Action, type Depth, type Removal, type State, type Store, type Tool } from "./store";
@@ -7,7 +7,7 @@ import { type Action, type Depth, type Removal, type State, type Store, type Too
 export const kMaxBelow_mm = 200;
 export const kMaxBrush = 150;
 
-/** Sliders of the reach have so many steps; the cost grows with the cube, as most paths are far below Ω_max. */
+/** Steps of the sliders of the reach; the cost grows with the cube, as most paths are far below Ω_max. */
 const kReachSteps = 100;
 
 export function costOfReach(position: number, maxPath: number): number {
@@ -31,14 +31,14 @@ export function actionSection(store: Store): HTMLElement {
   const actions = segmented<Action>(
     "Action",
     [
-      { value: "none", text: "None", title: "The left button moves the view (N, Esc)", icon: "none" },
+      { value: "none", text: "Navigate", title: "The left button moves the view (N, Esc)", icon: "none" },
       {
         value: "set",
         text: "Set",
         title: "Sets control points, or paints areas, with the current label (C)",
         icon: "set",
       },
-      { value: "remove", text: "Del", label: "Del", title: "Takes control points or paint away (X)", icon: "remove" },
+      { value: "remove", text: "Delete", title: "Takes control points or paint away (X)", icon: "remove" },
       {
         value: "pick",
         text: "Pick",

@@ -17,10 +17,10 @@ export function acrossFrom(
   return [x, y, z].map((each, i) => (each + 0.45 * side[i]!) / length + 0.75 * up[i]!) as [number, number, number];
 }
 
-const kBack = 0.42; // of the distance
+const kBack = 0.42; // share of the distance
 const kAbove = 0.12;
 
-/** The same look from somewhat farther away, and higher: what is above the scene comes into the picture. */
+/** Moves a look back and up, so that things above the scene come into the picture. */
 export function steppedBack(rows: number[][], bounds: readonly number[]): number[][] {
   let distance = 0;
   rows.slice(0, 3).forEach((row, i) => (distance += (((bounds[i] ?? 0) + (bounds[3 + i] ?? 0)) / 2 - row[3]!) * row[2]!));

@@ -13,7 +13,7 @@ const kStill_px = 4; // a click moves no farther
 
 export interface CandidateActions {
   lookFrom(rows: number[][], fov_rad: readonly [number, number], name: string): void;
-  goTo(item: number): void; // of the trail
+  goTo(item: number): void; // index in the trail
   trailName(item: number): string;
 }
 

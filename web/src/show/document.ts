@@ -1,6 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the program shows: a document of layers and steps. docs/protocol.md, "Viewer".
+// Document of layers and steps that the program shows. docs/reference/protocol.md, "Viewer".
 import type { LayerInfo } from "../view/types";
+
+/** Numbers of each point that it can be coloured by. */
+export interface LayerField {
+  name: string;
+  width: 1 | 3; // 3: a direction
+  buffer: string;
+}
 
 export interface Layer extends LayerInfo {
   name: string;
@@ -8,6 +15,7 @@ export interface Layer extends LayerInfo {
   visible: boolean;
   step?: number;
   holds_camera?: boolean; // in the way of who looks through it
+  fields?: readonly LayerField[]; // points of a cloud: it can be coloured by these, and by height
   legend?: readonly (readonly [string, string])[]; // text, "#rrggbb"
 }
 
@@ -31,14 +39,16 @@ export interface SceneDocument {
   title: string;
   kind: "run" | "mesh" | "map" | "cloud";
   live: boolean;
+  report?: boolean; // the program serves one, at report.html
   up: readonly [number, number, number];
+  towards_viewer?: readonly [number, number, number]; // where it was seen from
   bounds: readonly number[];
   facts: readonly Fact[];
   layers: readonly Layer[];
   steps: readonly Step[];
 }
 
-/** What a layer's buffer has to be long, in bytes. */
+/** Returns the length that a layer's buffer must have, in bytes. */
 export function bufferBytes(layer: Layer): number {
   const color = layer.colors ? 4 : 0;
   switch (layer.kind) {
@@ -46,7 +56,7 @@ export function bufferBytes(layer: Layer): number {
       return (layer.vertices ?? 0) * (12 + color) + layer.count * 12;
     case "points":
     case "voxels":
-      return layer.count * (12 + color);
+      return layer.count * (12 + color + (layer.diameters === true ? 4 : 0));
     case "lines":
       return layer.count * 2 * (12 + color);
     case "views":
@@ -54,7 +64,7 @@ export function bufferBytes(layer: Layer): number {
   }
 }
 
-/** Of layers that mean the same in every step (the arm, say) one switch is enough. */
+/** Returns the key of a layer's switch: layers that mean the same in every step (the arm, say) share one. */
 export function layerKey(layer: Layer): string {
   return layer.step === undefined ? layer.id : `step ${layer.kind} ${layer.name}`;
 }

@@ -42,7 +42,7 @@ export function addShortcuts(shortcuts: Shortcuts, player: Player, page: ShowPag
     mouse("Wheel", "Nearer, farther"),
     mouse("W A S D", "In Fly: go; Q E down and up, Shift faster"),
   );
-  // What has the focus keeps the keys that it needs itself.
+  // The focused element keeps the keys that it needs itself.
   shortcuts.taken = (pressed) => {
     const focused = document.activeElement;
     if (pressed === "Space") return !!focused?.closest("button, summary, input");

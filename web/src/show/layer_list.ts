@@ -4,16 +4,19 @@ import { slider } from "../ui/controls";
 import { type Child, fill, h, on, setAttribute } from "../ui/dom";
 import { compact, grouped } from "../ui/figures";
 import { icon } from "../ui/icons";
+import { rampLegend } from "../ui/ramp_legend";
 import { kNoColor, type Layer, layerKey, type SceneDocument } from "./document";
 import { type Candidates, gainText } from "./gains";
 import type { Look } from "./look_of_layers";
+import { choicesOf, titled } from "./paint";
+import type { Scale } from "../view/ramp";
 
 const kUnits = { triangles: "triangles", points: "points", voxels: "voxels", lines: "lines", views: "views" } as const;
 const kSizes = [0.25, 0.5, 0.75, 1, 1.5, 2, 3, 4, 6];
 
 export class LayerList {
   readonly element = h("div", { class: "layers" });
-  private readonly open = new Set<string>(); // whose settings are unfolded
+  private readonly open = new Set<string>(); // keys of the layers with unfolded settings
 
   /** `changed`: something is to be drawn differently. */
   constructor(
@@ -36,12 +39,22 @@ export class LayerList {
     if (focused) this.element.querySelector<HTMLElement>(`[data-focus="${CSS.escape(focused)}"]`)?.focus();
   }
 
-  /** What the colours of candidates mean, once their gains are known. */
+  /** Explains the colours of candidates, once their gains are known. */
   setGains(id: string, { best, low, high }: Candidates): void {
     const scale = this.element.querySelector(`[data-layer="${CSS.escape(id)}"] .gain-scale`);
     if (!scale) return;
     const known = best >= 0;
     fill(scale, h("span", {}, known ? gainText(low) : ""), h("i", { class: "ramp" }), h("span", {}, known ? `${gainText(high)} gain` : "gain not known"));
+  }
+
+  /** Explains a ramp of colours, once the numbers are known. */
+  setScale(layer: Layer, scale: Scale | null): void {
+    const legend = this.element.querySelector(`[data-layer="${CSS.escape(layer.id)}"] .value-scale`);
+    if (!legend) return;
+    const by = this.look.colorBy(layer);
+    const unit = by === "height" || /_m$|radius/.test(by) ? " m" : "";
+    if (scale === null) fill(legend);
+    else fill(legend, ...rampLegend(titled(by), scale, unit));
   }
 
   private row(layer: Layer): HTMLElement {
@@ -53,7 +66,7 @@ export class LayerList {
     });
     row.classList.toggle("off", !this.look.visible(layer));
     const settings = h("div", { class: "layer-settings", hidden: !this.open.has(key) });
-    const name = h("button", { type: "button", class: "layer-name", "aria-expanded": this.open.has(key), title: `${layer.name}: ${grouped(layer.count)} ${kUnits[layer.kind]}`, "data-focus": `name ${key}` }, swatch(layer), h("span", { class: "name" }, layer.name), h("span", { class: "count" }, count(layer)), icon("down"));
+    const name = h("button", { type: "button", class: "layer-name", "aria-expanded": this.open.has(key), title: layer.kind === "lines" ? layer.name : `${layer.name}: ${grouped(layer.count)} ${kUnits[layer.kind]}`, "data-focus": `name ${key}` }, swatch(layer), h("span", { class: "name" }, layer.name), h("span", { class: "count" }, count(layer)), icon("down"));
     name.setAttribute("aria-expanded", String(this.open.has(key)));
     on(name, {
       click: () => {
@@ -64,8 +77,22 @@ export class LayerList {
       },
     });
     settings.append(this.opacity(layer), ...this.size(layer));
-    row.append(h("div", { class: "layer-head" }, eye, name), ...legend(layer), settings);
+    row.append(h("div", { class: "layer-head" }, eye, name), ...legend(layer), ...this.coloring(layer), settings);
     return row;
+  }
+
+  private coloring(layer: Layer): HTMLElement[] {
+    const choices = choicesOf(layer);
+    if (choices.length === 0) return [];
+    const now = this.look.colorBy(layer);
+    const select = h("select", { "aria-label": `Colour of ${layer.name}`, "data-focus": `color ${layerKey(layer)}` }, ...choices.map(([by, text]) => h("option", { value: by, selected: by === now }, text)));
+    on(select, {
+      change: () => {
+        this.look.setColorBy(layer, select.value);
+        this.changed();
+      },
+    });
+    return [h("label", { class: "layer-color" }, h("span", {}, "Colour by"), select), h("div", { class: "value-scale" })];
   }
 
   private trailRow(): HTMLElement {
@@ -121,11 +148,13 @@ export class LayerList {
   }
 }
 
+/** Empty where it says nothing: the edges of a box are twelve. */
 function count(layer: Layer): string {
+  if (layer.kind === "lines") return "";
   return layer.count < 10_000 ? grouped(layer.count) : compact(layer.count);
 }
 
-/** One colour, several of a legend, or many that nobody named. */
+/** Makes the mark of a layer: one colour, the colours of its legend, or a rainbow where there is no legend. */
 function swatch(layer: Layer): HTMLElement {
   const mark = h("i", { class: "swatch" });
   const colors = layer.legend?.map((entry) => entry[1]) ?? [];

@@ -1,11 +1,13 @@
 // SPDX-License-Identifier: Apache-2.0
 // How the person wants layers to look. Layers of several steps that have one name have one switch.
 import { type Layer, layerKey } from "./document";
+import { type ColorBy, usualColor } from "./paint";
 
 export class Look {
   private readonly eyes = new Map<string, boolean>();
   private readonly opacities = new Map<string, number>();
   private readonly scales = new Map<string, number>();
+  private readonly colorings = new Map<string, ColorBy>();
   trail = true; // earlier views and the path through them
 
   visible(layer: Layer): boolean {
@@ -22,7 +24,7 @@ export class Look {
     this.opacities.set(layerKey(layer), opacity);
   }
 
-  /** Of points and voxels: their size beside what the document says. */
+  /** Returns the size of a layer's points or voxels as a multiple of the document's. */
   scale(layer: Layer): number {
     return this.scales.get(layerKey(layer)) ?? 1;
   }
@@ -30,7 +32,14 @@ export class Look {
     this.scales.set(layerKey(layer), scale);
   }
 
-  /** What becomes of the layer's own keys. */
+  colorBy(layer: Layer): ColorBy {
+    return this.colorings.get(layerKey(layer)) ?? usualColor(layer);
+  }
+  setColorBy(layer: Layer, by: ColorBy): void {
+    this.colorings.set(layerKey(layer), by);
+  }
+
+  /** Returns the values that replace the layer's own. */
   changes(layer: Layer): { opacity?: number; size_m?: number } {
     const opacity = this.opacities.get(layerKey(layer));
     return {

@@ -4,8 +4,8 @@ import type { Camera } from "../view/types";
 import { h } from "../ui/dom";
 import type { Rows } from "./document";
 
-const kShare = 0.9; // of the view, what the picture fills at most
-const kOwnFov_rad = (50 * Math.PI) / 180; // of the view, when nobody else's is looked through
+const kShare = 0.9; // greatest share of the page's view that the camera's picture fills
+const kOwnFov_rad = (50 * Math.PI) / 180; // field of view of the page, when no camera is looked through
 
 export class LookThrough {
   private readonly edges = h("div", { class: "look-edges" });
@@ -13,7 +13,7 @@ export class LookThrough {
   readonly element = h("div", { class: "look", hidden: true, "aria-hidden": "true" }, this.edges, this.name);
   private before: number[][] | null = null;
   private pose: { rows: Rows; fov_rad: readonly [number, number] } | null = null;
-  /** Hears whether somebody looks through. */
+  /** Called with true when a camera is looked through, with false when the page has its own view again. */
   changed: (active: boolean) => void = () => undefined;
 
   constructor(

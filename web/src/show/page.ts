@@ -2,8 +2,11 @@
 // The elements of the viewer's page: a bar, the panel, the view with its pictures and steps.
 import type { Side } from "../view/standpoint";
 import type { ConnectionState } from "../connection";
-import { iconButton, section, segmented, slider, toggleButton } from "../ui/controls";
+import { withToken } from "../token";
+import { checkbox, iconButton, section, segmented, slider, toggleButton } from "../ui/controls";
+import { BusySign } from "../ui/busy";
 import { fill, h } from "../ui/dom";
+import { drawer, foldMenu } from "../ui/fold_menu";
 import { icon } from "../ui/icons";
 import { ProgressCard } from "../ui/progress";
 import { isBoolean, recall, remember } from "../ui/settings";
@@ -24,6 +27,7 @@ export interface PageActions {
   lookThrough(through: boolean): void;
   fit(from?: Side): void;
   navigation(navigation: Navigation): void;
+  shading(shaded: boolean): void;
   pointSize(size_px: number): void;
   help(): void;
 }
@@ -46,23 +50,27 @@ export class ShowPage {
   private readonly title = h("h1", { class: "show-title" });
   private readonly kind = h("span", { class: "badge" });
   private readonly live = h("span", { class: "badge live", hidden: true, role: "status" }, "live");
+  private readonly report = h("a", { class: "button", href: withToken("report.html"), hidden: true, title: "Measures, curves and pictures of the run" }, "Report");
   private readonly status = h("span", { class: "status", role: "status" });
   private readonly facts = h("div");
   private readonly pictures = h("div", { class: "show-pictures", role: "group", "aria-label": "Pictures" });
   private readonly picturesToggle;
   private readonly navigation;
   private readonly pointSize;
+  private readonly shading;
   private readonly pointSection: HTMLElement;
   private readonly root: HTMLElement;
-  private readonly tail = h("div", { class: "bar-group" });
+  private readonly tail = h("div", { class: "bar-group bar-end" });
+  readonly busy = new BusySign();
+  private readonly foldPanel: () => void;
   private shownPictures = "";
-  private wantsPictures = recall("show.pictures", true, isBoolean);
+  private wantsPictures = recall("show.pictures", !matchMedia("(width < 860px)").matches, isBoolean);
 
   constructor(
     app: Element,
     private readonly player: Player,
     look: Look,
-    actions: PageActions,
+    private readonly actions: PageActions,
   ) {
     this.layers = new LayerList(look, actions.layersChanged);
     this.step = new StepPanel(actions.lookThrough);
@@ -87,24 +95,27 @@ export class ShowPage {
       actions.pointSize(at);
     });
     this.pointSize.set(3, "3 px");
-    this.pointSection = section("Points", {}, this.pointSize.element);
+    this.shading = checkbox("Shading", "Shades points by their depth, so that shapes are seen without colours (eye-dome lighting)", (shaded) => this.setShading(shaded));
+    this.pointSection = section("Points", {}, this.pointSize.element, this.shading.element);
 
     const bar = h(
       "header",
       { class: "bar" },
       iconButton("panel", "Panel (\\)", () => this.fold()),
-      h("div", { class: "bar-group" }, this.title, this.kind, this.live),
+      h("div", { class: "bar-group" }, this.title, this.kind, this.live, this.report),
       h("div", { class: "bar-group push" }, this.status),
-      h("div", { class: "bar-group" }, this.picturesToggle.element, this.navigation.element),
-      h(
-        "div",
-        { class: "bar-group" },
-        iconButton("fit", "Everything in view (F)", () => actions.fit()),
-        iconButton("top", "From the top (T)", () => actions.fit("top")),
-        iconButton("front", "From the front (Shift+F)", () => actions.fit("front")),
-        iconButton("side", "From the side (Shift+T)", () => actions.fit("side")),
+      foldMenu(
+        h("div", { class: "bar-group bar-end" }, this.picturesToggle.element, this.navigation.element),
+        h(
+          "div",
+          { class: "bar-group bar-end" },
+          iconButton("fit", "Everything in view (F)", () => actions.fit()),
+          iconButton("top", "From the top (T)", () => actions.fit("top")),
+          iconButton("front", "From the front (Shift+F)", () => actions.fit("front")),
+          iconButton("side", "From the side (Shift+T)", () => actions.fit("side")),
+        ),
+        this.tail,
       ),
-      this.tail,
     );
     this.tail.append(iconButton("help", "Keyboard and mouse (?)", actions.help));
     const panel = h(
@@ -115,8 +126,9 @@ export class ShowPage {
       this.pointSection,
       section("About", {}, this.facts),
     );
-    this.stage = h("main", { class: "stage" }, this.view, this.pictures, this.bar.element, this.loading.element);
+    this.stage = h("main", { class: "stage" }, this.view, this.pictures, this.bar.element, this.loading.element, this.busy.element);
     this.root = h("div", { class: "page show" }, bar, panel, this.stage);
+    this.foldPanel = drawer(this.root, this.stage, false, () => undefined);
     fill(app, this.root);
     this.step.element.hidden = this.bar.element.hidden = this.pointSection.hidden = true;
     this.showPictures(this.wantsPictures);
@@ -141,11 +153,14 @@ export class ShowPage {
     this.setTitle(shown.title);
     this.kind.textContent = kKinds[shown.kind];
     this.live.hidden = !shown.live;
+    this.report.hidden = shown.report !== true;
     fill(this.facts, shown.facts.length > 0 ? factsTable(shown.facts) : h("p", { class: "empty" }, "Nothing is known yet."));
-    this.pointSection.hidden = !shown.layers.some((layer) => layer.kind === "points" && layer.size_m === undefined);
+    const points = shown.layers.filter((layer) => layer.kind === "points");
+    this.pointSection.hidden = points.length === 0;
+    this.pointSize.element.hidden = !points.some((layer) => layer.size_m === undefined);
   }
 
-  /** What the step that the player is at changes. */
+  /** Draws the parts of the page that depend on the player's step. */
   draw(shown: SceneDocument): void {
     const step = this.player.step;
     this.bar.set(shown);
@@ -159,6 +174,11 @@ export class ShowPage {
     fill(this.pictures, ...thumbnails(pictures));
   }
 
+  setShading(shaded: boolean): void {
+    this.shading.set(shaded);
+    this.actions.shading(shaded);
+  }
+
   togglePictures(): void {
     this.showPictures(!this.wantsPictures);
   }
@@ -168,7 +188,7 @@ export class ShowPage {
   }
 
   fold(): void {
-    this.root.classList.toggle("folded");
+    this.foldPanel();
   }
 
   private showPictures(show: boolean): void {

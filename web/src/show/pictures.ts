@@ -3,11 +3,14 @@
 import { iconButton } from "../ui/controls";
 import { openSheet } from "../ui/dialog";
 import { fill, h, on } from "../ui/dom";
+import { showPicture } from "../token";
 import { type Picture, pictureAddress } from "./document";
 
 function image(picture: Picture): HTMLElement {
-  const img = h("img", { src: pictureAddress(picture.name), alt: picture.title, decoding: "async", draggable: "false" });
-  return on(img, { error: () => img.replaceWith(h("p", { class: "empty" }, "This picture is not there.")) });
+  const img = h("img", { alt: "", decoding: "async", draggable: "false" });
+  on(img, { error: () => img.replaceWith(h("p", { class: "empty" }, "This picture is not there.")) });
+  showPicture(img, pictureAddress(picture.name));
+  return img;
 }
 
 /** The first one, and the others as a strip below it. */

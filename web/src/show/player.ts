@@ -5,7 +5,7 @@ export class Player {
   private count = 0;
   private at = 0;
   private timer: number | undefined;
-  /** What takes a step to be shown; the next one waits for it. */
+  /** Shows a step; the next one waits for its end. */
   show: (step: number) => Promise<void> = () => Promise.resolve();
   changed: () => void = () => undefined;
 
@@ -24,9 +24,9 @@ export class Player {
     return this.at >= this.count - 1;
   }
 
-  /** The document has so many steps now; whoever was at the last one stays at the last one. */
-  resize(count: number): void {
-    const follows = this.atEnd;
+  /** Sets the number of steps. A player at the last step of a live run follows it to the new one. */
+  resize(count: number, live: boolean): void {
+    const follows = this.atEnd && (live || this.count > 0);
     this.count = count;
     this.at = follows ? Math.max(0, count - 1) : Math.min(this.at, Math.max(0, count - 1));
     this.changed();

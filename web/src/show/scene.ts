@@ -5,7 +5,14 @@ import type { BufferCache } from "./buffers";
 import { bufferBytes, fovOf, type Layer, layersOf, type SceneDocument } from "./document";
 import { candidatesOf, type Candidates, poseOf } from "./gains";
 import type { Look } from "./look_of_layers";
+import { fieldBytes, fieldOf, painted } from "./paint";
+import type { Scale } from "../view/ramp";
 import { trailOf } from "./trail";
+
+interface Data {
+  own: ArrayBuffer; // the layer's
+  values: ArrayBuffer | null; // those of the field that it is coloured by
+}
 
 export class Scene {
   private turn = 0;
@@ -14,6 +21,8 @@ export class Scene {
   private cameras: string[] = []; // layers of views, what was made, and what holds the camera
   private camerasShown = true;
   holderShown = false; // something that holds the camera is among them
+  private readonly scaleOf = new Map<string, Scale | null>(); // by layer
+  private up: readonly number[] = [0, 0, 1];
   private candidates = new Map<string, { layer: Layer; data: ArrayBuffer; gains: Candidates }>();
 
   constructor(
@@ -29,14 +38,17 @@ export class Scene {
    */
   async present(document: SceneDocument, step: number): Promise<boolean> {
     const turn = ++this.turn;
-    this.buffers.keep(new Set(document.layers.map((layer) => layer.buffer)));
+    this.buffers.keep(new Set(document.layers.flatMap((layer) => [layer.buffer, ...(layer.fields ?? []).map(({ buffer }) => buffer)])));
     const wanted = layersOf(document, step).filter((layer) => this.look.visible(layer));
     const first = this.shown.size === 0; // nothing to exchange: layers come as they arrive
-    const ready = new Map<Layer, ArrayBuffer>();
+    const ready = new Map<Layer, Data>();
+    this.up = document.up;
     await Promise.all(
       wanted.map(async (layer) => {
         try {
-          const data = await this.buffers.get(layer.buffer, bufferBytes(layer));
+          const field = fieldOf(layer, this.look.colorBy(layer));
+          const values = field && (await this.buffers.get(field.buffer, fieldBytes(layer, field)));
+          const data = { own: await this.buffers.get(layer.buffer, bufferBytes(layer)), values: values ?? null };
           ready.set(layer, data);
           if (first && turn === this.turn) this.put(layer, data);
         } catch (error) {
@@ -50,13 +62,18 @@ export class Scene {
     return true;
   }
 
-  /** What is known of a layer of views that is in the view. */
+  /** Returns a layer of candidates in the view and their gains; undefined: not in the view. */
   candidatesIn(id: string): { layer: Layer; gains: Candidates } | undefined {
     return this.candidates.get(id);
   }
 
   allCandidates(): { layer: Layer; gains: Candidates }[] {
     return [...this.candidates.values()];
+  }
+
+  /** Ranges of the ramps that colour the layers, by layer; null: no ramp colours it. */
+  scales(): ReadonlyMap<string, Scale | null> {
+    return this.scaleOf;
   }
 
   poseOf(id: string, item: number): number[][] | undefined {
@@ -93,7 +110,7 @@ export class Scene {
     return undefined;
   }
 
-  private exchange(document: SceneDocument, step: number, ready: ReadonlyMap<Layer, ArrayBuffer>): void {
+  private exchange(document: SceneDocument, step: number, ready: ReadonlyMap<Layer, Data>): void {
     const made = this.look.trail ? trailOf(document, step) : [];
     const ids = new Set([...[...ready.keys()].map((layer) => layer.id), ...made.map(({ layer }) => layer.id)]);
     for (const id of [...this.shown.keys()]) {
@@ -105,11 +122,11 @@ export class Scene {
     for (const [layer, data] of ready) {
       this.put(layer, data);
       if (layer.kind !== "views") continue;
-      const gains = candidatesOf(data, layer.count);
-      this.candidates.set(layer.id, { layer, data, gains });
+      const gains = candidatesOf(data.own, layer.count);
+      this.candidates.set(layer.id, { layer, data: data.own, gains });
       this.viewer.layers.select(layer.id, gains.best >= 0 ? gains.best : null);
     }
-    for (const { layer, data } of made) this.put(layer, data, String(step));
+    for (const { layer, data } of made) this.put(layer, { own: data, values: null }, String(step));
     const holders = [...ready.keys()].filter((layer) => layer.holds_camera).map((layer) => layer.id);
     this.holderShown = holders.length > 0;
     this.cameras = [...this.candidates.keys(), ...made.map(({ layer }) => layer.id), ...holders];
@@ -118,12 +135,15 @@ export class Scene {
     this.showCameras(this.camerasShown);
   }
 
-  private put(layer: Layer, data: ArrayBuffer, of = layer.buffer): void {
-    const info = { ...layer, ...this.look.changes(layer), visible: true };
-    const made = `${of} ${info.opacity ?? 1} ${info.size_m ?? 0}`;
+  private put(layer: Layer, { own, values }: Data, of = layer.buffer): void {
+    const by = this.look.colorBy(layer);
+    const made = `${of} ${JSON.stringify(this.look.changes(layer))} ${by}`;
     if (this.shown.get(layer.id) === made) return;
-    if (data.byteLength === bufferBytes(layer) && this.viewer.layers.add(info, data)) this.shown.set(layer.id, made);
-    else this.failed(layer, new Error(`${layer.name}: its ${data.byteLength} bytes are not what a layer of this kind has.`));
+    const { layer: colored, data, scale } = painted(layer, own, by, values, this.up);
+    const info = { ...colored, ...this.look.changes(layer), visible: true };
+    this.scaleOf.set(layer.id, scale);
+    if (own.byteLength === bufferBytes(layer) && this.viewer.layers.add(info, data)) this.shown.set(layer.id, made);
+    else this.failed(layer, new Error(`${layer.name}: its ${own.byteLength} bytes are not what a layer of this kind has.`));
   }
 
   /** So that going on does not wait. */
@@ -134,5 +154,3 @@ export class Scene {
     }
   }
 }
-
-

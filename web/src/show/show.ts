@@ -53,6 +53,7 @@ class Show {
       lookThrough: (through) => this.setLooking(through),
       fit: (from) => this.fit(from),
       navigation: (navigation) => void (this.viewer.camera.navigation = navigation),
+      shading: (shaded) => this.viewer.setShading(shaded),
       pointSize: (size_px) => void (this.viewer.cloud.pointSize = size_px),
       help: () => this.shortcuts.showHelp(),
     });
@@ -115,15 +116,17 @@ class Show {
     this.document = document;
     if (moved) this.viewer.setBounds(document.bounds, document.up);
     if (first) {
+      // Without colours and without shading a cloud would show no shape.
+      this.page.setShading(document.kind === "cloud" && document.layers.every((layer) => !layer.colors || !layer.visible));
       this.stand();
       this.firstPose = String(this.viewer.camera.poseRows());
     }
     this.page.setDocument(document);
-    this.player.resize(document.steps.length);
+    this.player.resize(document.steps.length, document.live);
     return this.present().then(() => this.stepAside());
   }
 
-  /** Once there is an arm: the standpoint is where it does not hide the scene, unless somebody chose another one. */
+  /** Moves the standpoint to where the arm does not hide the scene, unless the user has moved it. */
   private async stepAside(): Promise<void> {
     const { document } = this;
     if (!document || this.from) return;
@@ -142,6 +145,10 @@ class Show {
     if (!exchanged) return; // a later one is under way
     this.page.stage.ariaBusy = "false";
     this.card.clear();
+    for (const [id, scale] of this.scene.scales()) {
+      const layer = document.layers.find((each) => each.id === id);
+      if (layer) this.page.layers.setScale(layer, scale);
+    }
     for (const { layer, gains } of this.scene.allCandidates()) this.page.layers.setGains(layer.id, gains);
     if (this.lookThrough.active && this.ownStep) this.setLooking(true);
   }
@@ -177,7 +184,7 @@ class Show {
     const { camera } = this.viewer;
     const { document } = this;
     if (!document) return;
-    if (!this.from) return firstLook(camera, document.up);
+    if (!this.from) return firstLook(camera, document.up, document.towards_viewer);
     camera.fit(this.from);
     camera.setPoseRows(steppedBack(camera.poseRows(), document.bounds));
   }

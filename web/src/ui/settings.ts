@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What this browser remembers of the page. Without storage (private windows) nothing is remembered.
+// Settings of the page that this browser remembers. Without storage (private windows) nothing is remembered.
 
 const kPrefix = "saccade.";
 

@@ -4,3 +4,4 @@ import "./theme.css";
 import "./controls.css";
 import "./layout.css";
 import "./sheets.css";
+import "./narrow.css";

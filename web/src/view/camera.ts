@@ -11,9 +11,9 @@ export class SceneCamera implements Camera {
   navigation: Navigation = "orbit";
   readonly camera = new THREE.PerspectiveCamera((kFov_rad * 180) / Math.PI, 1, 0.01, 100);
   readonly origin = new THREE.Vector3();
-  readonly box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1)); // of the scene
+  readonly box = new THREE.Box3(new THREE.Vector3(-1, -1, -1), new THREE.Vector3(1, 1, 1)); // bounds of the scene
   readonly up = new THREE.Vector3(0, 0, 1);
-  /** What the camera turns around. */
+  /** Point that the camera turns around. */
   readonly pivot = new THREE.Vector3();
   /** There may be things outside of `box`. */
   loose = false;
@@ -50,7 +50,7 @@ export class SceneCamera implements Camera {
     const slope = Math.tan(0.5 * kFov_rad);
     const turn = camera.quaternion.clone().invert();
     const corners = this.corners().map((corner) => corner.sub(middle).applyQuaternion(turn));
-    // Of an axis of the picture: where its middle must be, and how far away so that both borders are in.
+    // Returns, for one axis of the picture, the middle and the distance at which both borders are in view.
     const between = (axis: "x" | "y", slope: number): [number, number] => {
       const high = Math.max(...corners.map((corner) => corner[axis] + slope * corner.z));
       const low = Math.max(...corners.map((corner) => -corner[axis] + slope * corner.z));

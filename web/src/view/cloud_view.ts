@@ -4,11 +4,13 @@ import * as THREE from "three";
 import type { SceneCamera } from "./camera";
 import { ControlPoints, kControlBit } from "./control_points";
 import { HoverTree } from "./hover";
+import { kOver } from "./layers";
 import { PointCloud } from "./points";
 import { Ring } from "./ring";
-import type { CloudInfo, CloudLayer, ControlPlace, Pick, PointChunk, Rgb } from "./types";
+import { nearPixel } from "./near_pixel";
+import type { CloudInfo, CloudLayer, ControlPlace, Painter, Pick, PointChunk, Rgb } from "./types";
 
-/** What of the picture is no longer right. */
+/** Part of the picture that must be drawn again. */
 export type Stale = "nothing" | "colors" | "all";
 
 const kSphere_spacings = 1.4; // radius of a control point's sphere, where it is not too small or large on the screen
@@ -21,8 +23,9 @@ export class CloudView implements CloudLayer {
   private few = new THREE.Points(); // some points, in the id buffer
   private tree = new HoverTree();
   private shown = { cloud: true, labels: true, controls: true };
+  private painter: Painter | null = null;
   private size = 4;
-  private spacing_m = 0; // of the vertices
+  private spacing_m = 0; // distance between neighbouring vertices
 
   constructor(
     private view: SceneCamera,
@@ -31,6 +34,7 @@ export class CloudView implements CloudLayer {
   ) {
     this.few.frustumCulled = false;
     this.few.visible = false;
+    this.ring.object.layers.set(kOver);
     this.scene.add(this.few, this.ring.object);
     this.replace(kNoCloud);
   }
@@ -55,6 +59,12 @@ export class CloudView implements CloudLayer {
     this.points.append(chunk);
     this.changed("nothing"); // the picture is gone on with
     if (this.points.vertices === this.points.room) this.buildTree();
+  }
+
+  setPainter(painter: Painter | null): void {
+    this.painter = painter;
+    this.points.setPainter(painter);
+    this.changed("colors");
   }
 
   setLabel(label: number, points: Uint32Array): void {
@@ -150,14 +160,14 @@ export class CloudView implements CloudLayer {
     this.controls.draw(true, size[1], ratio);
     this.controls.object.visible &&= controls;
     this.ring.object.visible = false;
-    if (!this.points.object.visible || !this.tree.ready) return;
+    if (!this.points.object.visible) return;
     const near: number[] = [];
     const half_px = 0.5 * this.size_px(ratio) + 1;
-    this.tree.around(x, y, half_px, this.view.clipScene(), size, (vertex) => {
+    this.around(x, y, half_px, size, (vertex) => {
       near.push(vertex);
       return Infinity;
     });
-    near.sort((a, b) => a - b); // of two at the same place the later one is seen
+    near.sort((a, b) => a - b); // the later one of two at one place is seen
     const all = this.points.object;
     for (const name of ["position", "color", "state"]) this.few.geometry.setAttribute(name, all.geometry.getAttribute(name));
     this.few.geometry.setIndex(new THREE.BufferAttribute(new Uint32Array(near), 1));
@@ -179,13 +189,13 @@ export class CloudView implements CloudLayer {
 
   /** `reach_px`: how far from a point's middle it is found, at least. */
   hover(x: number, y: number, size: readonly [number, number], ratio: number, reach_px = 0): Pick | null {
-    if (!this.tree.ready) return null;
+    if (!this.tree.ready && reach_px === 0) return null; // asked for at every move of the mouse
     const clip_scene = this.view.clipScene();
     let vertex = -1;
     let depth = Infinity;
     if (this.shown.cloud || this.shown.labels) {
       const half_px = Math.max(0.5 * this.size_px(ratio), reach_px * ratio);
-      this.tree.around(x, y, half_px, clip_scene, size, (candidate, at) => {
+      this.around(x, y, half_px, size, (candidate, at) => {
         if (at < depth && this.points.isDrawn(candidate)) {
           vertex = candidate;
           depth = at;
@@ -212,6 +222,13 @@ export class CloudView implements CloudLayer {
     return position === undefined ? null : { point, control, position };
   }
 
+  /** By the tree; until it is there, by looking at all vertices, which takes some 10 ms a million. */
+  private around(x: number, y: number, half_px: number, size: readonly [number, number], found: (vertex: number, depth_m: number) => number): void {
+    const clip_scene = this.view.clipScene();
+    if (this.tree.ready) this.tree.around(x, y, half_px, clip_scene, size, found);
+    else nearPixel(this.points.positions, this.points.vertices, clip_scene, x, y, half_px, size, found);
+  }
+
   private buildTree(): void {
     this.tree.build(this.points.positions, () => {});
   }
@@ -226,8 +243,10 @@ export class CloudView implements CloudLayer {
     this.few.geometry = new THREE.BufferGeometry();
     this.points = new PointCloud(this.view.origin.toArray());
     this.points.begin(cloud);
+    this.points.setPainter(this.painter);
     this.controls = new ControlPoints(this.points);
     this.controls.object.renderOrder = 1;
+    this.controls.object.layers.set(kOver);
     this.scene.add(this.points.object, this.controls.object);
     this.changed("all");
   }

@@ -67,7 +67,7 @@ void main() {
 export class ControlPoints {
   readonly object = new THREE.Points();
   private known = new Map<number, ControlPlace>(); // by point
-  private points: number[] = []; // of vertices
+  private points: number[] = []; // point of each vertex
   private stale = true;
   private material: THREE.RawShaderMaterial;
   private idMaterial: THREE.RawShaderMaterial;
@@ -131,7 +131,7 @@ export class ControlPoints {
     this.object.material = id ? this.idMaterial : this.material;
   }
 
-  /** Of the control points whose spheres are here (picture's px), the nearest. */
+  /** Returns the nearest of the control points whose spheres cover the place (in the picture's pixels). */
   at(x: number, y: number, clip_scene: THREE.Matrix4, width: number, height: number, ratio: number) {
     if (this.stale) this.build();
     const radius_m = this.uniforms.radius_m!.value as number;

@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { INTERSECTED, NOT_INTERSECTED, PointsBVH } from "three-mesh-bvh";
 
-/** What of a hierarchy goes from the worker to the page. */
+/** Parts of a hierarchy that go from the worker to the page. */
 export interface TreeParts {
   _roots: ArrayBuffer[];
   _indirectBuffer: Uint32Array | Uint16Array;
@@ -38,7 +38,7 @@ export class HoverTree {
       this.worker = null;
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.BufferAttribute(positions.subarray(0, 3), 3));
-      const tree = new PointsBVH(geometry, { indirect: true } as object); // of one point, until it is given the parts
+      const tree = new PointsBVH(geometry, { indirect: true } as object); // holds one point until it gets the parts
       geometry.setAttribute("position", new THREE.BufferAttribute(positions, 3));
       const parts = tree as unknown as TreeParts;
       parts._roots = event.data.roots;

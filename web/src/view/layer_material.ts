@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// How layers look: surfaces in the light of a lamp at the camera, squares, and lines.
+// How layers look: surfaces in the light of a lamp at the camera, squares or discs, and lines.
 import * as THREE from "three";
 
 const kSurfaceVertex = /* glsl */ `
@@ -74,17 +74,26 @@ uniform mat4 projectionMatrix;
 uniform mat4 modelViewMatrix;
 uniform vec4 plain;
 uniform float size_m;
-uniform float size;      // px, where size_m is 0
+uniform float size;      // px of squares
 uniform float height;    // px of the picture
 in vec3 position;
 #ifdef COLORS
 in vec4 color;
 #endif
+#ifdef DIAMETERS
+in float diameter;       // times size_m
+#endif
 out vec4 own;
 void main() {
   gl_Position = projectionMatrix * (modelViewMatrix * vec4(position, 1.0));
   float px_per_m = 0.5 * height * projectionMatrix[1][1] / max(gl_Position.w, 1e-9);
-  gl_PointSize = size_m > 0.0 ? clamp(size_m * px_per_m, 1.0, 64.0) : size;
+#ifdef DIAMETERS
+  gl_PointSize = clamp(size_m * diameter * px_per_m, 1.5, 64.0);
+#elif defined(ROUND)
+  gl_PointSize = clamp(size_m * px_per_m, 1.0, 64.0);
+#else
+  gl_PointSize = size;
+#endif
 #ifdef COLORS
   own = vec4(color.rgb, color.a * plain.a);
 #else
@@ -130,24 +139,30 @@ void main() {
 
 const kPlainFragment = /* glsl */ `
 in vec4 own;
-void main() { show(own); }`;
+void main() {
+#ifdef ROUND
+  if (length(gl_PointCoord - 0.5) > 0.5) discard;
+#endif
+  show(own);
+}`;
 
 export interface LayerLook {
-  shape: "surface" | "cubes" | "squares" | "lines";
+  shape: "surface" | "cubes" | "squares" | "discs" | "lines";
   colors: boolean;
   normals?: boolean;
   plain: THREE.Vector4; // 0 to 1
-  size_m: number;
+  size_m: number; // how wide cubes and discs are; where each disc has a diameter of its own: times that
   transparent: boolean;
+  diameters?: boolean;
 }
 
-/** What all layers have in common; in pixels of the picture. */
+/** Uniforms that all layers share; lengths in pixels of the picture. */
 export interface SharedUniforms {
   as_depth: THREE.IUniform<boolean>;
-  size: THREE.IUniform<number>; // of squares
+  size: THREE.IUniform<number>; // side of a square
   height: THREE.IUniform<number>;
   picture: THREE.IUniform<THREE.Vector2>;
-  width: THREE.IUniform<number>; // of lines
+  width: THREE.IUniform<number>; // width of a line
 }
 
 export function layerMaterial(look: LayerLook, shared: SharedUniforms): THREE.RawShaderMaterial {
@@ -155,10 +170,13 @@ export function layerMaterial(look: LayerLook, shared: SharedUniforms): THREE.Ra
   if (look.colors) defines.COLORS = "";
   if (look.normals === true) defines.NORMALS = "";
   if (look.shape === "cubes") defines.INSTANCED = "";
+  if (look.shape === "discs") defines.ROUND = "";
+  if (look.diameters === true) defines.DIAMETERS = "";
+  const points = look.shape === "squares" || look.shape === "discs";
   const surface = look.shape === "surface" || look.shape === "cubes";
   return new THREE.RawShaderMaterial({
     glslVersion: THREE.GLSL3,
-    vertexShader: surface ? kSurfaceVertex : look.shape === "squares" ? kSquareVertex : kLineVertex,
+    vertexShader: surface ? kSurfaceVertex : points ? kSquareVertex : kLineVertex,
     fragmentShader: kPixel + (surface ? kSurfaceFragment : kPlainFragment),
     uniforms: { plain: { value: look.plain }, size_m: { value: look.size_m }, ...shared },
     defines,

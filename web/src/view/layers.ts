@@ -1,17 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
-// The layers of a document (docs/protocol.md, Viewer) as things of the scene.
+// The layers of a document (docs/reference/protocol.md, Viewer) as things of the scene.
 import * as THREE from "three";
 import type { SceneCamera } from "./camera";
 import { Frusta } from "./frusta";
+import { type Gradual, gradualCubes, gradualOrder, gradualRange, kVoxelVertices, reordered } from "./gradual";
 import { type LayerLook, type SharedUniforms, layerMaterial } from "./layer_material";
+import { LayerReader } from "./layer_reader";
+import { nearPixel } from "./near_pixel";
 import type { CameraFrame, LayerInfo, LayerPick, SceneLayers } from "./types";
 
 const kReach_px = 9;
+const kPoint_px = 1.5; // half of a point, at least
 const kSmoothTriangles = 2_000_000;
+/** THREE's layers: what is shaded by depth, and what is drawn over it (lines, what one sees through). */
+export const kBody = 0;
+export const kOver = 1;
 
 interface Layer {
   info: LayerInfo;
   object: THREE.Object3D;
+  shown: boolean;
+  gradual: Gradual | null;
+  places: Float32Array | null; // where points are
   frusta: Frusta | null;
   selected: number | null;
 }
@@ -38,9 +48,13 @@ export class Layers implements SceneLayers {
     const made = this.make(info, buffer);
     if (made === null) return false;
     this.remove(info.id);
-    made.object.visible = info.visible !== false;
-    made.object.renderOrder = this.isTransparent(info) ? 1 : 0;
-    made.object.traverse((object) => (object.frustumCulled = false));
+    made.shown = info.visible !== false;
+    const over = this.isTransparent(info) || info.kind === "lines" || info.kind === "views";
+    made.object.traverse((object) => {
+      object.frustumCulled = false;
+      object.renderOrder = this.isTransparent(info) ? 1 : 0;
+      object.layers.set(over ? kOver : kBody);
+    });
     this.layers.set(info.id, made);
     this.view.loose = true;
     this.group.add(made.object);
@@ -71,8 +85,8 @@ export class Layers implements SceneLayers {
 
   show(id: string, visible: boolean): void {
     const layer = this.layers.get(id);
-    if (layer === undefined || layer.object.visible === visible) return;
-    layer.object.visible = visible;
+    if (layer === undefined || layer.shown === visible) return;
+    layer.shown = visible;
     this.changed();
   }
 
@@ -93,8 +107,8 @@ export class Layers implements SceneLayers {
     const [width, height] = [this.element.clientWidth, this.element.clientHeight];
     const reach = [(2 * kReach_px) / width, (2 * kReach_px) / height] as const;
     let best: (LayerPick & { depth: number }) | null = null;
-    for (const [id, { frusta, object }] of this.layers) {
-      if (frusta === null || !object.visible) continue;
+    for (const [id, { frusta, shown }] of this.layers) {
+      if (frusta === null || !shown) continue;
       const found = frusta.at((2 * x) / width - 1, 1 - (2 * y) / height, clip_scene, reach);
       if (found === null || (best !== null && best.depth <= found.depth)) continue;
       const tip = new THREE.Vector3(...frusta.tip(found.item)).add(this.view.origin);
@@ -114,6 +128,7 @@ export class Layers implements SceneLayers {
       const frusta = new Frusta(poses, [NaN], 1, frame.fov_rad, 0.16 * this.view.radius_m, this.view.origin);
       frusta.paint(0, true);
       this.frame = this.lines(frusta.positions, frusta.colors, new THREE.Vector4(1, 1, 1, 1), false);
+      this.frame.layers.set(kOver);
       this.group.add(this.frame);
       this.view.loose = true;
     }
@@ -125,30 +140,82 @@ export class Layers implements SceneLayers {
     return this.layers.size > 0;
   }
 
+  /** Vertices of what is drawn piece by piece. */
+  get work(): number {
+    let sum = 0;
+    for (const layer of this.layers.values()) if (layer.shown && !this.isTransparent(layer.info)) sum += layer.gradual?.work ?? 0;
+    return sum;
+  }
+
+  /** Whether something shown is seen through: it can only be drawn when all that is behind it is there. */
+  get seeThrough(): boolean {
+    return [...this.layers.values()].some((layer) => layer.shown && this.isTransparent(layer.info));
+  }
+
+  /**
+   * What is drawn next: of large opaque layers the pieces between these shares, of transparent ones all up to
+   * `through`, small ones and lines where `rest` says so.
+   */
+  draw(from: number, to: number, through: number, rest: boolean): void {
+    this.group.visible = true;
+    if (this.frame !== null) this.frame.visible = rest;
+    for (const { info, object, shown, gradual } of this.layers.values()) {
+      const transparent = this.isTransparent(info);
+      object.visible = shown && (transparent ? through > 0 : gradual !== null || rest);
+      gradual?.draw(transparent ? 0 : from, transparent ? through : to);
+    }
+  }
+
+  /** All that is shown but points: they are found by pointUnder(). */
+  drawSurfaces(): void {
+    this.draw(0, 1, 1, true);
+    for (const { object, places } of this.layers.values()) if (places !== null) object.visible = false;
+  }
+
+  /** The nearest point of a layer that is drawn there, in the scene's coordinates. */
+  pointUnder(x: number, y: number, size: readonly [number, number]): THREE.Vector3 | null {
+    const reach_px = Math.max(0.5 * this.shared.size.value, kPoint_px);
+    const clip_scene = this.view.clipScene();
+    let best: Float32Array | null = null;
+    let at = 0;
+    let depth = Infinity;
+    for (const { places, shown } of this.layers.values()) {
+      if (places === null || !shown) continue;
+      nearPixel(places, places.length / 3, clip_scene, x, y, reach_px, size, (vertex, depth_m) => {
+        if (depth_m < depth) [best, at, depth] = [places, 3 * vertex, depth_m];
+        return depth;
+      });
+    }
+    return best === null ? null : new THREE.Vector3(best[at], best[at + 1], best[at + 2]);
+  }
+
   dispose(): void {
     this.clear();
     this.setFrame(null);
   }
 
   private make(info: LayerInfo, buffer: ArrayBuffer): Layer | null {
-    const reader = new Reader(buffer, this.view.origin);
+    const reader = new LayerReader(buffer, this.view.origin);
     const plain = plainColor(info);
     const transparent = this.isTransparent(info);
     const colored = info.colors === true;
     const look = (shape: LayerLook["shape"], normals = false): THREE.RawShaderMaterial =>
       layerMaterial({ shape, colors: colored, normals, plain, size_m: info.size_m ?? 0, transparent }, this.shared);
-    const layer = (object: THREE.Object3D, frusta: Frusta | null = null): Layer | null =>
-      reader.short ? null : { info, object, frusta, selected: null };
+    const layer = (object: THREE.Object3D, parts: Partial<Layer> = {}): Layer | null =>
+      reader.short ? null : { info, object, shown: true, gradual: null, places: null, frusta: null, selected: null, ...parts };
 
     if (info.kind === "triangles") {
       const vertices = info.vertices ?? 0;
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.BufferAttribute(reader.places(vertices), 3));
       if (colored) geometry.setAttribute("color", new THREE.BufferAttribute(reader.colors(vertices), 4, true));
-      geometry.setIndex(new THREE.BufferAttribute(reader.numbers(3 * info.count), 1));
-      const smooth = info.count <= kSmoothTriangles && !reader.short;
+      const index = reader.numbers(3 * info.count);
+      if (reader.short) return null;
+      const order = gradualOrder(info.count, 3);
+      geometry.setIndex(new THREE.BufferAttribute(order === null ? index : reordered(index, 3, order), 1));
+      const smooth = info.count <= kSmoothTriangles;
       if (smooth) geometry.computeVertexNormals();
-      return layer(new THREE.Mesh(geometry, look("surface", smooth)));
+      return layer(new THREE.Mesh(geometry, look("surface", smooth)), { gradual: order && gradualRange(geometry, info.count, 3) });
     }
     if (info.kind === "views") {
       const poses = reader.floats(16 * info.count);
@@ -156,28 +223,46 @@ export class Layers implements SceneLayers {
       if (reader.short) return null;
       const length_m = 0.07 * this.view.radius_m;
       const frusta = new Frusta(poses, gains, info.count, info.fov_rad ?? [0.8, 0.6], length_m, this.view.origin);
-      return layer(this.lines(frusta.positions, frusta.colors, plain, transparent), frusta);
+      return layer(this.lines(frusta.positions, frusta.colors, plain, transparent), { frusta });
     }
     const count = info.kind === "lines" ? 2 * info.count : info.count;
-    const places = reader.places(count);
-    const colors = colored ? reader.colors(count) : null;
+    const inFile = reader.places(count);
+    const own = colored ? reader.colors(count) : null;
+    const diameters = info.diameters === true ? reader.floats(count) : null;
     if (reader.short) return null;
-    if (info.kind === "lines") return layer(this.lines(places, colors, plain, transparent));
+    if (info.kind === "lines") return layer(this.lines(inFile, own, plain, transparent));
+    const order = gradualOrder(count, info.kind === "points" ? 1 : kVoxelVertices);
+    const ordered = <T extends Float32Array | Uint8Array>(entries: T, width: number): T =>
+      order === null ? entries : reordered(entries, width, order);
+    const places = ordered(inFile, 3);
+    const colors = own && ordered(own, 4);
     if (info.kind === "points") {
       const geometry = new THREE.BufferGeometry();
       geometry.setAttribute("position", new THREE.BufferAttribute(places, 3));
       if (colors !== null) geometry.setAttribute("color", new THREE.BufferAttribute(colors, 4, true));
-      return layer(new THREE.Points(geometry, look("squares")));
+      if (diameters !== null) geometry.setAttribute("diameter", new THREE.BufferAttribute(ordered(diameters, 1), 1));
+      const shape = info.size_m !== undefined || diameters !== null ? "discs" : "squares";
+      const material = layerMaterial(
+        { shape, colors: colored, plain, size_m: info.size_m ?? 1, transparent, diameters: diameters !== null },
+        this.shared,
+      );
+      return layer(new THREE.Points(geometry, material), { places, gradual: order && gradualRange(geometry, count, 1) });
     }
     const cube = new THREE.BoxGeometry(1, 1, 1);
-    const geometry = new THREE.InstancedBufferGeometry();
-    geometry.setIndex(cube.getIndex());
-    geometry.setAttribute("position", cube.getAttribute("position"));
-    geometry.setAttribute("normal", cube.getAttribute("normal"));
-    geometry.setAttribute("center", new THREE.InstancedBufferAttribute(places, 3));
-    if (colors !== null) geometry.setAttribute("color", new THREE.InstancedBufferAttribute(colors, 4, true));
-    geometry.instanceCount = info.count;
-    return layer(new THREE.Mesh(geometry, look("cubes", true)));
+    const material = look("cubes", true);
+    const cubes = (from: number, to: number): THREE.Mesh => {
+      const geometry = new THREE.InstancedBufferGeometry();
+      geometry.setIndex(cube.getIndex());
+      geometry.setAttribute("position", cube.getAttribute("position"));
+      geometry.setAttribute("normal", cube.getAttribute("normal"));
+      geometry.setAttribute("center", new THREE.InstancedBufferAttribute(places.subarray(3 * from, 3 * to), 3));
+      if (colors !== null) geometry.setAttribute("color", new THREE.InstancedBufferAttribute(colors.subarray(4 * from, 4 * to), 4, true));
+      geometry.instanceCount = to - from;
+      return new THREE.Mesh(geometry, material);
+    };
+    if (order === null) return layer(cubes(0, count));
+    const { object, gradual } = gradualCubes(cubes, count);
+    return layer(object, { gradual });
   }
 
   private lines(places: Float32Array, colors: Uint8Array | null, plain: THREE.Vector4, transparent: boolean) {
@@ -210,51 +295,9 @@ function plainColor(info: LayerInfo): THREE.Vector4 {
 }
 
 function release(object: THREE.Object3D): void {
-  const { geometry, material } = object as THREE.Mesh;
-  geometry.dispose();
-  (material as THREE.Material).dispose();
-}
-
-/** Arrays of a buffer one after the other; `short` where it ended before them. */
-class Reader {
-  short = false;
-  private at = 0;
-
-  constructor(
-    private buffer: ArrayBuffer,
-    private origin: THREE.Vector3,
-  ) {}
-
-  floats(count: number): Float32Array {
-    return this.take(4 * count) ? new Float32Array(this.buffer, this.at - 4 * count, count) : new Float32Array();
-  }
-
-  numbers(count: number): Uint32Array {
-    return this.take(4 * count) ? new Uint32Array(this.buffer, this.at - 4 * count, count) : new Uint32Array();
-  }
-
-  /** r, g, b, a of each. */
-  colors(count: number): Uint8Array {
-    return this.take(4 * count) ? new Uint8Array(this.buffer, this.at - 4 * count, 4 * count) : new Uint8Array();
-  }
-
-  /** x, y, z of each, in the scene's coordinates. */
-  places(count: number): Float32Array {
-    const places = this.floats(3 * count);
-    const { x, y, z } = this.origin;
-    if (x === 0 && y === 0 && z === 0) return places;
-    const moved = new Float32Array(places.length);
-    for (let i = 0; i < places.length; i += 3) {
-      moved[i] = places[i]! - x;
-      moved[i + 1] = places[i + 1]! - y;
-      moved[i + 2] = places[i + 2]! - z;
-    }
-    return moved;
-  }
-
-  private take(bytes: number): boolean {
-    this.short ||= this.at + bytes > this.buffer.byteLength;
-    this.at += bytes;
-    return !this.short;
-  }
+  object.traverse((each) => {
+    const { geometry, material } = each as Partial<THREE.Mesh>;
+    geometry?.dispose();
+    (material as THREE.Material | undefined)?.dispose();
+  });
 }

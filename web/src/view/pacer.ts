@@ -15,7 +15,7 @@ export class Pacer {
     this.perMs = isSoftware(gl) ? 5_000 : 50_000;
   }
 
-  /** Of vertices `from` to `all`, the end of those to draw now. */
+  /** Returns the end of the vertices to draw now, out of those from `from` to `all`. */
   upTo(from: number, all: number, moving: boolean): number {
     const wanted = moving
       ? Math.max(this.perMs * kMoving_ms, kLeast)

@@ -17,7 +17,7 @@ export class PixelProbe {
     const { renderer, target } = this;
     const clear = renderer.getClearColor(new THREE.Color());
     const alpha = renderer.getClearAlpha();
-    // The same viewport as the picture's, moved: rasterized to the same pixels.
+    // Uses the picture's viewport, moved, so that points cover the pixels that they cover in the picture.
     target.viewport.set(-x, y + 1 - size[1], size[0], size[1]);
     renderer.setRenderTarget(target);
     renderer.setClearColor(0, 0);

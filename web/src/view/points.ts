@@ -3,7 +3,7 @@
 import * as THREE from "three";
 import { Palette, kSlotBits } from "./palette";
 import { type PointMode, type PointUniforms, pointMaterial } from "./point_material";
-import type { CloudInfo, PointChunk, Rgb } from "./types";
+import type { CloudInfo, Painter, PointChunk, Rgb } from "./types";
 
 const kNone = 0xffffffff;
 const kSlotMask = (1 << kSlotBits) - 1;
@@ -23,9 +23,11 @@ export class PointCloud {
   vertices = 0;
   room = 0;
   positions = new Float32Array(); // less `origin`
-  private points = new Uint32Array(); // of vertices, in the file
+  private points = new Uint32Array(); // number of each vertex's point in the file
   private vertexOf = new Uint32Array();
   private colors = new Uint8Array();
+  private own: Uint8Array | null = null; // colours of the file, while others are shown
+  private painter: Painter | null = null;
   private states = new Uint32Array();
   private changed = new Uint8Array(); // blocks
   private anyChanged = false;
@@ -62,7 +64,9 @@ export class PointCloud {
       positions[at + 2] = chunk.positions[i + 2]! - origin[2];
     }
     this.points.set(chunk.points.subarray(0, count), first);
-    this.colors.set(chunk.colors.subarray(0, 4 * count), 4 * first);
+    const own = chunk.colors.subarray(0, 4 * count);
+    this.own?.set(own, 4 * first);
+    this.colors.set(this.painter?.(chunk.positions, first, count) ?? own, 4 * first);
     let label = 0;
     let slot = 0;
     for (let i = 0; i < count; ++i) {
@@ -79,6 +83,22 @@ export class PointCloud {
       attribute.addUpdateRange(width * first, width * count);
       attribute.needsUpdate = true;
     }
+  }
+
+  setPainter(painter: Painter | null): void {
+    this.painter = painter;
+    if (painter === null && this.own === null) return;
+    this.own ??= this.colors.slice();
+    const { vertices, origin } = this;
+    if (vertices > 0) {
+      const places = this.positions.slice(0, 3 * vertices);
+      for (let i = 0; i < places.length; ++i) places[i] = places[i]! + origin[i % 3]!;
+      this.colors.set(painter?.(places, 0, vertices) ?? this.own);
+      const attribute = this.attribute("color");
+      attribute.addUpdateRange(0, 4 * vertices);
+      attribute.needsUpdate = true;
+    }
+    if (painter === null) this.own = null;
   }
 
   setLabel(label: number, points: Uint32Array): void {

@@ -20,9 +20,10 @@ export function lookFrom(camera: Camera, up: readonly number[], which: Side): vo
   camera.fit(standpoint(up, which));
 }
 
-/** The front, a little from above. */
-export function firstLook(camera: Camera, up: readonly number[]): void {
-  const [x, y, z] = standpoint(up, "front");
-  const tilt = Math.abs(up[2] ?? 1) > 0.7 ? 0.7 : 0.3; // what a camera has seen is best seen from where it was
+/** The front, a little from above; from where it was seen, where that is known. */
+export function firstLook(camera: Camera, up: readonly number[], towards?: readonly [number, number, number]): void {
+  const [x, y, z] = towards ?? standpoint(up, "front");
+  const seen = towards !== undefined || Math.abs(up[2] ?? 1) <= 0.7;
+  const tilt = seen ? 0.3 : 0.7; // what a camera has seen is best seen from where it was
   camera.fit([x + tilt * (up[0] ?? 0), y + tilt * (up[1] ?? 0), z + tilt * (up[2] ?? 1)]);
 }

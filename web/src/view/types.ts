@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What the 3-D view offers to the annotation tool and to the viewer. createViewer() in viewer.ts makes one.
+// Interface of the 3-D view for the annotation tool and the viewer. createViewer() in viewer.ts makes one.
 
 /** Column-major 4×4, as WebGL has it. */
 export type Mat4 = Float64Array | number[];
@@ -35,16 +35,21 @@ export interface ControlPlace {
   position: readonly [number, number, number];
 }
 
-/** The picture as the program's selection takes it (docs/protocol.md: "view" of an action). */
+/** The picture as the program's selection takes it (docs/reference/protocol.md: "view" of an action). */
 export interface SelectionPicture {
   size: [number, number];
   clip_world: number[]; // 16, row by row
   point_size_px: number;
 }
 
+/** Colours, r, g, b, 255, of `count` vertices from `first` on, whose places are these (x, y, z). */
+export type Painter = (positions: Float32Array, first: number, count: number) => Uint8Array;
+
 export interface CloudLayer {
   begin(cloud: CloudInfo): void;
   append(chunk: PointChunk): void;
+  /** Colours in place of the points' own, now and for points that come; null: their own. */
+  setPainter(painter: Painter | null): void;
   /** The labels of these points are now this one. */
   setLabel(label: number, points: Uint32Array): void;
   setLabelColor(label: number, color: Rgb): void;
@@ -55,7 +60,7 @@ export interface CloudLayer {
   /** Label 0: it is none any more. Its point may be none of the cloud's that are here. */
   setControlPoint(control: ControlPlace): void;
   clearControlPoints(): void;
-  /** Of the shown points in the order of their chunks: 0 in doubt … 255 sure; null takes the heat map away. */
+  /** Takes the margins of the shown points in the order of their chunks: 0 in doubt … 255 sure; null ends the heat map. */
   setMargins(margins: Uint8Array | null): void;
   /** Points that stand out (a tree about to be removed); empty: none. */
   highlight(points: Uint32Array): void;
@@ -68,7 +73,7 @@ export interface CloudLayer {
 
 export type LayerKind = "triangles" | "points" | "voxels" | "lines" | "views";
 
-/** A layer of the document (docs/protocol.md, Viewer) without its buffer. */
+/** A layer of the document (docs/reference/protocol.md, Viewer) without its buffer. */
 export interface LayerInfo {
   id: string;
   kind: LayerKind;
@@ -77,7 +82,8 @@ export interface LayerInfo {
   vertices?: number; // triangles
   colors?: boolean;
   color?: string; // "#rrggbb", where the buffer has none
-  size_m?: number; // voxels; points: a square of this edge, else the view's point size
+  size_m?: number; // voxels; points: discs as wide as this, else squares of the view's point size
+  diameters?: boolean; // points: a float for each, in m, after the colours; size_m then says how many times as wide
   fov_rad?: readonly [number, number]; // views
   opacity?: number; // 0 to 1; 1 unless it is said
 }
@@ -125,7 +131,7 @@ export interface Camera {
 export interface Stats {
   frames: number;
   lastFrame_ms: number; // until the GPU was done
-  vertices: number; // of the cloud, in the picture
+  vertices: number; // in the picture: the cloud's and large layers'
   pictures: number; // that became complete
   lastPicture_ms: number; // from its beginning until it was
 }
@@ -136,7 +142,7 @@ export interface Viewer {
   readonly camera: Camera;
   readonly cloud: CloudLayer;
   readonly layers: SceneLayers;
-  /** What fit() shows, and what is up, where there is no cloud but layers. cloud.begin() does it by itself. */
+  /** Sets the bounds that fit() shows and the direction up, for layers without a cloud. cloud.begin() sets its own. */
   setBounds(bounds: readonly number[], up: readonly number[]): void;
   /** A camera drawn as a frame (the view of the step that is looked at); null: none. */
   setFrame(frame: CameraFrame | null): void;
@@ -152,6 +158,8 @@ export interface Viewer {
   /** Mouse: the tool has the left button unless it returns false or there is none; the camera has the others. */
   setPointerTool(tool: PointerTool | null): void;
   setTheme(dark: boolean): void;
+  /** Surfaces are shaded by depth (eye-dome lighting), so that what has no colours has a shape. */
+  setShading(shaded: boolean): void;
   /** For tests and for the frame time in the corner. A picture of a large cloud may take several frames. */
   readonly stats: Stats;
   dispose(): void;

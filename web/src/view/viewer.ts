@@ -4,7 +4,8 @@ import * as THREE from "three";
 import { SceneCamera } from "./camera";
 import { CloudView, type Stale } from "./cloud_view";
 import { Controls } from "./controls";
-import { Layers } from "./layers";
+import { EyeDome } from "./eye_dome";
+import { kBody, kOver, Layers } from "./layers";
 import { PixelProbe } from "./picking";
 import { Pacer } from "./pacer";
 import type { CameraFrame, Pick, PointerTool, SelectionPicture, Viewer } from "./types";
@@ -32,6 +33,8 @@ class SceneViewer implements Viewer {
   private probe: PixelProbe;
   private controls: Controls;
   private pacer: Pacer;
+  private eyeDome: EyeDome | null = null; // while surfaces are shaded
+  private drawnMoving = false; // the picture was begun while the camera moved
   private resized: ResizeObserver;
   private stale: Stale = "all";
   private drawn = 0; // vertices of the cloud that are in the picture
@@ -119,8 +122,16 @@ class SceneViewer implements Viewer {
     this.redraw();
   }
 
+  setShading(shaded: boolean): void {
+    if (shaded === (this.eyeDome !== null)) return;
+    this.eyeDome?.dispose();
+    this.eyeDome = shaded ? new EyeDome(this.renderer) : null;
+    this.redraw();
+  }
+
   dispose(): void {
     this.disposed = true;
+    this.eyeDome?.dispose();
     this.resized.disconnect();
     this.controls.dispose();
     this.camera.stop();
@@ -173,39 +184,47 @@ class SceneViewer implements Viewer {
     else this.step();
   }
 
-  /** Draws the picture anew, or goes on with it. */
+  /** Draws the picture anew, or goes on with it: large layers first, then the cloud. */
   private step(): void {
-    const { cloud } = this;
+    const { cloud, layers } = this;
+    const began = performance.now();
+    const moving = began - this.movedAt < kMoving_ms;
+    // What is seen through was drawn over half a picture: at rest it comes last.
+    const again = this.drawnMoving && !moving && this.eyeDome === null && layers.seeThrough;
     // Where only colours changed: the same squares once more over themselves, so that nothing flickers.
-    const clear = this.stale === "all";
-    const anew = this.stale !== "nothing";
+    const clear = this.stale === "all" || again;
+    const anew = this.stale !== "nothing" || again;
     if (anew) this.drawn = 0;
     this.stale = "nothing";
-    const began = performance.now();
-    const to = this.pacer.upTo(this.drawn, cloud.vertices, began - this.movedAt < kMoving_ms);
-    if (!anew && to === this.drawn) return this.tell();
+    const work = layers.work;
+    const all = work + cloud.vertices;
+    const from = this.drawn;
+    const to = this.pacer.upTo(from, all, moving);
+    if (!anew && to === from) return this.tell();
 
     if (anew) {
       this.began = began;
+      this.drawnMoving = moving && to < all;
       this.camera.update();
     }
     const size = this.size();
-    const { shared } = this.layers;
+    const { shared } = layers;
     shared.height.value = size[1];
     shared.picture.value.set(...size);
     shared.width.value = kLine_px * this.ratio;
     shared.size.value = cloud.size_px(this.ratio);
-    this.layers.group.visible = anew;
-    cloud.draw(this.drawn, to, size, this.ratio);
-    if (clear) this.renderer.clear();
-    this.renderer.render(this.scene, this.camera.camera);
-    const vertices = to - this.drawn;
+    const share = (vertices: number) => (work > 0 ? Math.min(vertices / work, 1) : vertices > 0 || all === 0 ? 1 : 0);
+    const through = moving || this.eyeDome !== null ? (all > 0 ? to / all : 1) : to === all ? 1 : 0;
+    layers.draw(share(from), share(to), through, anew || this.eyeDome !== null);
+    cloud.draw(Math.max(from - work, 0), Math.max(to - work, 0), size, this.ratio);
+    this.render(clear, size);
+    const vertices = to - from;
     this.drawn = to;
     this.pacer.drew(vertices, (ms) => {
       ++this.stats.frames;
       this.stats.lastFrame_ms = ms;
       this.stats.vertices = to;
-      const complete = to === cloud.vertices;
+      const complete = to === layers.work + cloud.vertices;
       if (complete) {
         ++this.stats.pictures;
         this.stats.lastPicture_ms = performance.now() - this.began;
@@ -214,6 +233,24 @@ class SceneViewer implements Viewer {
       else if (!complete && !this.disposed) this.step();
       else if (!this.asked) this.tell();
     });
+  }
+
+  private render(clear: boolean, size: readonly [number, number]): void {
+    const { renderer, eyeDome } = this;
+    const { camera } = this.camera;
+    if (eyeDome === null) {
+      camera.layers.enableAll();
+      if (clear) renderer.clear();
+      renderer.render(this.scene, camera);
+      return;
+    }
+    camera.layers.set(kBody);
+    eyeDome.begin(size, clear);
+    renderer.render(this.scene, camera);
+    eyeDome.compose(camera, this.ratio);
+    camera.layers.set(kOver);
+    renderer.render(this.scene, camera);
+    camera.layers.enableAll();
   }
 
   /** The picture is complete, and as everything was asked to be: its number is in the element until that changes. */
@@ -233,10 +270,14 @@ class SceneViewer implements Viewer {
         ? (this.hover(x, y) ?? this.cloud.hover(...this.toPicture(x, y), this.size(), this.ratio, kReach_px))
         : this.pick(x, y);
     const point = found === null ? null : new THREE.Vector3(...found.position).sub(this.camera.origin);
-    const surface = this.layers.any ? this.layerUnder(x, y) : null;
-    if (point === null || surface === null) return point ?? surface;
     const { position } = this.camera.camera;
-    return position.distanceTo(point) < position.distanceTo(surface) ? point : surface;
+    const places = this.layers.any ? [this.layerUnder(x, y), this.layers.pointUnder(...this.toPicture(x, y), this.size())] : [];
+    let nearest = point;
+    for (const place of places) {
+      if (place === null || (nearest !== null && position.distanceTo(nearest) <= position.distanceTo(place))) continue;
+      nearest = place;
+    }
+    return nearest;
   }
 
   /** The place on a layer. */
@@ -245,10 +286,10 @@ class SceneViewer implements Viewer {
     const [px, py] = this.toPicture(x, y).map(Math.floor) as [number, number];
     this.camera.update();
     this.layers.shared.as_depth.value = true;
+    this.layers.drawSurfaces();
     this.cloud.hide();
     const [a, b, c, seen] = this.probe.read(this.scene, this.camera.camera, px, py, size) as unknown as number[];
     this.layers.shared.as_depth.value = false;
-    this.layers.group.visible = true;
     if (seen === 0) return null;
     const depth = (a! + 256 * b! + 65536 * c!) / 16777215;
     const place = new THREE.Vector3((2 * (px + 0.5)) / size[0] - 1, 1 - (2 * (py + 0.5)) / size[1], 2 * depth - 1);

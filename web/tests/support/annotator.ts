@@ -82,7 +82,7 @@ export class Annotator {
     await expect(this.page.getByTestId("current-label")).toHaveText(String(number));
   }
 
-  /** Waits until the label has so many control points; undefined: any number of points, but not none. */
+  /** Waits until the label has `controls` control points; undefined: at least one. */
   async expectLabel(number: number, what: { controls?: number; name?: string; empty?: boolean }): Promise<void> {
     const { controls, name, empty } = what;
     const start = `Label ${number}${name ? ` ${name}` : ""}: `;
@@ -138,7 +138,7 @@ export class Annotator {
     await mouse.up({ button });
   }
 
-  /** Of two opposite corners. */
+  /** Drags a rectangle from corner a to the opposite corner b. */
   async dragRectangle(a: ScreenPlace, b: ScreenPlace): Promise<void> {
     await this.drag([a, b]);
   }
@@ -148,7 +148,7 @@ export class Annotator {
     await this.page.keyboard.press("Enter");
   }
 
-  // What can be seen.
+  // Looking at the page.
 
   /** Colours of the view's picture there. */
   pixels(places: readonly ScreenPlace[]): Promise<Color[]> {
@@ -200,7 +200,7 @@ export class Annotator {
 
   // Files.
 
-  /** What Export gives. */
+  /** Returns the file that Export downloads. */
   async export(format: string): Promise<Buffer> {
     await this.page.getByRole("button", { name: "Export", exact: true }).click();
     const downloading = this.page.waitForEvent("download");

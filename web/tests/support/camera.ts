@@ -2,7 +2,7 @@
 // Where things are on the screen: the page's whole-cloud views, computed again from what the keys promise.
 import type { Place } from "./clouds";
 
-const kSlope = Math.tan((25 * Math.PI) / 180); // of half the view's height
+const kSlope = Math.tan((25 * Math.PI) / 180); // half the view's height at distance 1
 const kRoom = 1.08;
 
 type Vector = [number, number, number];
@@ -47,7 +47,7 @@ export class ScreenCamera {
   private readonly position: Vector;
   private readonly axes: readonly [Vector, Vector, Vector]; // right, up, towards the viewer
 
-  /** Of a cloud with z up. @param box of the view on the page. */
+  /** Camera of the page for a cloud with z up. @param box place of the view on the page. */
   constructor(positions: Float32Array, from: From, private readonly box: Box) {
     const [least, most] = boundsOf(positions);
     const middle: Vector = [(least[0] + most[0]) / 2, (least[1] + most[1]) / 2, (least[2] + most[2]) / 2];

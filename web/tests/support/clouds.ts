@@ -46,7 +46,7 @@ interface Surface {
   at(u: number, v: number): Place | null; // 0 to 1; null: nothing there
 }
 
-const kHalf: readonly [number, number] = [0.6, 0.45]; // of the table
+const kHalf: readonly [number, number] = [0.6, 0.45]; // half sides of the table, in metres
 const kWhere = {
   box: { x: -0.35, y: -0.1, half: [0.1, 0.08], z: 0.2 },
   flatBox: { x: 0.36, y: 0.24, half: [0.1, 0.08], z: 0.1 },

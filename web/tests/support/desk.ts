@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// What every test has: a folder of its own, programs that end with it, and a page without errors.
+// Fixture of every test: a folder of its own, programs that end with it, and a page without errors.
 import { mkdtempSync, rmSync } from "node:fs";
 import { tmpdir } from "node:os";
 import { join } from "node:path";
@@ -11,7 +11,7 @@ import { Program } from "./program";
 
 export { expect, keep };
 
-/** What browsers say where the connection ends, which tests let it. */
+/** Console messages of browsers when the connection ends; tests that end it allow them. */
 const kLostConnection = /WebSocket connection to .* failed|ERR_CONNECTION_REFUSED|ERR_CONNECTION_RESET|ERR_EMPTY_RESPONSE|ERR_SOCKET_NOT_CONNECTED/;
 
 export interface Desk {

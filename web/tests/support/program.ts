@@ -13,7 +13,7 @@ export function programFile(): string {
   return file;
 }
 
-/** What a command without a page wrote to its standard output. */
+/** Runs a command without a page and returns its standard output. */
 export function runProgram(args: readonly string[]): string {
   const { status, stdout, stderr, error } = spawnSync(programFile(), ["--quiet", ...args], { encoding: "utf8" });
   if (error) throw error;

@@ -18,13 +18,13 @@ constexpr std::size_t kNodesAhead{6};
 constexpr std::size_t kLengthsApart{2};  ///< buckets
 constexpr std::size_t kEmptyQueue{std::numeric_limits<std::size_t>::max()};
 
-/// A thread's own.
-struct Seat {
-  explicit Seat(PathBuckets buckets)
+/// State of one thread.
+struct Worker {
+  explicit Worker(PathBuckets buckets)
       : queue{std::move(buckets)}, nearest{queue.nearest_length().value_or(kEmptyQueue)} {}
-  std::mutex mutex;  ///< of the queue
+  std::mutex mutex;  ///< guards the queue
   PathBuckets queue;
-  std::atomic<std::size_t> nearest;  ///< length in the queue
+  std::atomic<std::size_t> nearest;  ///< shortest length in the queue
   ReachedNodes work;
   ReachedNodes found;
   std::vector<std::uint32_t> touched;
@@ -35,15 +35,15 @@ class ParallelSpread {
   ParallelSpread(const Neighbourhood& neighbourhood, std::span<PathReach> reaches, PathBuckets queue,
                  std::size_t threads)
       : neighbourhood_{neighbourhood}, reaches_{reaches}, nodes_left_{static_cast<std::int64_t>(queue.count())} {
-    seats_.push_back(std::make_unique<Seat>(std::move(queue)));
-    while (seats_.size() < threads) seats_.push_back(std::make_unique<Seat>(PathBuckets{neighbourhood}));
+    seats_.push_back(std::make_unique<Worker>(std::move(queue)));
+    while (seats_.size() < threads) seats_.push_back(std::make_unique<Worker>(PathBuckets{neighbourhood}));
   }
 
-  /// The threads need not come at the same time: who comes first begins, and does everything when nobody else comes.
-  void sit() {
+  /// Runs a worker. The threads need not start together: the first begins, and does everything when no other comes.
+  void run_worker() {
     const std::size_t seat = taken_seats_++;
     try {
-      Seat& own = *seats_[seat];
+      Worker& own = *seats_[seat];
       while (nodes_left_ > 0 && !failed_) {
         keep_found(own);
         take(own);
@@ -51,19 +51,19 @@ class ParallelSpread {
         go_through(own);
       }
     } catch (...) {
-      failed_ = true;  // nobody waits for what this one had in hand
+      failed_ = true;  // no thread waits for the nodes of this one
       throw;
     }
   }
 
-  /// The queue is empty, and can be used again.
+  /// Returns the queue, empty and ready for use.
   PathBuckets finish(std::vector<std::uint32_t>& touched) && {
     for (const auto& seat : seats_) touched.insert(touched.end(), seat->touched.begin(), seat->touched.end());
     return std::move(seats_.front()->queue);
   }
 
  private:
-  void keep_found(Seat& seat) {
+  void keep_found(Worker& seat) {
     if (seat.found.empty()) return;
     const std::lock_guard lock{seat.mutex};
     for (const PathBuckets::Reached& found : seat.found) seat.queue.push(found.path, found.node);
@@ -71,10 +71,10 @@ class ParallelSpread {
     seat.nearest = seat.queue.nearest_length().value_or(kEmptyQueue);
   }
 
-  /// From another's queue where that is behind, as when its thread has no core to run on, and half of what is nearest
-  /// there when the own one is empty.
-  void take(Seat& own) {
-    Seat* from = &own;
+  /// Takes nodes from another queue where that is behind, as when its thread has no core to run on, and half of its
+  /// nearest nodes when the own queue is empty.
+  void take(Worker& own) {
+    Worker* from = &own;
     for (const auto& seat : seats_) {
       if (seat->nearest < own.nearest - std::min(kLengthsApart, own.nearest.load()) && seat->nearest < from->nearest)
         from = seat.get();
@@ -88,7 +88,7 @@ class ParallelSpread {
     from->nearest = from->queue.nearest_length().value_or(kEmptyQueue);
   }
 
-  void go_through(Seat& seat) {
+  void go_through(Worker& seat) {
     for (std::size_t i = 0; i < seat.work.size(); ++i) {
       if (i + kNodesAhead < seat.work.size()) fetch_edges(neighbourhood_, seat.work[i + kNodesAhead].node);
       const auto [path, node] = seat.work[i];
@@ -115,9 +115,9 @@ class ParallelSpread {
 
   const Neighbourhood& neighbourhood_;
   std::span<PathReach> reaches_;
-  std::vector<std::unique_ptr<Seat>> seats_;
+  std::vector<std::unique_ptr<Worker>> seats_;
   std::atomic<std::size_t> taken_seats_{0};
-  std::atomic<std::int64_t> nodes_left_;  ///< in queues and in hands
+  std::atomic<std::int64_t> nodes_left_;  ///< in queues and being processed
   std::atomic<bool> failed_{false};
 };
 
@@ -126,7 +126,7 @@ class ParallelSpread {
 void spread_in_parallel(const Neighbourhood& neighbourhood, std::span<PathReach> reaches, PathBuckets& queue,
                         const Executor& executor, std::vector<std::uint32_t>& touched) {
   ParallelSpread spread{neighbourhood, reaches, std::move(queue), executor.threads()};
-  executor.parallel_for(executor.threads(), 1, [&](std::size_t, std::size_t) { spread.sit(); });
+  executor.parallel_for(executor.threads(), 1, [&](std::size_t, std::size_t) { spread.run_worker(); });
   queue = std::move(spread).finish(touched);
 }
 

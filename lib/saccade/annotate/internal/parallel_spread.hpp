@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// spread_in_parallel: thesis Algorithm 8 by several threads.
+// spread_in_parallel: thesis Algorithm 8 on several threads.
 
 #include <cstdint>
 #include <span>
@@ -12,11 +12,11 @@
 
 namespace saccade {
 
-/// Goes on from a queue until it is empty and nothing that follows is nearer along any edge. Each thread has a queue of
-/// its own, and takes half of the nearest nodes of another where that is empty. A reach, one per node, is only ever
-/// lowered: what comes out is what one thread finds, whoever was first. A node that is reached before a thread that is
-/// behind reaches it along a shorter path is gone through again: few are.
-/// Appends the nodes that were gone through to `touched`: some of them twice, in no particular order.
+/// Continues from a queue until it is empty and no further node gets nearer along an edge. Each thread has its own
+/// queue, and takes half of the nearest nodes of another when that is empty. A reach, one per node, is only ever
+/// lowered, so the result equals that of one thread in any order. A node is processed again if a slower thread later
+/// reaches it along a shorter path; this is rare. Appends the processed nodes to `touched`, with some duplicates, in no
+/// particular order.
 void spread_in_parallel(const Neighbourhood& neighbourhood, std::span<PathReach> reaches, PathBuckets& queue,
                         const Executor& executor, std::vector<std::uint32_t>& touched);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// PathBuckets: nodes in about the order in which paths reach them. For thesis Algorithm 8.
+// PathBuckets: nodes in approximate order of their path lengths. For thesis Algorithm 8.
 
 #include <algorithm>
 #include <bit>
@@ -13,17 +13,17 @@
 
 namespace saccade {
 
-/// The edges of a node are needed soon: half of the time of a search goes into waiting for them. Inlined at once: g++
-/// takes calls of a function that does nothing but fetch for superfluous.
+/// Prefetches the edges of a node: half of the time of a search is spent waiting for them. Inlined immediately, because
+/// g++ drops calls of a function that only prefetches.
 [[gnu::always_inline]] inline void fetch_edges(const Neighbourhood& neighbourhood, std::uint32_t node) {
-  constexpr std::size_t kEdgesPerLine{8};  // of the cache
+  constexpr std::size_t kEdgesPerLine{8};  // edges per cache line
   const std::span<const Neighbourhood::Edge> edges = neighbourhood.edges(node);
   __builtin_prefetch(edges.data());
   if (edges.size() > kEdgesPerLine) __builtin_prefetch(edges.data() + kEdgesPerLine);
 }
 
-/// A queue by path length. Paths of nearly equal length are in one bucket, in no order: a node that is found to be
-/// nearer after all is looked at again. Empty between searches; one per search at a time.
+/// Queue by path length. Paths of nearly equal length share one unordered bucket; a node that is later found to be
+/// nearer is visited again. Empty between searches; for one search at a time.
 class PathBuckets {
  public:
   struct Reached {
@@ -31,14 +31,14 @@ class PathBuckets {
     std::uint32_t node;
   };
 
-  /// The neighbourhood stays where it is.
+  /// Creates the queue. The neighbourhood must not move.
   explicit PathBuckets(const Neighbourhood& neighbourhood)
       : neighbourhood_{&neighbourhood},
         shift_{bucket_shift(neighbourhood)},
         buckets_((kPathUnits >> shift_) + 1),
         first_{buckets_.size()} {}
 
-  /// Expects path < Ω_max, in path units.
+  /// Adds a node. Expects path < Ω_max, in path units.
   void push(std::uint32_t path, std::uint32_t node) {
     const std::size_t bucket = path >> shift_;
     buckets_[bucket].push_back({path, node});
@@ -47,8 +47,8 @@ class PathBuckets {
     fetch_edges(*neighbourhood_, node);
   }
 
-  /// Calls visit(path, node), the shorter paths first, until there is none or goes_on(), asked before each bucket, is
-  /// false; visit may push what is not shorter.
+  /// Calls visit(path, node), shorter paths first, until the queue is empty or goes_on(), called before each bucket,
+  /// returns false; visit may push paths that are not shorter.
   template <class Visit, class GoesOn>
   void drain(const Visit& visit, const GoesOn& goes_on) {
     while (std::vector<Reached>* bucket = nearest()) {
@@ -67,7 +67,7 @@ class PathBuckets {
     drain(visit, [] { return true; });
   }
 
-  /// The number of the bucket of the shortest paths.
+  /// Returns the number of the bucket with the shortest paths.
   [[nodiscard]] std::optional<std::size_t> nearest_length() {
     if (nearest() == nullptr) return std::nullopt;
     return first_;
@@ -77,7 +77,8 @@ class PathBuckets {
     for (std::size_t b = first_; b <= last_; ++b) count += buckets_[b].size();
     return count;
   }
-  /// Moves to the end of `taken` up to `most` of those with about the shortest paths, who came first; or half of them.
+  /// Moves up to `most` of the nodes with about the shortest paths, oldest first, to the end of `taken`; or half of
+  /// them.
   void take(std::size_t most, std::vector<Reached>& taken) {
     if (std::vector<Reached>* bucket = nearest()) move_first(*bucket, std::min(most, bucket->size()), taken);
   }
@@ -89,7 +90,7 @@ class PathBuckets {
   static constexpr int kMostBucketsLog2{14};
   static constexpr std::size_t kAhead{6};  ///< nodes of a bucket
 
-  /// The first bucket that is not empty; none where all are.
+  /// Returns the first bucket that is not empty; nullptr where all are empty.
   [[nodiscard]] std::vector<Reached>* nearest() {
     for (; first_ <= last_; ++first_) {
       if (!buckets_[first_].empty()) return &buckets_[first_];
@@ -105,7 +106,7 @@ class PathBuckets {
     bucket.erase(bucket.begin(), end);
   }
 
-  /// Of equal length, half of the edges are not shorter: few nodes are looked at twice.
+  /// Returns the shift. With equal bucket widths, half of the edges are not shorter: few nodes are visited twice.
   static unsigned bucket_shift(const Neighbourhood& neighbourhood) {
     const int length = static_cast<int>(std::bit_width(neighbourhood.median_cost())) - 1;
     const int least = static_cast<int>(std::bit_width(kPathUnits)) - 1 - kMostBucketsLog2;
@@ -115,7 +116,7 @@ class PathBuckets {
   const Neighbourhood* neighbourhood_;
   unsigned shift_;
   std::vector<std::vector<Reached>> buckets_;
-  std::size_t first_;  ///< of those that are not empty; as many as there are where all are
+  std::size_t first_;  ///< first bucket that is not empty; the number of buckets where all are empty
   std::size_t last_{0};
 };
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// PathReach: path and root of a node in one number, and the neighbours that are nearer along a node. For Algorithm 8.
+// PathReach: path and root of a node in one number, and the neighbours that get nearer along a node. For Algorithm 8.
 
 #include <algorithm>
 #include <atomic>
@@ -12,7 +12,7 @@
 
 namespace saccade {
 
-/// Path in the upper half, the root's point in the lower: the less, the nearer.
+/// Path in the upper half, the root's point in the lower: smaller is nearer.
 using PathReach = std::uint64_t;
 
 inline constexpr unsigned kPathShift{32};
@@ -24,7 +24,7 @@ inline constexpr PathReach kNoPath{PathReach{kPathUnits} << kPathShift};
 [[nodiscard]] inline std::uint32_t path_of(PathReach reach) { return static_cast<std::uint32_t>(reach >> kPathShift); }
 [[nodiscard]] inline std::uint32_t root_of_reach(PathReach reach) { return static_cast<std::uint32_t>(reach); }
 
-/// Other threads may lower it at the same time.
+/// Loads a reach that other threads may lower at the same time.
 [[nodiscard]] inline PathReach load_reach(PathReach& reach) {
   return std::atomic_ref<PathReach>{reach}.load(std::memory_order_relaxed);
 }
@@ -37,7 +37,7 @@ template <class Lower>
   const std::span<const Neighbourhood::Edge> edges = neighbourhood.edges(node);
   for (std::size_t first = 0; first < edges.size(); first += kEdgesAtOnce) {
     const std::size_t count = std::min(kEdgesAtOnce, edges.size() - first);
-    std::uint32_t nearer{0};  // found without branches, as few are
+    std::uint32_t nearer{0};  // found without branches, because few are nearer
     for (std::size_t e = 0; e < count; ++e) {
       const Neighbourhood::Edge& edge = edges[first + e];
       const bool is_nearer = to_node + reach_of(edge.cost, 0) < load_reach(reach[edge.node]);

@@ -37,7 +37,7 @@ void SplatDepth::add(std::size_t layer, std::span<const ScreenPosition> position
   float* const depths_m = layers_[layer].data();
   const std::size_t outside = layers_[layer].size() - 1;
   std::array<std::size_t, kSplatsAtOnce> places;
-  while (!positions.empty()) {  // all memory is asked for before any is waited for
+  while (!positions.empty()) {  // prefetches all memory before waiting for any
     const auto block = positions.first(std::min(kSplatsAtOnce, positions.size()));
     positions = positions.subspan(block.size());
     for (std::size_t i = 0; i < block.size(); ++i) {
@@ -56,8 +56,8 @@ void SplatDepth::add(std::size_t layer, std::span<const ScreenPosition> position
 }
 
 void SplatDepth::finish(const Executor& executor) {
-  // A pixel shows the nearest of the squares that begin up to size − 1 pixels to the left and above. Spans are put
-  // together of two shorter ones, backwards, so that the shorter ones are still there.
+  // A pixel shows the nearest of the squares that begin up to size − 1 pixels to the left and above. Spans are combined
+  // from two shorter ones, backwards, so that the shorter ones are still available.
   const auto width = static_cast<std::size_t>(width_);
   const auto height = static_cast<std::size_t>(height_);
   const auto widen = [&](const auto& shift) {

@@ -2,6 +2,7 @@
 #include "saccade/arm/internal/arm_chain.hpp"
 
 #include <algorithm>
+#include <iterator>
 #include <optional>
 #include <string_view>
 #include <utility>
@@ -15,21 +16,23 @@ namespace {
 using JointPtr = urdf::JointSharedPtr;
 using Links = std::vector<std::string>;
 
-/// Usual names of the frame that tools are screwed to, the likeliest first.
+/// Usual names of the frame that tools are mounted on, likeliest first.
 constexpr std::string_view kFlanges[]{"tool0",        "link8",      "link_8", "flange", "ee_link", "end_effector_link",
                                       "end_effector", "tool_frame", "tcp"};
+/// Further names of links at the end of an arm, which serve only for proposals.
+constexpr std::string_view kEnds[]{"eef", "ee"};
 constexpr std::string_view kOpticalFrame{"optical_frame"};
 constexpr std::size_t kMostProposed{8};
 
 Error unclear(const std::string& what, const std::string& where = "") { return {Errc::invalid_argument, what, where}; }
 
-/// Links that are fixed to each other, without what a gripper moves.
+/// Links that are fixed to each other, without links that a gripper moves.
 struct RigidBody {
-  int joints;   ///< that move between the base and it
-  Links links;  ///< that behind the last of these first
+  int joints;   ///< moving joints between the base and it
+  Links links;  ///< first the link behind the last of these joints
 };
 
-/// Whether the name is the word, or has it behind a sign: "left_tool0", not "mytool0".
+/// Tells whether the name is the word, or ends with it after a separator: "left_tool0", not "mytool0".
 bool ends_with_word(const std::string& name, std::string_view word) {
   const std::string small = in_small_letters(name);
   if (!small.ends_with(word)) return false;
@@ -97,11 +100,16 @@ class ChainFinder {
     }
   }
 
-  /// Bodies that end the chains with the most joints.
-  [[nodiscard]] Result<std::vector<RigidBody>> ends() const {
+  /// Returns all bodies that a joint moves.
+  [[nodiscard]] std::vector<RigidBody> moved_bodies() const {
     std::vector<RigidBody> all;
     RigidBody base{0, {}};
     add_body(chain_.base, base, all);
+    return all;
+  }
+
+  /// Keeps the bodies that end the chains with the most joints.
+  [[nodiscard]] Result<std::vector<RigidBody>> ends(std::vector<RigidBody> all) const {
     int most{0};
     for (const RigidBody& body : all) most = std::max(most, body.joints);
     if (most == 0) return Error{Errc::corrupt_data, "no joint moves behind " + chain_.base, ""};
@@ -117,7 +125,8 @@ class ChainFinder {
   }
 
   Status choose_tip() {
-    SACCADE_TRY(std::vector<RigidBody> arms, ends());
+    const std::vector<RigidBody> all = moved_bodies();
+    SACCADE_TRY(std::vector<RigidBody> arms, ends(all));
     if (arms.size() > 1) {
       const auto with_camera = [](const RigidBody& arm) { return !optical_frames(arm.links).empty(); };
       const auto seeing = std::find_if(arms.begin(), arms.end(), with_camera);
@@ -128,6 +137,7 @@ class ChainFinder {
       arms = {arm};
     }
     chain_.tip = tip_of(arms.front());
+    say_flange_elsewhere(all, arms.front());
     gripper_ = gripper_on(arms.front());
     return {};
   }
@@ -137,10 +147,44 @@ class ChainFinder {
     for (const RigidBody& arm : arms)
       tips.push_back(tip_of(arm) + " (" + std::to_string(arm.joints) + (arm.joints == 1 ? " joint)" : " joints)"));
     std::sort(tips.begin(), tips.end());
-    return unclear("several chains are equally long; name a tip: " + options_text("--tip", tips));
+    const std::string likeliest = likeliest_of(arms);
+    return unclear("several chains are equally long; name a tip: " + options_text("--tip", tips) +
+                   (likeliest.empty() ? "" : "; --tip " + likeliest + " is the likeliest, by its name"));
   }
 
-  /// Joints of a gripper that hang on a body.
+  /// Returns the tip of the only arm with the likeliest name of a flange, or with a camera; empty where several have
+  /// it.
+  [[nodiscard]] std::string likeliest_of(const std::vector<RigidBody>& arms) const {
+    const auto only = [&](const auto& fits) {
+      const auto has = [&fits](const RigidBody& arm) { return std::any_of(arm.links.begin(), arm.links.end(), fits); };
+      const auto found = std::find_if(arms.begin(), arms.end(), has);
+      const auto count = std::count_if(arms.begin(), arms.end(), has);
+      return std::pair{count, count == 1 ? tip_of(*found) : std::string{}};
+    };
+    std::vector<std::string_view> words(std::begin(kFlanges), std::end(kFlanges));
+    words.insert(words.end(), std::begin(kEnds), std::end(kEnds));
+    for (const std::string_view word : words) {
+      const auto [count, tip] = only([word](const std::string& link) { return ends_with_word(link, word); });
+      if (count > 0) return tip;
+    }
+    return only([](const std::string& link) { return in_small_letters(link).find("camera") != std::string::npos; })
+        .second;
+  }
+
+  /// Says where a flange is, if its name is on a chain that is not taken.
+  void say_flange_elsewhere(const std::vector<RigidBody>& all, const RigidBody& arm) {
+    if (flange_by_name(arm)) return;
+    for (const RigidBody& body : all) {
+      const auto flange = body.joints > 1 && body.joints < arm.joints ? flange_by_name(body) : std::nullopt;
+      if (!flange) continue;
+      chain_.choices.push_back("the longest chain is taken, to " + tip_of(arm) +
+                               "; a flange by its name is elsewhere: --tip " + *flange + " (" +
+                               std::to_string(body.joints) + " joints)");
+      return;
+    }
+  }
+
+  /// Returns the joints of a gripper that hang on a body.
   [[nodiscard]] Links gripper_on(const RigidBody& body) const {
     Links names;
     for (const std::string& link : body.links) {
@@ -151,7 +195,7 @@ class ChainFinder {
     return names;
   }
 
-  /// The flange by its name, else the last link before a gripper, else the only end, else the first link.
+  /// Returns the flange by its name, otherwise the last link before a gripper, the only end, or the first link.
   [[nodiscard]] std::string tip_of(const RigidBody& body) const {
     if (const auto flange = flange_by_name(body)) return *flange;
     if (!gripper_on(body).empty()) return before_gripper(body);
@@ -161,7 +205,7 @@ class ChainFinder {
     return leaves.size() == 1 ? leaves.front() : body.links.front();
   }
 
-  /// Among links with the same word the one with the fewest joints before it; none where two have as few.
+  /// Among links with one word returns the one with the fewest joints before it; nullopt at a tie.
   [[nodiscard]] std::optional<std::string> flange_by_name(const RigidBody& body) const {
     for (const std::string_view word : kFlanges) {
       std::optional<std::string> flange;
@@ -170,7 +214,7 @@ class ChainFinder {
       for (const std::string& link : body.links) {
         if (!ends_with_word(link, word)) continue;
         const std::size_t depth = tree_.path(body.links.front(), link)->size();
-        if (depth == 0 && word.starts_with("link")) continue;  // joint 8 moves it: that is no flange
+        if (depth == 0 && word.starts_with("link")) continue;  // joint 8 moves it, so it is no flange
         if (flange && depth >= least) {
           alone = alone && depth > least;
           continue;
@@ -184,7 +228,7 @@ class ChainFinder {
     return std::nullopt;
   }
 
-  /// The last link that is before all joints of the gripper.
+  /// Returns the last link that precedes all joints of the gripper.
   [[nodiscard]] std::string before_gripper(const RigidBody& body) const {
     std::optional<std::vector<JointPtr>> shared;
     for (const std::string& link : body.links) {
@@ -200,8 +244,8 @@ class ChainFinder {
     return shared && !shared->empty() ? shared->back()->child_link_name : body.links.front();
   }
 
-  /// An optical frame that is fixed to the tip. A tip that was not named becomes what naming that frame makes it: the
-  /// link behind the last joint.
+  /// Chooses an optical frame that is fixed to the tip. A tip that was not named moves as if that frame had been named:
+  /// to the link behind the last joint.
   Status choose_camera() {
     const std::string first = tree_.last_moving(chain_.base, chain_.tip);
     RigidBody body{0, {}};
@@ -248,7 +292,7 @@ class ChainFinder {
   const UrdfTree& tree_;
   const UrdfConfig& config_;
   ArmChain chain_;
-  Links gripper_;  ///< joints behind a tip that was chosen
+  Links gripper_;  ///< joints behind a chosen tip
 };
 
 }  // namespace

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ArmChain: which joints of a URDF are the arm's, where it ends and which link is the camera's optical frame.
+// ArmChain: the joints of a URDF that form the arm, its end, and the link that is the camera's optical frame.
 
 #include <set>
 #include <string>
@@ -15,14 +15,15 @@ struct ArmChain {
   std::string base;
   std::string tip;
   std::string camera;
-  std::vector<urdf::JointSharedPtr> joints;  ///< from base to tip, fixed ones too
+  std::vector<urdf::JointSharedPtr> joints;  ///< from base to tip, including fixed ones
   std::set<std::string> gripper;             ///< gripper_joints()
-  std::vector<std::string> choices;          ///< what neither the file nor the configuration says, a sentence each
+  std::vector<std::string> choices;          ///< choices that neither the file nor the configuration makes, one
+                                             ///< sentence each
 };
 
-/// Finds out what the configuration leaves open, as docs/robots.md says under "What is chosen". invalid_argument for
-/// links that are not there or not behind each other, and where several tips or cameras are as likely, with these;
-/// corrupt_data where nothing moves.
+/// Chooses what the configuration leaves open, as docs/guides/robots.md says under "What is chosen". Answers
+/// invalid_argument for links that do not exist or do not follow each other, and where several tips or cameras are
+/// equally likely, listing them; corrupt_data where no joint moves.
 [[nodiscard]] Result<ArmChain> find_arm_chain(const UrdfTree& tree, const UrdfConfig& config);
 
 }  // namespace saccade

@@ -57,7 +57,7 @@ void place_blocks_kernel(std::span<const Frame> frames, std::span<const std::uin
   }
 }
 
-/// How far coordinates lie outside of an interval.
+/// Returns the distance of coordinates from an interval.
 HWY_INLINE FloatVec beyond(FloatVec at, float center, float half) {
   const Floats d;
   return hn::Max(hn::Sub(hn::Abs(hn::Sub(at, hn::Set(d, center))), hn::Set(d, half)), hn::Zero(d));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ClosedForm: the closed form that fits an arm, of six joints or of seven.
+// ClosedForm: the closed-form solution for an arm of six or seven joints.
 
 #include <array>
 #include <cstddef>
@@ -13,23 +13,24 @@
 
 namespace saccade {
 
-/// SixAxes, or for seven joints SwivelElbow, else HeldJoint. Immutable, safe for concurrent use.
+/// Closed form: SixAxes, or for seven joints SwivelElbow, otherwise HeldJoint. Immutable, safe for concurrent use.
 class ClosedForm {
  public:
-  /// unsupported, saying what about the arm does not fit. Expects one sample at least.
+  /// Answers unsupported, naming the property of the arm that does not fit. Expects at least one sample.
   [[nodiscard]] static Result<ClosedForm> find(const ArmModel& arm, int redundancy_samples);
 
-  /// Whether axes meet, and are parallel, to the last digits. If not, solutions are near ones, to be refined.
+  /// Tells whether axes meet, and are parallel, to the last digits. If not, solutions are approximate and need
+  /// refinement.
   [[nodiscard]] bool is_exact() const;
   [[nodiscard]] IkRedundancy redundancy() const;
-  /// How often solve() must be asked for all solutions: once, or for each value of what a pose leaves open.
+  /// Returns the number of calls of solve() needed for all solutions: one, or one per value of the free parameter.
   [[nodiscard]] std::size_t rounds() const;
 
   struct Solutions {
     std::array<Configuration, 8> q;  ///< the first `count` are set
     std::size_t count{0};
   };
-  /// One round. All its solutions in which every angle, give or take whole turns, is within its limits.
+  /// Solves one round. Returns all its solutions in which every angle, up to whole turns, is within its limits.
   [[nodiscard]] Solutions solve(const Pose& T_world_camera, const Configuration& reference, std::size_t round) const;
 
  private:

@@ -12,7 +12,7 @@ using Eigen::Vector3d;
 
 constexpr double kTouching_m{1e-6};
 
-/// Of two covers, from coarse to fine.
+/// Separation of two covers, from coarse to fine.
 class Separation {
  public:
   Separation(const SphereTree& a, const Pose& T_a_b, const SphereTree& b, double enough_m)
@@ -44,7 +44,7 @@ class Separation {
   double least_m_{std::numeric_limits<double>::infinity()};
 };
 
-/// Whether a side of one of two boxes has the other wholly beyond it, by more than margin_m. `half_m` are half edges.
+/// Tells whether a side of one of two boxes separates it from the other by more than margin_m. `half_m` are half edges.
 bool boxes_apart(const Pose& T_world_a, const Vector3d& a_half_m, const Pose& T_world_b, const Vector3d& b_half_m,
                  double margin_m) {
   const Eigen::Matrix3d R_a_b = T_world_a.linear().transpose() * T_world_b.linear();

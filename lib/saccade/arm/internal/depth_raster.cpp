@@ -10,9 +10,9 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kRounding_px{1e-7};  ///< so that no pixel falls between two triangles that share an edge
+constexpr double kRounding_px{1e-7};  ///< keeps pixels from falling between two triangles that share an edge
 
-/// Distance from the line a → b, positive on the side of c; everywhere positive if a and b are one point.
+/// Returns the distance from the line a → b, positive on the side of c; positive everywhere if a and b coincide.
 std::array<double, 3> edge_distance(const Vector2d& a, const Vector2d& b, const Vector2d& c) {
   const double length = (b - a).norm();
   if (!(length > 1e-9)) return {0.0, 0.0, 1e9};
@@ -27,7 +27,7 @@ void DepthRaster::add(const Triangle& p_camera, bool at_rim) {
   const Vector3d normal = (p_camera[1] - p_camera[0]).cross(p_camera[2] - p_camera[0]);
   const double size = normal.norm();
   const double offset = normal.dot(p_camera[0]);
-  if (!(std::fabs(offset) > 1e-9 * size)) return;  // seen edge-on: no pixel, and its neighbours grow
+  if (!(std::fabs(offset) > 1e-9 * size)) return;  // seen edge-on: covers no pixel, and its neighbours grow
   // n·(z·ray) = offset; the margin moves the plane towards the camera, at most up to it.
   const double moved = std::copysign(std::max(std::fabs(offset) - growth_.margin_m * size, 1e-9 * size), offset);
   Plane plane;
@@ -118,7 +118,7 @@ DepthRaster::Span DepthRaster::span(const Projected& t, int v, double beside_px)
   return {static_cast<int>(std::ceil(left)), static_cast<int>(std::floor(right))};
 }
 
-// From a span's first pixel on in single precision: within a triangle nothing changes by more than what it is worth.
+// Single precision from a span's first pixel on suffices: within a triangle nothing changes by more than its own size.
 
 void DepthRaster::draw_inside(const Projected& t, int v, const Span& span, float* row) {
   const int count = span.last - span.first + 1;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// DepthRaster: triangles in a camera's picture, as they are or grown by a margin; a depth buffer.
+// DepthRaster: depth buffer of triangles in a camera's image, optionally enlarged by a margin.
 
 #include <Eigen/Geometry>
 #include <array>
@@ -10,15 +10,15 @@
 
 namespace saccade {
 
-/// By how much a triangle's picture exceeds the triangle: margin_m in space, and border_px more in the picture;
-/// together at most most_px beside it.
+/// Enlargement of a triangle's image: margin_m in space, plus border_px in the image; together at most most_px.
 struct RasterGrowth {
   double margin_m{0.0};
   double border_px{0.0};
   double most_px{0.0};
 };
 
-/// Collects triangles in the camera's frame, then draws them. What lies nearer than kNearest_m along z is cut off.
+/// Raster that collects triangles in the camera's frame, then draws them. Anything nearer than kNearest_m along z is
+/// clipped.
 class DepthRaster {
  public:
   static constexpr double kNearest_m{0.001};
@@ -26,18 +26,18 @@ class DepthRaster {
   DepthRaster(const PinholeCamera& camera, const RasterGrowth& growth) : camera_{camera}, growth_{growth} {}
 
   using Triangle = std::array<Eigen::Vector3d, 3>;
-  /// @param at_rim  the triangle has an edge that nothing continues, so that its picture grows to the side too; others
-  ///                only come nearer, by the margin along their normal.
+  /// @param at_rim  the triangle has an edge without a neighbour, so its image grows sideways too; others only come
+  /// nearer, by the margin along their normal.
   void add(const Triangle& p_camera, bool at_rim);
   [[nodiscard]] bool empty() const { return triangles_.empty(); }
 
-  /// Rows [begin, end) of a picture: raises inverse_depth (1/m, 0: nothing), which starts with row `begin`, to that of
-  /// the nearest triangle whose picture holds the pixel's centre. The same for every order of triangles. O(triangles +
+  /// Draws rows [begin, end) of an image: raises inverse_depth (1/m, 0: nothing), which starts with row `begin`, to
+  /// that of the nearest triangle that covers the pixel's centre. The order of triangles does not matter. O(triangles +
   /// covered pixels).
   void draw_rows(int begin, int end, float* inverse_depth) const;
 
  private:
-  /// a·u + b·v + c.
+  /// Linear function a·u + b·v + c.
   struct Linear {
     double a{0.0}, b{0.0}, c{0.0};
     [[nodiscard]] double at(int u, int v) const { return a * u + b * v + c; }
@@ -46,7 +46,7 @@ class DepthRaster {
     std::array<Linear, 3> edges;  ///< distance in pixels, positive inside
     Linear inverse_depth;
     double farthest, nearest;  ///< bounds of the inverse depth
-    double grown_px;           ///< at most
+    double grown_px;           ///< upper limit
     double left, right, top, bottom;
   };
   /// Pixels of a row, both ends included; none by default.

@@ -11,10 +11,10 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kElbowRounding{1e-12};  // how far beyond the reach a pose may lie by rounding, relative
-constexpr double kOnePoint_m{1e-10};     // points that are nearer to each other have no direction
+constexpr double kElbowRounding{1e-12};  // relative distance beyond the reach that counts as rounding
+constexpr double kOnePoint_m{1e-10};     // points closer together than this define no direction
 
-/// With its x axis along a vector, and its z axis as near to another as that allows.
+/// Returns a frame with its x axis along a vector, and its z axis as near to another as possible.
 Matrix3d frame_along(const Vector3d& x, const Vector3d& z) {
   Matrix3d frame;
   frame.col(0) = x.normalized();

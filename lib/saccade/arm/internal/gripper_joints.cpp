@@ -11,8 +11,8 @@ namespace {
 
 using JointPtr = urdf::JointSharedPtr;
 
-constexpr int kLeastArm{3};  // joints before a gripper that only <mimic> or short strokes tell
-constexpr int kWholeArm{6};  // joints before a hand that nothing but its branches tells
+constexpr int kLeastArm{3};  // fewest joints before a gripper that is recognised by <mimic> or short strokes
+constexpr int kWholeArm{6};  // fewest joints before a hand that is recognised by its branches alone
 constexpr double kStroke_m{0.15};
 constexpr const char* kFingers[]{"finger", "thumb", "knuckle", "jaw", "claw"};
 
@@ -24,16 +24,16 @@ bool is_finger(const urdf::Joint& joint) {
 
 bool slides(const urdf::Joint& joint) { return joint.type == urdf::Joint::PRISMATIC; }
 
-double travel_of(const urdf::Joint& joint) {
+double motion_bound_of(const urdf::Joint& joint) {
   return joint.limits == nullptr ? 0.0 : joint.limits->upper - joint.limits->lower;
 }
 
-/// A joint that moves, on the rigid body that it hangs on. Joints that follow others do not count.
+/// Moving joint on the rigid body that it hangs on. Joints that follow others do not count.
 struct Branch {
   JointPtr joint;
   std::string body;  ///< its first link
   int before;        ///< joints from the base to the body
-  int length{0};     ///< joints one behind the other from this one on, itself included
+  int length{0};     ///< consecutive joints from this one on, including it
 };
 
 class GripperSearch {
@@ -53,7 +53,7 @@ class GripperSearch {
   }
 
  private:
-  /// Returns the number of joints one behind the other below the link.
+  /// Returns the number of consecutive joints below the link.
   int visit(const std::string& link, const std::string& body, int before) {
     int most{0};
     for (const JointPtr& joint : tree_.below(link)) {
@@ -93,7 +93,7 @@ class GripperSearch {
     if (tree_.path(leader->body, follower.body)) take(*leader);
   }
 
-  /// Looks at all that moves on one body.
+  /// Examines all joints that move on one body.
   void take_hand(const std::string& body, const std::vector<std::size_t>& indices) {
     std::vector<Branch> branches;
     for (const std::size_t i : indices) {
@@ -102,7 +102,7 @@ class GripperSearch {
     if (branches.empty()) return;
     const int before = branches.front().before;
     const auto short_stroke = [](const Branch& branch) {
-      return branch.length == 1 && slides(*branch.joint) && travel_of(*branch.joint) <= kStroke_m;
+      return branch.length == 1 && slides(*branch.joint) && motion_bound_of(*branch.joint) <= kStroke_m;
     };
     if (before >= kLeastArm && std::count_if(branches.begin(), branches.end(), short_stroke) > 1) hands_.insert(body);
     if (before >= kWholeArm && are_fingers(branches)) hands_.insert(body);
@@ -119,8 +119,9 @@ class GripperSearch {
       return branch.length < first.before && slides(*branch.joint) == slides(*first.joint);
     };
     if (branches.size() < 2 || !std::all_of(branches.begin(), branches.end(), alike)) return false;
-    return branches.size() > 2 || (branches[1].length == first.length &&
-                                   std::abs(travel_of(*branches[1].joint) - travel_of(*first.joint)) < 1e-6);
+    return branches.size() > 2 ||
+           (branches[1].length == first.length &&
+            std::abs(motion_bound_of(*branches[1].joint) - motion_bound_of(*first.joint)) < 1e-6);
   }
 
   const UrdfTree& tree_;
@@ -128,7 +129,7 @@ class GripperSearch {
   std::vector<Branch> branches_;
   std::map<std::string, std::vector<std::size_t>> by_body_;
   std::set<std::string> found_;
-  std::set<std::string> hands_;  ///< bodies that a gripper's joints hang on
+  std::set<std::string> hands_;  ///< bodies that carry a gripper's joints
 };
 
 }  // namespace

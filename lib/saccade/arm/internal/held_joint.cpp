@@ -9,9 +9,9 @@
 namespace saccade {
 namespace {
 
-constexpr double kSameValue{1e-6};  // a sample that is as near to the reference's value is not asked again; rad or m
+constexpr double kSameValue{1e-6};  // samples this near to the reference's value are skipped; rad or m
 
-/// The arm without its first or its last joint, which stands at 0. Bodies are left out.
+/// Returns the arm without its first or last joint, which is fixed at 0. Bodies are dropped.
 Result<ArmModel> without_joint(const ArmModel& arm, int joint) {
   ArmDescription description = arm.description();
   for (ArmLink& link : description.links) link.bodies.clear();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// HeldJoint: seven joints in closed form, the last or the first of them held at one value after the other.
+// HeldJoint: seven joints in closed form, with the last or the first of them held at a series of values.
 
 #include <optional>
 #include <vector>
@@ -9,22 +9,22 @@
 
 namespace saccade {
 
-/// Solves seven joints of which the first six, or else the last six, have a closed form (SixAxes). Holding a joint at
-/// either end of an arm only moves the pose that is asked of the others. The joint that is held may slide: an
-/// industrial arm on a rail.
+/// Solver for seven joints of which the first six or the last six have a closed form (SixAxes). Holding a joint at
+/// either end of an arm only shifts the pose for the other joints. The held joint may slide: an industrial arm on a
+/// rail.
 class HeldJoint {
  public:
-  /// unsupported, saying what about the arm does not fit. Expects one sample at least.
+  /// Answers unsupported, naming the property of the arm that does not fit. Expects at least one sample.
   [[nodiscard]] static Result<HeldJoint> find(const ArmModel& arm, int samples);
 
   [[nodiscard]] bool is_exact() const { return six_.is_exact(); }
-  /// Index of the joint that is held, 0 or 6.
+  /// Returns the index of the held joint, 0 or 6.
   [[nodiscard]] int joint() const { return joint_; }
-  /// Values of the joint: first the reference's own, then samples over its limits, or over one turn where it can turn
-  /// farther.
+  /// Number of values of the joint: first the reference's own, then samples over its limits, or over one turn where it
+  /// can turn farther.
   [[nodiscard]] std::size_t rounds() const { return samples_.size() + 1; }
-  /// All solutions in which the joint has the value of a round, and every angle, give or take whole turns, is within
-  /// its limits. No solution is given in two rounds. Safe for concurrent use.
+  /// Returns all solutions with the joint's value of a round in which every angle, up to whole turns, is within its
+  /// limits. No solution occurs in two rounds. Safe for concurrent use.
   [[nodiscard]] SevenSolutions solve(const Pose& T_world_camera, const Configuration& reference,
                                      std::size_t round) const;
 

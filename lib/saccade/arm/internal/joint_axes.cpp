@@ -17,8 +17,8 @@ using Eigen::Vector2d;
 using Eigen::Vector3d;
 using std::numbers::pi;
 
-constexpr double kFallTogether{1e-10};  // below this length or angle a direction is none
-constexpr double kBeyondReach{1e-12};   // how far beyond the reach a pose may lie by rounding, relative
+constexpr double kFallTogether{1e-10};  // shorter vectors and smaller angles define no direction
+constexpr double kBeyondReach{1e-12};   // relative distance beyond the reach that counts as rounding
 
 double square_of(double x) { return x * x; }
 
@@ -67,7 +67,7 @@ Vector3d turned(const Vector3d& axis, double angle_rad, const Vector3d& r) {
 
 double distance_to_line(const Vector3d& p, const Vector3d& q, const Vector3d& axis) { return axis.cross(p - q).norm(); }
 
-Meeting meeting_of(const Vector3d& p, const Vector3d& a, const Vector3d& q, const Vector3d& b) {
+ClosestPoint closest_point_of(const Vector3d& p, const Vector3d& a, const Vector3d& q, const Vector3d& b) {
   const double ab = a.dot(b);
   const Vector3d d = q - p;
   const double sin2 = 1.0 - ab * ab;
@@ -107,7 +107,7 @@ AnglePair angles_across(double alpha_rad, double beta_rad, double theta_rad) {
 }
 
 std::vector<double> spread_over(double lower, double upper, int count) {
-  constexpr double kGoldenRatio{0.61803398874989485};  // its multiples, without their whole parts, keep apart
+  constexpr double kGoldenRatio{0.61803398874989485};  // the fractional parts of its multiples are well spread
   std::vector<std::pair<double, double>> keyed;
   for (int i = 0; i < count; ++i) {
     const double multiple = kGoldenRatio * (i + 1);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr double kTurn{2.0 * std::numbers::pi};
 
-/// Values of one joint.
+/// Variants of one joint's value.
 struct Ways {
   std::array<double, 64> values;
   int count{0};
@@ -30,7 +30,7 @@ Ways ways_of(const ArmJoint& joint, double value, double reference, int max_turn
   const double first = std::ceil((limits.lower - kLimitSlack - value) / kTurn);
   const double last = std::floor((limits.upper + kLimitSlack - value) / kTurn);
   if (last < first) return ways;
-  // From the turn nearest to the reference outwards, the nearer side first.
+  // From the turn nearest to the reference outwards, nearer side first.
   double down = std::clamp(std::round((nearest - value) / kTurn), first, last);
   double up = down + 1.0;
   const double most = std::min<double>(max_turns, static_cast<double>(ways.values.size()));
@@ -50,7 +50,7 @@ Ways ways_of(const ArmJoint& joint, double value, double reference, int max_turn
 }  // namespace
 
 bool has_turn_within(double angle_rad, double lower_rad, double upper_rad) {
-  // The first of the angles that is not below the lower limit.
+  // The smallest equivalent angle that is not below the lower limit.
   if (angle_rad >= lower_rad - kLimitSlack && angle_rad <= upper_rad + kLimitSlack) return true;
   const double turns = std::ceil((lower_rad - kLimitSlack - angle_rad) / kTurn);
   return angle_rad + kTurn * turns <= upper_rad + kLimitSlack;

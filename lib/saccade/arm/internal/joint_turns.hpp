@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Whole turns: which of the angles that differ by 2π lie within a joint's limits.
+// Whole turns: the angles that differ by 2π and lie within a joint's limits.
 
 #include <vector>
 
@@ -8,15 +8,15 @@
 
 namespace saccade {
 
-/// A solution may lie this far beyond a limit by rounding; it is then put on the limit. rad, or m.
+/// Distance beyond a limit that counts as rounding; the solution is then set to the limit. rad, or m.
 constexpr double kLimitSlack{1e-10};
 
-/// Whether angle + 2πk is within [lower, upper] for a whole k.
+/// Tells whether angle + 2πk is within [lower, upper] for an integer k.
 [[nodiscard]] bool has_turn_within(double angle_rad, double lower_rad, double upper_rad);
 
-/// Appends q in every way that whole turns of its joints leave within the limits: for each joint at most `max_turns`
-/// ways, those nearest to the reference, nearest first; for continuous joints one; for prismatic ones q itself, if it
-/// is within. Order: the last joint changes fastest. Appends nothing where some joint has no way.
+/// Appends q in every variant by whole turns of its joints within the limits: for each joint at most `max_turns`,
+/// nearest to the reference first; for continuous joints one; for prismatic ones q itself, if it is within. The last
+/// joint changes fastest. Appends nothing where a joint has no variant.
 void append_turns(const ArmModel& arm, const Configuration& q, const Configuration& reference, int max_turns,
                   std::vector<Configuration>& solutions);
 

@@ -13,9 +13,9 @@
 #include "saccade/arm/internal/joint_turns.hpp"
 #include "saccade/arm/kinematics.hpp"
 
-// KDL's solver and OMPL's library both carry this decomposition as a weak symbol, Debian 12's OMPL that of an older
-// Eigen with another layout: whichever is loaded first serves both, and KDL aborts with OMPL's. A program that has its
-// own, that of the headers which KDL was built with, gives it to all.
+// KDL's solver and OMPL's library both carry this decomposition as a weak symbol; Debian 12's OMPL has that of an older
+// Eigen with another layout. The one loaded first serves both, and KDL aborts with OMPL's. A program with its own
+// instance, from the headers that KDL was built with, provides it to all.
 template class Eigen::JacobiSVD<Eigen::MatrixXd>;
 
 namespace saccade {
@@ -29,7 +29,7 @@ KDL::Frame to_kdl(const Pose& T) {
           to_kdl(T.translation())};
 }
 
-/// From the world to the camera.
+/// Returns the chain from the world to the camera.
 KDL::Chain chain_of(const ArmModel& arm) {
   const KDL::Joint rigid{KDL::Joint::None};
   KDL::Chain chain;
@@ -44,7 +44,7 @@ KDL::Chain chain_of(const ArmModel& arm) {
   return chain;
 }
 
-/// KDL weighs rotations with this length, so that a radian counts as much as half a metre.
+/// Length by which KDL weighs rotations: a radian counts as much as half a metre.
 constexpr double kRotationWeight_m{0.5};
 constexpr double kLmaTolerance{1e-6};
 
@@ -78,7 +78,7 @@ class Lma {
   KDL::JntArray out_;
 };
 
-/// Within the limits, and in the turn next to the reference.
+/// Clamps to the limits, in the turn nearest to the reference.
 void put_on_limits(const ArmModel& arm, Configuration& q) {
   for (int i = 0; i < arm.dof(); ++i) {
     const ArmJoint& joint = arm.joint(i);
@@ -87,8 +87,8 @@ void put_on_limits(const ArmModel& arm, Configuration& q) {
   }
 }
 
-/// Whether the last link's origin, which the pose settles, is no farther from the first joint than the links stretched
-/// out. Most poses that cannot be reached are told by that, without a start.
+/// Tells whether the last link's origin, which the pose determines, is within the length of the stretched links from
+/// the first joint. This rejects most unreachable poses without a start.
 bool may_reach(const ArmModel& arm, const Pose& T_world_camera) {
   constexpr double kSlack_m{1e-6};
   const Eigen::Vector3d last = T_world_camera * (arm.T_link_camera().inverse(Eigen::Isometry).translation());
@@ -104,7 +104,7 @@ bool differs(const Configuration& a, const Configuration& b, double by) {
 
 Status NumericIkConfig::validate() const {
   if (restarts < 0 || max_solutions < 1 || iterations < 1)
-    return Error{Errc::invalid_argument, "restarts must not be negative; solutions and iterations are one at least",
+    return Error{Errc::invalid_argument, "restarts must not be negative; solutions and iterations must be at least one",
                  ""};
   if (!(distinct_rad > 0.0)) return Error{Errc::invalid_argument, "distinct_rad must be positive", ""};
   return {};
@@ -148,7 +148,7 @@ bool refine(const ArmModel& arm, const Pose& T_world_camera, Configuration& q) {
     const ArmPoses poses = forward_kinematics(arm, q);
     const Eigen::Matrix<double, 6, 1> miss = twist_between(poses.T_world_camera, T_world_camera);
     if (!miss.allFinite()) return false;
-    // A tenth of what is allowed: whoever measures it differently still agrees.
+    // A tenth of the tolerance, so that other ways of measuring agree as well.
     if (miss.head<3>().norm() <= 0.1 * kIkTolerance && miss.tail<3>().norm() <= 0.1 * kIkTolerance) return true;
     if (i == kIterations) break;
     const Jacobian J = camera_jacobian(arm, poses);

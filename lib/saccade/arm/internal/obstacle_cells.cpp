@@ -7,18 +7,18 @@
 namespace saccade {
 namespace {
 
-/// Floor division by a positive number.
+/// Divides by a positive number, rounding down.
 std::int32_t cell_of(std::int32_t voxel, std::int32_t voxels_along) {
   return voxel >= 0 ? voxel / voxels_along : -((-voxel - 1) / voxels_along) - 1;
 }
 
 std::size_t unsigned_of(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-/// Rows y0 … y1 − 1 of a slice of a brick.
+/// Returns the mask of rows y0 … y1 − 1 of a slice of a brick.
 std::uint64_t rows_mask(int y0, int y1) {
   return (~std::uint64_t{0} << (kBrickEdge * y0)) & (~std::uint64_t{0} >> (64 - kBrickEdge * y1));
 }
-/// Columns x0 … x1 − 1.
+/// Returns the mask of columns x0 … x1 − 1.
 std::uint64_t columns_mask(int x0, int x1) {
   return (0xFFU >> (kBrickEdge - x1) & 0xFFU << x0) * std::uint64_t{0x0101010101010101};
 }
@@ -59,7 +59,7 @@ Result<ObstacleCells> ObstacleCells::create(const TsdfConfig& map, double cell_s
   made.cut_axis(0, voxels.lo.x, voxels.hi.x);
   made.cut_axis(1, voxels.lo.y, voxels.hi.y);
   made.cut_axis(2, voxels.lo.z, voxels.hi.z);
-  made.see_nothing();
+  made.reset_to_unknown();
   return made;
 }
 
@@ -68,7 +68,7 @@ void ObstacleCells::cut_axis(std::size_t axis, std::int32_t voxel_lo, std::int32
   for (std::int32_t first = voxel_lo & ~(kBrickEdge - 1); first < voxel_hi; first += kBrickEdge) {
     const std::int32_t end = std::min(first + kBrickEdge, voxel_hi);
     std::int32_t voxel = std::max(first, voxel_lo);
-    Cut cut{cell_of(voxel, voxels_along_) - cell_lo, 0, {}, {}, {}};
+    AxisPartition cut{cell_of(voxel, voxels_along_) - cell_lo, 0, {}, {}, {}};
     while (voxel < end) {
       cut.start[unsigned_of(cut.parts++)] = static_cast<std::uint8_t>(voxel - first);
       voxel = (cell_of(voxel, voxels_along_) + 1) * voxels_along_;
@@ -82,8 +82,8 @@ void ObstacleCells::cut_axis(std::size_t axis, std::int32_t voxel_lo, std::int32
   }
 }
 
-/// Every brick is absent: all of its voxels are unknown.
-void ObstacleCells::see_nothing() {
+/// Resets to a map without bricks, in which all voxels are unknown.
+void ObstacleCells::reset_to_unknown() {
   const Index3 n = size();
   const std::array<std::size_t, 3> lengths{unsigned_of(n.x), unsigned_of(n.y), unsigned_of(n.z)};
   words_per_row_ = lengths[0] / 64 + 2;
@@ -97,7 +97,7 @@ void ObstacleCells::see_nothing() {
   std::array<std::vector<std::uint16_t>, 3> bricks_at;  // per axis and cell
   for (std::size_t axis = 0; axis < 3; ++axis) {
     bricks_at[axis].assign(lengths[axis], 0);
-    for (const Cut& cut : cuts_[axis]) {
+    for (const AxisPartition& cut : cuts_[axis]) {
       for (std::int32_t i = 0; i < cut.parts; ++i) ++bricks_at[axis][unsigned_of(cut.first_cell + i)];
     }
   }
@@ -141,7 +141,7 @@ ObstacleCells::Words ObstacleCells::stops_of(const BrickRef& brick) const {
   return words;
 }
 
-/// The bricks with an obstacle voxel before or after, by the summaries.
+/// Returns the bricks with an obstacle voxel before or after, judged by the summaries.
 Mask512 ObstacleCells::may_differ(const Sector* before, const Sector* after) const {
   const auto stopping = [&](const Sector* sector) {
     if (sector == nullptr) return unknown_is_obstacle_ ? Mask512::all_set() : Mask512{};
@@ -154,7 +154,7 @@ ObstacleCells::Changes ObstacleCells::update(const TsdfGrid& map, const Executor
   const IndexBox around = parents(bricks_);
   const Index3 n = around.size();
   const std::size_t sectors = unsigned_of(n.x) * unsigned_of(n.y) * unsigned_of(n.z);
-  std::vector<Flips> flips(sectors);
+  std::vector<ObstacleChanges> flips(sectors);
   std::vector<std::size_t> bricks(sectors, 0);
   executor.parallel_for(sectors, 4, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -169,8 +169,8 @@ ObstacleCells::Changes ObstacleCells::update(const TsdfGrid& map, const Executor
   std::fill(row_changed_.begin(), row_changed_.end(), updated_ ? std::uint8_t{0} : std::uint8_t{1});
   updated_ = true;
   for (const std::size_t differing : bricks) changes.bricks += differing;
-  // First what begins: then no cell that stays an obstacle is without a maker meanwhile.
-  for (const Flips& of_sector : flips) {
+  // Beginnings first, so that no cell that stays an obstacle is without a maker meanwhile.
+  for (const ObstacleChanges& of_sector : flips) {
     for (const std::uint32_t cell : of_sector.begun) {
       if (makers_[cell]++ > 0) continue;
       toggle(cell);
@@ -178,7 +178,7 @@ ObstacleCells::Changes ObstacleCells::update(const TsdfGrid& map, const Executor
       ++changes.cells;
     }
   }
-  for (const Flips& of_sector : flips) {
+  for (const ObstacleChanges& of_sector : flips) {
     for (const std::uint32_t cell : of_sector.ended) {
       if (--makers_[cell] > 0) continue;
       toggle(cell);
@@ -191,7 +191,7 @@ ObstacleCells::Changes ObstacleCells::update(const TsdfGrid& map, const Executor
 }
 
 std::size_t ObstacleCells::compare(const Index3& sector, const Sector* before, const Sector* after,
-                                   Flips& flips) const {
+                                   ObstacleChanges& flips) const {
   std::size_t differing{0};
   may_differ(before, after).for_each([&](std::size_t i) {
     const Index3 brick = sector * kSectorEdge + child_offset(static_cast<int>(i));
@@ -212,12 +212,12 @@ std::size_t ObstacleCells::compare(const Index3& sector, const Sector* before, c
   return differing;
 }
 
-/// All cells that the brick has a part in.
+/// Adds all cells that overlap the brick.
 void ObstacleCells::add_all(const Index3& brick, std::vector<std::uint32_t>& to) const {
   const Index3 i = brick - bricks_.lo;
-  const Cut& cut_x = cuts_[0][unsigned_of(i.x)];
-  const Cut& cut_y = cuts_[1][unsigned_of(i.y)];
-  const Cut& cut_z = cuts_[2][unsigned_of(i.z)];
+  const AxisPartition& cut_x = cuts_[0][unsigned_of(i.x)];
+  const AxisPartition& cut_y = cuts_[1][unsigned_of(i.y)];
+  const AxisPartition& cut_z = cuts_[2][unsigned_of(i.z)];
   const Index3 n = size();
   for (std::int32_t z = cut_z.first_cell; z < cut_z.first_cell + cut_z.parts; ++z) {
     for (std::int32_t y = cut_y.first_cell; y < cut_y.first_cell + cut_y.parts; ++y) {
@@ -228,11 +228,12 @@ void ObstacleCells::add_all(const Index3& brick, std::vector<std::uint32_t>& to)
   }
 }
 
-void ObstacleCells::compare(const Index3& brick, const Words& before, const Words& after, Flips& flips) const {
+void ObstacleCells::compare(const Index3& brick, const Words& before, const Words& after,
+                            ObstacleChanges& flips) const {
   const Index3 i = brick - bricks_.lo;
-  const Cut& cut_x = cuts_[0][unsigned_of(i.x)];
-  const Cut& cut_y = cuts_[1][unsigned_of(i.y)];
-  const Cut& cut_z = cuts_[2][unsigned_of(i.z)];
+  const AxisPartition& cut_x = cuts_[0][unsigned_of(i.x)];
+  const AxisPartition& cut_y = cuts_[1][unsigned_of(i.y)];
+  const AxisPartition& cut_z = cuts_[2][unsigned_of(i.z)];
   const Index3 n = size();
   std::array<std::uint32_t, kBrickVoxels> begun;
   std::array<std::uint32_t, kBrickVoxels> ended;
@@ -254,7 +255,7 @@ void ObstacleCells::compare(const Index3& brick, const Words& before, const Word
         const std::uint64_t part = cut_y.rows[y] & cut_x.columns[x];
         const bool was = (slice_before & part) != 0;
         const bool is = (slice_after & part) != 0;
-        begun[begun_count] = cell;  // without a branch: what comes is hard to foresee
+        begun[begun_count] = cell;  // without a branch, which would be hard to predict
         ended[ended_count] = cell;
         begun_count += static_cast<std::size_t>(!was & is);
         ended_count += static_cast<std::size_t>(was & !is);

@@ -14,7 +14,7 @@ constexpr std::size_t kRowsPerChunk{32};
 
 std::size_t size_from(std::int32_t i) { return static_cast<std::size_t>(i); }
 
-/// The first cell from x on that is an obstacle, or is none; `length` when there is none such.
+/// Returns the first cell from x on that is, or is not, an obstacle; `length` when there is none.
 std::size_t next_cell(const std::uint64_t* row, std::size_t x, std::size_t length, bool obstacle) {
   for (std::size_t word = x / 64; word * 64 < length; ++word, x = word * 64) {
     const std::uint64_t bits = (obstacle ? row[word] : ~row[word]) & (~std::uint64_t{0} << (x % 64));
@@ -23,15 +23,15 @@ std::size_t next_cell(const std::uint64_t* row, std::size_t x, std::size_t lengt
   return length;
 }
 
-/// The rows of a layered grid along one axis.
+/// Rows of a layered grid along one axis.
 struct RowAxis {
   std::size_t length;
-  std::size_t step;  ///< from a row to its neighbour
+  std::size_t step;  ///< from one row to its neighbour
   std::size_t lines;
   std::size_t line_step;
 };
 
-/// Rows at most `reach` from a marked one along the axis, in order of lines.
+/// Returns the rows within `reach` of a marked one along the axis, in order of lines.
 std::vector<std::size_t> rows_within_reach(std::span<const std::uint8_t> marked, const RowAxis& axis,
                                            std::size_t reach) {
   std::vector<std::size_t> rows;
@@ -56,7 +56,7 @@ void for_each_row(std::span<const std::size_t> rows, const Executor& executor, c
   });
 }
 
-/// Rows up to `reach` before and after one along an axis.
+/// Returns the window of rows up to `reach` before and after one along an axis.
 obstacle::RowWindow window_around(const std::vector<std::uint16_t>& values, std::size_t row, std::size_t stride,
                                   const RowAxis& axis, std::size_t reach, const std::uint16_t* costs) {
   const std::size_t at = row / axis.step % axis.length;
@@ -87,7 +87,7 @@ ObstacleField::ObstacleField(const ObstacleCells& cells, int reach_cells, std::s
   if (!fixtures.empty()) measure_fixtures(fixtures, cells, executor);
 }
 
-/// In half cells, rounded down.
+/// Measures distances from fixtures in half cells, rounded down.
 void ObstacleField::measure_fixtures(std::span<const Box> fixtures, const ObstacleCells& cells,
                                      const Executor& executor) {
   constexpr double kRounding{1e-9};
@@ -120,8 +120,8 @@ void ObstacleField::measure_fixtures(std::span<const Box> fixtures, const Obstac
   });
 }
 
-/// Squared distances of a row's cells from the obstacles of that row: between two obstacles they rise to the middle and
-/// fall again.
+/// Computes the squared distances of a row's cells from the obstacles of that row. Between two obstacles they rise to
+/// the middle and fall again.
 void ObstacleField::distances_along(const std::uint64_t* row, std::uint16_t* out) const {
   const std::size_t length = size_from(size_.x);
   for (std::size_t begin = 0; begin < length;) {

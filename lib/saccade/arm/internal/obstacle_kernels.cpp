@@ -21,7 +21,7 @@ using FloatVec = hn::Vec<Floats>;
 using Ints = hn::RebindToSigned<Floats>;
 using IntVec = hn::Vec<Ints>;
 
-/// Rows taken between two looks at whether farther ones can still matter.
+/// Rows processed between two tests whether farther ones can still matter.
 constexpr int kRowsAtOnce{3};
 
 HWY_INLINE ShortVec min_of_column(const RowWindow& window, ShortVec least, std::size_t i) {
@@ -71,14 +71,14 @@ void root_of_min_across_rows_kernel(const RowWindow& window, const std::uint16_t
   }
 }
 
-/// Beyond this, in half cells or squared ones, the field does not decide.
+/// Coordinates beyond this, in half cells or squared ones, are not decided by the field.
 constexpr float kFarthest{1e15F};
 
-/// One coordinate of spheres against the field.
+/// One coordinate of spheres relative to the field.
 struct Coordinate {
   IntVec cell;           ///< within the field
-  FloatVec outside;      ///< how far beyond the field, squared
-  FloatVec from_centre;  ///< from the cell's centre to the nearest point of the field, squared
+  FloatVec outside;      ///< squared distance from the field
+  FloatVec from_centre;  ///< squared distance from the cell's centre to the nearest point of the field
 };
 
 HWY_INLINE Coordinate place(FloatVec at_m, float origin_m, float half_cells_per_m, std::int32_t size) {
@@ -86,7 +86,7 @@ HWY_INLINE Coordinate place(FloatVec at_m, float origin_m, float half_cells_per_
   const Ints di;
   const FloatVec at = hn::Mul(hn::Sub(at_m, hn::Set(d, origin_m)), hn::Set(d, half_cells_per_m));
   const FloatVec inside = hn::Min(hn::Max(at, hn::Zero(d)), hn::Set(d, static_cast<float>(2 * size)));
-  // Whatever becomes of a coordinate that is not finite, the index is one of the field.
+  // Clamped, so that the index is valid even for a coordinate that is not finite.
   const IntVec cell =
       hn::Min(hn::Max(hn::ConvertTo(di, hn::Mul(inside, hn::Set(d, 0.5F))), hn::Zero(di)), hn::Set(di, size - 1));
   const FloatVec beyond = hn::Sub(at, inside);
@@ -95,14 +95,14 @@ HWY_INLINE Coordinate place(FloatVec at_m, float origin_m, float half_cells_per_
   return {cell, hn::Mul(beyond, beyond), hn::Mul(offset, offset)};
 }
 
-/// Squared distance along one axis from an interval.
+/// Returns the squared distance along one axis from an interval.
 HWY_INLINE FloatVec squared_gap(FloatVec at, float lo, float hi) {
   const Floats d;
   const FloatVec gap = hn::Max(hn::Max(hn::Sub(hn::Set(d, lo), at), hn::Sub(at, hn::Set(d, hi))), hn::Zero(d));
   return hn::Mul(gap, gap);
 }
 
-/// Squared distance from the nearest fixture, in metres.
+/// Returns the squared distance from the nearest fixture, in metres.
 HWY_INLINE FloatVec squared_from_fixtures(const FieldView& field, FloatVec x, FloatVec y, FloatVec z) {
   const Floats d;
   FloatVec least = hn::Set(d, kFarthest);
@@ -114,19 +114,19 @@ HWY_INLINE FloatVec squared_from_fixtures(const FieldView& field, FloatVec x, Fl
   return least;
 }
 
-/// Above the rounding of coordinates and of distances between them, in metres.
+/// Returns a slack above the rounding of coordinates and of distances between them, in metres.
 HWY_INLINE FloatVec slack_of(const FieldView& field, FloatVec x, FloatVec y, FloatVec z, FloatVec radius) {
   const Floats d;
   const FloatVec magnitude = hn::Add(hn::Add(hn::Abs(x), hn::Abs(y)), hn::Add(hn::Abs(z), hn::Abs(radius)));
   return hn::Add(hn::Mul(magnitude, hn::Set(d, 1e-6F)), hn::Set(d, field.slack / field.half_cells_per_m));
 }
 
-/// What one look at the field tells of spheres; in half cells.
+/// Result of one look at the field for spheres; in half cells.
 struct Look {
-  FloatVec outside;      ///< of the field, squared
-  FloatVec distance;     ///< of the nearest cell's centre
+  FloatVec outside;      ///< squared distance from the field
+  FloatVec distance;     ///< distance of the nearest cell's centre
   FloatVec from_centre;  ///< from there to the nearest point of the field
-  FloatVec reach;        ///< the radius and slack
+  FloatVec reach;        ///< radius plus slack
   hn::Mask<Floats> finite;
 };
 
@@ -152,8 +152,8 @@ HWY_INLINE bool asks_for_fixtures(const FieldView& field, FloatVec outside) {
   return !field.fixtures.empty() && !hn::AllFalse(d, hn::Gt(outside, hn::Zero(d)));
 }
 
-/// For points beyond the field: obstacles lie in the field, which is convex, so the squared distance is at least that
-/// from the field plus that from the field's nearest point to the obstacle.
+/// Tests points outside the field. Obstacles lie in the field, which is convex. The squared distance is therefore at
+/// least that from the field plus that from the field's nearest point to the obstacle.
 HWY_INLINE hn::Mask<Floats> clear_of_all(const FieldView& field, FloatVec x, FloatVec y, FloatVec z, FloatVec radius) {
   const Floats d;
   const Look look = look_up(field, x, y, z, radius);
@@ -183,7 +183,7 @@ HWY_INLINE FloatVec clearance_from_all(const FieldView& field, FloatVec x, Float
   return hn::IfThenElse(look.finite, hn::Sub(distance, radius), hn::Set(d, -std::numeric_limits<float>::infinity()));
 }
 
-/// The spheres from i on; zeros where there are none left.
+/// Spheres from i on; zeros where none are left.
 struct SphereVecs {
   FloatVec x, y, z, radius;
 };

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Vector kernels of obstacle distances: one row of the distance transform, and spheres against the finished field.
+// Vector kernels of obstacle distances: one row of the distance transform, and tests of spheres against the finished
+// field.
 
 #include <array>
 #include <cstddef>
@@ -9,35 +10,36 @@
 
 namespace saccade::obstacle {
 
-/// Rows are padded to so many cells.
+/// Rows are padded to a multiple of kRowStep cells.
 constexpr std::size_t kRowStep{32};
 
-/// Rows around one row, for a pass of the distance transform across rows.
+/// Neighbouring rows of a row, for a pass of the distance transform across rows.
 struct RowWindow {
   const std::uint16_t* middle;  ///< the row itself
-  std::ptrdiff_t stride;        ///< from a row to the next
-  int before;                   ///< rows before the middle that take part
+  std::ptrdiff_t stride;        ///< from one row to the next
+  int before;                   ///< rows before the middle that are included
   int after;
-  const std::uint16_t* costs;  ///< costs[k]: what k rows away adds to a squared distance; grows with k
+  const std::uint16_t* costs;  ///< costs[k]: squared distance added by k rows; grows with k
 };
 
-/// out[i] = min(limit[i], min over k of row k [i] + costs[|k|]) for the cells of a row, kRowStep · steps of them.
-/// @return whether `out` held anything else before.
+/// Computes out[i] = min(limit[i], min over k of row k [i] + costs[|k|]) for kRowStep · steps cells of a row.
+/// @return whether `out` changed.
 [[nodiscard]] bool min_across_rows(const RowWindow& window, const std::uint16_t* limit, std::size_t steps,
                                    std::uint16_t* out);
-/// The same, and the square roots of it.
+/// As min_across_rows, and writes the square roots.
 void root_of_min_across_rows(const RowWindow& window, const std::uint16_t* limit, std::size_t steps, float* out);
 
 /// The field in half cells: cell (x, y, z) has its centre at 2x + 1, 2y + 1, 2z + 1.
 struct FieldView {
-  const float* distances;  ///< per cell, from its centre to the nearest obstacle, at most; x fastest
+  const float* distances;  ///< per cell, upper limit of the distance from its centre to the nearest obstacle; x fastest
   std::array<std::int32_t, 3> size;
   std::int32_t row_stride;
   std::array<float, 3> origin_m;
   float half_cells_per_m;
-  float slack;  ///< half cells; above all rounding within the field
+  float slack;  ///< half cells; exceeds all rounding within the field
   float max_distance_m;
-  /// Lower and upper corners in metres. The field holds their distances, too; points beyond it ask them.
+  /// Lower and upper corners in metres. The field includes their distances; points outside it are tested against the
+  /// boxes.
   std::span<const std::array<float, 6>> fixtures;
 };
 
@@ -49,11 +51,12 @@ struct SphereArrays {
   const float* radius_m;
 };
 
-/// Spheres that the field cannot say to be clear, bit i; count ≤ 64. None that touches an obstacle is missing, and none
-/// with a coordinate that is not finite.
+/// Returns the spheres that are not known to be clear by the field, bit i; count ≤ 64. Includes every sphere that
+/// touches an obstacle or has a coordinate that is not finite.
 [[nodiscard]] std::uint64_t perhaps_touching(const FieldView& field, const SphereArrays& spheres, std::size_t count);
 
-/// At most the distances of the centres, up to max_distance_m, less the radii; -∞ where a coordinate is not finite.
+/// Computes lower bounds of the centres' distances, up to max_distance_m, minus the radii; -∞ where a coordinate is not
+/// finite.
 void clearances(const FieldView& field, const SphereArrays& spheres, std::size_t count, float* out);
 
 }  // namespace saccade::obstacle

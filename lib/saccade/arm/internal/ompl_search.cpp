@@ -49,21 +49,21 @@ constexpr NamedPlanner kPlanners[]{{"RRTConnect", make<og::RRTConnect>},
                                    {"SBL", make<og::SBL>},
                                    {"STRIDE", make<og::STRIDE>}};
 
-/// OMPL writes to the terminal by itself; while one of these lives, it does not. What the program had set comes back.
-class Silence {
+/// Silences OMPL's messages to the terminal while an instance lives. Restores the program's own setting afterwards.
+class OmplLogSilencer {
  public:
-  Silence() {
+  OmplLogSilencer() {
     const std::lock_guard lock{mutex()};
     if (living()++ > 0) return;
     before() = ompl::msg::getOutputHandler();
     ompl::msg::noOutputHandler();
   }
-  ~Silence() {
+  ~OmplLogSilencer() {
     const std::lock_guard lock{mutex()};
     if (--living() == 0) ompl::msg::useOutputHandler(before());
   }
-  Silence(const Silence&) = delete;
-  Silence& operator=(const Silence&) = delete;
+  OmplLogSilencer(const OmplLogSilencer&) = delete;
+  OmplLogSilencer& operator=(const OmplLogSilencer&) = delete;
 
  private:
   static std::mutex& mutex() {
@@ -80,7 +80,7 @@ class Silence {
   }
 };
 
-/// OMPL's states hold joints in seconds at full speed.
+/// Scale of OMPL's states, which hold joints in seconds at full speed.
 class Scale {
  public:
   explicit Scale(const ArmModel& arm) : speed_{arm.dof()} {
@@ -96,7 +96,8 @@ class Scale {
     double* values = state->as<ob::RealVectorStateSpace::StateType>()->values;
     for (Eigen::Index i = 0; i < q.size(); ++i) values[i] = q[i] / speed_[i];
   }
-  /// The limits; a start beyond them by rounding is within. Of continuous joints a turn around start and goals.
+  /// Returns the limits, widened for a start beyond them by rounding; for continuous joints a turn around start and
+  /// goals.
   [[nodiscard]] ob::RealVectorBounds bounds(const ArmModel& arm, const Configuration& start,
                                             std::span<const Configuration> goals) const {
     ob::RealVectorBounds bounds(static_cast<unsigned>(arm.dof()));
@@ -129,7 +130,7 @@ class FreeMotions final : public ob::MotionValidator {
     ++motions_;
     return space_.motion_is_free(scale_.configuration(from), scale_.configuration(to));
   }
-  /// For planners that go as far as they can: half ways, as often as it takes to come near.
+  /// For planners that extend as far as possible: halves the motion repeatedly to get close.
   bool checkMotion(const ob::State* from, const ob::State* to,
                    std::pair<ob::State*, double>& last_valid) const override {
     constexpr int kHalvings{5};
@@ -153,14 +154,15 @@ class FreeMotions final : public ob::MotionValidator {
   int& motions_;
 };
 
-/// Rounds of a planner, which check a motion each but for few, per motion allowed: those that seldom come to check one
-/// end too.
+/// Rounds of a planner per allowed motion. Most rounds check one motion; the limit also ends planners that seldom check
+/// any.
 constexpr int kRounds{4};
 
 /// Seeds that OMPL's generators take.
 constexpr std::uint64_t kSeeds{1U << 31U};
 
-/// OMPL's generators draw their seeds from one generator of the process. Whoever makes any holds this.
+/// Returns the mutex for OMPL's generators, which draw their seeds from one generator of the process. Hold it while
+/// creating any.
 std::recursive_mutex& seeds_mutex() {
   static std::recursive_mutex one;
   return one;
@@ -173,8 +175,8 @@ class SeededSampler final : public ob::RealVectorStateSampler {
   }
 };
 
-/// Space and planner, both ready. From where the seed of the process is set until here nobody else makes a generator,
-/// so that projections and planner have the same ones every time.
+/// Returns space and planner, both ready. From setting the process's seed until here no other thread creates a
+/// generator, so that projections and planner get equal ones every time.
 ob::PlannerPtr seeded_planner(const NamedPlanner& named, const ob::SpaceInformationPtr& information,
                               const ob::ProblemDefinitionPtr& problem, std::uint64_t seed) {
   const std::lock_guard lock{seeds_mutex()};
@@ -199,7 +201,7 @@ SearchResult search_with_ompl(const std::string& planner, const MotionSpace& spa
   const auto* named = std::find_if(std::begin(kPlanners), std::end(kPlanners),
                                    [&](const NamedPlanner& known) { return planner == known.name; });
   SACCADE_EXPECTS(named != std::end(kPlanners) && !goals.empty());
-  const Silence silence;
+  const OmplLogSilencer silence;
   const Scale scale{space.arm};
   SearchResult result;
   const Stopwatch stopwatch;
@@ -239,7 +241,7 @@ SearchResult search_with_ompl(const std::string& planner, const MotionSpace& spa
   for (std::size_t i = 0; i < found.getStateCount(); ++i) {
     path.push_back(scale.configuration(found.getState(static_cast<unsigned>(i))));
   }
-  // Scaling rounds; the ends are known.
+  // Scaling rounds, so the known ends are written back.
   path.front() = start;
   path.back() = *std::min_element(goals.begin(), goals.end(), [&](const Configuration& a, const Configuration& b) {
     return (a - path.back()).squaredNorm() < (b - path.back()).squaredNorm();

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// OMPL behind a few types of ours: a path of free straight motions from one configuration to any of several.
+// OMPL behind a few own types: a path of free straight motions from one configuration to any of several.
 
 #include <functional>
 #include <optional>
@@ -8,11 +8,12 @@
 #include <string>
 #include <vector>
 
+#include "saccade/arm/arm_model.hpp"
 #include "saccade/robot/trajectory.hpp"
 
 namespace saccade {
 
-/// What a search may ask. Motions are straight lines.
+/// Queries available to a search. Motions are straight lines.
 struct MotionSpace {
   const ArmModel& arm;
   std::function<bool(const Configuration& q)> is_free;
@@ -33,8 +34,9 @@ struct SearchResult {
 
 [[nodiscard]] std::vector<std::string> ompl_planner_names();
 
-/// Expects a known planner, a free start, and free goals within the limits, one at least. Distances are seconds at full
-/// speed, Euclidean over the joints. A continuous joint turns at most a whole turn beyond the start and the goals.
+/// Searches for a path. Expects a known planner, a free start, and at least one free goal within the limits. Distances
+/// are seconds at full speed, Euclidean over the joints. A continuous joint turns at most one whole turn beyond the
+/// start and the goals.
 [[nodiscard]] SearchResult search_with_ompl(const std::string& planner, const MotionSpace& space,
                                             const Configuration& start, std::span<const Configuration> goals,
                                             const SearchEffort& effort);

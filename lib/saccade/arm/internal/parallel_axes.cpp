@@ -10,12 +10,12 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kNoDirection{1e-10};  // a vector of less than this length has none
-constexpr double kRounding{1e-12};     // how far beyond the reach a pose may lie by rounding, relative
+constexpr double kNoDirection{1e-10};  // shorter vectors define no direction
+constexpr double kRounding{1e-12};     // relative distance beyond the reach that counts as rounding
 
 }  // namespace
 
-/// What q1 leaves to the others.
+/// State after q1.
 struct ParallelAxes::Shoulder {
   double q1;
   Pose T_rest;  ///< e₂ e₃ e₄ e₅ e₆
@@ -31,7 +31,7 @@ Result<ParallelAxes> ParallelAxes::find(const ArmModel& arm) {
   if (axes.are_parallel(0, 1)) return no_closed_form(arm, "axes 1 and 2 are parallel");
   if (axes.are_parallel(3, 4) || axes.are_parallel(4, 5))
     return no_closed_form(arm, "neighbouring axes of its wrist are parallel");
-  const Meeting wrist = meeting_of(p[4], a[4], p[5], a[5]);
+  const ClosestPoint wrist = closest_point_of(p[4], a[4], p[5], a[5]);
   if (wrist.distance_m > JointAxes::kTolerance) return no_closed_form(arm, "axes 5 and 6 do not meet");
   ParallelAxes ik;
   ik.axes_ = axes;
@@ -80,7 +80,7 @@ ClosedFormSolutions ParallelAxes::solve(const Pose& T_world_camera, const Config
 
 void ParallelAxes::solve_wrist(const Shoulder& shoulder, const Configuration& reference,
                                ClosedFormSolutions& found) const {
-  // The turn R of what is left leads a₆ to an angle from a₂ that joints 2 to 4 do not change.
+  // The remaining rotation R takes a₆ to an angle from a₂ that joints 2 to 4 do not change.
   const auto& a = axes_.axis;
   const Eigen::Matrix3d R = shoulder.T_rest.linear();
   const AnglePair bends = angles_across(alpha_, beta_, angle_between(a[1], R * a[5]));
@@ -89,7 +89,7 @@ void ParallelAxes::solve_wrist(const Shoulder& shoulder, const Configuration& re
     const double q5 = wrapped(phi5_ + bends.rad[i]);
     if (!axes_.allow(4, q5)) continue;
     const Vector3d after = turned(a[4], -q5, a[1]);
-    // Parts across axis 6, which keep their digits where they are short.
+    // Components across axis 6, which keep their digits where they are short.
     const Vector3d from = a[5].cross(before);
     const Vector3d to = a[5].cross(after);
     const double q6 = to.norm() < kNoDirection ? reference[5] : angle_about(a[5], from, to);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ParallelAxes: closed-form inverse kinematics of six joints that turn, the middle three about parallel axes.
+// ParallelAxes: closed-form inverse kinematics of six revolute joints, the middle three about parallel axes.
 
 #include <Eigen/Core>
 
@@ -8,28 +8,29 @@
 
 namespace saccade {
 
-/// Solves arms whose axes 2, 3 and 4 are parallel, whose axes 5 and 6 meet in a point P, and whose axes 1, 5 and 6 are
-/// not parallel to their neighbours: those of Universal Robots and many like them. Offsets and angles are as they come.
+/// Solver for arms whose axes 2, 3 and 4 are parallel, whose axes 5 and 6 meet in a point P, and whose axes 1, 5 and 6
+/// are not parallel to their neighbours: Universal Robots and many similar arms. Offsets and angles are arbitrary.
 ///
-/// Axes are taken in the world with q = 0, as in SphericalWrist. With T(q) T(0)⁻¹ = e₁ e₂ e₃ e₄ e₅ e₆ = G:
-///  - q₁: joints 5 and 6 leave P where it is, and joints 2 to 4 leave how far it lies along a₂: turned back about
-///    axis 1, G P lies as far along a₂ as P does at q = 0;
-///  - q₅: joints 2 to 4 leave a₂ as it is and joint 6 leaves a₆, so that the angle between a₂ and R₅ a₆ is known;
-///  - q₆: it takes what G and R₁ make of a₂ to R₅⁻¹ a₂;
-///  - q₂ and q₃: what is left, e₂ e₃ e₄, is a motion in the plane across a₂, where axis 4 lies at the end of two links;
-///    q₄: what is missing of its turn.
+/// Axes are given in the world with q = 0, as in SphericalWrist. With T(q) T(0)⁻¹ = e₁ e₂ e₃ e₄ e₅ e₆ = G:
+///  - q₁: joints 5 and 6 keep P in place, and joints 2 to 4 keep its coordinate along a₂: turned back about axis 1, G P
+/// has the coordinate along a₂ that P has at q = 0;
+///  - q₅: joints 2 to 4 keep a₂ and joint 6 keeps a₆, so the angle between a₂ and R₅ a₆ is known;
+///  - q₆: it takes the image of a₂ under G and R₁ to R₅⁻¹ a₂;
+///  - q₂ and q₃: the rest, e₂ e₃ e₄, is a motion in the plane across a₂, where axis 4 lies at the end of two links; q₄:
+/// the remainder of its rotation.
 ///
-/// Singular poses: where a₆ ends up along a₂, only q₄ and q₆ together count: q₆ is the reference's. Where P lies on
+/// Singular poses: where a₆ ends up along a₂, only q₄ and q₆ together count, and q₆ is the reference's. Where P lies on
 /// axis 1, q₁ is the reference's; where axis 4 lies on axis 2, q₂ is.
 class ParallelAxes {
  public:
-  /// unsupported, saying what about the arm does not fit.
+  /// Answers unsupported, naming the property of the arm that does not fit.
   [[nodiscard]] static Result<ParallelAxes> find(const ArmModel& arm);
 
-  /// Whether axes meet, and are parallel, to the last digits. If not, solutions are near ones, to be refined.
+  /// Tells whether axes meet, and are parallel, to the last digits. If not, solutions are approximate and need
+  /// refinement.
   [[nodiscard]] bool is_exact() const { return exact_; }
 
-  /// All solutions in which every angle, give or take whole turns, is within its limits. Angles are in (−π, π] but for
+  /// Returns all solutions in which every angle, up to whole turns, is within its limits. Angles are in (−π, π], except
   /// those taken from the reference. Order: shoulder, wrist, elbow. A microsecond or two; safe for concurrent use.
   [[nodiscard]] ClosedFormSolutions solve(const Pose& T_world_camera, const Configuration& reference) const;
 
@@ -42,8 +43,8 @@ class ParallelAxes {
 
   bool exact_{true};
   JointAxes axes_;
-  Pose T_camera_world_;                        // the world in the frame of the camera at q = 0
-  Eigen::Vector3d P_;                          // where axes 5 and 6 meet
+  Pose T_camera_world_;                        // pose of the world in the frame of the camera at q = 0
+  Eigen::Vector3d P_;                          // intersection of axes 5 and 6
   Eigen::Vector3d u_, v_;                      // plane across axis 2
   TwoLinks links_;                             // axis 2 to axis 3, axis 3 to axis 4 at q = 0, in that plane
   double sign3_{1.0}, sign4_{1.0};             // axes 3 and 4 = sign · axis 2

@@ -10,10 +10,10 @@ namespace {
 
 using MotionIsFree = std::function<bool(const Configuration& from, const Configuration& to)>;
 
-/// A chord that saves less is not worth its corner.
+/// Smallest saving of a chord that is worth its corner.
 constexpr double kLeastSaving_s{1e-3};
 
-/// From each configuration straight to the last one that can be reached so.
+/// Goes from each configuration straight to the last one reachable that way.
 JointPath skip_corners(const JointPath& path, const MotionIsFree& motion_is_free) {
   JointPath kept{path.front()};
   for (std::size_t here = 0; here + 1 < path.size();) {
@@ -25,7 +25,7 @@ JointPath skip_corners(const JointPath& path, const MotionIsFree& motion_is_free
   return kept;
 }
 
-/// The path with its times, to find points on it by their share of the whole.
+/// Path with its timing, to find points on it by their share of the whole.
 class TimedPath {
  public:
   TimedPath(const ArmModel& arm, JointPath path) : arm_{arm}, path_{std::move(path)} { measure(); }
@@ -41,7 +41,7 @@ class TimedPath {
     const double along = lines_s_[line] > 0.0 ? std::clamp(t_s / lines_s_[line], 0.0, 1.0) : 0.0;
     return {line, path_[line] + along * (path_[line + 1] - path_[line])};
   }
-  /// With a chord from a to b, a before b on an earlier line.
+  /// Returns the path with a chord from a to b; a lies before b on an earlier line.
   [[nodiscard]] JointPath with_chord(const Point& a, const Point& b) const {
     JointPath chord{path_.begin(), path_.begin() + static_cast<std::ptrdiff_t>(a.line) + 1};
     chord.push_back(a.q);

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// shortcut: a path that a search found, cut short wherever that saves time.
+// shortcut: shortens a path that a search found, wherever that saves time.
 
 #include <cstdint>
 #include <functional>
@@ -9,9 +9,9 @@
 
 namespace saccade {
 
-/// Leaves out configurations, then lays chords between random points of the path, until `tries` chords in a row have
-/// saved nothing. Saved time is that of rest_to_rest_s. The ends stay. Each call of motion_is_free asks for one
-/// straight line; those of the path are taken to be free. One seed gives one path.
+/// Leaves out configurations, then connects random points of the path by chords, until `tries` chords in a row have
+/// saved nothing. Time is that of rest_to_rest_s. The ends stay. Each call of motion_is_free checks one straight line;
+/// lines of the path are taken to be free. A seed gives one path.
 [[nodiscard]] JointPath shortcut(
     const ArmModel& arm, JointPath path,
     const std::function<bool(const Configuration& from, const Configuration& to)>& motion_is_free, int tries,

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SixAxes: the closed form that fits six joints that turn.
+// SixAxes: the closed-form solution for six revolute joints.
 
 #include <variant>
 
@@ -10,15 +10,16 @@
 
 namespace saccade {
 
-/// Immutable, safe for concurrent use.
+/// Closed form of six joints. Immutable, safe for concurrent use.
 class SixAxes {
  public:
-  /// unsupported, saying what about the arm does not fit the most usual form.
+  /// Answers unsupported, naming the property of the arm that does not fit the most usual form.
   [[nodiscard]] static Result<SixAxes> find(const ArmModel& arm);
 
-  /// Whether axes meet, and are parallel, to the last digits. If not, solutions are near ones, to be refined.
+  /// Tells whether axes meet, and are parallel, to the last digits. If not, solutions are approximate and need
+  /// refinement.
   [[nodiscard]] bool is_exact() const;
-  /// All solutions in which every angle, give or take whole turns, is within its limits.
+  /// Returns all solutions in which every angle, up to whole turns, is within its limits.
   [[nodiscard]] ClosedFormSolutions solve(const Pose& T_world_camera, const Configuration& reference) const;
 
  private:

@@ -18,10 +18,10 @@ using Polygon = std::vector<Vector3d>;
 using Triangle = std::array<Vector3d, 3>;
 
 constexpr std::size_t kMostBalls{std::size_t{1} << 16U};
-constexpr double kFlat_m{1e-5};      ///< what is convex but for this is convex
-constexpr double kRounding_m{2e-5};  ///< added to every radius: more than float coordinates and flat sides lose
+constexpr double kFlat_m{1e-5};      ///< deviation up to which a body counts as convex
+constexpr double kRounding_m{2e-5};  ///< added to every radius; exceeds the error of float coordinates and flat sides
 
-/// A part of space between six planes, the body's surface in it, and which of its corners lie in the body.
+/// Cuboid of space, the body's surface in it, and its corners inside the body.
 struct Cell {
   Vector3d low;
   Vector3d high;
@@ -50,7 +50,8 @@ bool is_inside(const std::vector<Triangle>& body, const Vector3d& p) {
   return std::fabs(total) > 2.0 * std::numbers::pi;
 }
 
-/// The part of a convex polygon on one side of the plane where coordinate `axis` is `at` (Sutherland and Hodgman 1974).
+/// Returns the part of a convex polygon on one side of the plane where coordinate `axis` is `at` (Sutherland and
+/// Hodgman 1974).
 Polygon clipped(const Polygon& polygon, int axis, double at, bool keep_low) {
   Polygon kept;
   const double sign = keep_low ? 1.0 : -1.0;
@@ -74,15 +75,15 @@ struct Ball {
   double radius_m;
 };
 
-/// The same centre and the radius that reaches all points.
+/// Returns a ball with this centre whose radius reaches all points.
 Ball reaching(const Vector3d& center, const std::vector<Vector3d>& points) {
   double squared = 0.0;
   for (const Vector3d& p : points) squared = std::max(squared, (p - center).squaredNorm());
   return {center, std::sqrt(squared)};
 }
 
-/// A small ball around points: the centre goes towards the farthest by ever smaller steps (Bădoiu and Clarkson 2003),
-/// and the radius reaches all of them wherever it ends.
+/// Returns a small ball around points: the centre moves towards the farthest by ever smaller steps (Bădoiu and Clarkson
+/// 2003), and the radius reaches all of them.
 Ball ball_around(const std::vector<Vector3d>& points) {
   constexpr int kSteps{64};
   Eigen::AlignedBox3d box;
@@ -101,7 +102,7 @@ Ball ball_around(const std::vector<Vector3d>& points) {
 
 using Plane = Eigen::Hyperplane<double, 3>;
 
-/// The planes of the sides of a convex body, normals outwards; none for a body that is not convex.
+/// Returns the planes of the sides of a convex body, normals outwards; none for a body that is not convex.
 std::vector<Plane> sides_of(const std::vector<Triangle>& body) {
   Vector3d middle = Vector3d::Zero();
   for (const Triangle& t : body) middle += (t[0] + t[1] + t[2]) / (3.0 * static_cast<double>(body.size()));
@@ -130,7 +131,7 @@ class Builder {
   Builder(std::vector<Triangle> body, double max_excess_m)
       : body_{std::move(body)}, sides_{sides_of(body_)}, max_excess_m_{max_excess_m} {}
 
-  /// False when there would be too many balls.
+  /// Builds the tree. Returns false when there would be too many balls.
   [[nodiscard]] bool build() {
     Cell all;
     Eigen::AlignedBox3d box;
@@ -141,15 +142,18 @@ class Builder {
     all.low = box.min();
     all.high = box.max();
     for (int i = 0; i < 8; ++i) all.inside[static_cast<std::size_t>(i)] = holds(all.corner(i));
-    return add(all);
+    return add(all, 0);
   }
 
   [[nodiscard]] std::vector<TreeBall> take() { return std::move(balls_); }
 
  private:
-  /// The ball around what of the body is in the cell, and those below it. A convex hull has its corners among those of
-  /// the clipped surface and the corners of the cell that lie in the body.
-  bool add(const Cell& cell) {
+  /// Adds the ball around the body's part in the cell, and those below it. A convex hull has its corners among those of
+  /// the clipped surface and the cell's corners inside the body.
+  /// @param halvings  number of times that the cell was halved; after kMostHalvings its ball stays as it is, since an
+  /// open mesh has corners that seem to lie inside it anywhere.
+  bool add(const Cell& cell, int halvings) {
+    constexpr int kMostHalvings{60};  // a metre becomes a micrometre along each axis
     std::vector<Vector3d> points;
     for (const Polygon& polygon : cell.surface) points.insert(points.end(), polygon.begin(), polygon.end());
     for (int i = 0; i < 8; ++i) {
@@ -160,15 +164,16 @@ class Builder {
     const Ball around = ball_around(points);
     const Ball deeper = sunk(around, points);
     const bool tight = excess_m(deeper) <= max_excess_m_;
+    const bool finest = tight || halvings == kMostHalvings;
     const Ball& ball = tight ? deeper : around;
     const std::size_t index = balls_.size();
-    balls_.push_back({ball.center.cast<float>(), static_cast<float>(ball.radius_m + kRounding_m), 0, tight});
-    if (!tight && !add_halves(cell)) return false;
+    balls_.push_back({ball.center.cast<float>(), static_cast<float>(ball.radius_m + kRounding_m), 0, finest});
+    if (!finest && !add_halves(cell, halvings + 1)) return false;
     balls_[index].next = static_cast<std::uint32_t>(balls_.size());
     return true;
   }
 
-  bool add_halves(const Cell& cell) {
+  bool add_halves(const Cell& cell, int halvings) {
     int axis = 0;
     (cell.high - cell.low).maxCoeff(&axis);
     const double at = 0.5 * (cell.low[axis] + cell.high[axis]);
@@ -189,13 +194,13 @@ class Builder {
       low.inside[i] = inside;
       high.inside[i ^ bit] = inside;
     }
-    return add(low) && add(high);
+    return add(low, halvings) && add(high, halvings);
   }
 
-  /// No point of the ball is farther from the body.
+  /// Returns an upper bound of the distance of the ball's points from the body.
   [[nodiscard]] double excess_m(const Ball& ball) const { return ball.radius_m - depth(ball.center).first; }
 
-  /// Of a convex body, the side above which p is highest, or below which it is least.
+  /// Returns the side of a convex body above which p is highest, or below which it is least.
   [[nodiscard]] const Plane* highest_side(const Vector3d& p) const {
     const Plane* highest = &sides_.front();
     double height_m = -std::numeric_limits<double>::infinity();
@@ -213,7 +218,7 @@ class Builder {
     return sides_.empty() ? is_inside(body_, p) : highest_side(p)->signedDistance(p) <= 0.0;
   }
 
-  /// How deep a point lies in the body, negative outside, and the way inwards.
+  /// Returns the depth of a point in the body, negative outside, and the direction inwards.
   [[nodiscard]] std::pair<double, Vector3d> depth(const Vector3d& p) const {
     if (!sides_.empty()) {
       const Plane* nearest = highest_side(p);
@@ -232,7 +237,7 @@ class Builder {
     return {sign * distance_m, sign * (p - nearest).normalized()};
   }
 
-  /// A larger ball around the same points that exceeds the body less, since its centre is deeper inside.
+  /// Returns a larger ball around these points that exceeds the body less, since its centre is deeper inside.
   [[nodiscard]] Ball sunk(const Ball& ball, const std::vector<Vector3d>& points) const {
     constexpr double kSteps[]{2.0, 1.0, 0.5, 0.25};
     Ball best = ball;
@@ -250,7 +255,7 @@ class Builder {
   }
 
   std::vector<Triangle> body_;
-  std::vector<Plane> sides_;  ///< empty: not convex
+  std::vector<Plane> sides_;  ///< empty where the body is not convex
   double max_excess_m_;
   std::vector<TreeBall> balls_;
 };

@@ -13,17 +13,17 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSwivelRounding{1e-12};  // how far beyond what a swivel can do a pose may lie by rounding
+constexpr double kSwivelRounding{1e-12};  // distance beyond the range of swivels that counts as rounding
 
 }  // namespace
 
-/// What q4 leaves to the others.
+/// State after q4.
 struct SphericalShoulder::Elbow {
   double q4;
   Matrix3d R4;
-  Matrix3d R;        ///< the turn of all six joints
-  Matrix3d of_pose;  ///< its x axis from S to W as the pose has it
-  Matrix3d of_arm;   ///< from S to W as q4 alone has it
+  Matrix3d R;        ///< rotation of all six joints
+  Matrix3d of_pose;  ///< x axis from S to W, as in the pose
+  Matrix3d of_arm;   ///< x axis from S to W, as set by q4 alone
 };
 
 Result<SphericalShoulder> SphericalShoulder::find(const ArmModel& arm) {
@@ -34,8 +34,8 @@ Result<SphericalShoulder> SphericalShoulder::find(const ArmModel& arm) {
   if (axes.are_parallel(0, 1) || axes.are_parallel(1, 2))
     return no_closed_form(arm, "neighbouring axes of its shoulder are parallel");
   if (axes.are_parallel(4, 5)) return no_closed_form(arm, "axes 5 and 6 are parallel");
-  const Meeting S = meeting_of(p[0], a[0], p[1], a[1]);
-  const Meeting W = meeting_of(p[4], a[4], p[5], a[5]);
+  const ClosestPoint S = closest_point_of(p[0], a[0], p[1], a[1]);
+  const ClosestPoint W = closest_point_of(p[4], a[4], p[5], a[5]);
   const double off_shoulder_m = std::max(S.distance_m, distance_to_line(S.p, p[2], a[2]));
   if (off_shoulder_m > JointAxes::kTolerance) return no_closed_form(arm, "the first three axes do not meet in a point");
   if (W.distance_m > JointAxes::kTolerance) return no_closed_form(arm, "axes 5 and 6 do not meet");

@@ -12,15 +12,15 @@ namespace {
 using Eigen::Vector2d;
 using Eigen::Vector3d;
 
-constexpr double kSlack{1e-12};  // how far beyond the reach a pose may lie by rounding, relative
+constexpr double kSlack{1e-12};  // relative distance beyond the reach that counts as rounding
 
 }  // namespace
 
-/// What q1 leaves to the others.
+/// State after q1.
 struct SphericalWrist::Shoulder {
   double q1;
-  Vector2d wrist;           ///< its centre from axis 2, turned back about axis 1, in the plane across axis 2
-  Eigen::Matrix3d R_1_tip;  ///< what is left of the turn away from q = 0
+  Vector2d wrist;           ///< wrist's centre from axis 2, turned back about axis 1, in the plane across axis 2
+  Eigen::Matrix3d R_1_tip;  ///< remaining rotation from q = 0
 };
 
 Result<SphericalWrist> SphericalWrist::find(const ArmModel& arm) {
@@ -32,7 +32,7 @@ Result<SphericalWrist> SphericalWrist::find(const ArmModel& arm) {
   const auto& p = axes.point;
   if (axes.are_parallel(3, 4) || axes.are_parallel(4, 5))
     return no_closed_form(arm, "neighbouring axes of its wrist are parallel");
-  const Meeting wrist = meeting_of(p[3], a[3], p[4], a[4]);
+  const ClosestPoint wrist = closest_point_of(p[3], a[3], p[4], a[4]);
   const double off_wrist_m = std::max(wrist.distance_m, distance_to_line(wrist.p, p[5], a[5]));
   if (off_wrist_m > JointAxes::kTolerance) return no_closed_form(arm, "the last three axes do not meet in a point");
   const double off_parallel = axes.off_parallel(1, 2);

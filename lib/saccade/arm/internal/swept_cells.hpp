@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SweptCells: the obstacle cells that an arm goes through.
+// SweptCells: the obstacle cells that an arm passes through.
 
 #include <vector>
 
@@ -9,16 +9,16 @@
 
 namespace saccade {
 
-/// Gathers cells of the map, not fixtures. Both arguments outlive it.
+/// Collector of cells of the map, without fixtures. Both arguments must outlive it.
 class SweptCells {
  public:
   static constexpr double kMargin_m{0.005};
 
   SweptCells(const ArmCollision& collision, const ObstacleMap& obstacles, double margin_m = kMargin_m);
 
-  /// The cells that the arm comes within the margin of: were they free, the arm would touch no cell.
+  /// Adds the cells within the margin of the arm. If they were free, the arm would touch no cell.
   void add(const Configuration& q);
-  /// The same all along, in steps in which no point of the arm moves farther than kMargin_m.
+  /// Adds the cells along a trajectory, in steps in which no point of the arm moves farther than kMargin_m.
   void add(const Trajectory& trajectory);
 
   [[nodiscard]] std::size_t count() const { return count_; }

@@ -13,7 +13,7 @@ namespace {
 using Eigen::Matrix3d;
 using Eigen::Vector3d;
 
-constexpr double kSameSwivel_rad{1e-6};  // a sample that is as near to the reference's swivel is not asked again
+constexpr double kSameSwivel_rad{1e-6};  // samples this near to the reference's swivel are skipped
 
 }  // namespace
 
@@ -25,8 +25,8 @@ Result<SwivelElbow> SwivelElbow::find(const ArmModel& arm, int samples) {
   const auto& p = axes.point;
   if (axes.are_parallel(0, 1) || axes.are_parallel(1, 2) || axes.are_parallel(4, 5) || axes.are_parallel(5, 6))
     return no_closed_form(arm, "neighbouring axes of its shoulder or of its wrist are parallel");
-  const Meeting S = meeting_of(p[0], a[0], p[1], a[1]);
-  const Meeting W = meeting_of(p[4], a[4], p[5], a[5]);
+  const ClosestPoint S = closest_point_of(p[0], a[0], p[1], a[1]);
+  const ClosestPoint W = closest_point_of(p[4], a[4], p[5], a[5]);
   const double off_m =
       std::max({S.distance_m, distance_to_line(S.p, p[2], a[2]), W.distance_m, distance_to_line(W.p, p[6], a[6])});
   if (off_m > JointAxes::kTolerance)

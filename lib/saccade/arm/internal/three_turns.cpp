@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kInLine{1e-10};  // axes that enclose less are in one line
+constexpr double kInLine{1e-10};  // axes with a smaller angle are collinear
 
 }  // namespace
 
@@ -48,7 +48,8 @@ ThreeTurns::Solutions ThreeTurns::solve(const Eigen::Matrix3d& R, double first_i
   return found;
 }
 
-/// Only the first angle + sign · the third counts: where the third breaks its limits, the first takes what is missing.
+/// Shifts the angles where only the first + sign · the third counts: where the third exceeds its limits, the first
+/// takes the rest.
 void ThreeTurns::give_way(double sign, Eigen::Vector3d& q) const {
   if (allow(2, q[2])) return;
   const double to_lower = wrapped(lower_[2] - q[2]);

@@ -10,19 +10,20 @@
 #include <exception>
 #include <mutex>
 #include <set>
+#include <string_view>
 #include <vector>
+
+#include "saccade/core/length_limit.hpp"
 
 namespace saccade {
 namespace {
 
-namespace fs = std::filesystem;
-
-/// XML elements in one another, and links one behind the other; the parser and we go through them by recursion.
+/// Largest nesting of XML elements, and of links; the parser and this code recurse over them.
 constexpr int kMostNested{500};
 
 Error corrupt(const std::string& what, const std::string& where = "") { return {Errc::corrupt_data, what, where}; }
 
-/// Keeps what urdfdom would print.
+/// Collector of urdfdom's messages.
 class Messages final : public console_bridge::OutputHandler {
  public:
   Messages() { console_bridge::useOutputHandler(this); }
@@ -33,24 +34,40 @@ class Messages final : public console_bridge::OutputHandler {
   void log(const std::string& text, console_bridge::LogLevel level, const char* /*file*/, int /*line*/) override {
     if (level >= console_bridge::CONSOLE_BRIDGE_LOG_ERROR) errors_.push_back(text);
   }
-  /// The first ones, in one line: urdfdom begins with the cause.
+  /// Returns the message on the first link that urdfdom read in part, with its cause before it; empty without one.
+  [[nodiscard]] std::string on_partial_link() const {
+    const auto partial = [](const std::string& text) {
+      return text.find("Could not parse") != std::string::npos && text.find("element for Link") != std::string::npos;
+    };
+    const auto found = std::find_if(errors_.begin(), errors_.end(), partial);
+    if (found == errors_.end()) return {};
+    return in_one_line((found == errors_.begin() ? "" : *(found - 1) + "; ") + *found);
+  }
+  /// Returns the first messages in one line: urdfdom begins with the cause.
   [[nodiscard]] std::string text() const {
     std::string all;
     for (std::size_t i = 0; i < std::min<std::size_t>(errors_.size(), 2); ++i) all += (i > 0 ? "; " : "") + errors_[i];
-    std::replace(all.begin(), all.end(), '\n', ' ');
-    return all.empty() ? "urdfdom does not say why" : all;
+    return all.empty() ? "urdfdom does not say why" : in_one_line(all);
   }
 
  private:
+  static std::string in_one_line(std::string text) {
+    std::replace(text.begin(), text.end(), '\n', ' ');
+    return text;
+  }
+
   std::vector<std::string> errors_;
 };
 
 Result<urdf::ModelInterfaceSharedPtr> parse_quietly(const std::string& urdf) {
-  static std::mutex one_at_a_time;  // the handler is urdfdom's only one
+  static std::mutex one_at_a_time;  // urdfdom has only one handler
   const std::lock_guard lock{one_at_a_time};
   const Messages messages;
   try {
     urdf::ModelInterfaceSharedPtr model = urdf::parseURDF(urdf);
+    // urdfdom keeps a link that it could read only in part, without the bodies that follow.
+    if (const std::string partial = messages.on_partial_link(); model != nullptr && !partial.empty())
+      return corrupt("no URDF that can be read: " + partial);
     if (model != nullptr) return model;
   } catch (const std::exception& error) {
     return corrupt(std::string{"no URDF that can be read: "} + error.what());
@@ -58,7 +75,7 @@ Result<urdf::ModelInterfaceSharedPtr> parse_quietly(const std::string& urdf) {
   return corrupt("no URDF that can be read: " + messages.text());
 }
 
-/// Depth of the elements, counted without a parser; comments are passed over.
+/// Returns the depth of the elements, counted without a parser; skips comments.
 int nesting_of(const std::string& xml) {
   int depth{0};
   int most{0};
@@ -82,7 +99,7 @@ struct JointLinks {
   std::string child;
 };
 
-/// Joints by name, as far as they are complete.
+/// Returns the complete joints by name.
 std::map<std::string, JointLinks> joints_of(const TiXmlElement& robot) {
   const auto link_in = [](const TiXmlElement& joint, const char* role) {
     const TiXmlElement* element = joint.FirstChildElement(role);
@@ -99,8 +116,8 @@ std::map<std::string, JointLinks> joints_of(const TiXmlElement& robot) {
   return joints;
 }
 
-/// One joint above every link at most, and no link above itself. urdfdom never frees the links of a loop, so it does
-/// not get to see one.
+/// Checks that every link has at most one joint above, and is not above itself. urdfdom never frees the links of a
+/// loop, so it must not get one.
 Status check_tree(const std::map<std::string, JointLinks>& joints) {
   std::map<std::string, std::string> joint_above;
   for (const auto& [name, links] : joints) {
@@ -122,6 +139,22 @@ Status check_tree(const std::map<std::string, JointLinks>& joints) {
   return {};
 }
 
+/// Checks that no list of numbers holds a percent sign: urdfdom uses what it cannot parse of such a list as the format
+/// of its message. Recurses over the elements.
+Status check_number_lists(const TiXmlElement& element) {
+  for (const char* name : {"xyz", "rpy", "rgba", "size", "scale"}) {
+    const char* text = element.Attribute(name);
+    if (text != nullptr && std::string_view{text}.find('%') != std::string_view::npos) {
+      return corrupt(std::string{"its "} + name + " holds a %, which is not part of a number",
+                     "<" + element.ValueStr() + ">, line " + std::to_string(element.Row()));
+    }
+  }
+  for (const auto* child = element.FirstChildElement(); child != nullptr; child = child->NextSiblingElement()) {
+    SACCADE_CHECK(check_number_lists(*child));
+  }
+  return {};
+}
+
 Result<std::map<std::string, double>> accelerations_of(const TiXmlElement& robot) {
   std::map<std::string, double> accelerations;
   for (const auto* joint = robot.FirstChildElement("joint"); joint != nullptr;
@@ -133,25 +166,17 @@ Result<std::map<std::string, double>> accelerations_of(const TiXmlElement& robot
       double value{0.0};
       const int status = limit->QueryDoubleAttribute(attribute, &value);
       if (status == TIXML_WRONG_TYPE)
-        return corrupt(std::string{attribute} + " is no number", std::string{"joint "} + name);
+        return corrupt(std::string{attribute} + " is not a number", std::string{"joint "} + name);
       if (status == TIXML_SUCCESS) accelerations.emplace(name, value);
     }
   }
   return accelerations;
 }
 
-bool is_package(const fs::path& folder, const std::string& name) {
-  if (folder.filename() == name) return true;
-  TiXmlDocument manifest;
-  if (!manifest.LoadFile((folder / "package.xml").string()) || manifest.RootElement() == nullptr) return false;
-  const TiXmlElement* stated = manifest.RootElement()->FirstChildElement("name");
-  return stated != nullptr && stated->GetText() != nullptr && name == stated->GetText();
-}
-
 }  // namespace
 
 Result<UrdfDocument> parse_urdf_document(const std::string& text) {
-  // TinyXML steps over as many bytes as a character of UTF-8 begins to have, also beyond the end.
+  // TinyXML steps over the number of bytes that a UTF-8 character's first byte announces, even beyond the end.
   constexpr std::size_t kLongestCharacter{4};
   const std::string urdf = text + std::string(kLongestCharacter, '\0');
   if (nesting_of(urdf) > kMostNested) return corrupt("no URDF: its elements are nested too deeply");
@@ -163,6 +188,7 @@ Result<UrdfDocument> parse_urdf_document(const std::string& text) {
   }
   if (xml.RootElement()->ValueStr() != "robot")
     return corrupt("no URDF: it begins with <" + xml.RootElement()->ValueStr() + ">, not with <robot>");
+  SACCADE_CHECK(check_number_lists(*xml.RootElement()));
   UrdfDocument document;
   SACCADE_TRY(document.accelerations, accelerations_of(*xml.RootElement()));
   SACCADE_CHECK(check_tree(joints_of(*xml.RootElement())));
@@ -175,45 +201,13 @@ Result<Pose> pose_of(const urdf::Pose& pose, const std::string& where) {
   const Eigen::Quaterniond rotation{r.w, r.x, r.y, r.z};
   const Eigen::Vector3d position{pose.position.x, pose.position.y, pose.position.z};
   if (!position.allFinite() || !rotation.coeffs().allFinite() || rotation.norm() < 0.5)
-    return Error{Errc::invalid_argument, "its origin is not finite", where};
+    return corrupt("its origin is not finite", where);
+  if (position.cwiseAbs().maxCoeff() > kMaxLength_m)
+    return corrupt("its origin is farther away than 1 km; URDFs are in metres", where);
   Pose T = Pose::Identity();
   T.linear() = rotation.normalized().toRotationMatrix();
   T.translation() = position;
   return T;
-}
-
-Result<fs::path> resolve_mesh(const std::string& uri, const fs::path& folder,
-                              const std::map<std::string, fs::path>& packages) {
-  constexpr std::string_view kPackage{"package://"};
-  constexpr std::string_view kFile{"file://"};
-  const auto not_there = [&uri](const std::string& why) { return Error{Errc::not_found, why, "mesh " + uri}; };
-  if (!uri.starts_with(kPackage)) {
-    if (!uri.starts_with(kFile) && uri.find("://") != std::string::npos)
-      return Error{Errc::unsupported, "only package:// and file:// are read", "mesh " + uri};
-    const fs::path path = uri.starts_with(kFile) ? fs::path{uri.substr(kFile.size())} : folder / uri;
-    if (!fs::is_regular_file(path)) return not_there("there is no such file");
-    return path;
-  }
-  const std::string rest = uri.substr(kPackage.size());
-  const std::size_t slash = rest.find('/');
-  if (slash == std::string::npos || slash == 0) return not_there("names no file in a package");
-  const std::string package = rest.substr(0, slash);
-  const fs::path inside = rest.substr(slash + 1);
-  if (const auto given = packages.find(package); given != packages.end()) {
-    if (fs::is_regular_file(given->second / inside)) return given->second / inside;
-    return not_there("is not in " + given->second.string());
-  }
-  bool found{false};
-  fs::path above = fs::absolute(folder.empty() ? "." : folder).lexically_normal();
-  for (; above.has_relative_path(); above = above.parent_path()) {
-    for (const fs::path& candidate : {above, above / package}) {
-      if (!is_package(candidate, package)) continue;
-      if (fs::is_regular_file(candidate / inside)) return candidate / inside;
-      found = found || fs::is_directory(candidate);
-    }
-  }
-  return not_there(found ? "its package has no such file"
-                         : "there is no package " + package + " around the URDF; say where it is");
 }
 
 }  // namespace saccade

@@ -13,7 +13,7 @@ namespace {
 
 using JointPtr = urdf::JointSharedPtr;
 
-/// Letters that have to be changed, put in or left out to make one text the other (Levenshtein). O(a · b).
+/// Returns the number of letters to change, insert or delete to turn one text into the other (Levenshtein). O(a · b).
 std::size_t edits_between(std::string_view a, std::string_view b) {
   std::vector<std::size_t> row(b.size() + 1);
   std::iota(row.begin(), row.end(), std::size_t{0});

@@ -9,7 +9,8 @@
 namespace saccade {
 namespace {
 
-/// Lower triangle L with L Lᵀ = Σ. A pivot that rounding made too small counts as a trillionth of its variance.
+/// Returns the lower triangle L with L Lᵀ = Σ. A pivot that rounding made too small counts as a trillionth of its
+/// variance.
 Eigen::Matrix4d cholesky(const Eigen::Matrix4d& covariance) {
   constexpr double kSmallestShare{1e-12};
   Eigen::Matrix4d L = Eigen::Matrix4d::Zero();
@@ -49,12 +50,12 @@ MixtureDensity density_of(const Gaussian4& gaussian) {
   return density;
 }
 
-/// The M-step for one Gaussian, from sums around its mean.
+/// Performs the M-step for one Gaussian, from sums around its mean.
 void maximise(const MixtureMoments& moments, std::size_t samples, double floor, Gaussian4& gaussian) {
-  constexpr double kNobody{1e-9};  // samples
+  constexpr double kMinResponsibility{1e-9};  // samples
   const double total = moments.sum(0);
   gaussian.weight = total / static_cast<double>(samples);
-  if (!(total > kNobody)) {
+  if (!(total > kMinResponsibility)) {
     gaussian.weight = 0.0;
     return;
   }

@@ -21,25 +21,25 @@ struct Gaussian4 {
 
 struct GmmFit {
   std::vector<Gaussian4> gaussians;     ///< in the order of the time spans that they started from
-  std::vector<double> log_likelihoods;  ///< before each iteration's update; the last is that of `gaussians`
+  std::vector<double> log_likelihoods;  ///< before each iteration's update; the last belongs to `gaussians`
   bool converged{false};                ///< ended before max_iterations
 
   [[nodiscard]] double log_likelihood() const { return log_likelihoods.back(); }
-  /// −log L + ½ n ln N with n = 15 K − 1 free parameters; lower is better.
+  /// Returns −log L + ½ n ln N with n = 15 K − 1 free parameters; lower is better.
   [[nodiscard]] double bic(std::size_t samples) const;
 };
 
-/// Samples of a trajectory, ready to be fitted with any number of Gaussians. Thesis §2.2.4, Algorithm 3 line 8.
+/// Samples of a trajectory, ready for fitting any number of Gaussians. Thesis §2.2.4, Algorithm 3 line 8.
 class GmmEm {
  public:
   /// @param samples  (x, y, z, t), in any unit; best near 1 in size, and in order of time.
   /// @return invalid_argument for no sample, one that is not finite or above 1e9, or a bad configuration. O(n).
   [[nodiscard]] static Result<GmmEm> create(std::span<const Eigen::Vector4d> samples, const GmmEmConfig& config = {});
 
-  /// Starts with mean and covariance of the samples in each of `gaussians` equal spans of t. Never NaN: covariances
-  /// keep their floor, and a Gaussian that no sample belongs to stays where it is with weight 0. Expects gaussians ≥ 1.
-  /// Moving all samples moves the result, to rounding; the same bits on every instruction set.
-  /// O(iterations · samples · Gaussians), less where few Gaussians are near. Safe to call concurrently.
+  /// Fits a mixture, starting with mean and covariance of the samples in each of `gaussians` equal spans of t. Never
+  /// NaN: covariances keep their floor, and a Gaussian without samples stays in place with weight 0. Expects gaussians
+  /// ≥ 1. Shifting all samples shifts the result, up to rounding; every instruction set gives equal bits. O(iterations
+  /// · samples · Gaussians), less where few Gaussians are near. Safe to call concurrently.
   [[nodiscard]] GmmFit fit(int gaussians) const;
 
   [[nodiscard]] std::size_t samples() const { return samples_.count; }

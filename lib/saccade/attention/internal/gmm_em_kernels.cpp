@@ -20,7 +20,7 @@ using V = hn::Vec<Tag>;
 
 HWY_INLINE V set(double value) { return hn::Set(Tag{}, value); }
 
-/// e^x for x ≤ 0, within 1e-14 of its value; below -700 that of -700.
+/// Returns e^x for x ≤ 0, within 1e-14 of its value; below -700 that of -700.
 HWY_INLINE V exp_of(V x) {
   constexpr double kRound{0x1.8p52};  // added, it leaves the nearest whole number in the lowest bits
   constexpr double kLn2High{0x1.62e42feep-1};
@@ -50,11 +50,11 @@ HWY_INLINE Difference difference(const MixtureSamples& samples, const MixtureDen
           hn::Sub(hn::LoadU(d, samples.planes[3].data() + at), set(density.mean[3]))};
 }
 
-/// What one block of samples needs, for as many Gaussians as there are.
+/// Working memory for one block of samples and all Gaussians.
 struct Workspace {
   std::vector<double> values;      ///< kMixtureBlock per Gaussian: log densities, then their exponentials
-  std::vector<double> bounds;      ///< per Gaussian: largest log density that it may have in the block
-  std::vector<std::size_t> order;  ///< Gaussians by falling bound; only the first `near` matter
+  std::vector<double> bounds;      ///< per Gaussian: upper bound of its log density in the block
+  std::vector<std::size_t> order;  ///< Gaussians by decreasing bound; only the first `near` matter
   std::size_t near{0};
   alignas(64) std::array<double, kMixtureBlock> largest{};
   alignas(64) std::array<double, kMixtureBlock> total{};
@@ -74,7 +74,7 @@ void order_by_bound(const MixtureSamples& samples, std::span<const MixtureDensit
   });
 }
 
-/// Log densities of one Gaussian; the smallest of the largest ones so far.
+/// Computes log densities of one Gaussian, and updates the largest ones; returns the smallest of these.
 HWY_INLINE double add_log_densities(const MixtureSamples& samples, const MixtureDensity& density, std::size_t begin,
                                     double* values, double* largest) {
   const Tag d;
@@ -97,7 +97,7 @@ HWY_INLINE double add_log_densities(const MixtureSamples& samples, const Mixture
   return hn::GetLane(hn::MinOfLanes(d, smallest));
 }
 
-/// Fills the near Gaussians' values, and `largest`, of a block.
+/// Computes the near Gaussians' values, and `largest`, of a block.
 void log_densities(const MixtureSamples& samples, std::span<const MixtureDensity> mixture, std::size_t begin,
                    Workspace& work) {
   constexpr double kNothing{-40.0};
@@ -111,7 +111,7 @@ void log_densities(const MixtureSamples& samples, std::span<const MixtureDensity
   }
 }
 
-/// Exponentials relative to the largest density, and their sums.
+/// Computes exponentials relative to the largest density, and their sums.
 void exponentials(Workspace& work) {
   const Tag d;
   work.total.fill(0.0);
@@ -162,7 +162,7 @@ HWY_INLINE void add_moments(const MixtureSamples& samples, const MixtureDensity&
   }
 }
 
-/// Σ largest + log total over the samples of a block; turns `total` into its inverse.
+/// Returns Σ largest + log total over the samples of a block; turns `total` into its inverse.
 double finish_block(std::size_t samples, Workspace& work) {
   constexpr std::size_t kFactors{8};  // totals lie in [1, Gaussians]: their product stays small
   double log_likelihood{0.0};

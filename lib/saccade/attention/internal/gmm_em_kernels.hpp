@@ -12,16 +12,16 @@ namespace saccade {
 
 /// Partial sums per value: sample i adds to sum i mod 8, whatever the width of a vector.
 constexpr std::size_t kMixtureLanes{8};
-/// Samples that are gone through together.
+/// Number of samples processed together.
 constexpr std::size_t kMixtureBlock{64};
 
-/// Coordinates in planes, filled up with copies of the last sample to whole blocks.
+/// Coordinates in planes, padded with copies of the last sample to whole blocks.
 struct MixtureSamples {
   std::array<std::vector<double>, 4> planes;
   std::size_t count{0};
 };
 
-/// One Gaussian as its density is computed: log(π N(x)) = log_scale − ½‖W(x − mean)‖².
+/// One Gaussian in the form used for its density: log(π N(x)) = log_scale − ½‖W(x − mean)‖².
 struct MixtureDensity {
   std::array<double, 4> mean{};
   std::array<double, 10> W{};  ///< lower triangle row by row: the inverse of the covariance's Cholesky factor
@@ -36,8 +36,8 @@ struct MixtureMoments {
   [[nodiscard]] double sum(std::size_t i) const;
 };
 
-/// The E-step: adds up moments per Gaussian and returns the log-likelihood of all samples. Within a block, Gaussians
-/// whose responsibilities stay below e^-40 for every sample are passed over, which is below rounding.
+/// Performs the E-step: adds up moments per Gaussian and returns the log-likelihood of all samples. Within a block,
+/// Gaussians whose responsibilities stay below e^-40 for every sample are skipped, which is below rounding.
 /// Every simd_target() gives the same bits. O(samples · Gaussians that are near).
 [[nodiscard]] double expect_mixture(const MixtureSamples& samples, std::span<const MixtureDensity> mixture,
                                     std::span<MixtureMoments> moments);

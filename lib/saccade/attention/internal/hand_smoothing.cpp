@@ -17,10 +17,10 @@ namespace {
 
 constexpr double kMedianOfChi3{1.5381722544};  // median length of a Gaussian vector in space, unit variance per axis
 constexpr double kLeastSpread_m{0.02};
-constexpr double kTie{1e-7};      // so that rounding decides neither bins nor medoids
-constexpr double kLargest{1e12};  // of times and positions, so that no sum overflows
+constexpr double kTie{1e-7};      // keeps rounding from deciding bins or medoids
+constexpr double kLargest{1e12};  // limit of times and positions, so that no sum overflows
 constexpr int kBinsPerKernel{5};
-constexpr int kReach_bins{16};  // to where the kernel is cut off, 3.2 standard deviations
+constexpr int kReach_bins{16};  // radius of the truncated kernel, 3.2 standard deviations
 
 /// Distances among the samples of a window, [a][b] for a < b.
 using WindowDistances = std::array<std::array<double, kOutlierWindow>, kOutlierWindow>;
@@ -46,8 +46,8 @@ bool is_outlier(const WindowDistances& distances_m, std::size_t index, double no
          distance_m(medoid, index) > limit * std::max({nearest_m, kMedianOfChi3 * noise_m, kLeastSpread_m});
 }
 
-/// Samples summed up by the step nearest to them, with kReach_bins empty bins on both sides. Times are in steps, from
-/// the middle of the bin.
+/// Samples summed up by their nearest step, with kReach_bins empty bins on both sides. Times are in steps, from the
+/// middle of the bin.
 class Bins {
  public:
   Bins(std::span<const TimedPoint> samples, double step_s, std::size_t count)
@@ -189,7 +189,7 @@ double third_difference_m(std::span<const TimedPoint, 4> samples) {
   const double scale = samples[3].time_s - samples[0].time_s;
   std::array<double, 4> t{};
   for (std::size_t j = 0; j < 4; ++j) t[j] = (samples[j].time_s - samples[0].time_s) / scale;
-  // Those of the divided difference of the third order, times a common factor that leaves no quotient.
+  // Weights of the divided third difference, multiplied by a common factor that avoids quotients.
   const std::array<double, 4> weights{-(t[2] - t[1]) * (t[3] - t[1]) * (t[3] - t[2]), t[2] * t[3] * (t[3] - t[2]),
                                       -t[1] * t[3] * (t[3] - t[1]), t[1] * t[2] * (t[2] - t[1])};
   double norm_squared{0.0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// What the dip detectors make of a hand trajectory first: fresh samples, their noise, and the smoothed motion.
+// First steps of the dip detectors on a hand trajectory: distinct samples, their noise, and the smoothed motion.
 
 #include <Eigen/Core>
 #include <span>
@@ -12,30 +12,30 @@
 
 namespace saccade {
 
-/// Times and positions that are finite (at most 1e12 s and m), of a trajectory also times that never decrease.
-/// @return invalid_argument, of a trajectory naming the first sample that is not so. O(n)
+/// Check that times and positions are finite (at most 1e12 s and m), and that the times of a trajectory never decrease.
+/// @return invalid_argument, for a trajectory naming the first bad sample. O(n)
 [[nodiscard]] Status check_order(const HandSample& sample);
 [[nodiscard]] Status check_order(std::span<const HandSample> trajectory);
 
-/// The samples that say something new: without those equal to the one before, samples of one time as their mean.
-/// Expects a valid trajectory. O(n)
+/// Returns the informative samples: without those equal to the previous one, samples of one time as their mean. Expects
+/// a valid trajectory. O(n)
 [[nodiscard]] std::vector<TimedPoint> fresh_samples(std::span<const HandSample> trajectory);
 
-/// Standard deviation of the noise on each coordinate: the median length of third differences (divided ones, since
-/// samples may be missing, with coefficients of unit norm) over that of a Gaussian vector. Motion that is quadratic
-/// over four samples leaves no trace in it. 0 below four samples. Expects increasing times. O(n)
+/// Returns the standard deviation of the noise on each coordinate: the median length of third differences (divided
+/// ones, since samples may be missing, with coefficients of unit norm) over that of a Gaussian vector. Motion that is
+/// quadratic over four samples leaves no trace in it. 0 below four samples. Expects increasing times. O(n)
 [[nodiscard]] double noise_deviation_m(std::span<const TimedPoint> samples);
 
-/// The length of one such difference, and what the lengths of any number of them say of the noise.
+/// Return the length of one such difference, and the noise estimated from any number of lengths.
 [[nodiscard]] double third_difference_m(std::span<const TimedPoint, 4> samples);
 [[nodiscard]] double noise_of_third_differences_m(std::vector<double> lengths_m);
 
-/// How far apart positions lie, summed up one by one.
+/// Spread of positions, summed up one by one.
 class PositionSpread {
  public:
   /// @param noise_m  expected standard deviation of the position on each axis.
   void add(const Eigen::Vector3d& position_m, double noise_m);
-  /// Whether their variance is more than four times what such noise makes: whether anything moved.
+  /// Tells whether their variance is more than four times that of the noise: whether anything moved.
   [[nodiscard]] bool exceeds_noise() const { return squares_m2_ > 4.0 * noise_squares_m2_; }
 
  private:
@@ -45,54 +45,55 @@ class PositionSpread {
   double noise_squares_m2_{0.0};
 };
 
-/// Samples among which one is checked for being an outlier.
+/// Number of samples in the window of an outlier test.
 inline constexpr std::size_t kOutlierWindow{7};
 
-/// Whether a sample is a gross outlier: farther from the medoid of the window than `limit` times the distance from it
-/// to its nearest sample, the median length of the noise, or 2 cm, whichever is largest. The same in every world frame.
+/// Tells whether a sample is a gross outlier: farther from the medoid of the window than `limit` times the largest of
+/// the medoid's distance to its nearest sample, the median length of the noise, and 2 cm. Independent of the world
+/// frame.
 [[nodiscard]] bool is_outlier(std::span<const TimedPoint, kOutlierWindow> window, std::size_t index, double noise_m,
                               double limit);
 
-/// The samples without those that are outliers in the window around them. Fewer than a window: all. O(n)
+/// Returns the samples without outliers in their windows; all of them where there are fewer than a window. O(n)
 [[nodiscard]] std::vector<TimedPoint> without_outliers(std::span<const TimedPoint> samples, double noise_m,
                                                        double limit);
 
-/// Sums of a Gaussian local-linear fit, about the time it is made for.
+/// Sums of a Gaussian local-linear fit around a time.
 struct LocalLinearSums {
   double weight{0.0};
   double time{0.0};
   double time_squared{0.0};
   Eigen::Vector3d position{Eigen::Vector3d::Zero()};
   Eigen::Vector3d time_position{Eigen::Vector3d::Zero()};
-  double weight_squared{0.0};  ///< the first three again, of squared weights
+  double weight_squared{0.0};  ///< the first three sums with squared weights
   double squared_time{0.0};
   double squared_time_squared{0.0};
 };
 
-/// Fan and Gijbels, Local Polynomial Modelling (1996): weighted least squares of a line. Where the sums hold one time
-/// only, the motion is at rest there.
+/// Fits a line by weighted least squares (Fan and Gijbels, Local Polynomial Modelling, 1996). Where the sums hold only
+/// one time, the motion is at rest.
 [[nodiscard]] SmoothedPoint solve(const LocalLinearSums& sums, double time_s, double noise_m);
 
-/// The motion every `kernel_s` / 5, from the first sample to the last: local-linear fits with a Gaussian kernel of that
-/// standard deviation, over samples gathered in bins of that step. Where no sample lies within a kernel width, the hand
-/// is on the straight line between its neighbours. Steps are widened so that there are at most 8 per sample and 4096.
-/// Expects two samples or more, of increasing times, and kernel_s > 0. O(n)
+/// Returns the motion every `kernel_s` / 5, from the first sample to the last: local-linear fits with a Gaussian kernel
+/// of that standard deviation, over samples gathered in bins of that step. Where no sample lies within a kernel width,
+/// the hand is on the straight line between its neighbours. Steps are widened to at most 8 per sample plus 4096.
+/// Expects at least two samples of increasing times, and kernel_s > 0. O(n)
 [[nodiscard]] std::vector<SmoothedPoint> smooth(std::span<const TimedPoint> samples, double kernel_s, double noise_m);
 
-/// Mean time between samples, s, without intervals of more than 8.5 times the median one. Expects two samples or
-/// more.
+/// Returns the mean time between samples, s, without intervals of more than 8.5 times the median one. Expects at least
+/// two samples.
 [[nodiscard]] double interval_s(std::span<const TimedPoint> samples);
 
-/// Mean speed along the path, m/s: Σ v² / Σ v, so that rests do not count. 0 without motion.
+/// Returns the mean speed along the path, m/s: Σ v² / Σ v, so that rests do not count. 0 without motion.
 [[nodiscard]] double path_speed_mps(std::span<const SmoothedPoint> motion);
 
-/// Standard deviation on each axis that a kernel of width h leaves of noise: of the position σ √(Δt / (2 √π h)), of the
-/// velocity σ √(Δt / (4 √π h³)).
+/// Return the standard deviation per axis that a kernel of width h leaves of noise: for the position σ √(Δt / (2 √π
+/// h)), for the velocity σ √(Δt / (4 √π h³)).
 [[nodiscard]] double position_noise_m(double noise_m, double interval_s, double kernel_s);
 [[nodiscard]] double velocity_noise_mps(double noise_m, double interval_s, double kernel_s);
 
-/// Standard deviation of the kernel, s: root of the sum of the squares of length_m / v and of the width h at which the
-/// velocity noise is that share of the speed v. Expects v > 0.
+/// Returns the standard deviation of the kernel, s: root of the sum of the squares of length_m / v and of the width h
+/// at which the velocity noise is that share of the speed v. Expects v > 0.
 [[nodiscard]] double kernel_width_s(const KernelConfig& config, double speed_mps, double noise_m, double interval_s);
 
 }  // namespace saccade

@@ -23,7 +23,7 @@ struct Member {
   std::uint32_t point;  ///< index among all
 };
 
-/// Points of several segments in boxes within boxes.
+/// Points of several segments in nested boxes.
 class SegmentTree {
  public:
   explicit SegmentTree(std::vector<Member> members) : members_{std::move(members)} {
@@ -33,8 +33,8 @@ class SegmentTree {
 
   [[nodiscard]] const std::vector<Member>& members() const { return members_; }
 
-  /// Whether a point of another segment lies within the distance. The boxes' bounds are rounded as the distances are,
-  /// so the answer is that of going through all points.
+  /// Tells whether a point of another segment lies within the distance. The boxes' bounds are rounded as the distances
+  /// are, so the answer equals that of testing all points.
   [[nodiscard]] bool has_foreign(const Member& of, double squared_distance) const {
     const Eigen::Vector3d p = of.p_m.cast<double>();
     std::array<std::uint32_t, kMostDepth> open;  // NOLINT(*-member-init): filled as it is used
@@ -69,8 +69,8 @@ class SegmentTree {
 
   struct Node {
     Eigen::Vector3f low, high;
-    std::uint32_t first, last;  ///< of its members
-    std::uint32_t segment;      ///< of all of them, or kMixed
+    std::uint32_t first, last;  ///< range of its members
+    std::uint32_t segment;      ///< segment of all of them, or kMixed
     std::uint32_t right;        ///< its second child; the first follows it; 0: a leaf
   };
 
@@ -101,7 +101,8 @@ class SegmentTree {
   std::vector<Node> nodes_;
 };
 
-/// Points in cells somewhat longer than the distance: those within it of a point are in its cell or in one next to it.
+/// Points in cells slightly longer than the distance: all points within it of a point are in its cell or in a
+/// neighbouring one.
 class Cells {
  public:
   Cells(const SegmentedPoints& points, double distance_m, const Executor& executor) {
@@ -122,7 +123,8 @@ class Cells {
     }
   }
 
-  /// Points with another segment in their cell or next to it; of those beyond the index it is not known.
+  /// Returns the points with another segment in their cell or a neighbouring one; points beyond the index count as
+  /// such.
   [[nodiscard]] std::vector<Member> points_near_others(const SegmentedPoints& points, const Executor& executor) const {
     std::vector<std::uint8_t> is_near(segments_.size(), 0);
     executor.parallel_for(is_near.size(), kCellGrain, [&](std::size_t begin, std::size_t end) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// CellBlocks: cells of a regular grid, numbered in the order of insertion, for those who ask for neighbours.
+// CellBlocks: cells of a regular grid, numbered in the order of insertion, with fast access to neighbours.
 
 #include <array>
 #include <cstddef>
@@ -11,17 +11,17 @@
 
 namespace saccade {
 
-/// A hash of blocks of 8³ cells, in which the cells next to one are found without hashing. One thread inserts; all else
-/// is const.
+/// Hash table of blocks of 8³ cells, which finds neighbouring cells without hashing. One thread inserts; all other
+/// methods are const.
 class CellBlocks {
  public:
-  static constexpr std::size_t kAround{26};  ///< cells next to one
+  static constexpr std::size_t kAround{26};  ///< neighbours of a cell
 
   CellBlocks() : slots_(std::size_t{1} << kFirstBits, kUnlabelled) {}
 
   [[nodiscard]] std::size_t size() const { return places_.size(); }
 
-  /// The number of the cell, the next one if it is new.
+  /// Returns the number of the cell, inserting it with the next number if it is new.
   std::uint32_t insert(std::uint64_t cell) {
     const std::uint64_t key = cell & ~kWithin;
     if (last_ == kUnlabelled || keys_[last_] != key) last_ = insert_block(key);
@@ -33,7 +33,7 @@ class CellBlocks {
     return number;
   }
 
-  /// Writes the numbers of the up to kAround cells next to one, z slowest. @return where they end.
+  /// Writes the numbers of a cell's neighbours (up to kAround), z slowest. @return one past the last number written.
   std::uint32_t* around(std::uint32_t number, std::uint32_t* to) const {
     const Place& place = places_[number];
     const int x = static_cast<int>(place.within & 7U);
@@ -77,7 +77,7 @@ class CellBlocks {
     std::uint32_t within;
   };
 
-  /// Blocks next to one, looked up when they are asked for.
+  /// Neighbouring blocks, looked up on first use.
   class Nearby {
    public:
     Nearby(const CellBlocks& index, std::uint64_t key) : index_{index}, key_{key} {}
@@ -103,7 +103,7 @@ class CellBlocks {
     return static_cast<std::size_t>(((cell & 7) << 6) | (((cell >> kCellBits) & 7) << 3) |
                                     ((cell >> (2 * kCellBits)) & 7));
   }
-  /// Of the block, or the free one in which it would stand.
+  /// Returns the slot of the block, or the free slot where it would be inserted.
   [[nodiscard]] std::size_t slot_of(std::uint64_t key) const {
     const std::size_t mask = slots_.size() - 1;
     std::size_t slot = static_cast<std::size_t>((key * 0x9E3779B97F4A7C15ULL) >> (64 - bits_));
@@ -126,10 +126,10 @@ class CellBlocks {
   }
 
   int bits_{kFirstBits};
-  std::vector<std::uint32_t> slots_;  ///< numbers of blocks
-  std::vector<std::uint64_t> keys_;   ///< of blocks
+  std::vector<std::uint32_t> slots_;  ///< block numbers
+  std::vector<std::uint64_t> keys_;   ///< block keys
   std::vector<Block> blocks_;
-  std::vector<Place> places_;  ///< of cells
+  std::vector<Place> places_;  ///< where each cell lies
   std::uint32_t last_{kUnlabelled};
 };
 

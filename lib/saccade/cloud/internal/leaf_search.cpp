@@ -17,10 +17,10 @@ namespace {
 namespace hn = hwy::HWY_NAMESPACE;
 
 constexpr std::size_t kWidth{LeafTree::kWidth};
-constexpr std::size_t kBatch{4};  // neighbours that are offered at once
+constexpr std::size_t kBatch{4};  // neighbours offered at once
 
 // A neighbour is one number: its squared distance (the bits of a float, which sort as its value does) above its site.
-// As a double it sorts in the same way, so a new one takes its place by least and greatest. One lane is one point.
+// As a double it sorts likewise, so minimum and maximum insert a new neighbour. One lane is one point.
 using KeyTag = hn::CappedTag<double, kWidth>;
 using KeyBits = hn::RebindToUnsigned<KeyTag>;
 using FloatTag = hn::Rebind<float, KeyTag>;
@@ -34,8 +34,9 @@ struct Search {
   const LeafTree& tree;
   std::size_t k;
   std::size_t leaf{0};
-  std::uint32_t farthest{0};  ///< of the neighbours that the leaf's points have so far: bits of its squared distance
-  /// Per neighbour eight points; before them as many as are offered at once, nearer than any.
+  std::uint32_t farthest{0};  ///< farthest neighbour found so far by any point of the leaf: bits of its squared
+                              ///< distance
+  /// Eight points per neighbour. They follow kBatch rows that are nearer than any neighbour.
   alignas(64) std::array<std::array<double, kWidth>, kBatch + kMostNeighbours> found{};
 };
 
@@ -53,7 +54,7 @@ HWY_INLINE T squared_length(T x, T y, T z) {
   return hn::Add(hn::Add(hn::Mul(x, x), hn::Mul(y, y)), hn::Mul(z, z));
 }
 
-/// How far intervals are apart.
+/// Returns the gap between two intervals.
 template <class D, class T = hn::Vec<D>>
 HWY_INLINE T gap(D d, T low, T high, T other_low, T other_high) {
   return hn::Max(hn::Max(hn::Sub(low, other_high), hn::Sub(other_low, high)), hn::Zero(d));
@@ -73,8 +74,8 @@ HWY_INLINE void sort_batch(std::array<Key, kBatch>& keys) {
   sort_two(keys[1], keys[2]);
 }
 
-/// Offers keys in ascending order to each of a block of points. Of two sorted lists together, element i is the least of
-/// the i-th of one, and of the greater ones of element i − j of the one and element j of the other.
+/// Offers keys in ascending order to each of a block of points. Element i of two merged sorted lists is the minimum
+/// over j of the greater of element i − j of one and element j of the other, the i-th of one list included.
 HWY_INLINE void merge(double* found, std::size_t k, const std::array<Key, kBatch>& keys) {
   const KeyTag d;
   double* at = found + (k - 1) * kWidth;
@@ -139,14 +140,14 @@ HWY_INLINE void look_at(Search& search, std::size_t leaf) {
 
 constexpr std::size_t kNone{kWidth};
 
-/// Looks at the children of a group that are near enough, the nearest first.
+/// Visits the children of a group that are near enough, nearest first.
 void descend(Search& search, std::size_t level, std::size_t group, std::size_t except) {
   const BoxTag d;
   const BoxBits du;
   const LeafTree::Boxes& own = search.tree.levels()[0][search.leaf / kWidth];
   const std::size_t child = search.leaf % kWidth;
   const LeafTree::Boxes& boxes = search.tree.levels()[level][group];
-  // Above the number of the child its distance, rounded down.
+  // Each key holds the child's number in its low bits and its distance, rounded down, above.
   alignas(64) std::array<std::uint32_t, kWidth> near;
   constexpr auto kChild = static_cast<std::uint32_t>(kWidth - 1);
   for (std::size_t block = 0; block < kWidth; block += hn::Lanes(d)) {
@@ -180,7 +181,7 @@ void search_kernel(const LeafTree& tree, std::size_t k, std::size_t begin, std::
     const std::size_t first = tree.first_of(leaf);
     const std::size_t size = tree.end_of(leaf) - first;
     search.leaf = leaf;
-    for (std::size_t n = 0; n < k; ++n) {  // what is no point looks for nothing
+    for (std::size_t n = 0; n < k; ++n) {  // unused places search for nothing
       search.found[kBatch + n].fill(0.0);
       std::fill_n(search.found[kBatch + n].begin(), size, key_of(std::numeric_limits<float>::infinity(), 0));
     }

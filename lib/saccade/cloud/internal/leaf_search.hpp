@@ -11,9 +11,9 @@ namespace saccade {
 
 inline constexpr std::size_t kMostNeighbours{64};
 
-/// The k nearest other points of each point of leaves [begin, end), the nearest first, equally near ones in ascending
-/// order: row i of `rows` belongs to site i, and numbers are those of sites. All points of a leaf look for theirs
-/// together, nearest boxes first. Expects 1 ≤ k ≤ 64 and more than k sites. The same on every instruction set.
+/// Finds the k nearest other points of each point in leaves [begin, end), nearest first, equally near ones in ascending
+/// order. Row i of `rows` belongs to site i and holds site numbers. The points of a leaf search together, nearest boxes
+/// first. Expects 1 ≤ k ≤ 64 and more than k sites. The instruction set never changes the result.
 void search_leaves(const LeafTree& tree, std::size_t k, std::size_t begin, std::size_t end, std::uint32_t* rows);
 
 }  // namespace saccade

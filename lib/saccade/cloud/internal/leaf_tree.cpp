@@ -8,20 +8,21 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kSplitAlone{1024};  // leaves of a range that one thread splits to its end
+constexpr std::size_t kSplitAlone{1024};  // leaves of a range that one thread splits completely
 constexpr std::size_t kGroupGrain{16};
 constexpr std::size_t kFew{32};  // sites
 constexpr std::size_t kSample{16};
 constexpr float kFar{std::numeric_limits<float>::infinity()};
-constexpr float kNoPoint_m{8e18F};  // its squared distance to a point is finite, and greater than that of any two
+constexpr float kNoPoint_m{8e18F};  // its squared distance to a point is finite, and greater than that between any two
+                                    // points
 
-using Site = LeafTree::Site;
+using IndexedPoint = LeafTree::IndexedPoint;
 
-/// Sites of whose coordinate `is_left` holds come first; returns where the others begin. No branch depends on it.
+/// Moves sites whose coordinate satisfies `is_left` to the front; returns where the others begin. Free of branches.
 template <class IsLeft>
-Site* partition(Site* begin, Site* end, Eigen::Index axis, const IsLeft& is_left) {
-  Site* next = begin;
-  for (Site* site = begin; site != end; ++site) {
+IndexedPoint* partition(IndexedPoint* begin, IndexedPoint* end, Eigen::Index axis, const IsLeft& is_left) {
+  IndexedPoint* next = begin;
+  for (IndexedPoint* site = begin; site != end; ++site) {
     const bool left = is_left(site->lanes[axis]);
     std::swap(*site, *next);
     next += left ? 1 : 0;
@@ -31,10 +32,10 @@ Site* partition(Site* begin, Site* end, Eigen::Index axis, const IsLeft& is_left
 
 struct Ranked {
   float value;
-  int less;  ///< as many are less
+  int less;  ///< number of smaller values
 };
 
-/// Of the values that fewer than `rank` ones are less than, the greatest. Expects rank ≥ 1.
+/// Returns the greatest of the values that have fewer than `rank` smaller ones. Expects rank ≥ 1.
 template <std::size_t kCount>
 Ranked ranked(const std::array<float, kCount>& values, int rank) {
   Ranked found{-kFar, 0};
@@ -47,18 +48,18 @@ Ranked ranked(const std::array<float, kCount>& values, int rank) {
   return found;
 }
 
-/// Of as many sites at most, `left` least ones come first.
+/// Moves the `left` smallest of at most kMost sites to the front.
 template <std::size_t kMost>
-void select_of_few(Site* begin, Site* end, int left, Eigen::Index axis) {
-  std::array<Site, kMost> sites;
+void select_of_few(IndexedPoint* begin, IndexedPoint* end, int left, Eigen::Index axis) {
+  std::array<IndexedPoint, kMost> sites;
   const auto size = static_cast<std::size_t>(end - begin);
   std::copy(begin, end, sites.begin());
   std::array<float, kMost> x;
   x.fill(kFar);
   for (std::size_t i = 0; i < size; ++i) x[i] = sites[i].lanes[axis];
   const Ranked last = ranked(x, left);
-  int equal = left - last.less;  // as many of these are on the left
-  std::array<Site*, 2> next{begin + left, begin};
+  int equal = left - last.less;  // sites equal to the last one that belong to the left
+  std::array<IndexedPoint*, 2> next{begin + left, begin};
   for (std::size_t i = 0; i < size; ++i) {
     const bool is_equal = x[i] == last.value;
     const bool is_left = (x[i] < last.value) | (is_equal & (equal > 0));
@@ -67,20 +68,21 @@ void select_of_few(Site* begin, Site* end, int left, Eigen::Index axis) {
   }
 }
 
-/// As std::nth_element, by far fewer branches that a processor cannot foresee.
-void select(Site* begin, Site* middle, Site* end, Eigen::Index axis) {
+/// Works as std::nth_element, with far fewer unpredictable branches.
+void select(IndexedPoint* begin, IndexedPoint* middle, IndexedPoint* end, Eigen::Index axis) {
   while (begin < middle && end - begin > std::ptrdiff_t{kFew}) {
-    // Of a sample, one a bit beyond where the middle is expected, on the side where more are.
+    // Takes from a sample the value just beyond the expected middle, on the side that holds more sites.
     constexpr int kMiddle{kSample / 2};
     constexpr int kBeyond{1};
-    constexpr std::uint32_t kGoldenRatio{0x9E3779B9U};  // of 2³²: its multiples spread evenly, and in no order
+    constexpr std::uint32_t kGoldenRatio{0x9E3779B9U};  // golden ratio of 2³²: its multiples spread evenly and
+                                                        // irregularly
     const auto size = static_cast<std::uint64_t>(end - begin);
     std::array<float, kSample> sample;
     for (std::uint32_t i = 0; i < kSample; ++i) sample[i] = begin[(i * kGoldenRatio * size) >> 32U].lanes[axis];
     const auto rank = static_cast<int>(static_cast<std::uint64_t>(middle - begin) * kSample / size);
     const float pivot = ranked(sample, 1 + rank + (rank < kMiddle ? kBeyond : rank > kMiddle ? -kBeyond : 0)).value;
-    Site* cut = partition(begin, end, axis, [pivot](float x) { return x < pivot; });
-    if (cut == begin) {  // there is none less
+    IndexedPoint* cut = partition(begin, end, axis, [pivot](float x) { return x < pivot; });
+    if (cut == begin) {  // no site is smaller
       cut = partition(begin, end, axis, [pivot](float x) { return x <= pivot; });
       if (middle < cut) return;
     }
@@ -108,7 +110,7 @@ std::size_t groups_of(std::size_t children) { return (children + LeafTree::kWidt
 
 }  // namespace
 
-/// Leaves [first, end), cut where the largest groups inside end.
+/// Range of leaves [first, end), cut where the largest groups inside end.
 struct LeafTree::Range {
   std::size_t first;
   std::size_t end;
@@ -124,10 +126,10 @@ struct LeafTree::Range {
   [[nodiscard]] Range right() const { return {middle(), end}; }
 };
 
-LeafTree::LeafTree(UnsetVector<Site> sites, const Executor& executor)
+LeafTree::LeafTree(UninitializedVector<IndexedPoint> sites, const Executor& executor)
     : sites_{std::move(sites)}, leaves_(groups_of(sites_.size())) {
   std::vector<Range> open{{0, leaves_.size()}};
-  while (!open.empty()) {  // widest ranges first, as many threads as there are ranges
+  while (!open.empty()) {  // widest ranges first; each range runs on its own thread
     std::vector<Range> next;
     executor.parallel_for(open.size(), 1, [&](std::size_t begin, std::size_t end) {
       for (std::size_t i = begin; i < end; ++i) open[i].size() > kSplitAlone ? split(open[i]) : sort(open[i]);
@@ -157,13 +159,13 @@ LeafTree::LeafTree(UnsetVector<Site> sites, const Executor& executor)
   }
 }
 
-/// Sites of the left half before those of the right one along the longest side.
+/// Moves the sites of the left half to the front along the longest side.
 void LeafTree::split(const Range& range) {
-  Site* begin = sites_.data() + first_of(range.first);
-  Site* end = sites_.data() + end_of(range.end - 1);
+  IndexedPoint* begin = sites_.data() + first_of(range.first);
+  IndexedPoint* end = sites_.data() + end_of(range.end - 1);
   Eigen::Array4f low = begin->lanes;
   Eigen::Array4f high = low;
-  for (const Site* site = begin; site != end; ++site) {
+  for (const IndexedPoint* site = begin; site != end; ++site) {
     low = low.min(site->lanes.array());
     high = high.max(site->lanes.array());
   }

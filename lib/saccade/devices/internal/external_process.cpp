@@ -19,21 +19,21 @@ namespace {
 
 constexpr std::chrono::milliseconds kCloseGrace{1000};
 constexpr std::chrono::milliseconds kTerminateGrace{500};
-constexpr std::chrono::milliseconds kHurriedGrace{150};  // in place of both, for a program that hangs
-constexpr std::chrono::milliseconds kCancelGrace{300};   // for the answer that is under way
+constexpr std::chrono::milliseconds kHurriedGrace{150};  // replaces both for a program that hangs
+constexpr std::chrono::milliseconds kCancelGrace{300};   // for the pending answer
 constexpr std::chrono::milliseconds kCancelSlice{20};
 constexpr std::chrono::milliseconds kExitStatusWait{500};  // between the end of the output and that of the process
-constexpr std::chrono::milliseconds kLastWordsWait{30};    // an arm may be moving while a camera's are waited for
+constexpr std::chrono::milliseconds kLastWordsWait{30};    // short, because an arm may be moving while a camera fails
 constexpr std::size_t kQuotedBytes{80};
 
 constexpr const char* kRule{"an answer is one line of JSON and the bytes it announces; messages belong on stderr"};
 
-/// How a child ended; nullopt while it runs. It stays a zombie, so that its number remains its own.
+/// Returns how a child ended; nullopt while it runs. It stays a zombie, so that its number is not reused.
 std::optional<siginfo_t> end_of(pid_t pid) {
   siginfo_t info{};
   const int result = ::waitid(P_PID, static_cast<id_t>(pid), &info, WEXITED | WNOHANG | WNOWAIT);
   if (result == 0 && info.si_pid == 0) return std::nullopt;
-  if (result != 0) info = {};  // somebody else has cleared it away
+  if (result != 0) info = {};  // another part of the process has reaped it
   return info;
 }
 
@@ -76,7 +76,7 @@ Result<std::unique_ptr<ExternalProcess>> ExternalProcess::start(ProcessConfig co
   SACCADE_TRY(Pipe out, Pipe::create());
   SACCADE_TRY(Pipe errors, Pipe::create());
   SACCADE_TRY(Pipe stop, Pipe::create());
-  // The folder is the shell's $0, so that it needs no quotes.
+  // The folder is passed as the shell's $0, so that it needs no quotes.
   const std::string line = (config.folder.empty() ? "exec " : "cd -- \"$0\" && exec ") + config.command;
   const std::string folder = config.folder.empty() ? "sh" : config.folder.string();
   SACCADE_TRY(const pid_t pid,
@@ -116,7 +116,7 @@ ExternalProcess::~ExternalProcess() {
     ::kill(-pid_, SIGTERM);
     static_cast<void>(gone_within(hangs_ ? kHurriedGrace : kTerminateGrace));
   }
-  // Until it is cleared away, running or not, the number of its group cannot be anybody else's.
+  // Until it is reaped, running or not, its number and that of its group are not reused.
   const auto end = end_of(pid_);
   if (!end || end->si_pid == pid_) ::kill(-pid_, SIGKILL);
   while (::waitpid(pid_, nullptr, 0) < 0 && errno == EINTR) {
@@ -154,7 +154,7 @@ ExternalProcess::Arrival ExternalProcess::receive(const Request& request) {
 ExternalProcess::Arrival ExternalProcess::receive_at_once() {
   std::array<char, std::size_t{1} << 16> chunk{};
   const ssize_t got = ::read(from_.get(), chunk.data(), chunk.size());
-  if (got < 0 && (errno == EINTR || errno == EAGAIN)) return Arrival::data;  // none, but time may be left
+  if (got < 0 && (errno == EINTR || errno == EAGAIN)) return Arrival::data;  // no data, but time may be left
   if (got <= 0) return Arrival::end;
   received_.append(chunk.data(), static_cast<std::size_t>(got));
   return Arrival::data;
@@ -277,7 +277,7 @@ Status ExternalProcess::read_bytes(const Request& request, std::span<std::byte> 
 Error ExternalProcess::late(const Request& request, const std::string& what) {
   hangs_ = true;
   if (cancelled_at_) return fail(Errc::cancelled, request.name() + " was cancelled: " + what);
-  const auto end = end_of(pid_);  // something that it has started may hold the pipes open
+  const auto end = end_of(pid_);  // a process that it started may hold the pipes open
   std::ostringstream text;
   text << request.name() << " took longer than the " << request.limit_s() << " s allowed: " << what;
   text << (end ? "; the program itself " + in_words(*end)

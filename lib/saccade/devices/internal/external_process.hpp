@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ExternalProcess: a program of the user's that is asked by lines over pipes; Request: one question and its time limit.
+// ExternalProcess: a user's program that answers requests in lines over pipes. Request: one request and its time limit.
 
 #include <poll.h>
 #include <sys/types.h>
@@ -22,15 +22,15 @@
 
 namespace saccade {
 
-/// One question: its name in messages, and until when all of its answer must be there.
+/// Request: its name in messages, and the time by which its whole answer must be there.
 class Request {
  public:
-  /// The time runs from here. Expects a valid time limit.
+  /// Starts the time limit. Expects a valid one.
   Request(std::string name, double limit_s);
 
   [[nodiscard]] const std::string& name() const { return name_; }
   [[nodiscard]] double limit_s() const { return limit_s_; }
-  /// Rounded up; 0 when the time is over.
+  /// Returns the remaining time, rounded up; 0 when it is over.
   [[nodiscard]] int left_ms() const;
 
  private:
@@ -39,59 +39,61 @@ class Request {
   std::chrono::steady_clock::time_point end_;
 };
 
-/// invalid_argument unless it is positive and at most a day; `whose` is the context.
+/// Answers invalid_argument unless the limit is positive and at most a day; `whose` is the context.
 [[nodiscard]] Status validate_time_limit(double limit_s, const char* whose);
 
 struct ProcessConfig {
-  std::string role;  ///< what messages call it: "camera"
+  std::string role;  ///< name in messages: "camera"
   std::string command;
   std::filesystem::path folder{};     ///< working directory; empty: the caller's
-  std::function<bool()> cancelled{};  ///< asked while it is waited for; true: the answer under way gets 0.3 s more
+  std::function<bool()> cancelled{};  ///< polled while waiting; true: the current answer gets 0.3 s more
 };
 
-/// Child process with pipes at its standard input and output, in a process group of its own, so that Ctrl-C reaches the
-/// caller alone. Its standard error is drained all the time, and quoted when something goes wrong.
+/// Child process with pipes at its standard input and output, in its own process group, so that Ctrl-C reaches only the
+/// caller. Its standard error is drained continuously, and quoted in errors.
 ///
-/// An error of write_line, read_line or read_bytes is final, for nobody knows what the next
-/// byte would mean: every later call returns the same error. Errors are one line. One caller at a time. POSIX.
+/// An error of write_line, read_line or read_bytes is final, because the meaning of the next byte is unknown: every
+/// later call returns this error. Errors are one line. One caller at a time. POSIX.
 class ExternalProcess {
  public:
-  /// The longest line that is read.
+  /// Longest line that is read.
   static constexpr std::size_t kMaxLineBytes{std::size_t{1} << 16};
 
-  /// Runs /bin/sh -c "exec COMMAND". A program that is not there shows at the first request.
+  /// Runs /bin/sh -c "exec COMMAND". A missing program shows at the first request.
   /// @return invalid_argument for an empty command; io_failure when the system gives no process, pipe or thread.
   [[nodiscard]] static Result<std::unique_ptr<ExternalProcess>> start(ProcessConfig config);
   ExternalProcess(const ExternalProcess&) = delete;
   ExternalProcess& operator=(const ExternalProcess&) = delete;
-  /// Ends its input; after 1 s, SIGTERM to its group; after half a second more, SIGKILL; a program that hangs gets 0.15
-  /// s each. Nothing of the group is left, and no zombie. ProcessWatcher does so for a caller that is killed.
+  /// Closes its input; after 1 s, sends SIGTERM to its group; after half a second more, SIGKILL. A program that hangs
+  /// gets 0.15 s each. Nothing of the group remains, and no zombie. ProcessWatcher does this for a caller that is
+  /// killed.
   ~ExternalProcess();
 
-  /// Writes a line, its end included. corrupt_data when the process has said something that nobody asked for.
+  /// Writes a line and its end. Answers corrupt_data when the process has sent unrequested output.
   [[nodiscard]] Status write_line(const Request& request, std::string_view line);
-  /// The next line of its output, without the end. io_failure: it ended, or time is over; cancelled; not_found: there
-  /// is no such program; corrupt_data: no end within kMaxLineBytes.
+  /// Returns the next line of its output, without the end. Answers io_failure when it ended or time is over; cancelled;
+  /// not_found when the program does not exist; corrupt_data without an end within kMaxLineBytes.
   [[nodiscard]] Result<std::string> read_line(const Request& request);
-  /// The next line if it comes within `longest`; nullopt: not yet. Errors: those of read_line, but for time.
+  /// Returns the next line if it comes within `longest`; nullopt: not yet. Errors: those of read_line, except for time.
   [[nodiscard]] Result<std::optional<std::string>> next_line(const Request& request, std::chrono::milliseconds longest);
-  /// Writes a line although an answer is under way.
+  /// Writes a line while an answer is pending.
   [[nodiscard]] Status interject(const Request& request, std::string_view line);
-  /// Exactly as many bytes as fit. io_failure as for read_line.
+  /// Reads exactly as many bytes as fit. Answers io_failure as read_line.
   [[nodiscard]] Status read_bytes(const Request& request, std::span<std::byte> bytes);
 
-  /// Writes all bytes. Errors: those of write_line; what the program sends is not read.
+  /// Writes all bytes. Errors: those of write_line; output of the program is not read.
   [[nodiscard]] Status write_bytes(const Request& request, std::span<const std::byte> bytes);
-  /// Ends its input and waits for its end. io_failure: it goes on, or ends with another exit status than 0.
+  /// Closes its input and waits for its end. Answers io_failure when it continues, or ends with an exit status other
+  /// than 0.
   [[nodiscard]] Status finish(std::chrono::milliseconds longest);
 
-  /// write_line, then read_line.
+  /// Calls write_line, then read_line.
   [[nodiscard]] Result<std::string> ask(const Request& request, std::string_view line);
-  /// The error that an answer turned out to be, with the process named. unavailable: the process reports it itself and
-  /// may be asked again. Any other: the answer made no sense; final.
+  /// Returns the error of an answer, with the process named. unavailable: the process reports it itself and may be
+  /// asked again. Any other: the answer made no sense; final.
   [[nodiscard]] Error refused(const Request& request, const Error& error);
 
-  /// The error of a request whose time is over; final. `what` has not happened: "there is no answer".
+  /// Returns the error of a request whose time is over; final. `what` describes it: "there is no answer".
   [[nodiscard]] Error late(const Request& request, const std::string& what);
 
   [[nodiscard]] pid_t pid() const { return pid_; }
@@ -103,18 +105,18 @@ class ExternalProcess {
                   Pipe stop);
   [[nodiscard]] Arrival receive(const Request& request);
   [[nodiscard]] Arrival receive_at_once();
-  /// Returns whether the pipe can be read, or written, before the request's time is over.
+  /// Tells whether the pipe can be read, or written, before the request's time is over.
   [[nodiscard]] bool wait(pollfd pipe, const Request& request);
   [[nodiscard]] Status nothing_unasked(const Request& request);
-  /// @param missing what does not come where the program has ended
-  /// @param unread what has not happened where the time is over
+  /// @param missing what is missing if the program has ended
+  /// @param unread what has not happened if the time is over
   [[nodiscard]] Status write(const Request& request, std::span<const std::byte> bytes, const std::string& missing,
                              const char* unread);
   [[nodiscard]] bool gone_within(std::chrono::milliseconds longest) const;
-  /// A line that has come; nullopt: none, or not all of it.
+  /// Returns a line that has arrived; nullopt: none, or only part of it.
   [[nodiscard]] Result<std::optional<std::string>> take_line(const Request& request);
   [[nodiscard]] Error ended_before_line(const Request& request);
-  /// @param missing what has not come: "the answer to hello"
+  /// @param missing what has not arrived: "the answer to hello"
   [[nodiscard]] Error ended(const std::string& missing, const char* stream = "output");
   [[nodiscard]] Error fail(Errc code, const std::string& what);
   [[nodiscard]] Error named(Errc code, std::string what) const;
@@ -125,7 +127,7 @@ class ExternalProcess {
   Descriptor to_;
   Descriptor from_;
   PipeTail errors_;
-  std::string received_;  ///< and not read yet
+  std::string received_;  ///< and not yet returned
   bool has_answered_{false};
   bool hangs_{false};
   std::optional<std::chrono::steady_clock::time_point> cancelled_at_;  ///< during this request

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// NoSigpipe: writing into a pipe that nobody may read any more.
+// NoSigpipe: for writing to a pipe that may have no reader any more.
 
 #include <signal.h>
 
@@ -9,7 +9,7 @@
 
 namespace saccade {
 
-/// Keeps SIGPIPE from the thread while it lives.
+/// Blocks SIGPIPE in the thread while it lives.
 class NoSigpipe {
  public:
   NoSigpipe() {

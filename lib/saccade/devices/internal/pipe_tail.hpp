@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// PipeTail: drains a pipe in the background and keeps the end of what came.
+// PipeTail: drains a pipe in the background and keeps the end of its content.
 
 #include <chrono>
 #include <condition_variable>
@@ -12,22 +12,22 @@
 
 namespace saccade {
 
-/// Whoever writes into the pipe never waits for a reader, however much it writes and whatever the program does
+/// Drain of a pipe: its writer never waits for a reader, however much it writes and whatever this program does
 /// meanwhile. Methods may be called from any thread.
 class PipeTail {
  public:
-  /// Bytes that are kept.
+  /// Number of bytes kept.
   static constexpr std::size_t kMaxBytes{4096};
 
-  /// @param stop any new pipe: closing it is how the background is told to end. Throws std::system_error where the
-  ///             system gives no thread.
+  /// @param stop any new pipe: closing it ends the background thread. Throws std::system_error where the system
+  /// provides no thread.
   PipeTail(Descriptor pipe, Pipe stop);
   PipeTail(const PipeTail&) = delete;
   PipeTail& operator=(const PipeTail&) = delete;
-  /// Does not wait for the pipe's end.
+  /// Does not wait for the end of the pipe.
   ~PipeTail();
 
-  /// The last kMaxBytes, after waiting for the pipe's end, but no longer than given.
+  /// Returns the last kMaxBytes, after waiting for the end of the pipe, but no longer than given.
   [[nodiscard]] std::string text(std::chrono::milliseconds longest_wait) const;
 
  private:

@@ -41,7 +41,7 @@ Status expect_protocol(const nlohmann::json& answer) {
 }
 
 /// Returns the pose in an answer, if there is one.
-/// @param T_world_camera where it should be
+/// @param T_world_camera the expected pose
 Result<std::optional<Pose>> optional_pose(const nlohmann::json& answer, const Pose& T_world_camera) {
   const auto value = answer.find("T_world_camera");
   if (value == answer.end()) return std::optional<Pose>{};
@@ -57,7 +57,7 @@ Result<std::optional<Pose>> optional_pose(const nlohmann::json& answer, const Po
   return std::optional<Pose>{*pose};
 }
 
-/// Returns the value whose name is under a key.
+/// Returns the value named by the text under a key.
 template <class T, std::size_t N>
 Result<T> expect_one_of(const nlohmann::json& answer, const char* key, const Names<T, N>& names) {
   const auto value = answer.find(key);
@@ -82,7 +82,7 @@ Result<PinholeCamera> hello_camera(const nlohmann::json& answer, std::string_vie
 Result<nlohmann::json> parse_answer(std::string_view line) {
   auto answer = parse_json(line);
   if (!answer) return bad("it is not JSON: '" + readable(line, kQuotedLineBytes) + "'; messages belong on stderr");
-  if (!answer->is_object()) return bad("it is no JSON object: '" + readable(line, kQuotedLineBytes) + "'");
+  if (!answer->is_object()) return bad("it is not a JSON object: '" + readable(line, kQuotedLineBytes) + "'");
   if (const auto error = answer->find("error"); error != answer->end()) {
     const auto* text = error->get_ptr<const std::string*>();
     if (text == nullptr) return bad("error must be a text");

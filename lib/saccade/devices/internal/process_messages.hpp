@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The protocol of external cameras and robots, docs/processes.md: requests as text, answers from text and bytes.
+// Protocol of external cameras and robots, docs/guides/processes.md: requests as text, answers from text and bytes.
 
 #include <cstddef>
 #include <optional>
@@ -19,43 +19,45 @@ namespace saccade {
 
 /// Version of the protocol: "saccade" in the first request and its answer.
 constexpr int kProcessProtocol{1};
-/// More is taken for a mistake: 16384×16384 pixels are 1 GiB.
+/// Limit of a frame; more is taken for a mistake: 16384×16384 pixels are 1 GiB.
 constexpr std::size_t kMaxFrameBytes{std::size_t{1} << 28};
 
-/// The answer to hello of a program that has nothing to say of itself.
+/// Answer to hello of a program without a description.
 struct Ready {};
 
 struct CaptureAnswer {
-  std::optional<Pose> T_world_camera;  ///< where the camera knows it better than the robot
+  std::optional<Pose> T_world_camera;  ///< set where the camera knows it better than the robot
   std::optional<double> time_s;
 };
 
 struct MoveAnswer {
-  std::optional<Pose> T_world_camera;  ///< where the camera is now; nullopt: not reached
-  std::string why;                     ///< it was not reached; may be empty
+  std::optional<Pose> T_world_camera;  ///< current pose of the camera; nullopt: not reached
+  std::string why;                     ///< why it was not reached; may be empty
 };
 
-/// One line each, without its end.
+/// Requests of one line each, without its end.
 [[nodiscard]] std::string hello_request(std::string_view role);
 [[nodiscard]] std::string capture_request(std::size_t number, const Pose& T_world_camera);
 [[nodiscard]] std::string move_request(std::size_t number, const Pose& T_world_camera);
 
-/// The object in a line. Errors of this and of all that follow: unavailable with the process' own words when it answers
-/// {"error": …}; corrupt_data for what is no JSON object, lacks a key, or holds nonsense.
+/// Returns the object in a line. Errors of this and of all that follow: unavailable with the process' own words when it
+/// answers {"error": …}; corrupt_data for text that is not a JSON object, lacks a key, or holds nonsense.
 [[nodiscard]] Result<nlohmann::json> parse_answer(std::string_view line);
-/// unsupported: another version of the protocol, a distorted camera; invalid_argument as PinholeCamera::validate().
+/// Answers unsupported for another version of the protocol or a distorted camera; invalid_argument as
+/// PinholeCamera::validate().
 [[nodiscard]] Result<ProgramCameraFormat> parse_camera_hello(std::string_view line);
 [[nodiscard]] Result<Ready> parse_ready(std::string_view line);
-/// size_mismatch unless it announces frame_bytes. A pose farther than kMaxPoseError_m from the one given is an error.
+/// Answers size_mismatch unless it announces frame_bytes. A pose farther than kMaxPoseError_m from the given one is an
+/// error.
 [[nodiscard]] Result<CaptureAnswer> parse_capture_answer(std::string_view line, std::size_t number,
                                                          std::size_t frame_bytes, const Pose& T_world_camera);
-/// @param T_world_camera the pose that was asked for; where the camera is unless the answer says another, which is an
-///        error when it is farther than kMaxPoseError_m.
+/// @param T_world_camera the requested pose, which is the result unless the answer gives another; that is an error when
+/// it is farther than kMaxPoseError_m.
 [[nodiscard]] Result<MoveAnswer> parse_move_answer(std::string_view line, std::size_t number,
                                                    const Pose& T_world_camera);
 
-/// Depth and colour of a frame. Depths that are no number or out of the camera's range become 0. Expects frame_bytes()
-/// bytes. O(pixels).
+/// Decodes depth and colour of a frame. Depths that are NaN or out of the camera's range become 0. Expects
+/// frame_bytes() bytes. O(pixels).
 [[nodiscard]] Frame decode_frame(const ProgramCameraFormat& format, std::span<const std::byte> bytes);
 
 }  // namespace saccade

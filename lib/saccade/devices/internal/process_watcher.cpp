@@ -16,7 +16,7 @@
 namespace saccade {
 namespace {
 
-// The caller's end is told by the end of the input: a line comes first where it ends in order.
+// The end of the input signals the end of the caller; an orderly caller sends a line first.
 constexpr const char* kWatch{
     "read line && exit 0; sleep 1; kill -s TERM -- -$0 && sleep 0.5; kill -s KILL -- -$0; exit 0"};
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// spawn_shell: a child process that runs a line of shell; ProcessWatcher: ends a program whose caller has died.
+// spawn_shell: a child process that runs a line of shell. ProcessWatcher: ends a program whose caller has died.
 
 #include <sys/types.h>
 
@@ -14,8 +14,8 @@ namespace saccade {
 /// Runs /bin/sh -c LINE ARGUMENT with the given standard streams, default signals and a process group of its own.
 [[nodiscard]] Result<pid_t> spawn_shell(const std::string& line, const std::string& argument, int in, int out, int err);
 
-/// A process beside a program, which outlives the caller even when that is killed: it then gives the program's group a
-/// second to end by itself, half a second more after SIGTERM, and kills what is left.
+/// Process beside a program that survives the caller, even if that is killed. It then gives the program's group a
+/// second to end by itself, half a second more after SIGTERM, and kills the rest.
 class ProcessWatcher {
  public:
   [[nodiscard]] static Result<ProcessWatcher> start(pid_t group);
@@ -23,7 +23,7 @@ class ProcessWatcher {
   ProcessWatcher& operator=(ProcessWatcher&&) = delete;
   ProcessWatcher(const ProcessWatcher&) = delete;
   ProcessWatcher& operator=(const ProcessWatcher&) = delete;
-  /// Sends it home. The program is not touched.
+  /// Dismisses the watcher. The program is not touched.
   ~ProcessWatcher();
 
  private:

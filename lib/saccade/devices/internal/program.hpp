@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Starting a program: it is run, and must answer hello.
+// Starts a program, which must answer hello.
 
 #include <memory>
 #include <string>
@@ -13,7 +13,7 @@
 
 namespace saccade {
 
-/// A program that has answered hello, and its answer.
+/// Program that has answered hello, and its answer.
 template <class Answer>
 struct StartedProgram {
   std::unique_ptr<ExternalProcess> process;
@@ -21,7 +21,7 @@ struct StartedProgram {
 };
 
 /// Runs the program and says hello.
-/// @param parse from the line of the answer to Result<Answer>
+/// @param parse converts the line of the answer to Result<Answer>
 template <class Answer, class Parse>
 [[nodiscard]] Result<StartedProgram<Answer>> start_program(const char* role, const ProgramConfig& config,
                                                            std::string_view hello, const Parse& parse) {

@@ -19,7 +19,7 @@ constexpr std::array<std::string_view, 8> kCameraOptions{"info",      "color",  
 constexpr std::array<std::string_view, 1> kJointsOptions{"states"};
 constexpr std::array<std::string_view, 1> kHandOptions{"reference"};
 
-/// A version of ROS, by the prefix of its names.
+/// Returns the ROS version by the prefix of a name.
 const RosProgram* version_of(std::string_view command) {
   const auto found = std::find_if(kRosPrograms.begin(), kRosPrograms.end(),
                                   [&](const RosProgram& program) { return command.starts_with(program.prefix); });
@@ -28,7 +28,7 @@ const RosProgram* version_of(std::string_view command) {
 
 bool can_run(const fs::path& path) { return fs::is_regular_file(path) && ::access(path.c_str(), X_OK) == 0; }
 
-/// The name alone, of a prefix, a name and options.
+/// Returns the name from a prefix, a name and options.
 std::string_view name_in(const RosProgram& version, std::string_view command) {
   command.remove_prefix(version.prefix.size());
   return command.substr(0, command.find_first_of(" \t"));

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// TimedFrame: a frame taken while the camera moves, which waits until it is known where the camera was.
+// TimedFrame: a frame taken during a motion, which waits until the camera's pose at that time is known.
 
 #include <optional>
 #include <utility>
@@ -10,24 +10,24 @@
 
 namespace saccade {
 
-/// Camera and robot tell times on clocks of their own.
+/// Frame in waiting. Camera and robot have separate clocks.
 class TimedFrame {
  public:
-  /// @param offset_s added to the camera's times for those of the robot
+  /// @param offset_s added to the camera's times to get the robot's
   explicit TimedFrame(double offset_s) : offset_s_{offset_s} {}
 
-  /// Takes a frame over, unless it or the robot has no clock, or the camera knows its pose itself.
-  /// @param asked where the robot was when the frame was asked for
-  [[nodiscard]] bool hold(Frame& frame, const CameraSample& asked);
+  /// Takes a frame, unless it or the robot has no clock, or the camera knows its own pose.
+  /// @param asked the robot's pose when the frame was requested
+  [[nodiscard]] bool hold(Frame& frame, const MotionSample& asked);
   [[nodiscard]] bool holds() const { return frame_.has_value(); }
-  /// Where the camera was when it took the frame, once the robot has come that far; nullopt: not yet, or no frame.
-  [[nodiscard]] std::optional<CameraSample> reached(const CameraSample& now);
+  /// Returns the camera's pose at the frame's time, once the robot has come that far; nullopt: not yet, or no frame.
+  [[nodiscard]] std::optional<MotionSample> reached(const MotionSample& now);
   [[nodiscard]] Frame take() { return *std::exchange(frame_, std::nullopt); }
 
  private:
   double offset_s_;
   std::optional<Frame> frame_;
-  CameraSample before_;  ///< the last sample from before the frame
+  MotionSample before_;  ///< the last sample from before the frame
 };
 
 }  // namespace saccade

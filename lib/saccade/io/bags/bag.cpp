@@ -21,7 +21,7 @@ std::string ros1_type(std::string_view type) {
 
 void BagFormat::add_damage(const std::string& what) { damage += (damage.empty() ? "" : "; ") + what; }
 
-Result<UnsetVector<std::byte>> BagFormat::unpack(const BagFile& file, const Chunk& chunk) {
+Result<UninitializedVector<std::byte>> BagFormat::unpack(const BagFile& file, const Chunk& chunk) {
   if (chunk.stored > kMaxPieceBytes) return Error{Errc::unsupported, "a chunk of more than 512 MiB", {}};
   ByteWindow window{file, chunk.data_at, chunk.stored};
   const auto packed = window.at(0, static_cast<std::size_t>(chunk.stored));
@@ -118,8 +118,7 @@ class OpenBag final : public Bag {
     }
   }
 
-  /// Bytes of a chunk: those of the file, or unpacked ones, which stay until others need their place.
-  /// Holds until the next call.
+  /// Returns the bytes of a chunk: those of the file, or unpacked ones, which are cached. Valid until the next call.
   Result<ByteWindow*> window_of(std::uint32_t index) {
     const Chunk& chunk = format_->chunks[index];
     if (chunk.packing == Packing::none) {
@@ -128,7 +127,7 @@ class OpenBag final : public Bag {
     }
     auto held = std::ranges::find(unpacked_, index, &Unpacked::chunk);
     if (held == unpacked_.end()) {
-      SACCADE_TRY(UnsetVector<std::byte> bytes, BagFormat::unpack(file_, chunk));
+      SACCADE_TRY(UninitializedVector<std::byte> bytes, BagFormat::unpack(file_, chunk));
       unpacked_bytes_ += bytes.size();
       unpacked_.push_front({index, std::move(bytes)});
       while (unpacked_.size() > 1 && unpacked_bytes_ > kCacheBytes) {
@@ -144,7 +143,7 @@ class OpenBag final : public Bag {
 
   struct Unpacked {
     std::uint32_t chunk{0};
-    UnsetVector<std::byte> bytes;
+    UninitializedVector<std::byte> bytes;
   };
 
   std::filesystem::path path_;

@@ -7,6 +7,7 @@
 #include "saccade/io/bags/bags.hpp"
 #include "saccade/io/bags/internal/depth_message.hpp"
 #include "saccade/io/bags/internal/tf_buffer.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 namespace internal::io_bags {
@@ -33,7 +34,7 @@ std::optional<Pose> nearest_pose(const std::vector<PoseEntry>& poses, double tim
   return *best->T_world_camera;
 }
 
-/// Where the camera is: by a file, or by TF.
+/// Camera poses from a file, or from TF.
 struct BagPoses {
   std::vector<PoseEntry> listed;
   TfBuffer tf;
@@ -112,7 +113,7 @@ class BagFrames final : public RgbdFolderSource {
     return error;
   }
 
-  /// Drivers that set no stamp leave 0; then it is the time of recording.
+  /// Uses the time of recording where drivers leave the stamp at 0.
   static Result<ImageHead> head_of(const BagMessage& message) {
     SACCADE_TRY(ImageHead head, read_image_head(message));
     if (head.stamp_ns == 0) head.stamp_ns = message.time_ns;
@@ -139,7 +140,7 @@ class BagFrames final : public RgbdFolderSource {
   }
 
   Status add_color(Frame& frame, std::int64_t stamp_ns, std::int64_t recorded_ns) const {
-    // Recorders write what was taken together within this time of one another.
+    // Largest difference of recording times within one frame.
     constexpr double kRecordedTogether_s{1.0};
     std::optional<std::size_t> best;
     double best_s = config_.max_time_difference_s;
@@ -171,7 +172,7 @@ class BagFrames final : public RgbdFolderSource {
   BagPoses poses_;
   std::vector<BagEntry> depth_;
   std::vector<BagEntry> color_;
-  mutable std::vector<std::optional<std::int64_t>> color_stamps_;  ///< as far as they were needed
+  mutable std::vector<std::optional<std::int64_t>> color_stamps_;  ///< read as needed
   RgbdFolderConfig config_;
   std::vector<std::size_t> chosen_;
   std::size_t position_{0};
@@ -194,7 +195,7 @@ Result<std::uint32_t> image_topic(const Bag& bag, const std::string& name) {
       Errc::not_found, "the bag has no topic " + name + "; it has these image topics: " + bag.list(kImageTypes), {}};
 }
 
-/// The only topic of depth, by the encoding of its first image.
+/// Returns the only topic of depth, judged by the encoding of its first image.
 Result<std::uint32_t> only_depth_topic(Bag& bag) {
   std::vector<std::uint32_t> found;
   for (std::uint32_t i = 0; i < bag.topics().size(); ++i) {
@@ -214,7 +215,7 @@ Result<std::uint32_t> only_depth_topic(Bag& bag) {
                {}};
 }
 
-/// The topic camera_info in the name space of the image; else the only one that there is.
+/// Returns the topic camera_info in the name space of the image, otherwise the only one.
 Result<std::uint32_t> info_topic(const Bag& bag, const std::string& given, std::string image) {
   if (!given.empty()) {
     const auto topic = bag.find(given);
@@ -260,7 +261,7 @@ struct FirstImage {
   int height{0};
 };
 
-/// The first image that can be read says how large they are, and what frame they are in.
+/// Returns the first readable image, which gives size and frame.
 Result<FirstImage> first_image(Bag& bag, const std::vector<BagEntry>& entries, const DepthEncoding& encoding) {
   constexpr std::size_t kTries{100};
   std::optional<Error> first_error;

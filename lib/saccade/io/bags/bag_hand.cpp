@@ -5,6 +5,7 @@
 
 #include "saccade/io/bags/bags.hpp"
 #include "saccade/io/bags/internal/tf_buffer.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 namespace internal::io_bags {
@@ -39,7 +40,8 @@ HandSample hand_sample(std::int64_t at_ns, const Pose& T_world_hand, bool has_ro
   return sample;
 }
 
-/// Readings where TF does not reach the world have no place there: NaN, which is counted as bad.
+/// Returns the hand's trajectory. Readings where TF does not reach the world have position NaN, which is counted as
+/// bad.
 HandTrajectory hand_of_topic(const std::vector<std::pair<std::int64_t, HandReading>>& readings, const TfBuffer* tf,
                              const std::string& world) {
   HandTrajectory samples;

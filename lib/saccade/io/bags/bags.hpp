@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Bag: the messages of a ROS 1 bag or an MCAP file; open_bag_frames: a depth topic as frames; read_bag_hand: a hand in
-// it.
+// Bag: the messages of a ROS 1 bag or an MCAP file. open_bag_frames: a depth topic as frames. read_bag_hand: the motion
+// of a hand.
 
 #include <cstddef>
 #include <cstdint>
@@ -23,14 +23,14 @@ namespace saccade {
 struct BagTopic {
   std::string name;
   std::string type;                    ///< as in ROS 1: sensor_msgs/Image
-  std::optional<messages::Wire> wire;  ///< none: an encoding that is no message of ROS
+  std::optional<messages::Wire> wire;  ///< none: an encoding other than ROS messages
   std::uint64_t messages{0};
 };
 
 /// Place of a message in a bag.
 struct BagEntry {
-  std::int64_t time_ns{0};  ///< when it was recorded
-  std::uint64_t offset{0};  ///< place of its record in its chunk or, outside of all chunks, in the file
+  std::int64_t time_ns{0};  ///< time of recording
+  std::uint64_t offset{0};  ///< position of its record in its chunk or, outside of chunks, in the file
   std::uint32_t chunk{0};
   std::uint32_t topic{0};  ///< index into Bag::topics()
 };
@@ -43,48 +43,49 @@ struct BagMessage {
   std::vector<std::byte> bytes;
 };
 
-/// A recording of ROS: a bag of format 2.0 (chunks none, bz2, lz4) or an MCAP file (none, lz4, zstd; ROS 1 or ROS 2).
-/// Messages are read when they are asked for; at most a few chunks are in memory. One caller at a time.
+/// Recording of ROS: a bag of format 2.0 (chunks none, bz2, lz4) or an MCAP file (none, lz4, zstd; ROS 1 or ROS 2).
+/// Messages are read on request; at most a few chunks are in memory. One caller at a time.
 class Bag {
  public:
-  /// not_found, io_failure; corrupt_data: neither of both, or nothing of it can be read. A file that is cut, damaged or
-  /// has no index is read as far as it goes, and damage() says so. O(chunks) with an index, else all bytes are read.
+  /// Opens a recording. Answers not_found, io_failure; corrupt_data for a file that is neither, or not readable at all.
+  /// A file that is truncated, damaged or without index is read as far as possible, and damage() describes it.
+  /// O(chunks) with an index, otherwise all bytes are read.
   [[nodiscard]] static Result<std::unique_ptr<Bag>> open(const std::filesystem::path& path);
   virtual ~Bag() = default;
 
-  /// By their names; topics of several types or publishers stand there once for each type.
+  /// Returns the topics by name; a topic with several types or publishers occurs once for each type.
   [[nodiscard]] virtual const std::vector<BagTopic>& topics() const = 0;
-  /// What is wrong with the file, for people; empty where nothing is.
+  /// Returns a description of the file's damage for people; empty for a sound file.
   [[nodiscard]] virtual const std::string& damage() const = 0;
-  /// Places of all messages of some topics, by time, then as they lie in the file.
+  /// Returns the places of all messages of some topics, by time, then by position in the file.
   [[nodiscard]] virtual Result<std::vector<BagEntry>> entries(std::span<const std::uint32_t> topics) = 0;
-  /// One message. corrupt_data, or unavailable where this build cannot unpack its chunk.
+  /// Reads one message. Answers corrupt_data, or unavailable where this build cannot unpack its chunk.
   [[nodiscard]] virtual Result<BagMessage> read(const BagEntry& entry) = 0;
 
-  /// Index into topics().
+  /// Returns an index into topics().
   [[nodiscard]] std::optional<std::uint32_t> find(std::string_view topic) const;
-  /// "/a (sensor_msgs/Image, 12 messages), /b (…)", of the types given, or of all.
+  /// Lists topics of the given types, or of all: "/a (sensor_msgs/Image, 12 messages), /b (…)".
   [[nodiscard]] std::string list(std::span<const std::string_view> types = {}) const;
 };
 
-/// Whether a file begins, or is called, as bags and MCAP files are.
+/// Tells whether a file begins, or is named, like a bag or an MCAP file.
 [[nodiscard]] bool is_bag(const std::filesystem::path& path);
 
 struct BagFramesConfig {
-  RgbdFolderConfig reading;  ///< layout and require_poses apart
-  std::string depth;         ///< topic of sensor_msgs/Image or CompressedImage; empty: the only one there is
+  RgbdFolderConfig reading;  ///< except layout and require_poses
+  std::string depth;         ///< topic of sensor_msgs/Image or CompressedImage; empty: the only one
   std::string info;          ///< topic of its sensor_msgs/CameraInfo; empty: camera_info beside the depth topic
   std::string color;         ///< topic of colour images registered to depth; empty: none
-  std::string world_frame;   ///< frame of TF; empty: the root of the tree that has the camera
+  std::string world_frame;   ///< frame of TF; empty: the root of the camera's tree
 };
 
-/// Frames of a depth topic by their recording times: 16UC1 and mono16 (1/1000 m unless the encoding says otherwise),
-/// 32FC1 (metres; negative: free up to there), compressedDepth. Poses are those of TF at the stamp of the image,
-/// between the world and its frame_id, interpolated; the camera moves in TF, or the frames have none.
+/// Opens the frames of a depth topic by recording time: 16UC1 and mono16 (1/1000 m unless the encoding says otherwise),
+/// 32FC1 (metres; negative: free up to there), compressedDepth. Poses are interpolated from TF at the image's stamp,
+/// between the world and its frame_id. Frames have none unless the camera moves in TF.
 [[nodiscard]] Result<std::unique_ptr<RgbdFolderSource>> open_bag_frames(const std::filesystem::path& path,
                                                                         const BagFramesConfig& config);
 
-/// Motion of a hand in a bag.
+/// Reads the motion of a hand from a bag.
 /// @param hand  a topic of PoseStamped, PointStamped or TransformStamped, or a frame of TF; empty: the only such topic.
 /// @param world_frame  frame of the positions; empty: that of the messages, or the root of the frame's tree.
 [[nodiscard]] Result<HandRecording> read_bag_hand(const std::filesystem::path& path, const std::string& hand,

@@ -1,11 +1,20 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/clouds/any_mesh.hpp"
 
+#include <assimp/config.h>
 #include <assimp/postprocess.h>
 #include <assimp/scene.h>
 
+#include <algorithm>
+#include <array>
 #include <assimp/Importer.hpp>
+#include <cstdint>
+#include <fstream>
+#include <string>
+#include <string_view>
 
+#include "saccade/io/clouds/internal/cloud_kind.hpp"
+#include "saccade/io/clouds/internal/guarded_reading.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 
 namespace saccade {
@@ -13,7 +22,7 @@ namespace {
 
 Eigen::Vector3f to_vector(const aiVector3D& v) { return {v.x, v.y, v.z}; }
 
-/// All parts under a node, moved to where the node stands.
+/// Appends all parts under a node, transformed by the node's pose.
 void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_scene_parent, TriangleMesh& mesh) {
   const aiMatrix4x4 T_scene_node = T_scene_parent * node.mTransformation;
   for (unsigned i = 0; i < node.mNumMeshes; ++i) {
@@ -30,13 +39,12 @@ void append(const aiScene& scene, const aiNode& node, const aiMatrix4x4& T_scene
   for (unsigned i = 0; i < node.mNumChildren; ++i) append(scene, *node.mChildren[i], T_scene_node, mesh);
 }
 
-}  // namespace
-
-Result<TriangleMesh> read_any_mesh(const std::filesystem::path& path) {
-  if (!std::filesystem::exists(path)) return Error{Errc::not_found, "there is no such mesh", path.string()};
-  if (path.extension() == ".ply") return read_mesh(path);  // keeps vertex colours
+/// Reads coordinates as the file has them, scaled by the unit that it states.
+Result<TriangleMesh> read_by_assimp(const std::filesystem::path& path) {
   Assimp::Importer importer;
-  const aiScene* scene = importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices);
+  importer.SetPropertyBool(AI_CONFIG_IMPORT_COLLADA_IGNORE_UP_DIRECTION, true);  // assimp would turn Z_UP to y
+  const aiScene* scene =
+      importer.ReadFile(path.string(), aiProcess_Triangulate | aiProcess_JoinIdenticalVertices | aiProcess_GlobalScale);
   if (scene == nullptr || scene->mRootNode == nullptr) {
     return Error{Errc::corrupt_data, std::string{"no mesh that can be read: "} + importer.GetErrorString(),
                  path.string()};
@@ -45,6 +53,54 @@ Result<TriangleMesh> read_any_mesh(const std::filesystem::path& path) {
   append(*scene, *scene->mRootNode, aiMatrix4x4{}, mesh);
   if (mesh.triangles.empty()) return Error{Errc::corrupt_data, "the file has no triangles", path.string()};
   return mesh;
+}
+
+/// Compares the lengths that a GLB states with the file's.
+Status check_glb(const std::filesystem::path& path) {
+  constexpr std::size_t kHeadWords{4};  // magic, version, bytes of the file, bytes of the first chunk
+  std::array<std::uint32_t, kHeadWords> head{};
+  std::ifstream file{path, std::ios::binary};
+  file.read(reinterpret_cast<char*>(head.data()), sizeof(head));
+  constexpr std::uint32_t kMagic{0x46546C67};             // "glTF"
+  if (file.gcount() > 0 && head[0] != kMagic) return {};  // another format, whose reader says so
+  std::error_code code;
+  const std::uintmax_t size = std::filesystem::file_size(path, code);
+  constexpr std::uintmax_t kBeforeChunk{20};
+  if (code || size < kBeforeChunk) {
+    return Error{Errc::corrupt_data,
+                 "the file ends within the header of a GLB, after " + std::to_string(size) + " bytes", path.string()};
+  }
+  const std::uintmax_t stated = std::max<std::uintmax_t>(head[2], kBeforeChunk + head[3]);
+  if (stated <= size) return {};
+  return Error{
+      Errc::corrupt_data,
+      "a GLB that states " + std::to_string(stated) + " bytes, but the file ends after " + std::to_string(size),
+      path.string()};
+}
+
+}  // namespace
+
+Result<TriangleMesh> read_any_mesh(const std::filesystem::path& path) {
+  if (!std::filesystem::exists(path)) return Error{Errc::not_found, "there is no such mesh", path.string()};
+  if (lower_suffix(path) == ".ply") return read_mesh(path);  // keeps vertex colours
+  if (lower_suffix(path) == ".glb") SACCADE_CHECK(check_glb(path));
+  return read_guarded(path, limits_for(path), [&] { return read_by_assimp(path); });
+}
+
+std::optional<char> stated_up_axis(const std::filesystem::path& path) {
+  const std::string suffix = lower_suffix(path);
+  if (suffix == ".glb" || suffix == ".gltf") return 'y';
+  if (suffix != ".dae") return std::nullopt;
+  constexpr std::size_t kHeadBytes{1 << 16};  // the asset stands first
+  std::string head(kHeadBytes, '\0');
+  std::ifstream file{path, std::ios::binary};
+  file.read(head.data(), static_cast<std::streamsize>(head.size()));
+  head.resize(static_cast<std::size_t>(std::max<std::streamsize>(file.gcount(), 0)));
+  constexpr std::string_view kTag{"<up_axis>"};
+  const std::size_t at = head.find(kTag);
+  if (at == std::string::npos) return 'y';  // the default of COLLADA
+  const std::string_view stated = std::string_view{head}.substr(at + kTag.size());
+  return stated.starts_with("Z_UP") ? 'z' : stated.starts_with("X_UP") ? 'x' : 'y';
 }
 
 }  // namespace saccade

@@ -1,16 +1,23 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// read_any_mesh: triangles from a file of any common format.
+// read_any_mesh, stated_up_axis: triangles from a file of any common format.
 
 #include <filesystem>
+#include <optional>
 
 #include "saccade/core/result.hpp"
 #include "saccade/map/mesh.hpp"
 
 namespace saccade {
 
-/// Triangles of PLY (with vertex colours), STL, OBJ, GLB and what else assimp reads, all parts in one mesh. not_found;
-/// corrupt_data with assimp's reason.
+/// Reads triangles from PLY (with vertex colours), STL, OBJ, GLB and other formats of assimp, all parts in one mesh.
+/// Coordinates are those of the file, in metres where the file states its unit (COLLADA, FBX), and along the file's own
+/// axes. All but PLY are read in a child process, which may take 10 s and 1 GiB, and more for large files.
+/// @return not_found; corrupt_data with assimp's reason, or where its reader crashed or took too much.
 [[nodiscard]] Result<TriangleMesh> read_any_mesh(const std::filesystem::path& path);
+
+/// Returns the axis that points up in the file, 'x', 'y' or 'z': what a COLLADA file states, 'y' for glTF; nullopt
+/// where the format says nothing. Reads the file's beginning.
+[[nodiscard]] std::optional<char> stated_up_axis(const std::filesystem::path& path);
 
 }  // namespace saccade

@@ -28,14 +28,16 @@ Result<std::vector<std::uint32_t>> labels_of(const Column& column) {
     }
     std::string shown;
     append_text(&column.bytes[i * bytes_of(column.type)], column.type, shown);
-    const std::string what = value < 0.0 ? " is negative" : " is no whole number below 2^32";
+    const std::string what = value < 0.0 ? " is negative" : " is not an integer below 2^32";
     return Error{Errc::corrupt_data, "the label " + shown + what, "point " + std::to_string(i)};
   }
   return labels;
 }
 
-Result<Column> label_field(const ColumnTable& fields) {
+/// Returns the field label; of a LAS without one its classes.
+Result<Column> label_field(const ColumnTable& fields, bool is_las = false) {
   const Column* column = fields.find(kLabelField);
+  if (column == nullptr && is_las) column = fields.find(kLasClassField);
   if (column == nullptr || column->count != 1) return Error{Errc::not_found, "has no field label", {}};
   return *column;
 }
@@ -58,7 +60,8 @@ Result<std::vector<std::uint32_t>> labels_in(const fs::path& path) {
   const std::string suffix = path.extension().string();
   if (suffix != ".label" && suffix != ".npy" && !has_text_cloud_suffix(path)) {
     SACCADE_TRY(const CloudFile cloud, read_cloud(path));
-    SACCADE_TRY(const Column column, in_file(label_field(cloud.fields()), path));
+    SACCADE_TRY(const Column column,
+                in_file(label_field(cloud.fields(), std::holds_alternative<LasFile>(cloud.file)), path));
     return in_file(labels_of(column), path);
   }
   SACCADE_TRY(std::vector<std::byte> file, read_file(path));
@@ -78,7 +81,7 @@ Result<Column> parse_label_lines(std::string_view text) {
     if (fields.size() != 1) return bad_line(lines.line(), "one label per line is expected");
     if (column.bytes.empty() && fields[0] == kLabelField) continue;
     if (!append_token(fields[0], column.type, column.bytes)) {
-      return bad_line(lines.line(), in_quotes(fields[0]) + " is no whole number");
+      return bad_line(lines.line(), in_quotes(fields[0]) + " is not an integer");
     }
   }
   return column;

@@ -19,7 +19,7 @@ namespace fs = std::filesystem;
 
 constexpr std::uint32_t kMost16{std::numeric_limits<std::uint16_t>::max()};
 
-/// The 32 bits that SemanticKITTI has for each label.
+/// SemanticKITTI's 32 bits for each label.
 class KittiLabels {
  public:
   [[nodiscard]] static Result<KittiLabels> create(std::span<const NamedLabel> names) {
@@ -79,7 +79,7 @@ Status write_npy(const fs::path& path, std::span<const std::uint32_t> labels) {
   return out.commit();
 }
 
-/// As the cloud was read, where it was read from this format.
+/// Writes in the encoding that the cloud was read in, if it was read from this format.
 Status write_in_its_encoding(const fs::path& path, const CloudFile& cloud) {
   const auto* pcd = std::get_if<PcdFile>(&cloud.file);
   if (pcd != nullptr && path.extension() == ".pcd") return write_pcd(path, *pcd, pcd->format);
@@ -100,9 +100,10 @@ bool is_text_suffix(std::string_view suffix) { return suffix == ".xyz" || suffix
 
 Status check_labels_path(const fs::path& path) {
   const std::string suffix = path.extension().string();
-  if (is_text_suffix(suffix) || suffix == ".pcd" || suffix == ".ply" || suffix == ".npy" || suffix == ".label")
+  if (is_text_suffix(suffix) || suffix == ".pcd" || suffix == ".ply" || suffix == ".npy" || suffix == ".label" ||
+      suffix == ".las")
     return {};
-  return Error{Errc::invalid_argument, "labels are written as .pcd, .ply, .xyz, .txt, .csv, .label or .npy",
+  return Error{Errc::invalid_argument, "labels are written as .pcd, .ply, .las, .xyz, .txt, .csv, .label or .npy",
                path.string()};
 }
 

@@ -196,7 +196,7 @@ Status read_ascii(std::string_view body, std::size_t body_line, ColumnTable& tab
   return {};
 }
 
-/// Rows one after the other → columns.
+/// Converts consecutive rows to columns.
 void split_rows(const std::byte* rows, ColumnTable& table) {
   const std::size_t stride = table.row_bytes();
   std::size_t offset = 0;

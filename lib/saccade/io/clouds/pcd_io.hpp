@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// PCD v0.7 point clouds: ascii, binary, binary_compressed; every field and count kept.
+// PCD v0.7 point clouds: ascii, binary, binary_compressed; keeps every field and count.
 
 #include <array>
 #include <cstddef>
@@ -17,11 +17,11 @@ inline constexpr auto kPcdFormatNames = make_names<PcdFormat>(
     {{PcdFormat::ascii, "ascii"}, {PcdFormat::binary, "binary"}, {PcdFormat::binary_compressed, "binary_compressed"}});
 
 struct PcdFile {
-  ColumnTable table;  ///< fields in order, padding ("_") included; rows = width · height
+  ColumnTable table;  ///< fields in order, including padding ("_"); rows = width · height
   std::size_t width{0};
   std::size_t height{1};                                               ///< 1: not organised
   std::array<double, 7> viewpoint{0.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0};  ///< tx ty tz qw qx qy qz
-  PcdFormat format{PcdFormat::binary};                                 ///< that it was read in
+  PcdFormat format{PcdFormat::binary};                                 ///< format that it was read in
 };
 
 /// Reads versions 0.6 and 0.7. corrupt_data with the line or byte for a bad header, fields that do not match, wrong
@@ -29,11 +29,11 @@ struct PcdFile {
 /// hold. O(file).
 [[nodiscard]] Result<PcdFile> parse_pcd(std::span<const std::byte> file);
 [[nodiscard]] Result<PcdFile> read_pcd(const std::filesystem::path& path);
-/// Atomic. Binary keeps every bit; ascii keeps every number, but not the bits of a NaN. size_mismatch unless
-/// width · height is the number of rows.
+/// Writes atomically. Binary keeps every bit; ascii keeps every number, but not the bits of a NaN. Answers
+/// size_mismatch unless width · height is the number of rows.
 [[nodiscard]] Status write_pcd(const std::filesystem::path& path, const PcdFile& file,
                                PcdFormat format = PcdFormat::binary);
-/// An unorganised cloud.
+/// Writes an unorganised cloud.
 [[nodiscard]] Status write_pcd(const std::filesystem::path& path, const ColumnTable& table,
                                PcdFormat format = PcdFormat::binary);
 

@@ -16,17 +16,17 @@
 
 namespace saccade {
 
-/// A list property: for each row of its element a varying number of values.
+/// List property: for each row of its element a varying number of values.
 struct PlyList {
   std::string name;
   ColumnType count_type{ColumnType::u8};  ///< as in the file
-  Column values;                          ///< all rows' values one after the other; its name is the list's
-  std::vector<std::size_t> starts;        ///< first value of each row, and the end: rows + 1 entries
+  Column values;                          ///< values of all rows; its name is the list's
+  std::vector<std::size_t> starts;        ///< first value of each row, then the end: rows + 1 entries
 };
 
 struct PlyElement {
   std::string name;
-  ColumnTable table;  ///< scalar properties; table.rows counts the element's rows even without any
+  ColumnTable table;  ///< scalar properties; table.rows counts the element's rows even without properties
   std::vector<PlyList> lists;
   /// Order of the properties in the file: index into table.columns, or −1 − index into lists.
   std::vector<int> order;
@@ -41,30 +41,31 @@ inline constexpr auto kPlyFormatNames =
 struct PlyFile {
   std::vector<std::string> comments;
   std::vector<PlyElement> elements;
-  PlyFormat format{PlyFormat::binary_little_endian};  ///< that it was read in
-  /// nullptr when there is none.
+  PlyFormat format{PlyFormat::binary_little_endian};  ///< format that it was read in
+  /// Returns the element, or nullptr.
   [[nodiscard]] const PlyElement* find(std::string_view name) const;
 };
 
-/// Reads any PLY; every property is kept. corrupt_data with the line or byte for a bad header, a number that does not
-/// fit, negative counts and truncated data; unsupported for a version other than 1.0. Memory is bounded by the size of
-/// the file. O(file).
+/// Reads any PLY and keeps every property. Answers corrupt_data with the line or byte for a bad header, a number that
+/// does not fit, negative counts and truncated data; unsupported for a version other than 1.0. Memory is bounded by the
+/// size of the file. O(file).
 [[nodiscard]] Result<PlyFile> parse_ply(std::span<const std::byte> file);
 [[nodiscard]] Result<PlyFile> read_ply(const std::filesystem::path& path);
-/// Atomic. Properties in the order of `order`, or columns before lists where it is empty.
+/// Writes atomically, with properties in the order of `order`, or columns before lists where it is empty.
 [[nodiscard]] Status write_ply(const std::filesystem::path& path, const PlyFile& file,
                                PlyFormat format = PlyFormat::binary_little_endian);
-/// A cloud: one element "vertex".
+/// Writes a cloud: one element "vertex".
 [[nodiscard]] Status write_ply(const std::filesystem::path& path, const ColumnTable& vertices,
                                PlyFormat format = PlyFormat::binary_little_endian);
 
-/// Vertices (float x y z, nx ny nz and uchar red green blue where there are) and faces (list uchar int
-/// vertex_indices), as MeshLab and CloudCompare read them; labels, one per vertex, become the property int label.
-/// invalid_argument for indices out of range or numbers of normals, colours or labels that disagree.
+/// Writes vertices (float x y z, nx ny nz and uchar red green blue where present) and faces (list uchar int
+/// vertex_indices), as MeshLab and CloudCompare read them. Labels, one per vertex, become the property int label.
+/// Answers invalid_argument for indices out of range or inconsistent numbers of normals, colours or labels.
 [[nodiscard]] Status write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                                 PlyFormat format = PlyFormat::binary_little_endian,
                                 std::span<const std::int32_t> labels = {});
-/// Faces of more than three corners are split into fans. corrupt_data without x y z, or for indices out of range.
+/// Converts to a mesh. Faces of more than three corners are split into fans. Answers corrupt_data without x y z, or for
+/// indices out of range.
 [[nodiscard]] Result<TriangleMesh> mesh_from_ply(const PlyFile& file);
 [[nodiscard]] Result<TriangleMesh> read_mesh(const std::filesystem::path& path);
 

@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-/// Least number of bytes that a row takes in a file.
+/// Returns the smallest number of bytes that a row takes in a file.
 std::size_t least_row_bytes(const PlyElement& element, PlyFormat format) {
   if (format == PlyFormat::ascii) return element.order.size();  // a digit each; blanks are not counted
   std::size_t bytes = element.table.row_bytes();
@@ -20,7 +20,7 @@ std::size_t least_row_bytes(const PlyElement& element, PlyFormat format) {
   return bytes;
 }
 
-/// Reads values from binary data, one after the other.
+/// Reader of consecutive binary values.
 class BinaryValues {
  public:
   BinaryValues(std::string_view body, std::size_t file_offset, bool swapped)
@@ -46,7 +46,7 @@ class BinaryValues {
   std::size_t at_{0};
 };
 
-/// Reads values from text.
+/// Reader of values from text.
 class AsciiValues {
  public:
   AsciiValues(std::string_view body, std::size_t first_line) : body_{body}, first_line_{first_line}, tokens_{body} {}
@@ -126,7 +126,7 @@ Result<PlyFile> read_elements(Values values, PlyHeader header) {
   return std::move(header.file);
 }
 
-/// Three columns as floats, if the element has them all.
+/// Returns three columns as floats, if the element has them all.
 std::vector<Eigen::Vector3f> vectors(const ColumnTable& table, std::string_view x, std::string_view y,
                                      std::string_view z) {
   const Column* cx = table.find(x);

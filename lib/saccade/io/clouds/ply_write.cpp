@@ -98,7 +98,7 @@ Status write_element(AtomicFile& out, const PlyElement& element, PlyFormat forma
   return {};
 }
 
-/// Coordinate k of each vector.
+/// Returns coordinate k of each vector.
 std::vector<float> coordinates(const std::vector<Eigen::Vector3f>& vectors, int k) {
   std::vector<float> out(vectors.size());
   for (std::size_t i = 0; i < out.size(); ++i) out[i] = vectors[i][k];

@@ -8,6 +8,7 @@
 #include <utility>
 
 #include "saccade/io/clouds/internal/text_column.hpp"
+#include "saccade/io/clouds/internal/unnamed_columns.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
 
@@ -30,7 +31,7 @@ std::string lower_case(std::string_view text) {
   return lower;
 }
 
-/// A name that other formats can hold, too: without quotes and blanks; names that are known in lower case.
+/// Returns a name that other formats can hold too: without quotes and blanks; known names in lower case.
 std::string column_name(std::string_view field, std::size_t column) {
   if (field.size() >= 2 && field.front() == '"' && field.back() == '"') field = field.substr(1, field.size() - 2);
   std::string name{trimmed(field)};
@@ -52,15 +53,51 @@ bool have_positions(const std::vector<std::string>& names) {
   return has("x") && has("y") && has("z");
 }
 
-bool are_numbers(std::string_view line, char separator) {
+/// Returns a number's text with its decimal comma, if it has one, as a point. A second comma stays: the text is then
+/// not a number.
+std::string_view with_point(std::string_view token, std::string& buffer) {
+  const std::size_t comma = token.find(',');
+  if (comma == std::string_view::npos) return token;
+  buffer = token;
+  buffer[comma] = '.';
+  return buffer;
+}
+
+bool are_numbers(std::string_view line, char separator, bool decimal_comma = false) {
   FieldScanner fields{line, separator};
+  std::string buffer;
   while (const auto field = fields.next()) {
-    if (!parse_number(*field)) return false;
+    if (!parse_number(decimal_comma ? with_point(*field, buffer) : *field)) return false;
   }
   return true;
 }
 
-/// The number of points, when that is all that the line says.
+/// Returns what separates the numbers of a row, possibly with decimal commas; nullopt where it holds anything else.
+/// `header`: the separator of the names above it.
+std::optional<char> separator_of_row(std::string_view line, std::optional<char> header = {}) {
+  const char own = header.value_or(separator_of(line));
+  if (are_numbers(line, own)) return own;
+  const char other = own == ',' ? kBlankSeparator : own;
+  if (line.find('.') == std::string_view::npos && are_numbers(line, other, true)) return other;
+  return std::nullopt;
+}
+
+/// Tells whether commas probably stand for points between commas: "0,024, 0,901, -0,036", or "0,024,0,901,0,036",
+/// where digits follow a comma that no number begins with.
+bool has_commas_of_both_kinds(std::string_view line) {
+  if (line.find('.') != std::string_view::npos) return false;
+  bool alternating{true};
+  std::size_t commas{0};
+  for (std::size_t i = line.find(','); i < line.size(); i = line.find(',', i + 1), ++commas) {
+    const std::string_view rest = line.substr(i + 1);
+    if (rest.size() > 1 && rest[0] == '0' && rest[1] >= '0' && rest[1] <= '9') return true;
+    const bool blank = !rest.empty() && kBlanks.find(rest[0]) != std::string_view::npos;
+    alternating = alternating && blank == (commas % 2 == 1);
+  }
+  return alternating && commas % 2 == 1 && commas > 4;  // three numbers or more
+}
+
+/// Returns the number of points, when the line holds nothing else.
 std::optional<std::size_t> point_count(std::string_view line) { return parse_integer<std::size_t>(trimmed(line)); }
 
 bool within(const TextColumn& column, double most) {
@@ -91,7 +128,7 @@ class TextCloudParser {
  private:
   [[nodiscard]] Error fail(std::string what) const { return bad_line(lines_.line(), std::move(what)); }
 
-  /// A comment may name the columns; how many there are is known later.
+  /// Notes the names in a comment; the number of columns is known later.
   void note_comment(std::string_view line) {
     std::vector<std::string> names = column_names(comment_text(line));
     if (!have_positions(names)) return;
@@ -101,13 +138,20 @@ class TextCloudParser {
 
   [[nodiscard]] Status first_lines(std::string_view line) {
     if (names_.empty() && !count_ && (count_ = point_count(line))) return {};
-    if (names_.empty()) cloud_.separator = separator_of(line);
-    if (names_.empty() && !are_numbers(line, cloud_.separator)) {
+    const auto separator = separator_of_row(line, names_.empty() ? std::nullopt : std::optional{cloud_.separator});
+    if (names_.empty() && !separator) {
+      cloud_.separator = separator_of(line);
       names_ = column_names(line);
       cloud_.header_line = lines_.line();
       if (!have_positions(names_))
         return fail("no point cloud in text: neither a row of numbers nor names of columns with x, y and z");
       return {};
+    }
+    if (separator) cloud_.separator = *separator;
+    if (cloud_.separator == ',' && has_commas_of_both_kinds(line)) {
+      return fail(
+          "decimal commas between commas cannot be told from columns; separate the columns by semicolons or "
+          "blanks, or write points");
     }
     const std::size_t columns = fields_of(line, cloud_.separator).size();
     if (columns < 3) return fail("a point has at least three numbers, but here are " + std::to_string(columns));
@@ -130,7 +174,7 @@ class TextCloudParser {
     FieldScanner fields{line, cloud_.separator};
     std::size_t read{0};
     while (const auto field = fields.next()) {
-      if (read < columns_.size() && !columns_[read].append(*field)) {
+      if (read < columns_.size() && !append(columns_[read], *field)) {
         return fail(field->empty() ? "a number is missing" : in_quotes(*field) + " is not a number");
       }
       ++read;
@@ -144,21 +188,29 @@ class TextCloudParser {
     return {};
   }
 
+  /// Appends a number, with a decimal comma where commas do not separate and no number before had a point.
+  [[nodiscard]] bool append(TextColumn& column, std::string_view field) {
+    if (cloud_.decimal_comma && field.find('.') != std::string_view::npos) return false;
+    if (column.append(field)) return true;
+    if (cloud_.separator == ',' || field.find(',') == std::string_view::npos) return false;
+    const auto is_whole = [](const TextColumn& each) { return each.is_spelled_whole(); };
+    if (!cloud_.decimal_comma && !std::all_of(columns_.begin(), columns_.end(), is_whole)) return false;
+    cloud_.decimal_comma = true;
+    return column.append(with_point(field, buffer_));
+  }
+
   [[nodiscard]] std::vector<std::string> default_names() const {
     constexpr double kMost{255.0};
     const std::size_t n = columns_.size();
-    const bool colored =
-        (n == 6 || n == 7) &&
-        std::all_of(columns_.end() - 3, columns_.end(), [](const TextColumn& column) { return within(column, kMost); });
-    if (n == 7 && colored) return {"x", "y", "z", "intensity", "r", "g", "b"};
-    if (n == 6 && colored) return {"x", "y", "z", "r", "g", "b"};
-    if (n == 4) return {"x", "y", "z", "intensity"};
-    std::vector<std::string> names{"x", "y", "z"};
-    while (names.size() < n) names.push_back("value" + std::to_string(names.size()));
-    return names;
+    if (n != 6 && n != 7) return unnamed_columns(n, Triple::none);
+    if (std::all_of(columns_.end() - 3, columns_.end(), [](const TextColumn& c) { return within(c, kMost); })) {
+      return unnamed_columns(n, Triple::colors_255);
+    }
+    return unnamed_columns(
+        n, meaning_of(rows_, [&](std::size_t row, std::size_t k) { return columns_[n - 3 + k].value(row); }));
   }
 
-  /// One type for the three of a colour; none where they are no whole numbers of 8 or 16 bits.
+  /// Returns one type for the three channels of a colour; nullopt where they are not integers of 8 or 16 bits.
   [[nodiscard]] std::optional<ColumnType> color_type(const std::array<std::size_t, 3>& channels) const {
     constexpr std::array<std::pair<ColumnType, double>, 2> kTypes{
         {{ColumnType::u8, 255.0}, {ColumnType::u16, 65535.0}}};
@@ -185,8 +237,11 @@ class TextCloudParser {
         channels[k] = static_cast<std::size_t>(std::find(names_.begin(), names_.end(), names[k]) - names_.begin());
       }
       if (std::find(channels.begin(), channels.end(), names_.size()) != channels.end()) continue;
-      if (const auto type = color_type(channels)) {
-        for (const std::size_t channel : channels) types[channel] = *type;
+      const auto is_whole = [&](std::size_t channel) { return columns_[channel].is_spelled_whole(); };
+      const bool shares = !std::all_of(channels.begin(), channels.end(), is_whole);
+      const auto type = color_type(channels);
+      for (const std::size_t channel : channels) {
+        if (type || shares) types[channel] = type.value_or(columns_[channel].type(true));
       }
     }
     return types;
@@ -211,12 +266,13 @@ class TextCloudParser {
   std::size_t comment_line_{0};
   std::vector<TextColumn> columns_;
   std::size_t rows_{0};
+  std::string buffer_;  ///< text of a number that had a decimal comma
 };
 
 }  // namespace
 
 bool has_text_cloud_suffix(const std::filesystem::path& path) {
-  constexpr std::array<std::string_view, 4> kSuffixes{".xyz", ".txt", ".csv", ".pts"};
+  constexpr std::array<std::string_view, 7> kSuffixes{".xyz", ".txt", ".csv", ".pts", ".asc", ".xyzn", ".xyzrgb"};
   return is_among(kSuffixes, lower_case(path.extension().string()));
 }
 
@@ -229,8 +285,7 @@ bool looks_like_text_cloud(std::string_view head) {
       counted = true;
       continue;
     }
-    const char separator = separator_of(*line);
-    if (are_numbers(*line, separator)) return fields_of(*line, separator).size() >= 3;
+    if (const auto separator = separator_of_row(*line)) return fields_of(*line, *separator).size() >= 3;
     return have_positions(column_names(*line));
   }
   return counted;

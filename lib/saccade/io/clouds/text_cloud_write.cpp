@@ -18,7 +18,7 @@ void add_separator(std::string& row, char separator) {
   if (!row.empty()) row.push_back(separator);
 }
 
-/// A name in a header: what would end it becomes an underscore.
+/// Returns a name for a header: characters that would end it become underscores.
 std::string header_name(std::string name) {
   std::replace_if(
       name.begin(), name.end(), [](char c) { return c == ',' || c == ';'; }, '_');
@@ -53,7 +53,7 @@ void append_row(const ColumnTable& table, std::size_t i, char separator, std::st
   }
 }
 
-/// A line with one more field at its end, in the separator that it has or in another one.
+/// Returns a line with one more field at its end, with its own or another separator.
 std::string extended(std::string_view line, char separator, char wanted, std::string_view added) {
   std::string row;
   line = trimmed(line);
@@ -73,15 +73,15 @@ std::string extended(std::string_view line, char separator, char wanted, std::st
   return row.append(added);
 }
 
-/// The line that names the columns, with label as the last name, and no other one of that name. With another separator
-/// the names are those of the table, which have no blanks.
+/// Returns the line that names the columns, with label as the last name and no other of that name. With another
+/// separator the names are those of the table, which have no blanks.
 std::string labelled_header(std::string_view line, const ColumnTable& table, char wanted) {
   const bool commented = is_comment(line);
   const std::string_view names = commented ? comment_text(line) : line;
   const char separator = separator_of(names);
   std::string text{names};
   const std::vector<std::string_view> fields = fields_of(names, separator);
-  for (std::size_t i = fields.size(); i-- > 0;) {  // from the last one, so that the places of others stay
+  for (std::size_t i = fields.size(); i-- > 0;) {  // backwards, so that the other indices stay valid
     const std::string& name = table.columns[i].name;
     const bool is_label = name == kLabelField;
     if (!is_label && separator == wanted) continue;
@@ -92,9 +92,10 @@ std::string labelled_header(std::string_view line, const ColumnTable& table, cha
   return mark + extended(text, separator, wanted, kLabelField);
 }
 
-/// What the suffix asks for, or what the cloud has.
-char wanted_separator(const std::filesystem::path& path, char separator) {
-  if (is_csv(path) && separator == kBlankSeparator) return ',';
+/// Returns the separator that the suffix requires, otherwise the cloud's. Decimal commas stay, so none separates them.
+char wanted_separator(const std::filesystem::path& path, const TextCloud& cloud) {
+  const char separator = cloud.separator;
+  if (is_csv(path) && separator == kBlankSeparator) return cloud.decimal_comma ? ';' : ',';
   const std::string suffix = path.extension().string();
   return suffix == ".xyz" || suffix == ".XYZ" ? kBlankSeparator : separator;
 }
@@ -119,7 +120,7 @@ Status write_text_cloud(const std::filesystem::path& path, const ColumnTable& ta
 Status write_labelled_text(const std::filesystem::path& path, const TextCloud& cloud,
                            std::span<const std::uint32_t> labels) {
   SACCADE_EXPECTS(labels.size() == cloud.table.rows);
-  const char wanted = wanted_separator(path, cloud.separator);
+  const char wanted = wanted_separator(path, cloud);
   SACCADE_TRY(AtomicFile out, AtomicFile::create(path));
   LineScanner lines{without_byte_order_mark(as_text(cloud.file))};
   std::size_t row{0};

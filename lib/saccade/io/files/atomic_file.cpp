@@ -2,33 +2,27 @@
 #include "saccade/io/files/file_io.hpp"
 
 #include <fcntl.h>
+#include <sys/file.h>
 #include <sys/stat.h>
 #include <unistd.h>
 
-#include <atomic>
 #include <cerrno>
 #include <cstring>
 #include <utility>
+
+#include "saccade/io/files/leftovers.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr std::size_t kBufferBytes{std::size_t{1} << 18U};
 
-/// Makes the rename itself durable; file systems that cannot do this for folders are left alone.
+/// Makes the rename itself durable; ignores file systems that cannot do this for folders.
 void sync_folder(const std::filesystem::path& folder) {
   const int fd = ::open(folder.c_str(), O_RDONLY | O_DIRECTORY | O_CLOEXEC);
   if (fd < 0) return;
   ::fsync(fd);
   ::close(fd);
-}
-
-std::filesystem::path temporary_beside(const std::filesystem::path& destination) {
-  static std::atomic<unsigned> counter{0};
-  std::string name{'.'};
-  name += destination.filename().string();
-  name += '.' + std::to_string(::getpid()) + '-' + std::to_string(counter.fetch_add(1)) + ".tmp";
-  return destination.parent_path() / name;
 }
 
 }  // namespace
@@ -46,12 +40,14 @@ Result<AtomicFile> AtomicFile::create(const std::filesystem::path& destination) 
   }
   file.destination_ = std::filesystem::exists(status) ? std::filesystem::canonical(destination, ignored) : destination;
   if (!file.destination_.has_parent_path()) file.destination_ = "." / file.destination_;
-  file.temporary_ = temporary_beside(file.destination_);
+  remove_leftovers(file.destination_);
+  file.temporary_ = file.destination_.parent_path() / make_temporary_name(file.destination_.filename().string());
   file.fd_ = ::open(file.temporary_.c_str(), O_WRONLY | O_CREAT | O_EXCL | O_CLOEXEC, 0666);
   if (file.fd_ < 0) {
     file.temporary_.clear();
     return file.failure("cannot create a file in this folder");
   }
+  ::flock(file.fd_, LOCK_EX | LOCK_NB);  // keeps others from removing it
   if (struct stat info{}; ::stat(file.destination_.c_str(), &info) == 0) ::fchmod(file.fd_, info.st_mode & 07777U);
   return file;
 }
@@ -117,7 +113,7 @@ Status AtomicFile::write(std::string_view text) {
   return {};
 }
 
-/// All is on the disk under the temporary's name, and the file is closed.
+/// Flushes everything to the disk under the temporary's name, and closes the file.
 Status AtomicFile::finish() {
   if (fd_ < 0) return Error{Errc::io_failure, "cannot write: an earlier write failed", shown_.string()};
   SACCADE_CHECK(flush());
@@ -146,7 +142,7 @@ Status AtomicFile::commit() {
 
 Result<bool> AtomicFile::commit_new() {
   SACCADE_CHECK(finish());
-  // A second name is refused where there is a file already; where a file system has none, the safety is lost.
+  // A second name is rejected where a file exists; on file systems without links this protection is lost.
   const bool linked = ::link(temporary_.c_str(), destination_.c_str()) == 0;
   const bool taken = !linked && errno == EEXIST;
   if (!linked && !taken) SACCADE_CHECK(rename());

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Column, ColumnTable: named columns of numbers of any type, as PLY and PCD files hold them; nothing is lost.
+// Column, ColumnTable: named columns of numbers of any type, as in PLY and PCD files, without loss.
 
 #include <cstddef>
 #include <cstdint>
@@ -51,7 +51,7 @@ struct Column {
   [[nodiscard]] double value(std::size_t row, std::size_t k = 0) const;
   /// Stores a number, rounded and clamped to an integer type's range (NaN becomes 0 there).
   void set_value(std::size_t row, double value, std::size_t k = 0);
-  /// Copy of the numbers as T; empty unless T is the column's very type.
+  /// Returns a copy of the numbers as T; empty unless T is exactly the column's type.
   template <class T>
   [[nodiscard]] std::vector<T> values() const {
     if (column_type_of<T>() != type) return {};
@@ -67,9 +67,9 @@ struct ColumnTable {
   std::size_t rows{0};
   std::vector<Column> columns;
 
-  /// nullptr when there is none.
+  /// Returns the column, or nullptr.
   [[nodiscard]] const Column* find(std::string_view name) const;
-  /// The name, or with 2, 3 … behind it, that no column has.
+  /// Returns the name, with 2, 3 … appended if a column has it already.
   [[nodiscard]] std::string unused_name(std::string_view name) const;
   [[nodiscard]] std::size_t row_bytes() const;
   /// Appends a column of `values` (count per row). Expects as many as rows·count; the first column sets the rows.
@@ -81,7 +81,7 @@ struct ColumnTable {
     const auto bytes = std::as_bytes(values);
     columns.push_back({std::move(name), column_type_of<T>(), count, {bytes.begin(), bytes.end()}});
   }
-  /// size_mismatch or invalid_argument when a column's bytes, count or name does not fit.
+  /// Answers size_mismatch or invalid_argument when a column's bytes, count or name does not fit.
   [[nodiscard]] Status validate() const;
   [[nodiscard]] bool operator==(const ColumnTable&) const = default;
 };

@@ -8,7 +8,7 @@
 
 namespace saccade {
 
-/// CRC-32, as in zlib and PNG, of `head` followed by `tail`.
+/// Returns the CRC-32, as in zlib and PNG, of `head` followed by `tail`.
 [[nodiscard]] std::uint32_t crc32(std::span<const std::byte> head, std::span<const std::byte> tail = {});
 
 }  // namespace saccade

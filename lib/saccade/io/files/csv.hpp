@@ -13,26 +13,27 @@
 
 namespace saccade {
 
-/// Lines end in \n. Numbers are the shortest text that reads back to the same value, in any locale.
+/// CSV table. Lines end in
+/// . Numbers are the shortest text that reads back to the same value, in any locale.
 class CsvTable {
  public:
   explicit CsvTable(const std::vector<std::string_view>& columns);
 
-  // Each adds a field to the row; nullopt leaves it empty.
+  // Each call adds a field to the row; nullopt leaves it empty.
   CsvTable& add(std::string_view text);
   CsvTable& add(double number);
   CsvTable& add(std::uint64_t number);
   CsvTable& add(const std::optional<double>& number);
-  /// Expects as many fields as there are columns.
+  /// Ends the row. Expects one field per column.
   void end_row();
 
   [[nodiscard]] const std::string& text() const { return text_; }
-  /// Atomic: the file is there as a whole or as it was. io_failure.
+  /// Writes atomically: the old or the complete new file exists. Answers io_failure.
   [[nodiscard]] Status write(const std::filesystem::path& path) const;
 
  private:
   std::size_t columns_;
-  std::size_t fields_{0};  ///< of the row so far
+  std::size_t fields_{0};  ///< fields of the current row
   std::string text_;
 };
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// read_file, read_text_file: a whole file into memory, or a clear error; AtomicFile: a file that appears under its name
-// only when it is complete; Descriptor, Pipe: owners of file descriptors.
+// read_file, read_text_file: a whole file in memory, or a clear error. AtomicFile: a file that appears under its name
+// only when it is complete. Descriptor, Pipe: owners of file descriptors.
 
 #include <fcntl.h>
 #include <unistd.h>
@@ -21,7 +21,7 @@
 
 namespace saccade {
 
-/// Closes what it holds; −1 is none.
+/// Owner of a file descriptor, which it closes; −1 is none.
 class Descriptor {
  public:
   Descriptor() = default;
@@ -43,14 +43,14 @@ class Descriptor {
     if (fd_ >= 0) ::close(fd_);
     fd_ = -1;
   }
-  /// Reads and writes return at once, done or not.
+  /// Makes reads and writes return at once, done or not.
   void make_nonblocking() const { ::fcntl(fd_, F_SETFL, ::fcntl(fd_, F_GETFL) | O_NONBLOCK); }
 
  private:
   int fd_{-1};
 };
 
-/// What is written to one end is read from the other. No child inherits either.
+/// Pipe: data written to one end is read from the other. No child inherits either end.
 struct Pipe {
   Descriptor read_end;
   Descriptor write_end;
@@ -64,34 +64,35 @@ struct Pipe {
   }
 };
 
-/// Largest file read into memory at once, unless the caller says otherwise.
+/// Default limit of a file that is read into memory.
 constexpr std::uintmax_t kMaxFileBytes{std::uintmax_t{8} << 30U};
 
-/// All bytes of a file. not_found when it is not there, io_failure for a folder or a failing read, unsupported above
+/// Reads all bytes of a file. Answers not_found, io_failure for a folder or a failing read, unsupported above
 /// max_bytes; the error's context is the path.
 [[nodiscard]] Result<std::vector<std::byte>> read_file(const std::filesystem::path& path,
                                                        std::uintmax_t max_bytes = kMaxFileBytes);
-/// The same as text.
+/// Reads a file as text.
 [[nodiscard]] Result<std::string> read_text_file(const std::filesystem::path& path,
                                                  std::uintmax_t max_bytes = kMaxFileBytes);
 
-/// The same error with the path in front of its context.
+/// Returns the error with the path in front of its context.
 [[nodiscard]] Error in_file(Error error, const std::filesystem::path& path);
 template <class T>
 [[nodiscard]] Result<T> in_file(Result<T> result, const std::filesystem::path& path) {
   return result ? std::move(result) : Result<T>{in_file(result.error(), path)};
 }
 
-/// Borrows text as bytes, and bytes as text.
+/// Views text as bytes, and bytes as text.
 [[nodiscard]] std::span<const std::byte> as_byte_span(std::string_view text);
 [[nodiscard]] std::string_view as_text(std::span<const std::byte> bytes);
 
-/// Writes into a temporary file in the destination's folder; commit() flushes it to the disk and renames it over the
-/// destination. Without a successful commit the temporary is removed and what was there before stays. One thread.
-/// Every error is an io_failure whose context is the destination (a full disk, a folder that cannot be written, ...).
+/// File that replaces its destination atomically. It writes to a temporary file in the destination's folder; commit()
+/// flushes it to the disk and renames it over the destination. Without a successful commit the temporary is removed and
+/// the old file stays. One thread. Every error is an io_failure whose context is the destination (a full disk, a folder
+/// that cannot be written, ...).
 class AtomicFile {
  public:
-  /// invalid_argument when the destination exists and is no regular file; a symbolic link is followed.
+  /// Answers invalid_argument when the destination exists and is not a regular file; a symbolic link is followed.
   [[nodiscard]] static Result<AtomicFile> create(const std::filesystem::path& destination);
   AtomicFile(AtomicFile&& other) noexcept;
   AtomicFile& operator=(AtomicFile&& other) noexcept;
@@ -99,16 +100,16 @@ class AtomicFile {
 
   [[nodiscard]] Status write(std::span<const std::byte> bytes);
   [[nodiscard]] Status write(std::string_view text);
-  /// The bytes of trivially copyable values, in the machine's order.
+  /// Writes the bytes of trivially copyable values, in the machine's order.
   template <class T>
   [[nodiscard]] Status write_values(std::span<const T> values) {
     static_assert(std::is_trivially_copyable_v<T>);
     return write(std::as_bytes(values));
   }
-  /// To be called once, at the end.
+  /// Commits the file. Call it once, at the end.
   [[nodiscard]] Status commit();
-  /// The same, but what is at the destination by now stays, and the file that was written goes.
-  /// @return whether the destination is the file that was written.
+  /// Commits only if the destination does not exist by then; otherwise it stays, and the new file is removed.
+  /// @return whether the new file is at the destination.
   [[nodiscard]] Result<bool> commit_new();
 
  private:
@@ -120,13 +121,13 @@ class AtomicFile {
   void discard() noexcept;
 
   int fd_{-1};
-  std::filesystem::path shown_;        ///< as the caller wrote it, for messages
+  std::filesystem::path shown_;        ///< as given by the caller, for messages
   std::filesystem::path destination_;  ///< links resolved
   std::filesystem::path temporary_;
   std::string buffer_;
 };
 
-/// All of `bytes` at once.
+/// Writes a whole file.
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& destination, std::span<const std::byte> bytes);
 [[nodiscard]] Status write_file_atomically(const std::filesystem::path& destination, std::string_view text);
 

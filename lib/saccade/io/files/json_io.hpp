@@ -11,18 +11,19 @@
 
 namespace saccade {
 
-/// Returns the message of an exception without the tag that it begins with, which says nothing to a reader.
+/// Returns the message of an exception without its leading tag, which means nothing to a reader.
 [[nodiscard]] std::string message_of(const nlohmann::json::exception& exception);
 
-/// corrupt_data with the byte offset.
+/// Parses JSON. Answers corrupt_data with the byte offset.
 [[nodiscard]] Result<nlohmann::json> parse_json(std::string_view text);
 [[nodiscard]] Result<nlohmann::json> read_json(const std::filesystem::path& path);
-/// Indented by two spaces, with a final newline; atomic.
+/// Writes JSON indented by two spaces, with a final newline; atomic.
 [[nodiscard]] Status write_json(const std::filesystem::path& path, const nlohmann::json& value);
 
-/// [[r r r x], [r r r y], [r r r z], [0 0 0 1]].
+/// Returns [[r r r x], [r r r y], [r r r z], [0 0 0 1]].
 [[nodiscard]] nlohmann::json pose_to_json(const Pose& T_a_b);
-/// The inverse. corrupt_data unless it is a 4×4 nested array of numbers; invalid_argument unless it is a rigid motion.
+/// Reads a pose back. Answers corrupt_data unless it is a 4×4 nested array of numbers; invalid_argument unless it is a
+/// rigid motion.
 [[nodiscard]] Result<Pose> pose_from_json(const nlohmann::json& value);
 
 }  // namespace saccade

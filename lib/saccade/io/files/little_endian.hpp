@@ -22,7 +22,7 @@ void append_value(std::vector<std::byte>& out, const T& value) {
   out.insert(out.end(), bytes.begin(), bytes.end());
 }
 
-/// Walks borrowed bytes. Ask has() first: reading past the end is a broken contract.
+/// Reader of borrowed bytes. Call has() first: reading past the end is a broken contract.
 class ByteReader {
  public:
   explicit ByteReader(std::span<const std::byte> bytes, std::size_t offset = 0) : bytes_{bytes}, offset_{offset} {}

@@ -6,7 +6,8 @@ namespace {
 
 unsigned byte_at(std::string_view text, std::size_t i) { return static_cast<unsigned char>(text[i]); }
 
-/// Bytes of the UTF-8 character that a text begins with; 0 where it begins with none (The Unicode Standard, table 3-7).
+/// Returns the bytes of the UTF-8 character that a text begins with; 0 where there is none (The Unicode Standard, table
+/// 3-7).
 std::size_t utf8_length(std::string_view text) {
   const unsigned first = byte_at(text, 0);
   if (first < 0x80) return 1;
@@ -21,7 +22,7 @@ std::size_t utf8_length(std::string_view text) {
   return length;
 }
 
-/// U+0000 … U+001F, U+007F … U+009F.
+/// Tells whether a character is U+0000 … U+001F, U+007F … U+009F.
 bool is_control(std::string_view text, std::size_t length) {
   const unsigned first = byte_at(text, 0);
   return first < 0x20 || first == 0x7F || (length == 2 && first == 0xC2 && byte_at(text, 1) < 0xA0);

@@ -9,7 +9,7 @@
 namespace saccade {
 namespace {
 
-/// The operating system's reason, where SQLite kept one.
+/// Returns the operating system's reason, where SQLite kept one.
 std::string system_reason(sqlite3* database) {
   const int code = database == nullptr ? 0 : sqlite3_system_errno(database);
   if (code == 0) return {};
@@ -57,7 +57,7 @@ Result<SqliteFile> SqliteFile::open(const std::filesystem::path& path, int busy_
     return Error{Errc::invalid_argument, "is a folder, not a file", path.string()};
   }
   sqlite3* database = nullptr;
-  // A name such as ":memory:" or "file:x" is taken as the name of a file.
+  // Absolute, so that names such as ":memory:" or "file:x" are names of files.
   const std::string name = std::filesystem::absolute(path, ignored).string();
   const int code = sqlite3_open_v2(name.c_str(), &database,
                                    SQLITE_OPEN_READWRITE | SQLITE_OPEN_CREATE | SQLITE_OPEN_FULLMUTEX, nullptr);

@@ -16,23 +16,23 @@ struct sqlite3_stmt;
 
 namespace saccade {
 
-/// An open database file. What goes wrong carries the file's path: corrupt_data for a file that is no database or a
-/// damaged one, io_failure for a full disk, a missing permission, or another process that holds the file too long. One
-/// thread; several processes may have the file open.
+/// Open database file. Errors carry the file's path: corrupt_data for a file that is not a database or is damaged,
+/// io_failure for a full disk, a missing permission, or another process that locks the file too long. One thread;
+/// several processes may open the file.
 class SqliteFile {
  public:
-  /// Opens the file, or creates it. How long a write waits for another process: busy_ms.
+  /// Opens or creates the file. busy_ms: how long a write waits for another process.
   [[nodiscard]] static Result<SqliteFile> open(const std::filesystem::path& path, int busy_ms);
 
-  /// Runs statements that give no rows.
+  /// Runs statements that return no rows.
   [[nodiscard]] Status run(const std::string& sql) const;
   [[nodiscard]] Result<std::int64_t> integer(const std::string& query) const;
 
   [[nodiscard]] const std::filesystem::path& path() const { return path_; }
   [[nodiscard]] std::int64_t last_row_id() const;
-  /// Rows that the last statement changed.
+  /// Returns the number of rows changed by the last statement.
   [[nodiscard]] int changed_rows() const;
-  /// The Error of a result code of SQLite.
+  /// Returns the Error of a result code of SQLite.
   [[nodiscard]] Error error(int code) const;
 
  private:
@@ -45,24 +45,24 @@ class SqliteFile {
   std::unique_ptr<sqlite3, Close> database_;
 };
 
-/// One statement: prepared once, its ? bound from 1 on, stepped through its rows, and started again. The file must
-/// outlive it. Expects columns and parameters that the statement has.
+/// Statement: prepared once, its ? bound from 1 on, stepped through its rows, and restarted. The file must outlive it.
+/// Expects existing columns and parameters.
 class SqliteStatement {
  public:
   [[nodiscard]] static Result<SqliteStatement> prepare(const SqliteFile& file, std::string_view sql);
 
-  // Each binds the next parameter.
+  // Each call binds the next parameter.
   void bind(std::string_view text);
   void bind(std::int64_t number);
   void bind(double number);
   void bind(const std::optional<double>& number);
 
-  /// Whether there is another row.
+  /// Tells whether there is another row.
   [[nodiscard]] Result<bool> step();
-  /// For a statement without rows: runs it, and makes it ready to be bound anew.
+  /// Runs a statement without rows, and prepares it for new values.
   [[nodiscard]] Status run();
 
-  // Each reads the next column of the row.
+  // Each call reads the next column of the row.
   [[nodiscard]] std::string text();
   [[nodiscard]] std::int64_t integer();
   [[nodiscard]] double real();
@@ -79,7 +79,7 @@ class SqliteStatement {
   int column_{0};
 };
 
-/// A transaction that takes the right to write at once. Without a commit it is undone.
+/// Transaction that acquires the write lock at once. It is undone without a commit.
 class SqliteTransaction {
  public:
   [[nodiscard]] static Result<SqliteTransaction> begin(const SqliteFile& file);

@@ -118,19 +118,19 @@ inline constexpr char kBlankSeparator{' '};
   return text.empty() || text.front() == '#' || text.starts_with("//");
 }
 
-/// A line without what makes it a comment.
+/// Returns a line without its comment mark.
 [[nodiscard]] inline std::string_view comment_text(std::string_view line) {
   return line.substr(std::min(line.find_first_not_of(" \t#/"), line.size()));
 }
 
-/// ; where the line has one, else a comma where it has one, else blanks.
+/// Returns ; where the line has one, otherwise a comma where it has one, otherwise a blank.
 [[nodiscard]] inline char separator_of(std::string_view line) {
   if (line.find(';') != std::string_view::npos) return ';';
   return line.find(',') != std::string_view::npos ? ',' : kBlankSeparator;
 }
 
-/// Goes through the fields of a line. Between commas or semicolons a field may be empty; nothing after the last one is
-/// no field. Borrows the line.
+/// Scanner of a line's fields. Fields between commas or semicolons may be empty; nothing follows the last one. Borrows
+/// the line.
 class FieldScanner {
  public:
   FieldScanner(std::string_view line, char separator) : rest_{line}, separator_{separator} {}
@@ -168,19 +168,19 @@ struct NumberLine {
   std::vector<double> values;
 };
 
-/// The rest of the lines that are neither blank nor comments ('#' to the end of the line).
-/// corrupt_data with the line for a word that is no number.
+/// Reads the remaining lines that are neither blank nor comments ('#' to the end of the line). Answers corrupt_data
+/// with the line for a word that is not a number.
 [[nodiscard]] Result<std::vector<NumberLine>> number_lines(LineScanner& lines);
 [[nodiscard]] Result<std::vector<NumberLine>> number_lines(std::string_view text);
 
-/// corrupt_data at a line.
+/// Returns corrupt_data at a line.
 [[nodiscard]] Error bad_line(std::size_t line, std::string what);
 
-/// The first max_bytes of a text that may be anything: control characters become blanks, bytes that are no UTF-8 become
-/// '?', and "..." stands where it was cut. Always valid UTF-8.
+/// Returns the first max_bytes of arbitrary text in readable form: control characters become blanks, bytes that are not
+/// UTF-8 become '?', and "..." marks a cut. Always valid UTF-8.
 [[nodiscard]] std::string readable(std::string_view text, std::size_t max_bytes);
 
-/// The last lines of a text, at most three, joined by " | ", each made readable; empty when there is none.
+/// Returns the last lines of a text, at most three, joined by " | ", each made readable; empty for an empty text.
 [[nodiscard]] std::string last_lines(std::string_view text);
 
 }  // namespace saccade

@@ -12,7 +12,7 @@
 
 namespace saccade {
 
-/// Appends the number that a token spells, as `type`; false when it is no number or does not fit the type.
+/// Appends the number of a token as `type`; returns false when it is not a number or does not fit the type.
 [[nodiscard]] bool append_token(std::string_view token, ColumnType type, std::vector<std::byte>& out);
 /// Appends the shortest text that reads back to the same number.
 void append_text(const std::byte* value, ColumnType type, std::string& out);

@@ -1,7 +1,16 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/files/yaml_map.hpp"
 
+#include <algorithm>
+#include <array>
 #include <cmath>
+#include <fstream>
+#include <sstream>
+
+#include "saccade/core/length_limit.hpp"
+#include "saccade/core/names.hpp"
+#include "saccade/core/nearest_word.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 namespace {
@@ -11,10 +20,54 @@ std::string place_of(const YAML::Mark& mark) {
   return "line " + std::to_string(mark.line + 1) + ", column " + std::to_string(mark.column + 1);
 }
 
+/// Reads the first bytes of a file; nothing of one that cannot be read.
+std::string start_of(const std::filesystem::path& path) {
+  constexpr std::size_t kBytes{512};
+  std::string start(kBytes, ' ');
+  std::ifstream file{path, std::ios::binary};
+  file.read(start.data(), static_cast<std::streamsize>(start.size()));
+  start.resize(static_cast<std::size_t>(file.gcount()));
+  return start;
+}
+
+/// Names the kind of a binary file by its first bytes or its extension.
+std::string kind_of_binary(const std::filesystem::path& path, std::string_view content) {
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kStarts{{{"\x89PNG", "a picture (PNG)"},
+                                                                                  {"\xff\xd8\xff", "a picture (JPEG)"},
+                                                                                  {"ply", "a PLY mesh or cloud"},
+                                                                                  {"glTF", "a mesh (GLB)"},
+                                                                                  {"SQLite format 3", "a database"},
+                                                                                  {"#ROSBAG", "a bag of ROS"}}};
+  for (const auto& [start, kind] : kStarts) {
+    if (content.starts_with(start)) return std::string{kind};
+  }
+  constexpr std::array<std::pair<std::string_view, std::string_view>, 6> kEndings{{{".sacmap", "a saved map"},
+                                                                                   {".stl", "a mesh (STL)"},
+                                                                                   {".pcd", "a point cloud (PCD)"},
+                                                                                   {".npy", "a NumPy array"},
+                                                                                   {".sacann", "an annotation session"},
+                                                                                   {".mcap", "a bag (MCAP)"}}};
+  for (const auto& [ending, kind] : kEndings) {
+    if (path.extension() == ending) return std::string{kind};
+  }
+  return "a binary file";
+}
+
 }  // namespace
 
+Result<std::string> read_yaml_file(const std::filesystem::path& path) {
+  constexpr std::uintmax_t kMaxBytes{std::uintmax_t{16} << 20U};
+  const std::string start = start_of(path);
+  const bool binary =
+      start.find('\0') != std::string::npos || start.starts_with("\x89PNG") || start.starts_with("ply\n");
+  if (binary) {
+    return Error{Errc::corrupt_data, "is " + kind_of_binary(path, start) + ", not a text in YAML", path.string()};
+  }
+  return read_text_file(path, kMaxBytes);
+}
+
 Error yaml_error(const YAML::Exception& exception) {
-  return Error{Errc::corrupt_data, "no YAML: " + exception.msg, place_of(exception.mark)};
+  return Error{Errc::corrupt_data, "not valid YAML: " + exception.msg, place_of(exception.mark)};
 }
 
 void yaml_problem(const YAML::Node& node, const std::string& what) {
@@ -47,12 +100,27 @@ Eigen::Vector3d yaml_point(const YAML::Node& node) {
   return {values[0], values[1], values[2]};
 }
 
-YamlMap::YamlMap(const YAML::Node& node, std::string what) : node_{node}, what_{std::move(what)} {
+Eigen::Vector3d yaml_place(const YAML::Node& node, const std::string& what) {
+  const Eigen::Vector3d place_m = yaml_point(node);
+  const auto far = std::find_if(place_m.begin(), place_m.end(), [](double x) { return std::abs(x) > kMaxLength_m; });
+  if (far == place_m.end()) return place_m;
+  std::ostringstream text;
+  text << what << " reaches to " << *far << " m; coordinates are within " << kMaxLength_m << " m of the origin";
+  yaml_problem(node, text.str());
+}
+
+YamlMap::YamlMap(const YAML::Node& node, std::string what, std::vector<std::string_view> known)
+    : node_{node}, what_{std::move(what)} {
   if (!node_.IsMap()) yaml_problem(node_, what_ + " is a list of \"key: value\"");
   std::set<std::string> seen;
   for (const auto& entry : node_) {
     if (!seen.insert(yaml_text(entry.first)).second)
       yaml_problem(entry.first, "the key " + entry.first.Scalar() + " is there twice");
+  }
+  if (known.empty()) return;
+  std::sort(known.begin(), known.end());
+  for (const auto& entry : node_) {
+    if (!std::binary_search(known.begin(), known.end(), entry.first.Scalar())) refuse_key(entry.first, known);
   }
 }
 
@@ -78,9 +146,13 @@ double YamlMap::number(const std::string& key, double fallback) {
 void YamlMap::finish() const {
   for (const auto& entry : node_) {
     if (asked_.contains(entry.first.Scalar())) continue;
-    yaml_problem(entry.first,
-                 "unknown key " + entry.first.Scalar() + " in " + what_ + "; known here: " + joined(asked_));
+    refuse_key(entry.first, {asked_.begin(), asked_.end()});
   }
+}
+
+void YamlMap::refuse_key(const YAML::Node& key, const std::vector<std::string_view>& known) const {
+  yaml_problem(key, "unknown key " + key.Scalar() + " in " + what_ + "; known here: " + joined(known) +
+                        did_you_mean(key.Scalar(), known));
 }
 
 }  // namespace saccade

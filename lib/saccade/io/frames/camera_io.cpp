@@ -9,6 +9,7 @@
 #include "saccade/io/files/json_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
 #include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/internal/calibration.hpp"
 
 namespace saccade {
 namespace {
@@ -18,13 +19,13 @@ Error bad_intrinsics(std::string what) { return {Errc::corrupt_data, std::move(w
 Result<Intrinsics> checked(Intrinsics intrinsics) {
   const bool finite = std::isfinite(intrinsics.fx) && std::isfinite(intrinsics.fy) && std::isfinite(intrinsics.cx) &&
                       std::isfinite(intrinsics.cy);
-  if (!finite || intrinsics.fx <= 0.0 || intrinsics.fy <= 0.0) {
-    return bad_intrinsics("focal lengths must be positive and the principal point finite");
+  if (!finite || intrinsics.fx == 0.0 || intrinsics.fy == 0.0) {
+    return bad_intrinsics("focal lengths must not be 0, and they and the principal point must be finite");
   }
   return intrinsics;
 }
 
-/// K row by row.
+/// Reads K row by row.
 Result<Intrinsics> from_matrix(const std::array<double, 9>& k) {
   constexpr double kTolerance{1e-6};
   const bool shape = std::abs(k[3]) < kTolerance && std::abs(k[6]) < kTolerance && std::abs(k[7]) < kTolerance &&
@@ -87,13 +88,40 @@ Result<Intrinsics> focal_lengths(const nlohmann::json& object) {
   return checked({*values[0], *values[1], *values[2], *values[3], {}, {}, {}, {}, {}});
 }
 
+/// Reads "scale" of NICE-SLAM, samples per metre, or "depth_scale", which others write either way.
+Status read_depth_scale(const nlohmann::json& object, std::optional<double>& units_per_m) {
+  constexpr double kLeastPerMetre{100.0};
+  constexpr double kMostMetres{0.05};
+  std::optional<double> scale;
+  SACCADE_CHECK(read_number(object, "scale", units_per_m));
+  SACCADE_CHECK(read_number(object, "depth_scale", scale));
+  if (units_per_m && !(std::isfinite(*units_per_m) && *units_per_m > 0.0))
+    return bad_intrinsics("scale must be positive");
+  if (!scale) return {};
+  if (std::isfinite(*scale) && *scale >= kLeastPerMetre) {
+    units_per_m = *scale;
+  } else if (*scale > 0.0 && *scale < kMostMetres) {
+    units_per_m = 1.0 / *scale;
+  } else {
+    return bad_intrinsics("depth_scale of " + nlohmann::json(*scale).dump() +
+                          " is neither samples per metre (1000) nor metres per sample (0.001); correct it there, or "
+                          "pass --intrinsics and --depth-scale");
+  }
+  return {};
+}
+
 Result<Intrinsics> from_json(std::string_view text) {
-  SACCADE_TRY(const nlohmann::json object, parse_json(text));
+  SACCADE_TRY(const nlohmann::json document, parse_json(text));
+  const bool is_wrapped = document.is_object() && document.contains("camera") && document["camera"].is_object();
+  const nlohmann::json& object = is_wrapped ? document["camera"] : document;
   if (!object.is_object()) return bad_intrinsics("a JSON object is needed");
   SACCADE_TRY(Intrinsics intrinsics,
               object.contains("intrinsic_matrix") ? open3d_matrix(object["intrinsic_matrix"]) : focal_lengths(object));
   SACCADE_CHECK(read_size(object, "width", intrinsics.width));
   SACCADE_CHECK(read_size(object, "height", intrinsics.height));
+  SACCADE_CHECK(read_size(object, "w", intrinsics.width));
+  SACCADE_CHECK(read_size(object, "h", intrinsics.height));
+  SACCADE_CHECK(read_depth_scale(object, intrinsics.depth_units_per_m));
   SACCADE_CHECK(read_number(object, "min_range_m", intrinsics.min_range_m));
   SACCADE_CHECK(read_number(object, "max_range_m", intrinsics.max_range_m));
   if (object.contains("distortion")) {
@@ -102,7 +130,7 @@ Result<Intrinsics> from_json(std::string_view text) {
   return intrinsics;
 }
 
-/// Numbers of a text in order, comments skipped.
+/// Returns the numbers of a text in order, without comments.
 Result<std::vector<double>> all_numbers(std::string_view text) {
   std::vector<double> values;
   LineScanner lines{text};
@@ -121,7 +149,7 @@ Result<std::vector<double>> all_numbers(std::string_view text) {
   return values;
 }
 
-/// A commented title and the lines under it.
+/// Commented title and the lines under it.
 struct Section {
   std::string title;
   std::string body;
@@ -141,7 +169,7 @@ std::vector<Section> sections_of(std::string_view text) {
   return sections;
 }
 
-/// "frame-000003" out of "... for frame-000003".
+/// Returns "frame-000003" from "... for frame-000003".
 std::optional<std::string> frame_name(const std::string& title) {
   const std::size_t begin = title.rfind("frame-");
   if (begin == std::string::npos) return std::nullopt;
@@ -184,6 +212,10 @@ Result<PinholeCamera> Intrinsics::camera(int image_width, int image_height) cons
                      "x" + std::to_string(image_height),
                  "camera intrinsics"};
   }
+  if (fx < 0.0 || fy < 0.0) {
+    return Error{Errc::unsupported, "a negative focal length mirrors an axis of the image, which is not possible here",
+                 "camera intrinsics"};
+  }
   PinholeCamera camera;
   camera.width = image_width;
   camera.height = image_height;
@@ -200,6 +232,7 @@ Result<PinholeCamera> Intrinsics::camera(int image_width, int image_height) cons
 Result<Intrinsics> parse_intrinsics(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string_view::npos && text[first] == '{') return from_json(text);
+  if (text.find("camera_matrix:") != std::string_view::npos) return parse_opencv_camera(text);
   SACCADE_TRY(const std::vector<double> values, all_numbers(text));
   if (values.size() == 4) return checked({values[0], values[1], values[2], values[3], {}, {}, {}, {}, {}});
   if (values.size() == 9) {
@@ -207,8 +240,12 @@ Result<Intrinsics> parse_intrinsics(std::string_view text) {
     std::copy(values.begin(), values.end(), k.begin());
     return from_matrix(k);
   }
-  return bad_intrinsics("four numbers fx,fy,cx,cy or a 3x3 matrix expected, not " + std::to_string(values.size()) +
-                        " numbers");
+  if (values.size() == 12 || values.size() == 16) {
+    return from_matrix(
+        {values[0], values[1], values[2], values[4], values[5], values[6], values[8], values[9], values[10]});
+  }
+  return bad_intrinsics("four numbers fx,fy,cx,cy or a matrix of 3x3, 3x4 or 4x4 expected, not " +
+                        std::to_string(values.size()) + " numbers");
 }
 
 Result<Intrinsics> read_intrinsics(const std::filesystem::path& path) {

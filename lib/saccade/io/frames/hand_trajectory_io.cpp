@@ -17,7 +17,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// Columns of a table of samples; where each stands in a line.
+/// Columns of a table of samples, and their positions in a line.
 constexpr std::array<std::string_view, 8> kColumns{"time", "x", "y", "z", "qx", "qy", "qz", "qw"};
 using ColumnOrder = std::array<std::optional<std::size_t>, kColumns.size()>;
 
@@ -55,7 +55,7 @@ Result<HandTrajectory> table_samples(const std::vector<NumberLine>& lines, const
   return samples;
 }
 
-/// The place of each column by its name in a header; columns of other names are passed over.
+/// Returns the position of each column by its name in a header; ignores other columns.
 Result<ColumnOrder> header_order(const std::vector<std::string_view>& names, std::size_t line) {
   ColumnOrder order;
   for (std::size_t i = 0; i < names.size(); ++i) {

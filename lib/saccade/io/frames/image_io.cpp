@@ -10,12 +10,13 @@
 #include <type_traits>
 
 #include "saccade/io/files/file_io.hpp"
+#include "saccade/io/frames/internal/sample_image.hpp"
 
 namespace saccade {
 namespace {
 
 constexpr std::uintmax_t kMaxImageFileBytes{std::uintmax_t{1} << 30U};
-/// A JPEG spends at least a bit on each 8×8 block of each channel; smaller files claim pixels they cannot hold.
+/// Largest number of JPEG pixels per byte: each 8×8 block of each channel takes at least one bit.
 constexpr std::uint64_t kMaxJpegPixelsPerByte{1024};
 
 Error with_path(Error error, const std::filesystem::path& path) {
@@ -32,7 +33,7 @@ auto read_with(const std::filesystem::path& path, Decoder decode)
   return image;
 }
 
-/// 8-bit value of sample c of pixel i.
+/// Returns the 8-bit value of sample c of pixel i.
 std::uint8_t sample8(const PngPixels& png, std::size_t i, std::size_t c) {
   const std::size_t sample = i * static_cast<std::size_t>(png.channels) + c;
   if (png.sample_bits == 8) return png.bytes[sample];
@@ -50,6 +51,22 @@ ColorImage color_from_png(const PngPixels& png) {
   const bool grey = png.channels < 3;
   for (std::size_t i = 0; i < image.size(); ++i) {
     for (std::size_t c = 0; c < 3; ++c) image.data()[i][c] = sample8(png, i, grey ? 0 : c);
+  }
+  return image;
+}
+
+Result<ColorImage> color_from_samples(const Result<SampleImage>& decoded) {
+  if (!decoded) return decoded.error();
+  const bool is_whole = decoded->kind == SampleKind::whole8 || decoded->kind == SampleKind::whole16;
+  if (!is_whole) return Error{Errc::unsupported, "colours of 8 or 16 bits are needed", {}};
+  ColorImage image{decoded->width, decoded->height};
+  const auto channels = static_cast<std::size_t>(decoded->channels);
+  const unsigned shift = decoded->kind == SampleKind::whole8 ? 0U : 8U;
+  for (std::size_t i = 0; i < image.size(); ++i) {
+    for (std::size_t c = 0; c < 3; ++c) {
+      const auto sample = static_cast<unsigned>(decoded->values[i * channels + (channels < 3 ? 0 : c)]);
+      image.data()[i][c] = static_cast<std::uint8_t>(sample >> shift);
+    }
   }
   return image;
 }
@@ -128,10 +145,12 @@ Result<Image16> decode_png16(std::span<const std::byte> file) {
 
 Result<ColorImage> decode_color(std::span<const std::byte> file) {
   if (is_jpeg(file)) return decode_jpeg(file);
+  if (is_pnm(file)) return color_from_samples(decode_pnm(file));
+  if (is_tiff(file)) return color_from_samples(decode_tiff(file));
   auto png = decode_png(file);
   if (png) return color_from_png(*png);
   Error error = png.error();
-  if (error.message == "not a PNG file") error.message = "neither a PNG nor a JPEG file";
+  if (error.message == "not a PNG file") error.message = "neither PNG, JPEG, PPM nor TIFF";
   return error;
 }
 

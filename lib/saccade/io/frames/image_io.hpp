@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Images in files: 16-bit PNG, 8-bit colour PNG and JPEG, masks; read from files or memory, written as PNG;
-// DepthEncoding: what the samples of a depth image mean, and how they become metres.
+// Images in files: 16-bit PNG, colour in PNG, JPEG, PPM and TIFF, masks; read from files or memory, written as PNG.
+// DepthEncoding: conversion of depth samples to metres.
 
 #include <cmath>
 #include <cstddef>
@@ -32,37 +32,38 @@ struct PngSize {
   int height{0};
 };
 
-/// Size from what precedes the pixels. corrupt_data, or unsupported beyond kMaxImageEdge.
+/// Reads the size from the bytes before the pixels. Answers corrupt_data, or unsupported beyond kMaxImageEdge.
 [[nodiscard]] Result<PngSize> png_size(std::span<const std::byte> file);
 
-/// Decodes a whole PNG with libpng. Whatever libpng complains of, and a byte too few or too many, is corrupt_data with
-/// the offset reached; unsupported beyond kMaxImageEdge. Transparent colours (tRNS) and ancillary chunks do not count.
-/// Memory is bounded by what the file can expand to. Safe to call concurrently; nothing is printed.
+/// Decodes a whole PNG with libpng. Anything that libpng complains of, and a byte too few or too many, is corrupt_data
+/// with the offset reached; unsupported beyond kMaxImageEdge. Transparent colours (tRNS) and ancillary chunks are
+/// ignored. Memory is bounded by the size that the file can expand to. Safe to call concurrently; prints nothing.
 [[nodiscard]] Result<PngPixels> decode_png(std::span<const std::byte> file);
 
-/// PNG file of the given pixels; the same bytes every time (with the same libpng and zlib). Expects sizes that agree;
-/// unsupported when libpng refuses the image.
+/// Encodes a PNG file; deterministic for one version of libpng and zlib. Expects consistent sizes; unsupported when
+/// libpng rejects the image.
 [[nodiscard]] Result<std::vector<std::byte>> encode_png(const PngPixels& pixels);
 
-/// Raw 16-bit samples of a single-channel PNG; what they mean says DepthEncoding.
+/// Raw 16-bit samples of a single-channel PNG; DepthEncoding converts them.
 using Image16 = Image<std::uint16_t>;
 
-/// A damaged or cut file is corrupt_data, never half an image; unsupported: other kinds of pixels, CMYK JPEG,
-/// more than kMaxImageEdge pixels a side. Nothing is printed. Safe to call concurrently.
+/// Decodes images. A damaged or truncated file is corrupt_data, never half an image; unsupported: other kinds of
+/// pixels, CMYK JPEG, more than kMaxImageEdge pixels a side. Prints nothing. Safe to call concurrently.
 [[nodiscard]] Result<Image16> decode_png16(std::span<const std::byte> file);
-/// PNG or JPEG, told apart by their first bytes; RGB order, grey is spread over the channels, alpha is dropped.
+/// Decodes PNG, JPEG, PPM, PGM or TIFF, recognised by the first bytes; RGB order, grey is copied to all channels, alpha
+/// is dropped.
 [[nodiscard]] Result<ColorImage> decode_color(std::span<const std::byte> file);
-/// Grey or colour PNG: 0 where all channels are 0, else 255.
+/// Decodes a grey or colour PNG: 0 where all channels are 0, otherwise 255.
 [[nodiscard]] Result<MaskImage> decode_mask(std::span<const std::byte> file);
 
-/// The same from files; the error's context starts with the path.
+/// Read images from files; the error's context starts with the path.
 [[nodiscard]] Result<Image16> read_png16(const std::filesystem::path& path);
 [[nodiscard]] Result<ColorImage> read_color(const std::filesystem::path& path);
 [[nodiscard]] Result<MaskImage> read_mask(const std::filesystem::path& path);
-/// Size of a PNG; its pixels are not looked at.
+/// Reads the size of a PNG without its pixels.
 [[nodiscard]] Result<PngSize> read_png_size(const std::filesystem::path& path);
 
-/// Written atomically; the same bytes for the same image. io_failure naming the path; invalid_argument when empty.
+/// Write images atomically and deterministically. Answer io_failure naming the path; invalid_argument when empty.
 [[nodiscard]] Status write_png16(const std::filesystem::path& path, const Image16& image);
 [[nodiscard]] Status write_png(const std::filesystem::path& path, const ColorImage& image);
 [[nodiscard]] Status write_png(const std::filesystem::path& path, const MaskImage& image);
@@ -75,7 +76,7 @@ using Image16 = Image<std::uint16_t>;
 /// | TUM RGB-D                              | 5000        | no          |
 /// | Princeton APC / RGB-D SLAM of 0.1 mm   | 10000       | yes         |
 ///
-/// Bit-rotated: the sample was rotated left by three bits before it was stored; it is (v >> 3) | (v << 13).
+/// Bit-rotated: the sample was rotated left by three bits before it was stored; the original is (v >> 3) | (v << 13).
 struct DepthEncoding {
   double units_per_m{1000.0};
   bool bit_rotated{false};
@@ -87,7 +88,7 @@ struct DepthEncoding {
   [[nodiscard]] bool operator==(const DepthEncoding&) const = default;
 };
 
-/// Metres along z; 0 where the sample is none. Expects a valid encoding. O(pixels).
+/// Converts to metres along z; 0 for invalid samples. Expects a valid encoding. O(pixels).
 [[nodiscard]] inline DepthImage decode_depth(const Image16& samples, const DepthEncoding& encoding) {
   SACCADE_EXPECTS(encoding.validate().ok());
   constexpr std::uint16_t kSaturated{65535};
@@ -103,7 +104,7 @@ struct DepthEncoding {
   return depth;
 }
 
-/// The inverse, rounded to the nearest sample; no return, free claims and depths that do not fit become 0.
+/// Encodes depths, rounded to the nearest sample; no return, free claims and depths that do not fit become 0.
 [[nodiscard]] inline Image16 encode_depth(const DepthImage& depth, const DepthEncoding& encoding) {
   SACCADE_EXPECTS(encoding.validate().ok());
   Image16 samples{depth.width(), depth.height()};

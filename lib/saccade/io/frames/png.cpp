@@ -16,14 +16,15 @@ namespace {
 constexpr std::size_t kSignatureBytes{8};
 /// Deflate cannot expand data more than about 1032-fold.
 constexpr std::uint64_t kMaxExpansion{1040};
-constexpr png_alloc_size_t kMaxChunkBytes{1U << 23U};  // of chunks without pixels; libpng bounds the others by the size
+constexpr png_alloc_size_t kMaxChunkBytes{
+    1U << 23U};  // limit of chunks without pixels; libpng bounds the others by the size
 constexpr int kCompressionLevel{6};
 
-// libpng reports by longjmp. So every function that calls setjmp holds trivial values only, as do the callbacks; what
-// owns memory lives in PngReader and PngWriter, outside of all jumps.
+// libpng reports by longjmp. Every function that calls setjmp therefore holds only trivial values, as do the callbacks;
+// owners of memory live in PngReader and PngWriter, outside of all jumps.
 
-/// The first complaint of libpng; allocates nothing.
-struct Complaint {
+/// Keeps the first complaint of libpng; allocates nothing.
+struct PngErrorHandler {
   std::array<char, 160> text{};
 
   void keep(const char* message) {
@@ -31,9 +32,9 @@ struct Complaint {
   }
 };
 
-/// Errors and warnings alike: what libpng warns of, of the chunks read here, is damage.
+/// Handles errors and warnings alike: in the chunks read here, a warning of libpng means damage.
 [[noreturn]] void on_complaint(png_structp png, png_const_charp message) {
-  static_cast<Complaint*>(png_get_error_ptr(png))->keep(message);
+  static_cast<PngErrorHandler*>(png_get_error_ptr(png))->keep(message);
   png_longjmp(png, 1);
 }
 
@@ -52,7 +53,7 @@ class PngReader {
   PngReader& operator=(const PngReader&) = delete;
   ~PngReader() { png_destroy_read_struct(&png_, &info_, nullptr); }
 
-  /// Everything before the pixels.
+  /// Reads everything before the pixels.
   [[nodiscard]] Result<PngSize> read_size() {
     if (file_.size() < kSignatureBytes ||
         png_sig_cmp(reinterpret_cast<png_const_bytep>(file_.data()), 0, kSignatureBytes) != 0) {
@@ -70,7 +71,7 @@ class PngReader {
     return PngSize{static_cast<int>(width()), static_cast<int>(height())};
   }
 
-  /// The rest, after read_size(); a palette is not applied yet.
+  /// Reads the rest, after read_size(), without applying a palette.
   [[nodiscard]] Result<PngPixels> read_pixels() {
     const std::uint64_t least_bytes = std::uint64_t{png_get_rowbytes(png_, info_)} * height();
     if (least_bytes > kMaxExpansion * file_.size()) return corrupt("too few bytes for its size");
@@ -133,7 +134,7 @@ class PngReader {
     return true;
   }
 
-  /// libpng would turn indices beyond the palette into black.
+  /// Applies the palette; libpng would turn indices beyond it into black.
   [[nodiscard]] Result<PngPixels> with_palette(const PngPixels& indices) const {
     png_colorp colors = nullptr;
     int count = 0;
@@ -150,7 +151,7 @@ class PngReader {
   std::span<const std::byte> file_;
   std::size_t offset_{0};
   int passes_{1};
-  Complaint complaint_;
+  PngErrorHandler complaint_;
   png_structp png_{nullptr};
   png_infop info_{nullptr};
 };
@@ -183,7 +184,7 @@ class PngWriter {
   }
   static void flush(png_structp /*png*/) {}
 
-  /// No exception may pass through libpng.
+  /// Appends bytes. No exception may pass through libpng.
   [[nodiscard]] bool append_bytes(png_const_bytep data, std::size_t count) noexcept {
     try {
       const auto bytes = std::as_bytes(std::span{data, count});
@@ -214,7 +215,7 @@ class PngWriter {
   }
 
   std::vector<std::byte> file_;
-  Complaint complaint_;
+  PngErrorHandler complaint_;
   png_structp png_{nullptr};
   png_infop info_{nullptr};
 };

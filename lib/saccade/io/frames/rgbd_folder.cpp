@@ -5,15 +5,15 @@
 #include <cmath>
 
 #include "saccade/io/files/file_io.hpp"
+#include "saccade/io/frames/depth_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/internal/image_mapping.hpp"
 #include "saccade/io/frames/internal/rgbd_layout.hpp"
 
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
-
-std::string size_text(int width, int height) { return std::to_string(width) + "x" + std::to_string(height); }
 
 Status check_size(const PinholeCamera& camera, int width, int height) {
   if (width == camera.width && height == camera.height) return {};
@@ -24,15 +24,16 @@ Status check_size(const PinholeCamera& camera, int width, int height) {
 
 class FolderSource final : public RgbdFolderSource {
  public:
-  FolderSource(ImageCorrection correction, RgbdFolderInfo info, std::vector<RgbdFrameFiles> frames,
+  FolderSource(ImageCorrection correction, ImageRays rays, RgbdFolderInfo info, std::vector<RgbdFrameFiles> frames,
                const RgbdFolderConfig& config)
       : correction_{std::move(correction)},
+        rays_{std::move(rays)},
         info_{std::move(info)},
         frames_{std::move(frames)},
         every_nth_{config.every_nth},
         first_{config.first},
         require_poses_{config.require_poses && info_.has_poses},
-        read_color_{config.read_color} {}
+        read_color_{info_.has_color} {}
 
   [[nodiscard]] const PinholeCamera& camera() const override { return correction_.camera(); }
   [[nodiscard]] std::optional<std::size_t> size() const override { return frames_.size(); }
@@ -70,17 +71,32 @@ class FolderSource final : public RgbdFolderSource {
     Frame frame;
     frame.name = files.name;
     frame.time_s = files.time_s;
+    std::optional<Intrinsics> own;
+    if (files.intrinsics) {
+      SACCADE_TRY(own, own_intrinsics(*files.intrinsics));
+    }
     auto pose = read_pose(files);
     if (pose) {
       frame.T_world_camera = *pose;
     } else if (require_poses_) {
       return pose.error();
     }
-    SACCADE_TRY(frame.depth, read_depth(files));
+    SACCADE_TRY(DepthImage depth, read_depth(files, own));
     if (read_color_ && files.color) {
-      SACCADE_TRY(frame.color, read_frame_color(*files.color));
+      SACCADE_TRY(frame.color, read_frame_color(*files.color, own, depth));
     }
+    SACCADE_TRY(frame.depth, in_file(correction_.apply(std::move(depth)), *files.depth));
     return frame;
+  }
+
+  /// Returns a frame's own intrinsics. Lenses are corrected once for all frames, and must not differ.
+  [[nodiscard]] Result<Intrinsics> own_intrinsics(const Result<Intrinsics>& read) const {
+    if (!read) return read.error();
+    SACCADE_TRY(Intrinsics own, rays_.of_depth(*read));
+    const bool is_same_lens = own.distortion.value_or(Distortion{}) == rays_.depth.distortion.value_or(Distortion{}) &&
+                              (has_same_rays(own, rays_.depth) || own.distortion.value_or(Distortion{}).is_zero());
+    if (is_same_lens) return own;
+    return Error{Errc::unsupported, "its lens differs from the first frame's; write the images undistorted", {}};
   }
 
   [[nodiscard]] static Result<Pose> read_pose(const RgbdFrameFiles& files) {
@@ -91,18 +107,42 @@ class FolderSource final : public RgbdFolderSource {
     return poses.front();
   }
 
-  [[nodiscard]] Result<DepthImage> read_depth(const RgbdFrameFiles& files) const {
+  /// Returns depths with the rays of the source, not yet corrected.
+  [[nodiscard]] Result<DepthImage> read_depth(const RgbdFrameFiles& files, const std::optional<Intrinsics>& own) const {
     if (!files.depth) return Error{Errc::not_found, "its depth image is missing", {}};
-    SACCADE_TRY(const Image16 samples, read_png16(*files.depth));
-    return in_file(correction_.apply(decode_depth(samples, info_.encoding)), *files.depth);
+    DepthUnits scale{info_.encoding, info_.units_from};
+    if (own && own->depth_units_per_m && scale.source == UnitsSource::files) {
+      scale.encoding.units_per_m = *own->depth_units_per_m;
+    }
+    SACCADE_TRY(DepthImage depth, read_depth_image(*files.depth, scale));
+    const Status size = check_size(correction_.camera(), depth.width(), depth.height());
+    if (!size) return in_file(size.error(), *files.depth);
+    if (!own || has_same_rays(*own, rays_.depth)) return depth;
+    return seen_with(depth, *own, rays_.depth, rays_.width, rays_.height);
   }
 
-  [[nodiscard]] Result<ColorImage> read_frame_color(const fs::path& path) const {
+  /// Returns colours in the depth camera's place, corrected.
+  [[nodiscard]] Result<ColorImage> read_frame_color(const fs::path& path, const std::optional<Intrinsics>& own,
+                                                    const DepthImage& depth) const {
     SACCADE_TRY(ColorImage color, saccade::read_color(path));
+    if (color.width() != rays_.color_width || color.height() != rays_.color_height) {
+      return Error{Errc::size_mismatch,
+                   "image is " + size_text(color.width(), color.height()) + ", not " +
+                       size_text(rays_.color_width, rays_.color_height),
+                   path.string()};
+    }
+    std::optional<Intrinsics> from = rays_.color;
+    if (own && (from || !has_same_rays(*own, rays_.depth))) from = rays_.at_color_size(*own);
+    if (from && rays_.T_color_depth) {
+      color = seen_from_depth(color, *from, depth, rays_.depth, *rays_.T_color_depth);
+    } else if (from) {
+      color = seen_with(color, *from, rays_.depth, rays_.width, rays_.height);
+    }
     return in_file(correction_.apply(std::move(color)), path);
   }
 
   ImageCorrection correction_;
+  ImageRays rays_;
   RgbdFolderInfo info_;
   std::vector<RgbdFrameFiles> frames_;
   std::size_t every_nth_;
@@ -112,42 +152,64 @@ class FolderSource final : public RgbdFolderSource {
   std::size_t position_{0};
 };
 
-/// Intrinsics given, of the layout's own file, or of a file beside the frames.
-Status find_intrinsics(const fs::path& folder, const RgbdFolderConfig& config, RgbdListing& listing) {
-  if (config.intrinsics) {
-    listing.intrinsics = config.intrinsics;
-    listing.intrinsics_from = "given";
-  }
-  if (listing.intrinsics) return {};
-  const fs::path above = fs::absolute(folder / "x").parent_path().lexically_normal().parent_path();
-  for (const fs::path& place : {folder, above}) {
-    for (const char* name : {"camera-intrinsics.txt", "intrinsics.K.txt", "intrinsics.txt", "camera.json",
-                             "camera_primesense.json", "intrinsic.json", "camera_intrinsic.json"}) {
-      std::error_code ignored;
-      if (!fs::is_regular_file(place / name, ignored)) continue;
-      SACCADE_TRY(listing.intrinsics, read_intrinsics(place / name));
-      listing.intrinsics_from = (place / name).string();
-      return {};
-    }
-  }
-  return Error{Errc::not_found,
-               "no camera intrinsics here; pass --intrinsics fx,fy,cx,cy or add a camera-intrinsics.txt with the 3x3 "
-               "matrix",
-               folder.string()};
-}
+constexpr std::size_t kTriedImages{100};
 
-/// Size of the first depth image whose header can be read.
-Result<PngSize> first_size(const std::vector<RgbdFrameFiles>& frames) {
+/// Returns the first depth image that can be read.
+Result<DepthImage> first_depth(const std::vector<RgbdFrameFiles>& frames, DepthUnits scale) {
+  scale.source = scale.source == UnitsSource::layout ? UnitsSource::layout : UnitsSource::given;
   std::optional<Error> first_error;
+  std::size_t tried = 0;
   for (const RgbdFrameFiles& frame : frames) {
     if (!frame.depth) continue;
-    const auto size = read_png_size(*frame.depth);
-    if (size) return size;
-    if (!first_error) first_error = size.error();
+    auto depth = read_depth_image(*frame.depth, scale);
+    if (depth) return depth;
+    if (!first_error) first_error = depth.error();
+    if (++tried == kTriedImages) break;
   }
-  SACCADE_EXPECTS(first_error.has_value());
+  if (!first_error) return Error{Errc::not_found, "there is no depth frame here", {}};
   return Error{first_error->code, "no depth image here can be read; the first: " + first_error->message,
                first_error->context};
+}
+
+/// Finds how colours lie on depths. Colours that cannot be laid on them are left out, with a note.
+void find_color_rays(const RgbdListing& listing, const RgbdFolderConfig& config, ImageRays& rays,
+                     RgbdFolderInfo& info) {
+  std::optional<ColorImage> first;
+  std::size_t tried = 0;
+  for (const RgbdFrameFiles& frame : listing.frames) {
+    if (first || !config.read_color || !frame.color || ++tried > kTriedImages) continue;
+    if (auto color = read_color(*frame.color)) first = std::move(*color);
+  }
+  info.has_color = first.has_value() || tried > 0;
+  if (!first) return;
+  rays.color_width = first->width();
+  rays.color_height = first->height();
+  const bool is_same_size = rays.color_width == rays.width && rays.color_height == rays.height;
+  const std::string sizes = "colour images of " + size_text(rays.color_width, rays.color_height);
+  const auto leave_out = [&](const std::string& why) {
+    info.has_color = false;
+    info.notes.push_back("the " + sizes + " are left out: " + why);
+  };
+  if (listing.color_intrinsics) {
+    rays.color = *listing.color_intrinsics;
+    if (rays.color->width && rays.color->height) {
+      rays.color = scaled(*rays.color, static_cast<double>(rays.color_width) / *rays.color->width,
+                          static_cast<double>(rays.color_height) / *rays.color->height);
+    }
+    const bool is_in_place = !listing.T_color_depth || listing.T_color_depth->isApprox(Pose::Identity(), 1e-6);
+    if (!is_in_place) rays.T_color_depth = listing.T_color_depth;
+    if (is_in_place && is_same_size && has_same_rays(*rays.color, rays.depth)) rays.color.reset();
+  } else if (!is_same_size) {
+    if (!ImageRays::is_same_shape(rays.color_width, rays.color_height, rays.width, rays.height)) {
+      return leave_out("they have another shape than the depth images, " + size_text(rays.width, rays.height) +
+                       ", and nothing says how they lie on them");
+    }
+    rays.color = rays.at_color_size(rays.depth);
+    info.notes.push_back("the " + sizes + " are taken for the view of the depth images, " +
+                         size_text(rays.width, rays.height) + ", and scaled to it");
+  }
+  const bool is_bent = !config.distortion.value_or(rays.depth.distortion.value_or(Distortion{})).is_zero();
+  if (rays.color && is_bent) leave_out("they have other intrinsics than the depth images, whose lens is to be undone");
 }
 
 Result<std::optional<MaskImage>> find_mask(const RgbdFolderConfig& config, const PinholeCamera& camera) {
@@ -192,8 +254,20 @@ Result<ImageCorrection> ImageCorrection::create(Intrinsics intrinsics, int width
   if (config.min_range_m) intrinsics.min_range_m = config.min_range_m;
   if (config.max_range_m) intrinsics.max_range_m = config.max_range_m;
   ImageCorrection correction;
-  SACCADE_TRY(correction.camera_, intrinsics.camera(width, height));
   const Distortion distortion = config.distortion.value_or(intrinsics.distortion.value_or(Distortion{}));
+  correction.mirror_u_ = intrinsics.fx < 0.0;
+  correction.mirror_v_ = intrinsics.fy < 0.0;
+  if ((correction.mirror_u_ || correction.mirror_v_) && !distortion.is_zero()) {
+    return Error{Errc::unsupported,
+                 "a negative focal length (a mirrored image axis) together with lens distortion; write the images "
+                 "undistorted",
+                 "camera intrinsics"};
+  }
+  if (correction.mirror_u_) intrinsics.cx = width - 1 - intrinsics.cx;
+  if (correction.mirror_v_) intrinsics.cy = height - 1 - intrinsics.cy;
+  intrinsics.fx = std::abs(intrinsics.fx);
+  intrinsics.fy = std::abs(intrinsics.fy);
+  SACCADE_TRY(correction.camera_, intrinsics.camera(width, height));
   if (!distortion.is_zero()) {
     SACCADE_TRY(correction.undistorter_, Undistorter::create(correction.camera_, distortion));
   }
@@ -207,13 +281,15 @@ Result<DepthImage> ImageCorrection::apply(DepthImage depth) const {
     SACCADE_TRY(depth, undistorter_->undistort(depth));
   }
   if (mask_) SACCADE_CHECK(apply_mask(*mask_, depth));
+  depth = mirrored(std::move(depth), mirror_u_, mirror_v_);
   clip_to_range(camera_, depth);
   return depth;
 }
 
 Result<ColorImage> ImageCorrection::apply(ColorImage color) const {
   SACCADE_CHECK(check_size(camera_, color.width(), color.height()));
-  return undistorter_ ? undistorter_->undistort(color) : Result<ColorImage>{std::move(color)};
+  if (undistorter_) return undistorter_->undistort(color);
+  return mirrored(std::move(color), mirror_u_, mirror_v_);
 }
 
 Status RgbdFolderConfig::validate() const {
@@ -236,20 +312,25 @@ Result<std::unique_ptr<RgbdFolderSource>> open_rgbd_folder(const fs::path& folde
                  folder.string()};
   }
   SACCADE_CHECK(find_intrinsics(folder, config, listing));
-  SACCADE_TRY(const PngSize size, first_size(listing.frames));
-  SACCADE_TRY(ImageCorrection correction,
-              ImageCorrection::create(*listing.intrinsics, size.width, size.height, config));
-  RgbdFolderInfo info{listing.layout,
-                      config.encoding.value_or(listing.encoding),
-                      listing.intrinsics_from,
-                      listing.has_poses,
-                      false,
-                      false,
-                      {}};
-  info.has_color = config.read_color && std::any_of(listing.frames.begin(), listing.frames.end(),
-                                                    [](const RgbdFrameFiles& f) { return f.color.has_value(); });
+  RgbdFolderInfo info;
+  info.layout = listing.layout;
+  info.has_poses = listing.has_poses;
+  info.intrinsics_from = listing.intrinsics_from;
+  info.notes = listing.notes;
+  SACCADE_TRY(const DepthUnits scale, find_units(folder, config, listing));
+  info.encoding = scale.encoding;
+  info.units_from = scale.source;
+  SACCADE_TRY(const DepthImage first, first_depth(listing.frames, scale));
+  ImageRays rays{first.width(), first.height(), *listing.intrinsics};
+  rays.are_color = listing.intrinsics_are_color && !config.intrinsics;
+  SACCADE_TRY(rays.depth, rays.of_depth(rays.depth));
+  SACCADE_TRY(ImageCorrection correction, ImageCorrection::create(rays.depth, rays.width, rays.height, config));
+  find_color_rays(listing, config, rays, info);
+  if (rays.depth.fx < 0.0 || rays.depth.fy < 0.0) {
+    info.notes.emplace_back("a focal length is negative: the images are mirrored along that axis");
+  }
   return std::unique_ptr<RgbdFolderSource>{std::make_unique<FolderSource>(
-      std::move(correction), std::move(info), selected(std::move(listing.frames), config), config)};
+      std::move(correction), std::move(rays), std::move(info), selected(std::move(listing.frames), config), config)};
 }
 
 }  // namespace saccade

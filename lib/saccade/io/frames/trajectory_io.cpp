@@ -23,6 +23,7 @@ PoseEntry entry_of(Result<Pose> pose, std::optional<double> time_s, std::size_t 
   return {std::move(pose), time_s, line};
 }
 
+/// Makes a pose of x y z qx qy qz qw, which follow one other number.
 Result<Pose> pose_from_tum(const std::vector<double>& v) {
   constexpr double kNormTolerance{1e-3};
   const Eigen::Quaterniond q{v[7], v[4], v[5], v[6]};
@@ -37,17 +38,95 @@ Result<Pose> pose_from_tum(const std::vector<double>& v) {
   return pose;
 }
 
-Result<std::vector<PoseEntry>> tum_entries(const std::vector<NumberLine>& lines) {
+std::optional<std::int64_t> whole_number(double value) {
+  constexpr double kExact{9007199254740992.0};  // 2⁵³
+  if (!(std::abs(value) <= kExact) || value != std::floor(value)) return std::nullopt;
+  return static_cast<std::int64_t>(value);
+}
+
+/// Reads lines of `columns` numbers: 8, or 9 with an id.
+Result<std::vector<PoseEntry>> tum_entries(const std::vector<NumberLine>& lines, std::size_t columns) {
   std::vector<PoseEntry> entries;
   for (const NumberLine& line : lines) {
-    if (line.values.size() != 8) return bad_line(line.line, "8 numbers expected: time tx ty tz qx qy qz qw");
+    if (line.values.size() != columns) {
+      return bad_line(line.line, columns == 8 ? "8 numbers expected: time tx ty tz qx qy qz qw"
+                                              : "9 numbers expected: time tx ty tz qx qy qz qw id");
+    }
     if (!std::isfinite(line.values[0])) return bad_line(line.line, "the time is not finite");
     entries.push_back(entry_of(pose_from_tum(line.values), line.values[0], line.line));
+    if (columns == 8) continue;
+    entries.back().id = whole_number(line.values[8]);
+    if (!entries.back().id) return bad_line(line.line, "the id, the ninth number, is not a whole number");
   }
   return entries;
 }
 
-/// Matrices on rows of `lines`, each block preceded by `header_lines` lines of 3 numbers.
+/// Makes a pose of x y z roll pitch yaw, which follow one other number.
+Result<Pose> pose_from_angles(const std::vector<double>& v) {
+  const Eigen::Map<const Eigen::Matrix<double, 7, 1>> all{v.data()};
+  if (!all.allFinite()) return Error{Errc::invalid_argument, "the pose is not finite", {}};
+  Pose pose = Pose::Identity();
+  pose.linear() =
+      (Eigen::AngleAxisd{v[6], Eigen::Vector3d::UnitZ()} * Eigen::AngleAxisd{v[5], Eigen::Vector3d::UnitY()} *
+       Eigen::AngleAxisd{v[4], Eigen::Vector3d::UnitX()})
+          .toRotationMatrix();
+  pose.translation() = Eigen::Vector3d{v[1], v[2], v[3]};
+  return pose;
+}
+
+bool is_graph(std::string_view text) {
+  LineScanner lines{text};
+  while (const auto line = lines.next()) {
+    TokenScanner tokens{*line};
+    const auto word = tokens.next();
+    if (!word || word->front() == '#') continue;
+    return word->starts_with("VERTEX") || word->starts_with("EDGE") || word->starts_with("PARAMS") || *word == "FIX";
+  }
+  return false;
+}
+
+/// Reads the poses of a graph of g2o or TORO.
+Result<std::vector<PoseEntry>> graph_entries(std::string_view text) {
+  std::vector<PoseEntry> entries;
+  LineScanner lines{text};
+  while (const auto line = lines.next()) {
+    TokenScanner tokens{*line};
+    const auto word = tokens.next();
+    if (!word || word->front() == '#') continue;
+    const bool is_quaternion = *word == "VERTEX_SE3:QUAT";
+    if (!is_quaternion && *word != "VERTEX3") {
+      if (word->starts_with("VERTEX2") || word->starts_with("VERTEX_SE2")) {
+        return bad_line(lines.line(), "poses in the plane are not poses of a camera");
+      }
+      continue;  // edges, points, parameters
+    }
+    std::vector<double> values;
+    while (const auto token = tokens.next()) {
+      const auto value = parse_number(*token);
+      if (!value) return bad_line(lines.line(), in_quotes(*token) + " is not a number");
+      values.push_back(*value);
+    }
+    if (values.size() != (is_quaternion ? 8U : 7U)) {
+      return bad_line(lines.line(),
+                      is_quaternion ? "id x y z qx qy qz qw expected" : "id x y z roll pitch yaw expected");
+    }
+    entries.push_back(entry_of(is_quaternion ? pose_from_tum(values) : pose_from_angles(values), {}, lines.line()));
+    entries.back().id = whole_number(values[0]);
+    if (!entries.back().id) return bad_line(lines.line(), "the id is not a whole number");
+  }
+  return entries;
+}
+
+/// Appends the last row that lines of 3×4 matrices leave out.
+std::vector<NumberLine> with_last_rows(std::vector<NumberLine> lines) {
+  const std::vector<double> last{0.0, 0.0, 0.0, 1.0};
+  for (NumberLine& line : lines) {
+    if (line.values.size() == 12) line.values.insert(line.values.end(), last.begin(), last.end());
+  }
+  return lines;
+}
+
+/// Reads matrices from rows of `lines`, each block preceded by `header_lines` lines of 3 numbers.
 Result<std::vector<PoseEntry>> matrix_entries(const std::vector<NumberLine>& lines, std::size_t header_lines) {
   std::vector<PoseEntry> entries;
   std::size_t i = 0;
@@ -66,7 +145,10 @@ Result<std::vector<PoseEntry>> matrix_entries(const std::vector<NumberLine>& lin
     }
     if (values.size() != 16) return bad_line(first_line, "this 4x4 matrix is cut");
     const Eigen::Matrix4d matrix = Eigen::Map<const Eigen::Matrix<double, 4, 4, Eigen::RowMajor>>{values.data()};
-    entries.push_back(entry_of(pose_from_matrix(matrix), std::nullopt, first_line));
+    const bool is_lost = matrix.isZero(0.0);
+    entries.push_back(
+        entry_of(is_lost ? Error{Errc::invalid_argument, "the pose is lost: all zeros", {}} : pose_from_matrix(matrix),
+                 std::nullopt, first_line));
   }
   return entries;
 }
@@ -75,7 +157,7 @@ bool is_matrix(const nlohmann::json& value) {
   return value.is_array() && value.size() == 4 && value[0].is_array() && !value[0].empty() && value[0][0].is_number();
 }
 
-/// The array of poses within a document, or nullptr.
+/// Returns the array of poses within a document, or nullptr.
 const nlohmann::json* pose_array(const nlohmann::json& document) {
   if (document.is_array()) return &document;
   if (!document.is_object()) return nullptr;
@@ -109,7 +191,7 @@ Result<std::vector<PoseEntry>> json_entries(std::string_view text) {
   return entries;
 }
 
-/// One line of text from a printf format.
+/// Formats one line of text by a printf format.
 template <class... Values>
 std::string formatted(const char* format, Values... values) {
   std::array<char, 512> buffer{};
@@ -131,16 +213,21 @@ std::string matrix_text(const Pose& pose) {
 Result<std::vector<PoseEntry>> parse_pose_list(std::string_view text) {
   const std::size_t first = text.find_first_not_of(" \t\r\n");
   if (first != std::string_view::npos && (text[first] == '[' || text[first] == '{')) return json_entries(text);
+  if (is_graph(text)) return graph_entries(text);
   SACCADE_TRY(const auto lines, number_lines(text));
   if (lines.empty()) return std::vector<PoseEntry>{};
-  switch (lines.front().values.size()) {
-    case 8: return tum_entries(lines);
+  switch (const std::size_t columns = lines.front().values.size(); columns) {
+    case 8:
+    case 9: return tum_entries(lines, columns);
     case 3: return matrix_entries(lines, 1);
     case 4:
-    case 16: return matrix_entries(lines, 0);
+    case 12:
+    case 16: return matrix_entries(with_last_rows(lines), 0);
     default:
       return bad_line(lines.front().line,
-                      "not a list of poses: 8 (TUM), 3 (Open3D log) or 4 (4x4 matrix) numbers a line expected, not " +
+                      "not a list of poses: 8 or 9 (TUM), 12 (KITTI), 3 (Open3D log), 4 or 16 (4x4 matrix) numbers a "
+                      "line expected, "
+                      "not " +
                           std::to_string(lines.front().values.size()));
   }
 }

@@ -1,9 +1,10 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
 // Trajectories and pose lists: TUM lines, 4×4 matrices, Open3D logs, JSON; trajectories of hands and their labels;
-// reading and writing. docs/formats.md.
+// reading and writing. docs/reference/formats.md.
 
 #include <cstddef>
+#include <cstdint>
 #include <filesystem>
 #include <optional>
 #include <span>
@@ -18,12 +19,13 @@
 
 namespace saccade {
 
-/// One pose of a list. A value that is no pose (NaN, no rotation) is kept as an error, so that a reader of frames can
-/// skip that frame alone.
+/// Pose of a list. An invalid value (NaN, no rotation) is kept as an error, so that a reader of frames can skip only
+/// that frame.
 struct PoseEntry {
   Result<Pose> T_world_camera;
   std::optional<double> time_s;
-  std::size_t line{0};  ///< where it starts, from 1; 0 for JSON
+  std::size_t line{0};               ///< where it starts, from 1; 0 for JSON
+  std::optional<std::int64_t> id{};  ///< number of the image or of the graph's node, where the list has it
 };
 
 struct StampedPose {
@@ -31,26 +33,31 @@ struct StampedPose {
   Pose T_world_camera{Pose::Identity()};
 };
 
-/// Recognises, by the first line that is no comment ('#'):
+/// Parses a list of poses. The first line that is not a comment ('#') decides the format:
 ///   8 numbers  TUM: time tx ty tz qx qy qz qw, the quaternion of length 1 within 1e-3;
+///   9 numbers  the same and an id, as RTAB-Map exports it;
 ///   3 numbers  Open3D log: three integers, then a 4×4 matrix on four lines;
 ///   4 or 16    4×4 matrices row by row, one or many;
+///   12         3×4 matrices row by row, one a line, as KITTI has them;
+///   VERTEX_SE3:QUAT id x y z qx qy qz qw      a graph of g2o; edges and the like are passed over;
+///   VERTEX3 id x y z roll pitch yaw (radians) a graph of TORO;
 ///   '[' or '{' JSON: one 4×4 nested array, an array of them, an array of {"T_world_camera": ...}, or an object with
 ///              such an array under "poses", "views" or "result.views" (what `nbv --json` writes).
-/// corrupt_data with the line for a wrong number of values or a word that is no number. An empty text has no poses.
+/// Answers corrupt_data with the line for a wrong number of values or a word that is not a number. An empty text has no
+/// poses.
 [[nodiscard]] Result<std::vector<PoseEntry>> parse_pose_list(std::string_view text);
 [[nodiscard]] Result<std::vector<PoseEntry>> read_pose_list(const std::filesystem::path& path);
 
-/// The same where every pose must be good; the error names the first bad one. not_found when there is none.
+/// Reads poses that must all be good; the error names the first bad one. not_found for an empty list.
 [[nodiscard]] Result<std::vector<Pose>> read_poses(const std::filesystem::path& path);
-/// TUM lines only.
+/// Reads TUM lines only.
 [[nodiscard]] Result<std::vector<StampedPose>> read_tum_trajectory(const std::filesystem::path& path);
 
-/// Written atomically with 17 digits, so that reading gives the same poses to 1e-15.
+/// Writes TUM lines atomically with 17 digits, so that reading gives equal poses to 1e-15.
 [[nodiscard]] Status write_tum_trajectory(const std::filesystem::path& path, std::span<const StampedPose> poses);
-/// Four lines a pose.
+/// Writes four lines per pose.
 [[nodiscard]] Status write_matrices(const std::filesystem::path& path, std::span<const Pose> poses);
-/// Open3D log: "i i i+1" before each matrix.
+/// Writes an Open3D log: "i i i+1" before each matrix.
 [[nodiscard]] Status write_open3d_log(const std::filesystem::path& path, std::span<const Pose> poses);
 
 enum class HandFormat {
@@ -64,33 +71,33 @@ inline constexpr auto kHandFormatNames =
 /// Seconds between the matrices of HandFormat::matrices, which carry no time.
 constexpr double kHandMatrixInterval_s{0.01};
 
-/// The usable samples of a file, and what was wrong with the others.
+/// Usable samples of a file, and the faults of the others.
 struct HandRecording {
   HandTrajectory trajectory;
   SampleReport report;
 };
 
-/// Metres and seconds. Samples without a finite position or an increasing time are left out and counted; an orientation
-/// that is none (no rotation, no unit quaternion) is left out of its sample.
-/// @return corrupt_data with the line for what is not of that format. An empty text has no samples. O(text).
+/// Parses samples in metres and seconds. Samples without a finite position or an increasing time are dropped and
+/// counted; an invalid orientation (no rotation, no unit quaternion) is dropped from its sample.
+/// @return corrupt_data with the line for text of another format. An empty text has no samples. O(text).
 [[nodiscard]] Result<HandRecording> parse_hand_trajectory(std::string_view text, HandFormat format);
-/// The same of a file, in the format that its extension tells unless stated. invalid_argument for other extensions.
+/// Reads a file in the given format, or in that of its extension. Answers invalid_argument for other extensions.
 [[nodiscard]] Result<HandRecording> read_hand_trajectory(const std::filesystem::path& path,
                                                          std::optional<HandFormat> format = std::nullopt);
 
-/// One "x y z" per line, metres: where the hand acted. corrupt_data with the line.
+/// Parses one "x y z" per line, metres: places where the hand acted. Answers corrupt_data with the line.
 [[nodiscard]] Result<std::vector<Eigen::Vector3d>> parse_hand_labels(std::string_view text);
-/// Of FILE in FILE.res, as in the thesis' data set. not_found without it.
+/// Reads the labels of FILE from FILE.res, as in the thesis' data set. Answers not_found without it.
 [[nodiscard]] Result<std::vector<Eigen::Vector3d>> read_hand_labels(const std::filesystem::path& trajectory);
 
-/// Both together, named after the file.
+/// Reads both, named after the file.
 [[nodiscard]] Result<LabelledTrajectory> read_labelled_trajectory(const std::filesystem::path& path,
                                                                   std::optional<HandFormat> format = std::nullopt);
 
-/// All .traj files below a folder, by name. not_found when there is none.
+/// Returns all .traj files below a folder, by name. Answers not_found when there is none.
 [[nodiscard]] Result<std::vector<std::filesystem::path>> find_hand_trajectories(const std::filesystem::path& folder);
 
-/// CSV with a header, without orientations; reading it gives the same bits. Atomic. io_failure.
+/// Writes CSV with a header, without orientations; reading it gives equal bits. Atomic. Answers io_failure.
 [[nodiscard]] Status write_hand_csv(const std::filesystem::path& path, const HandTrajectory& trajectory);
 
 }  // namespace saccade

@@ -29,13 +29,13 @@ constexpr int kZstdLevel{1};
 constexpr std::int32_t kMaxSectorCoordinate{1 << 20};  // voxel coordinates stay below 2^27
 constexpr std::size_t kSectorsAtOnce{32};
 
-/// Everything before the first sector but its checksum.
+/// Everything before the first sector, except its checksum.
 struct FixedHeader {
   std::array<char, 8> magic{kMagic};
   std::uint32_t version{kMapVersion};
   std::uint16_t max_weight{0};
   std::uint8_t free_weight{0};
-  std::uint8_t clearing_percent{0};  ///< 0 is 100
+  std::uint8_t clearing_percent{0};  ///< 0 means 100
   double voxel_size_m{0.0};
   double truncation_vox{0.0};
   std::array<double, 6> workspace{};  ///< min, max; zeros without one
@@ -46,7 +46,7 @@ struct FixedHeader {
 };
 static_assert(sizeof(FixedHeader) == 104 && std::is_trivially_copyable_v<FixedHeader>);
 
-/// Before each sector's compressed bricks, but its checksum.
+/// Header before each sector's compressed bricks, without its checksum.
 struct SectorHeader {
   Index3 key;
   std::uint32_t raw_bytes{0};
@@ -61,7 +61,7 @@ void append_with_crc(Bytes& out, const T& header) {
   append_value(out, crc32(std::as_bytes(std::span{&header, 1})));
 }
 
-/// nullopt when the checksum does not fit.
+/// Reads a value; nullopt when its checksum does not match.
 template <class T>
 std::optional<T> read_with_crc(ByteReader& reader) {
   const T header = reader.value<T>();
@@ -164,7 +164,7 @@ Result<FixedHeader> read_header(ByteReader& reader) {
   ByteReader peek = reader;
   const std::span<const std::byte> first = peek.take(present);
   if (present == 0 || std::memcmp(first.data(), kMagic.data(), present) != 0) {
-    return Error{Errc::corrupt_data, "this is no Saccade map (.sacmap)", {}};
+    return Error{Errc::corrupt_data, "this is not a Saccade map (.sacmap)", {}};
   }
   if (!reader.has(kBytes)) return damaged(reader.left(), "the file ends within its header");
   peek = reader;
@@ -246,7 +246,7 @@ struct Decompressor {
   }
 };
 
-/// Reads up to kSectorsAtOnce sectors; the number of bricks in them.
+/// Reads up to kSectorsAtOnce sectors; returns the number of bricks in them.
 Result<std::size_t> read_batch(ByteReader& reader, std::size_t count, std::optional<Index3>& previous,
                                const Executor& executor, TsdfSnapshot& map) {
   std::vector<SectorRecord> records;

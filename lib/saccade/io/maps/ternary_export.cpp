@@ -24,7 +24,7 @@ constexpr IndexBox kEverything{{-(1 << 29), -(1 << 29), -(1 << 29)}, {1 << 29, 1
 
 Error bad_box(const std::string& what) { return {Errc::invalid_argument, what, "export of the ternary map"}; }
 
-/// The voxels with their centre in the box; an error where their coordinates would overflow.
+/// Returns the voxels with their centre in the box; an error where their coordinates would overflow.
 Result<IndexBox> voxels_of(const Box& box, double voxel_size_m) {
   SACCADE_CHECK(validate(Region{box}));
   const double largest = std::max(box.min.cwiseAbs().maxCoeff(), box.max.cwiseAbs().maxCoeff());
@@ -32,7 +32,7 @@ Result<IndexBox> voxels_of(const Box& box, double voxel_size_m) {
   return voxels_with_center_in(box, voxel_size_m);
 }
 
-/// The neighbour's bits that touch a brick through one face, and the brick's own bits, moved one voxel along `face`.
+/// Returns the brick's bits moved one voxel along `face`, with the neighbour's bits that touch it.
 Mask512 moved(const Mask512& own, const Mask512& neighbour, int face) {
   constexpr std::uint64_t kFirstColumn{0x0101010101010101ULL};
   constexpr std::uint64_t kLastColumn{kFirstColumn << 7};

@@ -17,7 +17,7 @@ namespace saccade {
 
 /// Values of the states in exported files (eq. 2.11): 0 unknown, 1 empty, 2 occupied, as VoxelState.
 struct TernaryPointsConfig {
-  std::optional<Box> box;  ///< voxels with their centre in it; without one, all of the map
+  std::optional<Box> box;  ///< limits the voxels by their centres; none: the whole map
   bool occupied{true};
   bool frontier{true};  ///< unknown voxels with an empty voxel at one of their six faces, inside the workspace
 };
@@ -33,19 +33,19 @@ struct TernaryPoints {
 [[nodiscard]] Result<TernaryPoints> write_ternary_points(const TsdfSnapshot& map, const std::filesystem::path& path,
                                                          const TernaryPointsConfig& config = {});
 
-/// Centres of the unknown voxels with an empty voxel at one of their six faces, inside the workspace; in the order of
-/// write_ternary_points. None where there are more than `most`. O(bricks).
+/// Returns the centres of the unknown voxels with an empty voxel at one of their six faces, inside the workspace, in
+/// the order of write_ternary_points. Empty where there are more than `most`. O(bricks).
 [[nodiscard]] std::vector<Eigen::Vector3f> frontier_voxels(const TsdfSnapshot& map, std::size_t most);
 
 struct TernaryVolumeConfig {
-  std::optional<Box> box;  ///< voxels with their centre in it; without one, the smallest box around all known bricks
+  std::optional<Box> box;  ///< limits the voxels by their centres; none: the smallest box around all known bricks
   std::uint64_t max_bytes{std::uint64_t{4} << 30U};
 };
 
-/// One byte per voxel (z, y, x) as a NumPy file, and beside it `path` with .json in place of its extension: shape,
-/// origin_m (centre of the first voxel), voxel_size_m, the meaning of the values. Both written atomically.
-/// @return the voxels written; invalid_argument for an empty box or map, and for a box of more than max_bytes, saying
-///         its size; io_failure. O(voxels); one slice of it is held in memory.
+/// Writes one byte per voxel (z, y, x) as a NumPy file, and `path` with the extension .json: shape, origin_m (centre of
+/// the first voxel), voxel_size_m, the meaning of the values. Both atomically.
+/// @return the voxels written; invalid_argument for an empty box or map, and for a box of more than max_bytes, with its
+/// size; io_failure. O(voxels); one slice is held in memory.
 [[nodiscard]] Result<IndexBox> write_ternary_volume(const TsdfSnapshot& map, const std::filesystem::path& path,
                                                     const TernaryVolumeConfig& config = {});
 

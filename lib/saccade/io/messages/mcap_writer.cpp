@@ -47,7 +47,7 @@ void append_record(Bytes& out, Op op, std::span<const std::byte> content) {
   append_bytes(out, content);
 }
 
-/// A map of numbers, behind the number of its bytes.
+/// Appends a map of numbers after the number of its bytes.
 template <class Value>
 void append_numbers(Bytes& out, const std::map<std::uint16_t, Value>& numbers) {
   append_value(out, static_cast<std::uint32_t>(numbers.size() * (sizeof(std::uint16_t) + sizeof(Value))));
@@ -177,7 +177,7 @@ Status McapWriter::flush() {
 Status McapWriter::finish() {
   SACCADE_CHECK(flush());
   Bytes out;
-  append_record(out, Op::data_end, Bytes(4));  // a checksum of all before it: 0, none
+  append_record(out, Op::data_end, Bytes(4));  // checksum of everything before: 0 for none
   const std::uint64_t summary = offset_ + out.size();
   const std::size_t before_summary = out.size();
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// McapWriter: messages of ROS 2 into an MCAP file, as Foxglove Studio and ros2 bag read it.
+// McapWriter: messages of ROS 2 in an MCAP file, readable by Foxglove Studio and ros2 bag.
 
 #include <cstdint>
 #include <filesystem>
@@ -13,18 +13,18 @@
 
 namespace saccade::messages {
 
-/// Chunks are compressed by zstd, with an index, statistics and a summary at the end. A file that was not finished
-/// lacks these, and readers go through its chunks. One caller at a time.
+/// Writer of MCAP files. Chunks are compressed by zstd; index, statistics and a summary follow at the end. An
+/// unfinished file lacks these, and readers scan its chunks. One caller at a time.
 class McapWriter final : public MessageSink {
  public:
-  /// Replaces a file of that name. io_failure naming it.
+  /// Creates a file, replacing one of that name. Answers io_failure naming it.
   [[nodiscard]] static Result<McapWriter> create(const std::filesystem::path& path);
 
   [[nodiscard]] Wire wire() const override { return Wire::cdr; }
   /// Adds a message. Chunks of 4 MiB are written as they fill.
   [[nodiscard]] Status add(std::string_view topic, const MessageType& type, Time time,
                            std::span<const std::byte> bytes) override;
-  /// Writes the chunk that has begun, so that all that was added is in the file.
+  /// Writes the current chunk, so that all added messages are in the file.
   [[nodiscard]] Status flush() override;
   /// Writes the summary.
   [[nodiscard]] Status finish() override;
@@ -58,7 +58,7 @@ class McapWriter final : public MessageSink {
   std::map<std::uint16_t, std::vector<Entry>> chunk_messages_;
   std::map<std::string, std::uint16_t, std::less<>> schemas_;
   std::map<std::string, Channel, std::less<>> channels_;
-  std::vector<std::byte> descriptions_;  ///< schemas and channels, once more for the summary
+  std::vector<std::byte> descriptions_;  ///< schemas and channels, repeated in the summary
   std::vector<ChunkIndex> chunks_;
   std::uint64_t first_time_{~std::uint64_t{0}}, last_time_{0}, messages_{0};
 };

@@ -9,7 +9,7 @@ namespace {
 
 struct Definition {
   std::string_view name;
-  std::string_view fields;  ///< lines that begin with 1: or 2: are in ROS 1 or ROS 2 alone
+  std::string_view fields;  ///< lines that begin with 1: or 2: belong only to ROS 1 or ROS 2
 };
 
 constexpr Definition kDefinitions[]{
@@ -78,7 +78,7 @@ std::string_view fields_of(std::string_view name) {
   return found == std::end(kDefinitions) ? std::string_view{} : found->fields;
 }
 
-/// Lines of one definition, in the words of one ROS; types of its own that it uses are added to `used`.
+/// Returns one definition in the notation of one ROS version; adds the types that it uses to `used`.
 std::string definition_text(std::string_view name, Wire wire, std::vector<std::string>& used) {
   std::string text;
   std::istringstream lines{std::string{fields_of(name)}};

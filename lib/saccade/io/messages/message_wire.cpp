@@ -10,13 +10,13 @@ using internal::kIsScalar;
 using internal::Reader;
 using internal::Writer;
 
-/// Fewest bytes that an element of a sequence can take.
+/// Returns the smallest number of bytes of a sequence's element.
 template <class T>
 constexpr std::size_t least_bytes() {
   return kIsScalar<T> ? sizeof(T) : 4;
 }
 
-/// Puts an archive over values in the order of their definition. `Ref` is const when it writes.
+/// Applies an archive to values in the order of their definition. `Ref` is const when it writes.
 template <class Archive>
 class Fields {
  public:
@@ -145,7 +145,7 @@ Time Time::from_seconds(double seconds) {
 template <class Message>
 Result<Message> read_message(Wire wire, std::span<const std::byte> bytes) {
   if (wire == Wire::cdr && bytes.size() >= 2 && (bytes[0] != std::byte{0} || bytes[1] > std::byte{1})) {
-    return Error{Errc::unsupported, "this is no plain CDR (XCDR1)", std::string{type_of<Message>().name}};
+    return Error{Errc::unsupported, "this is not plain CDR (XCDR1)", std::string{type_of<Message>().name}};
   }
   Reader reader{wire, bytes};
   Message message;

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Messages of ROS 1 and ROS 2 as plain structs, with the fields of their definitions.
-// read_message, write_message: to and from bytes, as ROS 1 and as DDS (CDR) serialise them.
+// Messages of ROS 1 and ROS 2 as plain structs, with the fields of their definitions. read_message, write_message:
+// conversion from and to bytes, as serialised by ROS 1 and by DDS (CDR).
 
 #include <array>
 #include <cstddef>
@@ -26,7 +26,7 @@ struct Time {
 
 struct Duration {
   std::int32_t sec{0};
-  std::uint32_t nanosec{0};  ///< in ROS 1 as signed; here never negative
+  std::uint32_t nanosec{0};  ///< signed in ROS 1; here never negative
 };
 
 struct Header {
@@ -127,7 +127,7 @@ struct JointTrajectory {
 struct ColorRGBA {
   float r{0.0F}, g{0.0F}, b{0.0F}, a{1.0F};
 };
-/// The fields that ROS 2 has beside those of ROS 1, for textures and meshes in the message, stay empty.
+/// Marker. The additional fields of ROS 2, for textures and meshes in the message, stay empty.
 struct Marker {
   enum Type : std::int32_t {
     arrow = 0,
@@ -178,29 +178,29 @@ struct String {
   std::string data;
 };
 
-/// How bytes are laid out.
+/// Layout of bytes.
 enum class Wire {
   ros1,  ///< without padding
-  cdr    ///< XCDR1 with its header of four bytes, as ROS 2 has it; written least significant byte first
+  cdr    ///< XCDR1 with its header of four bytes, as in ROS 2; written least significant byte first
 };
 
-/// A type by its names.
+/// Names of a type.
 struct MessageType {
   std::string_view name;  ///< as in ROS 1: sensor_msgs/Image
-  std::string_view md5;   ///< sum of the ROS 1 definition
+  std::string_view md5;   ///< checksum of the ROS 1 definition
 
   [[nodiscard]] std::string ros2_name() const;  ///< sensor_msgs/msg/Image
   [[nodiscard]] std::string dds_name() const;   ///< sensor_msgs::msg::dds_::Image_
-  /// Text of the definition with those that it uses, as bags and MCAP files have it.
+  /// Returns the text of the definition and of those that it uses, as in bags and MCAP files.
   [[nodiscard]] std::string definition(Wire wire) const;
 };
 
-/// The types below; specialised for each struct that is a message of its own.
+/// Returns a type below; specialised for each struct that is a message.
 template <class Message>
 [[nodiscard]] const MessageType& type_of();
 
-/// corrupt_data: the bytes end early, or a length in them cannot be. unsupported: CDR of another kind than XCDR1.
-/// What follows the message is passed over.
+/// Reads a message. Answers corrupt_data when the bytes end early or a length in them is impossible; unsupported for
+/// CDR other than XCDR1. Bytes after the message are ignored.
 template <class Message>
 [[nodiscard]] Result<Message> read_message(Wire wire, std::span<const std::byte> bytes);
 

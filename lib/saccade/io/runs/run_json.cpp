@@ -16,7 +16,7 @@ Error damaged(const std::string& what) {
   return Error{Errc::corrupt_data, "the record of a view is damaged: " + what, ""};
 }
 
-/// Gains are counts as a rule, and read better as such.
+/// Gains are usually counts, which read better as integers.
 json gain_to_json(double gain) {
   constexpr double kExact{9007199254740992.0};
   return gain >= 0.0 && gain < kExact && gain == std::floor(gain) ? json(static_cast<std::uint64_t>(gain)) : json(gain);
@@ -27,14 +27,14 @@ json to_json(const std::optional<T>& value) {
   return value ? json(*value) : json(nullptr);
 }
 
-/// nullopt where the key is missing or null.
+/// Returns nullopt where the key is missing or null.
 template <class T>
 std::optional<T> optional_in(const json& object, const char* key) {
   const auto found = object.find(key);
   return found == object.end() || found->is_null() ? std::nullopt : std::optional{found->get<T>()};
 }
 
-/// Reads a pose to the last bit; pose_from_json makes it rigid anew.
+/// Reads a pose to the last bit; pose_from_json would make it rigid again.
 Result<Pose> exact_pose(const json& value) {
   SACCADE_TRY(Pose pose, pose_from_json(value));
   for (Eigen::Index row = 0; row < 3; ++row) {
@@ -50,7 +50,7 @@ void read_tilt(const json& value, Tilt& tilt) {
   if (found != value.end()) tilt = {found->at(0).get<double>(), found->at(1).get<double>()};
 }
 
-/// null where no frame was tracked.
+/// Returns null where no frame was tracked.
 json tracking_to_json(const TrackedFrames& tracking) {
   if (tracking == TrackedFrames{}) return nullptr;
   return {{"tracked", tracking.tracked},

@@ -14,7 +14,7 @@ namespace {
 using messages::ColorRGBA;
 using messages::Marker;
 
-constexpr double kFrustum_m{0.08};  ///< depth of a camera that is drawn
+constexpr double kFrustum_m{0.08};  ///< depth of a drawn camera
 constexpr double kArrow_m{0.05};    ///< length of a candidate's axis
 constexpr double kLine_m{0.003};    ///< width of lines
 constexpr ColorRGBA kChosen{0.1F, 0.9F, 0.3F, 1.0F};
@@ -24,7 +24,7 @@ messages::Time system_time() {
   return messages::Time::from_seconds(std::chrono::duration<double>(since).count());
 }
 
-/// Corners of a camera's image at a depth, and its centre, as eight lines.
+/// Returns the corners of a camera's image at a depth, and its centre, as eight lines.
 std::vector<messages::Point> frustum_of(const PinholeCamera& camera, const Pose& T_world_camera) {
   const auto corner = [&](double u, double v) { return to_point(T_world_camera * (kFrustum_m * camera.ray(u, v))); };
   const double right = camera.width - 0.5;
@@ -39,14 +39,14 @@ std::vector<messages::Point> frustum_of(const PinholeCamera& camera, const Pose&
   return lines;
 }
 
-/// From blue over green to red.
+/// Returns a colour from blue over green to red.
 ColorRGBA heat(double share) {
   const auto x = static_cast<float>(std::clamp(share, 0.0, 1.0));
   return {std::clamp(2.0F * x - 1.0F, 0.0F, 1.0F), 1.0F - std::abs(2.0F * x - 1.0F),
           std::clamp(1.0F - 2.0F * x, 0.0F, 1.0F), 0.8F};
 }
 
-/// The best candidates as short lines along their optical axes, coloured by gain.
+/// Draws the best candidates as short lines along their optical axes, coloured by gain.
 Marker candidates_marker(const std::vector<RankedView>& candidates, std::size_t most) {
   std::vector<RankedView> best;
   std::copy_if(candidates.begin(), candidates.end(), std::back_inserter(best),
@@ -134,7 +134,7 @@ Status RunMessages::viewed(ViewRecord& view, const TsdfSnapshot& map, std::span<
   if (silent()) return {};
   time_ = config_.now();
   send_view(view);
-  // A frame is tilted against its view: the camera is where the frame was taken.
+  // A frame is tilted relative to its view, so the camera is drawn where the frame was taken.
   const bool has_pose = !frames.empty() && frames.back().T_world_camera;
   const Pose& T_world_camera = has_pose ? *frames.back().T_world_camera : view.T_world_camera;
   send("/tf", messages::TFMessage{{{header(), config_.camera_frame_id, to_message(T_world_camera)}}});

@@ -16,22 +16,22 @@ namespace saccade {
 struct RunMessagesConfig {
   std::string frame_id{"world"};
   std::string camera_frame_id{"saccade_camera"};
-  std::string prefix{"/saccade"};      ///< Every topic begins with it, but for /tf.
-  std::size_t most_points{1'000'000};  ///< a cloud with more is thinned evenly
-  std::size_t most_candidates{200};    ///< the best by gain
+  std::string prefix{"/saccade"};      ///< prefix of every topic except /tf
+  std::size_t most_points{1'000'000};  ///< larger clouds are thinned evenly
+  std::size_t most_candidates{200};    ///< keeps the best by gain
   /// Time of messages; the system's clock by default.
   std::function<messages::Time()> now{};
-  /// Told once of each sink that fails; it gets no more messages, and the run goes on.
+  /// Called once for each sink that fails; it gets no more messages, and the run continues.
   std::function<void(const Error&)> failed{};
 };
 
-/// After the scan and each view: the occupied voxels with their colours, the frontier, a plan of the workspace, what
-/// the view was chosen from, where the camera went, and its depth.
+/// Sends after the scan and each view: the occupied voxels with their colours, the frontier, a plan of the workspace,
+/// the view's candidates, the camera's path, and its depth.
 class RunMessages final : public Recorder {
  public:
   RunMessages(RunMessagesConfig config, const PinholeCamera& camera);
   void add(std::unique_ptr<messages::MessageSink> sink);
-  /// Finishes what it sends to. To be called at the end of a run, however it ended.
+  /// Finishes its sinks. Call it at the end of a run, for whatever reason it ends.
   void finish();
 
   [[nodiscard]] Status scanned(ScanRecord& scan, const TsdfSnapshot& map) override;

@@ -15,7 +15,7 @@ namespace {
 
 namespace fs = std::filesystem;
 
-/// All of the bytes from an offset on; errno of the failure, 0 without one.
+/// Writes all bytes from an offset on; returns errno of the failure, or 0.
 int write_at(int fd, std::span<const std::byte> bytes, std::uint64_t offset) {
   while (!bytes.empty()) {
     const ssize_t put = ::pwrite(fd, bytes.data(), bytes.size(), static_cast<off_t>(offset));
@@ -48,7 +48,7 @@ Status AnnotationJournal::open(const fs::path& path) {
                  std::string{"cannot open the session: "} + std::strerror(code), path.string()};
   }
   if (!S_ISREG(info.st_mode))
-    return Error{Errc::invalid_argument, "is no file of an annotation session", path.string()};
+    return Error{Errc::invalid_argument, "is not a file of an annotation session", path.string()};
   if (refusal_ || ::flock(file_.get(), LOCK_EX | LOCK_NB) == 0) return {};
   if (errno == EWOULDBLOCK) {
     return Error{Errc::unavailable, "another program has this session open; end it there, or work on a copy",

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// The bytes of a journal: decode_journal and the encoders of annotation_journal.hpp.
+// Bytes of a journal: decode_journal and the encoders of annotation_journal.hpp.
 #include <algorithm>
 #include <array>
 #include <bit>
@@ -24,7 +24,7 @@ constexpr std::array<char, 8> kMagic{'S', 'A', 'C', 'A', 'N', 'N', '\n', '\x1A'}
 constexpr std::uint32_t kJournalVersion{1};
 constexpr std::size_t kMaxNameBytes{4096};
 
-/// Before the cloud's name, which the header's checksum follows.
+/// Header before the cloud's name, which the header's checksum follows.
 struct FixedHeader {
   std::array<char, 8> magic{kMagic};
   std::uint32_t version{kJournalVersion};
@@ -40,11 +40,11 @@ struct FixedHeader {
 };
 static_assert(sizeof(FixedHeader) == 72 && std::is_trivially_copyable_v<FixedHeader>);
 
-/// Before each payload. Its own checksum tells a length that was damaged from an end that was not written.
+/// Header before each payload. Its own checksum distinguishes a damaged length from an incomplete end.
 struct RecordHeader {
   std::uint32_t payload_bytes{0};
   std::uint32_t payload_crc{0};
-  std::uint32_t header_crc{0};  ///< of the eight bytes before
+  std::uint32_t header_crc{0};  ///< checksum of the eight bytes before
 
   [[nodiscard]] std::uint32_t own_crc() const { return crc32(std::as_bytes(std::span{this, 1}).first(8)); }
 };
@@ -54,7 +54,7 @@ Error damaged(std::size_t offset, const std::string& what) {
   return {Errc::corrupt_data, "the session is damaged at byte " + std::to_string(offset) + ": " + what, {}};
 }
 
-/// The payload of a whole and sound record at the reader's place, which moves behind it; none: there is no such.
+/// Returns the payload of a sound record at the reader's position, and moves behind it; nullopt where there is none.
 std::optional<std::span<const std::byte>> take_record(ByteReader& reader) {
   ByteReader ahead = reader;
   if (!ahead.has(sizeof(RecordHeader))) return std::nullopt;
@@ -66,7 +66,7 @@ std::optional<std::span<const std::byte>> take_record(ByteReader& reader) {
   return payload;
 }
 
-/// Whether something was written after the bytes at the reader's place, which are no sound record.
+/// Tells whether a record follows the unsound bytes at the reader's position.
 bool another_follows(const ByteReader& reader) {
   ByteReader ahead = reader;
   if (ahead.has(sizeof(RecordHeader))) {
@@ -87,7 +87,7 @@ Result<SessionSubject> read_header(ByteReader& reader) {
   const std::size_t present = std::min(reader.left(), kMagic.size());
   const bool is_session =
       present > 0 && std::memcmp(ByteReader{reader}.take(present).data(), kMagic.data(), present) == 0;
-  if (!is_session) return Error{Errc::corrupt_data, "this is no annotation session", {}};
+  if (!is_session) return Error{Errc::corrupt_data, "this is not an annotation session", {}};
   const Error short_header = damaged(reader.left(), "the file ends within its header");
   if (!reader.has(sizeof(FixedHeader))) return short_header;
   const auto header = reader.value<FixedHeader>();

@@ -18,7 +18,7 @@ namespace {
 
 using nlohmann::json;
 
-/// Thrown while a line is read, and turned into an Error at the end of it.
+/// Exception while a line is read, turned into an Error at its end.
 struct ScriptProblem {
   std::string what;
 };
@@ -29,7 +29,7 @@ void require_valid(const Status& status) {
   if (!status) problem(status.error().message);
 }
 
-/// An object, read key by key.
+/// Object that is read key by key.
 class KeyedValues {
  public:
   KeyedValues(const json& object, std::string what) : object_{object}, what_{std::move(what)} {
@@ -45,7 +45,7 @@ class KeyedValues {
     if (value == nullptr) problem(what_ + " needs the key " + key);
     return *value;
   }
-  /// Refuses keys that nobody asked for.
+  /// Rejects keys that were not read.
   void finish() const {
     for (const auto& item : object_.items()) {
       if (asked_.contains(item.key())) continue;
@@ -86,8 +86,8 @@ std::vector<ScreenPoint> line_of(const json& value, const std::string& key) {
   return line;
 }
 
-/// A picture as a camera at T_world_camera (x right, y down, z forward) takes it, of all that is 1 mm before it or
-/// more.
+/// Returns the view of a camera at T_world_camera (x right, y down, z forward) of everything at least 1 mm in front of
+/// it.
 Eigen::Matrix4d clip_of(const Pose& T_world_camera, double fov_rad, int width, int height) {
   constexpr double kNear_m{0.001};
   const double focal = 1.0 / std::tan(0.5 * fov_rad);  // in half heights
@@ -111,7 +111,7 @@ SelectionView view_of(const json& value) {
   KeyedValues keys{value, "a view"};
   SelectionView view;
   const Eigen::Vector2d size = vector_of<2>(keys.need("size"), "size");
-  constexpr double kMost_px{1e6};  // so that it is an int; the view has its own limits
+  constexpr double kMost_px{1e6};  // keeps it an int; the view has its own limits
   if ((size.array() != size.array().round()).any() || size.cwiseAbs().maxCoeff() > kMost_px) {
     problem("size is [width, height] in whole pixels");
   }
@@ -156,7 +156,7 @@ ScreenShape brush_of(const json& value, std::optional<double>& radius_m) {
   return stroke;
 }
 
-/// What the keys of a line select; none of them: nothing.
+/// Returns the selection of a line's keys; nullopt where it has none of them.
 std::optional<ScriptedSelection> selection_of(KeyedValues& line, const std::optional<SelectionView>& view) {
   const json* rectangle = line.find("rectangle");
   const json* lasso = line.find("lasso");
@@ -200,7 +200,7 @@ std::vector<NumberedLabel> labels_of(const json& list) {
   return *labels;
 }
 
-/// Reads one line after the other; a view counts for the lines after it, too.
+/// Reader of a script line by line; a view also applies to the lines after it.
 class ScriptReader {
  public:
   ScriptedAction read(const json& value) {

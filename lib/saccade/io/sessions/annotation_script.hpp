@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Annotation scripts: actions on a cloud as text, one JSON object per line. docs/formats.md.
+// Annotation scripts: actions on a cloud as text, one JSON object per line. docs/reference/formats.md.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -19,49 +19,52 @@
 
 namespace saccade {
 
-/// A point by its index, or the place (metres) that it is near.
+/// Point by its index, or by a nearby place (metres).
 using ScriptedPoint = std::variant<std::uint32_t, Eigen::Vector3d>;
 
-/// Farther from a place there is no point that it means, unless a script says otherwise.
+/// Default distance within which a place finds its point.
 inline constexpr double kScriptedReach_m{0.05};
 
-/// What a tool selects in a picture: select_points, or select_around for a stroke with a radius in metres.
+/// Selection by a tool in an image: select_points, or select_around for a stroke with a radius in metres.
 struct ScriptedSelection {
   SelectionView view;
   ScreenShape shape;
   double below_m{0.0};             ///< behind the visible surface
-  std::optional<double> radius_m;  ///< of balls along a ScreenStroke; then below_m plays no part
+  std::optional<double> radius_m;  ///< radius of balls along a ScreenStroke; below_m is then ignored
 };
 
-/// One line. Which points it is about is known once there is a cloud (resolve_action).
+/// One line of a script. Its points are known once there is a cloud (resolve_action).
 struct ScriptedAction {
-  std::size_t line{0};                  ///< of the script, from 1
-  std::optional<std::uint64_t> client;  ///< none: whoever runs the script
+  std::size_t line{0};                  ///< line of the script, from 1
+  std::optional<std::uint64_t> client;  ///< none: the caller's client
   AnnotationChange change;              ///< without its points
-  std::vector<ScriptedPoint> points;    ///< of a move: from and to
-  double within_m{kScriptedReach_m};    ///< from a place
+  std::vector<ScriptedPoint> points;    ///< for a move: from and to
+  double within_m{kScriptedReach_m};    ///< largest distance from a place
   std::optional<ScriptedSelection> selection;
 };
 
-/// Blank lines and lines that begin with # are passed over.
-/// @return corrupt_data with the line for what is no action. O(text).
+/// Parses a script, skipping blank lines and lines that begin with #.
+/// @return corrupt_data with the line for text that is not an action. O(text).
 [[nodiscard]] Result<std::vector<ScriptedAction>> parse_annotation_script(std::string_view text);
-/// The same of a file; not_found and io_failure.
+/// Reads a script from a file; also answers not_found and io_failure.
 [[nodiscard]] Result<std::vector<ScriptedAction>> read_annotation_script(const std::filesystem::path& path);
 
-/// What can be said of a script before its first action is done: check_action, for points that are named by index.
+/// Checks a script before its first action: check_action, for points that are named by index.
 /// @return invalid_argument with the line.
 [[nodiscard]] Status check_script(std::span<const ScriptedAction> script, std::size_t points, double max_path);
 
-/// The action on this cloud. A place means the nearest point that is finite; where a control point is removed or moved
-/// from, the nearest control point. Of several places that mean one point, one counts; of what is selected to be
-/// removed, the control points.
-/// @param client  of lines that name none.
-/// @return invalid_argument with the line where a place has no point near enough, or nothing is selected.
+/// Returns the action on this cloud. A place means the nearest finite point; where a control point is removed or moved,
+/// the nearest control point. Several places that mean one point count once; of a selection to be removed, only the
+/// control points count.
+/// @param client  client of lines that name none.
+/// @param offset_m  PointCloud::offset_m, subtracted from places and poses of the script, which are in the file's
+/// coordinates.
+/// @return invalid_argument with the line where no point is near enough to a place, or nothing is selected.
 /// O(points) per place; a selection as select_points.
 [[nodiscard]] Result<AnnotationAction> resolve_action(const ScriptedAction& scripted,
                                                       std::span<const Eigen::Vector3f> positions_m,
                                                       const Annotation& annotation, std::uint64_t client,
-                                                      const Executor& executor);
+                                                      const Executor& executor,
+                                                      const Eigen::Vector3d& offset_m = Eigen::Vector3d::Zero());
 
 }  // namespace saccade

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
+#include <Eigen/Geometry>
 #include <algorithm>
 #include <array>
 #include <limits>
@@ -40,7 +41,7 @@ struct NearPoint {
   double distance_m{std::numeric_limits<double>::infinity()};
 };
 
-/// Of equally near ones the first.
+/// Takes a nearer point; the first at a tie.
 void take_nearer(const Eigen::Vector3f& p, std::uint32_t point, const Eigen::Vector3d& place_m, NearPoint& best) {
   const double distance_m = (p.cast<double>() - place_m).norm();  // NaN is not less than anything
   if (distance_m < best.distance_m) best = {point, distance_m};
@@ -63,18 +64,19 @@ NearPoint nearest_control_point(std::span<const Eigen::Vector3f> positions_m, co
   return best;
 }
 
-/// What resolve_action needs to know of the cloud.
+/// Data for resolve_action.
 struct Resolver {
   const ScriptedAction& scripted;
   std::span<const Eigen::Vector3f> positions_m;
   const Annotation& annotation;
   const Executor& executor;
+  const Eigen::Vector3d& offset_m;
 
   [[nodiscard]] Result<std::uint32_t> point(const ScriptedPoint& named, bool control_point) const {
     if (const auto* index = std::get_if<std::uint32_t>(&named)) return *index;
     const auto& place_m = std::get<Eigen::Vector3d>(named);
-    const NearPoint near =
-        control_point ? nearest_control_point(positions_m, annotation, place_m) : nearest_point(positions_m, place_m);
+    const NearPoint near = control_point ? nearest_control_point(positions_m, annotation, place_m - offset_m)
+                                         : nearest_point(positions_m, place_m - offset_m);
     if (near.distance_m <= scripted.within_m) return near.point;
     const std::string what = control_point ? "control point" : "point";
     std::ostringstream text;
@@ -82,7 +84,7 @@ struct Resolver {
          << place_m.z() << "); ";
     if (near.distance_m < std::numeric_limits<double>::infinity()) {
       text << "the nearest, " << near.point << ", is " << near.distance_m
-           << " m away: correct the place, or let within_m reach so far";
+           << " m away: correct the place, or increase within_m";
     } else {
       text << "there is none at all";
     }
@@ -90,7 +92,8 @@ struct Resolver {
   }
 
   [[nodiscard]] Result<Indices> selected() const {
-    const ScriptedSelection& selection = *scripted.selection;
+    ScriptedSelection selection = *scripted.selection;
+    selection.view.clip_world = selection.view.clip_world * Eigen::Affine3d{Eigen::Translation3d{offset_m}}.matrix();
     auto chosen = selection.radius_m
                       ? select_around(positions_m, selection.view, std::get<ScreenStroke>(selection.shape).line,
                                       *selection.radius_m, executor)
@@ -128,7 +131,7 @@ Status check_script(std::span<const ScriptedAction> script, std::size_t points, 
     }
     const bool known = indices.size() == scripted.points.size() && !scripted.selection;
     if (std::holds_alternative<MoveControlPoint>(scripted.change) && !known) {
-      action.change = RemoveControlPoints{};  // what can be said of one of its points
+      action.change = RemoveControlPoints{};  // stands for the check of its points
     }
     if (indices.empty()) indices.push_back(0);  // a point that every cloud has
     if (takes_points(action.change)) give_points(action.change, std::move(indices));
@@ -140,10 +143,11 @@ Status check_script(std::span<const ScriptedAction> script, std::size_t points, 
 }
 
 Result<AnnotationAction> resolve_action(const ScriptedAction& scripted, std::span<const Eigen::Vector3f> positions_m,
-                                        const Annotation& annotation, std::uint64_t client, const Executor& executor) {
+                                        const Annotation& annotation, std::uint64_t client, const Executor& executor,
+                                        const Eigen::Vector3d& offset_m) {
   AnnotationAction action{scripted.client.value_or(client), scripted.change};
   if (!takes_points(scripted.change)) return action;
-  const Resolver resolver{scripted, positions_m, annotation, executor};
+  const Resolver resolver{scripted, positions_m, annotation, executor, offset_m};
   SACCADE_TRY(Indices points, scripted.selection ? resolver.selected() : resolver.named());
   give_points(action.change, std::move(points));
   return action;

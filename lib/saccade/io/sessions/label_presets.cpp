@@ -45,7 +45,7 @@ Color color_from(const YAML::Node& node) {
 }
 
 NumberedLabel label_from(const YAML::Node& node, std::optional<DistinctColors>& generated) {
-  YamlMap map{node, "a label"};
+  YamlMap map{node, "a label", {"number", "name", "class", "instance", "color", "points"}};
   NumberedLabel label;
   label.number = whole_number(map.need("number"), 1, kMaxLabel);
   const auto text = [&](const char* key) {
@@ -63,14 +63,14 @@ NumberedLabel label_from(const YAML::Node& node, std::optional<DistinctColors>& 
     if (!generated) generated.emplace();
     label.info.color = (*generated)(label.number);
   }
-  static_cast<void>(map.find("points"));  // as write_label_names_json counts them
+  static_cast<void>(map.find("points"));  // written by write_label_names_json
   map.finish();
   if (const Status valid = label.info.validate(); !valid) yaml_problem(node, valid.error().message);
   return label;
 }
 
 std::vector<NumberedLabel> labels_from(const YAML::Node& document) {
-  YamlMap map{document, "a file of labels"};
+  YamlMap map{document, "a file of labels", {"labels", "schema"}};
   const YAML::Node list = map.need("labels");
   static_cast<void>(map.find("schema"));
   map.finish();

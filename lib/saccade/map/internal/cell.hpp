@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Cell: the TSDF between eight voxel centres; CellHit and cross_cell: where a ray meets the surface in it.
+// Cell: the TSDF between eight voxel centres. CellHit and cross_cell: the point where a ray meets the surface in it.
 
 #include <array>
 #include <cmath>
@@ -15,8 +15,8 @@ namespace saccade {
 struct Cell {
   std::array<float, 8> v{};
 
-  /// Trilinear interpolation; each coordinate within the cell, in [0, 1].
-  [[nodiscard]] float at(float x, float y, float z) const {
+  /// Interpolates trilinearly at coordinates within the cell, in [0, 1].
+  [[nodiscard]] SACCADE_HD float at(float x, float y, float z) const {
     const float v00 = v[0] + (v[1] - v[0]) * x;
     const float v10 = v[2] + (v[3] - v[2]) * x;
     const float v01 = v[4] + (v[5] - v[4]) * x;
@@ -27,7 +27,7 @@ struct Cell {
   }
 };
 
-/// Where a ray meets the surface: depth, cell, and position within the cell.
+/// Point where a ray meets the surface: depth, cell, and position within the cell.
 struct CellHit {
   float t{0.0F};
   Index3 cell;
@@ -40,9 +40,9 @@ enum class CellCrossing : std::uint8_t {
   behind,  ///< from inside to outside: the surface is seen from behind
 };
 
-/// Position of the ray within the cell at depth t, each coordinate clamped to [0, 1]. The ray is given in the lattice
-/// of the cells, whose corners are voxel centres.
-[[nodiscard]] inline std::array<float, 3> fraction_at(const LatticeRay& ray, const Index3& cell, float t) {
+/// Returns the position of the ray within the cell at depth t, each coordinate clamped to [0, 1]. The ray is given in
+/// the lattice of the cells, whose corners are voxel centres.
+[[nodiscard]] SACCADE_HD inline std::array<float, 3> fraction_at(const LatticeRay& ray, const Index3& cell, float t) {
   const Index3 relative = cell - ray.origin;
   const std::array<float, 3> lo{static_cast<float>(relative.x), static_cast<float>(relative.y),
                                 static_cast<float>(relative.z)};
@@ -54,10 +54,10 @@ enum class CellCrossing : std::uint8_t {
   return fraction;
 }
 
-/// Compares the interpolated TSDF where the ray enters and leaves the cell; for a front crossing finds the zero by
+/// Compares the interpolated TSDF where the ray enters and leaves the cell. For a front crossing, finds the zero by
 /// regula falsi. A surface that the ray enters and leaves within one cell is thinner than the map resolves.
-[[nodiscard]] inline CellCrossing cross_cell(const LatticeRay& ray, const Index3& index, const Cell& cell,
-                                             const RaySpan& span, CellHit& hit) {
+[[nodiscard]] SACCADE_HD inline CellCrossing cross_cell(const LatticeRay& ray, const Index3& index, const Cell& cell,
+                                                        const RaySpan& span, CellHit& hit) {
   constexpr int kRootSteps{3};
   const auto value_at = [&](float t) {
     const std::array<float, 3> f = fraction_at(ray, index, t);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: Apache-2.0
-// No include guard of the usual kind: included once per instruction set, by files with vector kernels.
+// No include guard of the usual kind: files with vector kernels include this once per instruction set.
 #if defined(SACCADE_MAP_CELL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SACCADE_MAP_CELL_LANES_INL
 #undef SACCADE_MAP_CELL_LANES_INL
@@ -21,20 +21,21 @@ HWY_BEFORE_NAMESPACE();
 namespace saccade::tile_cast::HWY_NAMESPACE {
 namespace {
 
-using namespace lanes::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary of these kernels
+using namespace lanes::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): these kernels use all of it
 
-/// Between two depths along the rays v changes its sign.
+/// Interval of depths along the rays in which v changes its sign.
 struct SignChange {
   VF t0, t1;
   VF v0, v1;
 };
 
-/// What rays, one per lane, find in cells of one brick; each the like of the function of cell.hpp that it names.
+/// Results of rays, one per lane, in cells of one brick. Each function is the vector form of the one in cell.hpp that
+/// its comment names.
 class CellLanes {
  public:
   RayLanes rays;
   std::array<float, 3> brick_lo;  ///< the brick's first voxel, relative to the rays' origin
-  const std::int16_t* values;     ///< of its VoxelBlock
+  const std::int16_t* values;     ///< values of the VoxelBlock
 
   /// v of two neighbours along x.
   struct Pair {
@@ -42,7 +43,7 @@ class CellLanes {
     VF high;
   };
 
-  /// The cell's corners, and where the rays are in it.
+  /// Corners of the cells, and positions of the rays in them.
   struct CellOfLanes {
     Pair v00, v10, v01, v11;
     std::array<VF, 3> from;  ///< origin of the rays, relative to the cell's lowest corner
@@ -60,7 +61,7 @@ class CellLanes {
     }
     return cell;
   }
-  /// fraction_at.
+  /// Vector form of fraction_at.
   HWY_INLINE void fraction_at(const CellOfLanes& cell, VF t, std::array<VF, 3>& fraction) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VF at = hn::Add(cell.from[axis], hn::Mul(t, rays.d[axis]));
@@ -73,7 +74,7 @@ class CellLanes {
     return interpolate(cell.v00, cell.v10, cell.v01, cell.v11, f[0], f[1], f[2]);
   }
 
-  /// Second half of cross_cell: the zero between entering and leaving, by regula falsi.
+  /// Second half of cross_cell: finds the zero between entering and leaving, by regula falsi.
   [[nodiscard]] HWY_INLINE VF find_zero(const CellOfLanes& cell, SignChange between) const {
     auto& [t0, t1, v0, v1] = between;
     constexpr int kRootSteps{3};
@@ -89,7 +90,8 @@ class CellLanes {
     }
   }
 
-  /// ∇v in the cells of some lanes: differences over two voxels; over the cell's own where a neighbour is unknown.
+  /// Finds ∇v in the cells of some lanes: differences over two voxels, or over the cell's own where a neighbour is
+  /// unknown.
   HWY_INLINE void find_gradient(M lanes, VI index, const CellOfLanes& cell, const std::array<VF, 3>& fraction,
                                 std::array<VF, 3>& gradient) const {
     const auto& [x, y, z] = fraction;
@@ -120,11 +122,11 @@ class CellLanes {
   }
 
  private:
-  /// Offset of a voxel from another, in int16.
+  /// Returns the offset from one voxel to another, in int16 values.
   static constexpr std::ptrdiff_t offset(int x, int y, int z) {
     return (std::ptrdiff_t{z} * VoxelBlock::kEdge + y) * VoxelBlock::kEdge + x;
   }
-  /// At some offsets from the lanes' voxels. Lane by lane: gathers take some processors twice as long.
+  /// Reads pairs at some offsets from the lanes' voxels. Lane by lane: gathers take some processors twice as long.
   template <std::size_t kCount>
   HWY_INLINE std::array<Pair, kCount> pairs_at(VI index, const std::array<std::ptrdiff_t, kCount>& offsets) const {
     constexpr std::size_t kLanes{hn::MaxLanes(I{})};
@@ -143,7 +145,7 @@ class CellLanes {
     }
     return pairs;
   }
-  /// Of a cell's lowest corner in the block.
+  /// Returns the index in the block of a cell's lowest corner.
   [[nodiscard]] HWY_INLINE VI in_block(VI index) const {
     const VI seven = hn::Set(i_, 7);
     const VI x = hn::And(index, seven);
@@ -155,7 +157,7 @@ class CellLanes {
   }
 
   static HWY_INLINE VF mix(VF a, VF b, VF share) { return hn::Add(a, hn::Mul(hn::Sub(b, a), share)); }
-  /// Cell::at.
+  /// Vector form of Cell::at.
   static HWY_INLINE VF interpolate(const Pair& v00, const Pair& v10, const Pair& v01, const Pair& v11, VF x, VF y,
                                    VF z) {
     const VF a = mix(mix(v00.low, v00.high, x), mix(v10.low, v10.high, x), y);
@@ -171,7 +173,7 @@ class CellLanes {
   [[nodiscard]] HWY_INLINE VF half_difference(VF ahead, VF behind) const {
     return hn::Mul(hn::Set(f_, 0.5F), hn::Sub(ahead, behind));
   }
-  /// Where neighbours along an axis are not known: the difference across the cell.
+  /// Uses the difference across the cell where neighbours along an axis are unknown.
   HWY_INLINE void settle_unknown(M lanes, M known, const CellOfLanes& cell, std::array<VF, 3> fraction,
                                  std::size_t axis, std::array<VF, 3>& gradient) const {
     if (!any(hn::AndNot(known, lanes))) return;

@@ -6,11 +6,10 @@
 #include <bit>
 #include <cmath>
 
+#include "saccade/map/internal/frustum_box.hpp"
+
 namespace saccade {
 namespace {
-
-constexpr double kRoundingM{1e-4};       // far above the rounding, far below a voxel
-constexpr double kMostSectors{1 << 24};  // to go through for a frame
 
 Index3 octant(const Index3& lo, int half, int i) {
   return {lo.x + ((i & 1) != 0 ? half : 0), lo.y + ((i & 2) != 0 ? half : 0), lo.z + ((i & 4) != 0 ? half : 0)};
@@ -18,12 +17,6 @@ Index3 octant(const Index3& lo, int half, int i) {
 
 tsdf::Float3 to_float3(const Eigen::Vector3d& p) {
   return {static_cast<float>(p.x()), static_cast<float>(p.y()), static_cast<float>(p.z())};
-}
-
-Error too_many_voxels() {
-  return {Errc::invalid_argument,
-          "too many voxels lie between the camera and what it sees; use a shorter range or larger voxels",
-          {}};
 }
 
 }  // namespace
@@ -43,27 +36,10 @@ FrameFuser::FrameFuser(const TsdfConfig& config, const RangeImage& ranges, const
 Result<std::vector<Index3>> FrameFuser::candidate_sectors(const Executor& executor) const {
   const double reach_m = ranges_.max_reach_m();
   if (reach_m <= 0.0) return std::vector<Index3>{};
-  // Box around the camera and the corners of its image at the farthest reach.
-  const tsdf::FusionCamera& camera = ranges_.camera();
-  const Pose T_world_camera = T_camera_world_.inverse();
-  Eigen::Vector3d lo = camera_world_;
-  Eigen::Vector3d hi = camera_world_;
-  for (const double u : {-0.5, camera.width - 0.5}) {
-    for (const double v : {-0.5, camera.height - 0.5}) {
-      const Eigen::Vector3d ray{(u - camera.cx) / camera.fx, (v - camera.cy) / camera.fy, 1.0};
-      const Eigen::Vector3d corner = T_world_camera * Eigen::Vector3d{ray * reach_m};
-      if (!corner.allFinite()) return too_many_voxels();
-      lo = lo.cwiseMin(corner);
-      hi = hi.cwiseMax(corner);
-    }
-  }
-  const double sector_m = kSectorVoxelEdge * config_.voxel_size_m;
-  const Eigen::Vector3d sectors = (hi - lo) / sector_m + Eigen::Vector3d::Ones();
-  if (sectors.prod() > kMostSectors) return too_many_voxels();
-  const Index3 first = voxel_at(lo - Eigen::Vector3d::Constant(kRoundingM), sector_m);
-  const Index3 last = voxel_at(hi + Eigen::Vector3d::Constant(kRoundingM), sector_m);
+  SACCADE_TRY(const IndexBox sectors,
+              sectors_in_frustum(ranges_.camera(), T_camera_world_.inverse(), reach_m, config_.voxel_size_m));
   std::vector<Index3> keys;
-  IndexBox{first, last + Index3{1, 1, 1}}.for_each([&](const Index3& key) { keys.push_back(key); });
+  sectors.for_each([&](const Index3& key) { keys.push_back(key); });
   std::vector<std::uint8_t> visible(keys.size());
   executor.parallel_for(keys.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
@@ -197,14 +173,14 @@ bool FrameFuser::observe(const fusion::BrickSamples& observed, BrickRef& ref) co
   return true;
 }
 
-/// Colours of the voxels within the truncation band; before the weights change, since they average over the old ones.
+/// Updates colours within the truncation band. Runs before the weights change, since colours average over the old ones.
 void FrameFuser::update_colors(const fusion::BrickSamples& observed, DenseBrick& dense) const {
   if (dense.colors == nullptr) dense.colors = std::make_unique<BrickColors>();
   observed.surface.for_each([&](std::size_t i) {
     if (observed.samples[i] <= -tsdf::kSampleOne) return;
     const Rgb8& seen = color_->pixels()[static_cast<std::size_t>(observed.pixels[i])];
     Rgb8& color = (*dense.colors)[i];
-    const std::uint16_t w = color == Rgb8{} ? std::uint16_t{0} : dense.w[i];  // black: no colour yet
+    const std::uint16_t w = color == Rgb8{} ? std::uint16_t{0} : dense.w[i];  // black means no colour yet
     for (std::size_t c = 0; c < 3; ++c) color[c] = tsdf::average_color(color[c], w, seen[c]);
     if (color == Rgb8{}) color = {1, 1, 1};
   });

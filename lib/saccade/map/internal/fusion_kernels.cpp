@@ -15,8 +15,8 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Whole vectors of floats fill a slice of a brick: 1 to 16 lanes, a power of two. Products and sums stay apart: a fused
-// multiply-add rounds once where tsdf_math.hpp rounds twice.
+// Whole vectors of floats fill a slice of a brick: 1 to 16 lanes, a power of two. Products and sums stay separate,
+// because a fused multiply-add rounds once where tsdf_math.hpp rounds twice.
 using Floats = hn::CappedTag<float, 16>;
 using Ints = hn::RebindToSigned<Floats>;
 using Shorts = hn::Rebind<std::int16_t, Floats>;
@@ -28,7 +28,7 @@ using FloatMask = hn::Mask<Floats>;
 constexpr float kInfinity{std::numeric_limits<float>::infinity()};
 constexpr std::size_t kSlice{kBrickEdge * kBrickEdge};
 
-/// Lane i at bit i.
+/// Returns lane i of the mask as bit i.
 template <class D>
 HWY_INLINE std::uint64_t bits_of(D d, hn::Mask<D> mask) {
   std::array<std::uint8_t, 8> bytes{};
@@ -62,7 +62,7 @@ constexpr SliceOffsets kSliceOffsets = [] {
   return offsets;
 }();
 
-/// The sum of tsdf::voxel_in_camera, in its order.
+/// Returns the sum of tsdf::voxel_in_camera, in its order.
 HWY_INLINE Float3Vec voxels_in_camera(const tsdf::Float3& slice_origin, const Float3Vec& y, const Float3Vec& x) {
   const Floats d;
   return {hn::Add(hn::Add(hn::Set(d, slice_origin.x), y.x), x.x),
@@ -70,7 +70,7 @@ HWY_INLINE Float3Vec voxels_in_camera(const tsdf::Float3& slice_origin, const Fl
           hn::Add(hn::Add(hn::Set(d, slice_origin.z), y.z), x.z)};
 }
 
-/// round_to_even of tsdf_math.hpp, as an integer: the sum's last bits are it.
+/// Rounds as round_to_even of tsdf_math.hpp does, to an integer: the last bits of the sum.
 HWY_INLINE IntVec round_to_even(FloatVec x) {
   const Floats d;
   const Ints di;
@@ -78,10 +78,10 @@ HWY_INLINE IntVec round_to_even(FloatVec x) {
   return hn::Sub(hn::BitCast(di, hn::Add(x, magic)), hn::BitCast(di, magic));
 }
 
-/// Whole part of 0 ≤ x < 2²². (ConvertTo would spend instructions on numbers that do not fit.)
+/// Returns the integer part of 0 ≤ x < 2²². (ConvertTo would spend instructions on numbers that do not fit.)
 HWY_INLINE IntVec whole_part(FloatVec x) { return round_to_even(hn::Floor(x)); }
 
-/// tsdf::pixel_of, as an index into the image; 0 where not `inside`, which is not tested where it is known to hold.
+/// Returns tsdf::pixel_of as an index into the image; 0 where not `inside`. With kInside, `inside` is not tested.
 template <bool kInside>
 HWY_INLINE IntVec pixel_of(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatMask& inside) {
   const Floats d;
@@ -104,7 +104,7 @@ HWY_INLINE IntVec pixel_of(const tsdf::FusionCamera& camera, const Float3Vec& p,
   return index(hn::IfThenElseZero(inside, u), hn::IfThenElseZero(inside, v));
 }
 
-/// tsdf::sample_voxel where `inside`, else kNotSeen.
+/// Returns tsdf::sample_voxel where `inside`, otherwise kNotSeen.
 HWY_INLINE IntVec sample_voxels(const tsdf::FusionCamera& camera, const Float3Vec& p, FloatVec range,
                                 FloatMask inside) {
   const Floats d;
@@ -123,7 +123,7 @@ HWY_INLINE IntVec sample_voxels(const tsdf::FusionCamera& camera, const Float3Ve
   return hn::IfThenElse(hn::RebindMask(di, hit), sample, not_hit);
 }
 
-/// tsdf::sample_voxel of voxels that are seen as free if at all.
+/// Returns tsdf::sample_voxel for voxels that can only be seen as free.
 HWY_INLINE IntVec sample_free(FloatVec range, FloatMask inside) {
   const Floats d;
   const Ints di;
@@ -131,7 +131,7 @@ HWY_INLINE IntVec sample_free(FloatVec range, FloatMask inside) {
   return hn::IfThenElse(hn::RebindMask(di, seen), hn::Set(di, tsdf::kSampleOne), hn::Set(di, tsdf::kNotSeen));
 }
 
-/// The masks of the samples.
+/// Computes the masks of the samples.
 HWY_INLINE void mark_samples(BrickSamples& out) {
   const hn::CappedTag<std::int16_t, 32> d;
   const auto not_seen = hn::Set(d, tsdf::kNotSeen);
@@ -150,7 +150,7 @@ HWY_INLINE void mark_samples(BrickSamples& out) {
   }
 }
 
-/// The samples of known octants; those of the others are left as they are.
+/// Fills in the samples of known octants; leaves the others unchanged.
 void fill_known(KnownOctants known, BrickSamples& out) {
   constexpr std::size_t kHalf{kBrickEdge / 2};
   for (std::size_t octant = 0; octant < kOctants; ++octant) {
@@ -166,7 +166,7 @@ void fill_known(KnownOctants known, BrickSamples& out) {
   }
 }
 
-/// Octants come in pairs along x, as lanes do; a pair is passed over when both of it are known.
+/// Samples the voxels. Octants come in pairs along x, as lanes do; a pair is skipped when both are known.
 template <bool kInside>
 HWY_INLINE void sample_voxels_of_brick(const tsdf::FusionCamera& camera_in, const tsdf::BrickFrame& frame,
                                        const float* ranges, KnownOctants known, BrickSamples& out) {
@@ -175,7 +175,7 @@ HWY_INLINE void sample_voxels_of_brick(const tsdf::FusionCamera& camera_in, cons
   const Floats d;
   const Ints di;
   const Shorts d16;
-  const tsdf::FusionCamera camera = camera_in;  // a copy stays in registers whatever is stored
+  const tsdf::FusionCamera camera = camera_in;  // a local copy stays in registers
   std::array<tsdf::Float3, kBrickEdge> slice_origins;
   for (std::size_t z = 0; z < kBrickEdge; ++z) {
     const auto fz = static_cast<float>(z);
@@ -253,7 +253,7 @@ void update_brick_kernel(const std::array<std::int16_t, kBrickVoxels>& samples, 
   }
 }
 
-/// Columns [first, end) of ranges_of_row, in whole vectors; returns where it stopped.
+/// Computes columns [first, end) of ranges_of_row in whole vectors; returns where it stopped.
 template <class D>
 HWY_INLINE int ranges_of_columns(D d, int first, const RayLengths& rays, float dy_squared, const float* depths_m,
                                  float* ranges_m, const ColumnBounds& bounds, std::size_t& returns) {

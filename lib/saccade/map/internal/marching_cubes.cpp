@@ -27,7 +27,7 @@ constexpr std::uint8_t edge_between(unsigned a, unsigned b) {
   return kNoEdge;
 }
 
-/// The four corners of a face, counter-clockwise seen from outside the cell.
+/// Returns the four corners of a face, counter-clockwise seen from outside the cell.
 constexpr std::array<unsigned, 4> face_corners(unsigned axis, unsigned side) {
   const unsigned u = 1U << ((axis + 1) % 3);
   const unsigned v = 1U << ((axis + 2) % 3);
@@ -36,8 +36,8 @@ constexpr std::array<unsigned, 4> face_corners(unsigned axis, unsigned side) {
   return {base, base | v, base | u | v, base | u};
 }
 
-/// successor[e]: the crossed edge that follows e on its loop. Going round a face, the edge where the inside is entered
-/// is joined to the next one where it is left.
+/// Returns successor[e]: the crossed edge that follows e on its loop. Around a face, the edge where the inside is
+/// entered is joined to the next one where it is left.
 constexpr Loop successors(unsigned inside) {
   Loop successor{};
   successor.fill(kNoEdge);

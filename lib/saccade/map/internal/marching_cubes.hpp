@@ -15,7 +15,7 @@ struct CubeEdge {
   std::uint8_t axis;
 };
 constexpr std::size_t kCubeEdgeCount{12};
-/// Edges by axis, then by corner.
+/// Returns the edges by axis, then by corner.
 [[nodiscard]] const std::array<CubeEdge, kCubeEdgeCount>& cube_edges();
 
 /// Triangles over cell edges, counter-clockwise seen from outside the surface.
@@ -26,10 +26,11 @@ struct CubeCase {
   [[nodiscard]] std::span<const std::array<std::uint8_t, 3>> triangles() const { return {corners_of.data(), count}; }
 };
 
-/// Bit c of the index is set when corner c is inside (v ≤ 0). After Lorensen and Cline (1987), without their table: on
-/// every face of the cell the crossed edges are joined so that inside corners stay apart, a rule that reads the face's
-/// four signs alone, so two cells agree on the face they share and the surface has no holes. The segments close to
-/// loops; a loop becomes a fan whose diagonals lie in no face, so every edge of the mesh has exactly two triangles.
+/// Returns the triangles of each sign pattern; bit c of the index is set when corner c is inside (v ≤ 0). After
+/// Lorensen and Cline (1987), without their table. On every face of the cell the crossed edges are joined so that
+/// inside corners stay apart. This rule reads the face's four signs alone, so two cells agree on their common face and
+/// the surface has no holes. The segments close to loops. Each loop becomes a fan whose diagonals lie in no face, so
+/// every edge of the mesh has exactly two triangles.
 [[nodiscard]] const std::array<CubeCase, 256>& cube_cases();
 
 }  // namespace saccade

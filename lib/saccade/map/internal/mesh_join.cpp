@@ -15,7 +15,7 @@ const MeshSector* find_sector(std::span<const MeshSector> sectors, const Index3&
   return at == sectors.end() || !(at->key == key) ? nullptr : &*at;
 }
 
-/// A vertex among those of its sector.
+/// Vertex of a sector.
 struct VertexPlace {
   const MeshSector* sector;
   std::uint32_t rank;
@@ -52,7 +52,7 @@ void for_each_triangle(std::span<const MeshSector> sectors, const MeshSector& se
 
 bool is_missing(const Eigen::Vector3f& normal) { return normal.isZero(0.0F); }
 
-/// Twice the triangle's area long.
+/// Returns the triangle's normal with the length of twice its area.
 Eigen::Vector3f area_normal(const Eigen::Vector3f& a, const Eigen::Vector3f& b, const Eigen::Vector3f& c) {
   return (b - a).cross(c - a);
 }
@@ -77,13 +77,13 @@ void finish_normals(TriangleMesh& mesh) {
   }
 }
 
-/// Where the parts of a sector lie in the whole mesh.
+/// First vertex and triangle of a sector in the whole mesh.
 struct Offsets {
   std::size_t vertex{0};
   std::size_t triangle{0};
 };
 
-/// The vertices of a brick's mesh, by their place.
+/// Vertices of a brick's mesh, found by sector and index.
 class PieceVertices {
  public:
   explicit PieceVertices(TriangleMesh& mesh) : mesh_{mesh} {}
@@ -103,13 +103,13 @@ class PieceVertices {
   }
 
  private:
-  /// The address of the vertex tells it from all others.
+  /// Returns the vertex's address as its unique key.
   static const Eigen::Vector3f* key(const VertexPlace& place) { return &place.position(); }
   TriangleMesh& mesh_;
   std::unordered_map<const Eigen::Vector3f*, std::uint32_t> index_of_;
 };
 
-/// A brick and those around it, in the order of the whole mesh.
+/// Returns a brick and its neighbours in the order of the whole mesh.
 std::array<Index3, 27> bricks_around(const Index3& brick) {
   std::array<Index3, 27> bricks;
   for (int i = 0; i < 27; ++i) {
@@ -121,7 +121,7 @@ std::array<Index3, 27> bricks_around(const Index3& brick) {
   return bricks;
 }
 
-/// As finish_normals, with the triangles of all cells that touch the brick's, in the order of the whole mesh.
+/// Works as finish_normals, with the triangles of all cells that touch the brick's, in the order of the whole mesh.
 void finish_normals(std::span<const MeshSector> sectors, const Index3& brick, const PieceVertices& vertices,
                     TriangleMesh& mesh) {
   const std::vector<Eigen::Vector3f> given = mesh.normals;

@@ -11,8 +11,8 @@ namespace {
 
 constexpr Rgb8 kNoColor{128, 128, 128};
 
-/// Cells and voxels around a brick as rows of bits: bit x + 1 of the row of every (y, z) stands for x in -1 … 8. Cells
-/// are named by their lower corner, which lies at -1 … 7.
+/// Cells and voxels around a brick as rows of bits: bit x + 1 of the row (y, z) stands for x in -1 … 8. Cells are named
+/// by their lower corner, which lies at -1 … 7.
 class CellRows {
  public:
   explicit CellRows(const VoxelBlock& block) {
@@ -39,7 +39,7 @@ class CellRows {
     }
   }
 
-  /// Cells whose corners are known, some of them inside and some not.
+  /// Returns the cells with known corners, some of them inside and some not.
   [[nodiscard]] unsigned crossed(int y, int z) const {
     const std::array<unsigned, 4> rows{inside_[at(y, z)], inside_[at(y + 1, z)], inside_[at(y, z + 1)],
                                        inside_[at(y + 1, z + 1)]};
@@ -48,7 +48,7 @@ class CellRows {
     return known_[at(y, z)] & (some | (some >> 1)) & ~(all & (all >> 1));
   }
 
-  /// Voxels whose edge along the axis the surface crosses, in a cell whose corners are known; y and z in 0 … 7.
+  /// Returns the voxels whose edge along the axis the surface crosses in a cell with known corners; y and z in 0 … 7.
   [[nodiscard]] unsigned crossed_edges(int axis, int y, int z) const {
     const unsigned lower = inside_[at(y, z)];
     if (axis == 0) {
@@ -64,11 +64,11 @@ class CellRows {
   static constexpr int kCorners{kBrickEdge + 2};
   static constexpr std::size_t kRows{std::size_t{kCorners} * kCorners};
   static std::size_t at(int y, int z) { return static_cast<std::size_t>((z + 1) * kCorners + y + 1); }
-  std::array<unsigned, kRows> inside_{};  ///< voxels; those that are not known too
-  std::array<unsigned, kRows> known_{};   ///< cells all of whose corners are
+  std::array<unsigned, kRows> inside_{};  ///< inside voxels, including unknown ones
+  std::array<unsigned, kRows> known_{};   ///< cells whose corners are all known
 };
 
-/// Notes the brick's crossed cells and the edges it owns that these or cells of lower neighbours use.
+/// Records the brick's crossed cells, and its edges that these or cells of lower neighbours use.
 void mark_cells(const VoxelBlock& block, MeshBrick& owner, MeshSector& sector) {
   const CellRows rows{block};
   for (int z = 0; z < kBrickEdge; ++z) {
@@ -156,7 +156,7 @@ const BrickRef* MeshExtraction::find(const Index3& brick) const {
   return sector == nullptr ? nullptr : &sector->bricks[static_cast<std::size_t>(child_index(brick))];
 }
 
-/// Only a brick that has an inside voxel in itself or in an upper neighbour can own a vertex.
+/// Tells whether a brick can own a vertex: only with an inside voxel in itself or in an upper neighbour.
 bool MeshExtraction::may_own_vertices(const Index3& brick) const {
   const BrickRef* self = find(brick);
   if (self == nullptr || self->is_unknown()) return false;

@@ -16,12 +16,12 @@ namespace hn = hwy::HWY_NAMESPACE;
 
 /// Slack of the conservative tests: far above the rounding of the per-voxel floats, far below a voxel.
 constexpr float kSlackM{1e-4F};
-constexpr float kSlackPx{0.6F};  // rounding to the nearest pixel, and a little
+constexpr float kSlackPx{0.6F};  // rounding to the nearest pixel, with some margin
 constexpr float kNearestProjected{0.02F};
 
 float dot(const tsdf::Float3& a, const tsdf::Float3& b) { return a.x * b.x + a.y * b.y + a.z * b.z; }
 
-/// Lane i at bit i.
+/// Returns lane i of the mask as bit i.
 template <class D>
 HWY_INLINE unsigned bits_of(D d, hn::Mask<D> mask) {
   std::array<std::uint8_t, 8> bytes{};
@@ -37,7 +37,7 @@ void view_octants_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFram
   alignas(32) constexpr std::array<std::array<float, kOctants>, 3> kUpper{
       {{0, 1, 0, 1, 0, 1, 0, 1}, {0, 0, 1, 1, 0, 0, 1, 1}, {0, 0, 0, 0, 1, 1, 1, 1}}};
   const float octant_edge = 0.5F * static_cast<float>(edge);
-  const float half_vox = 0.5F * (octant_edge - 1.0F);  // of the box of voxel centres
+  const float half_vox = 0.5F * (octant_edge - 1.0F);  // half the box of voxel centres
   const std::array<tsdf::Float3, 3> steps{frame.step_x, frame.step_y, frame.step_z};
   const float voxel_m = std::sqrt(dot(frame.step_x, frame.step_x));
   const Vec zero = hn::Zero(d);
@@ -48,13 +48,13 @@ void view_octants_kernel(const tsdf::FusionCamera& camera, const tsdf::BrickFram
   const auto v_end = static_cast<float>(camera.height - 1);
   const Vec last_u = set(u_end);
   const Vec last_v = set(v_end);
-  // The four sides of the frustum as planes a x + b y + c z = 0 through the camera, positive inside. They hold near the
-  // camera's plane as well, where nothing can be projected.
+  // The four sides of the frustum as planes a x + b y + c z = 0 through the camera, positive inside. They also hold
+  // near the camera's plane, where projection is impossible.
   const std::array<tsdf::Float3, 4> sides{{{camera.fx, 0.0F, camera.cx + kSlackPx},
                                            {-camera.fx, 0.0F, u_end + kSlackPx - camera.cx},
                                            {0.0F, camera.fy, camera.cy + kSlackPx},
                                            {0.0F, -camera.fy, v_end + kSlackPx - camera.cy}}};
-  std::array<float, 4> side_spread;  // of half an octant, and the slack
+  std::array<float, 4> side_spread;  // spread of half an octant, plus the slack
   for (std::size_t i = 0; i < sides.size(); ++i) {
     const float spread_vox =
         std::abs(dot(sides[i], steps[0])) + std::abs(dot(sides[i], steps[1])) + std::abs(dot(sides[i], steps[2]));

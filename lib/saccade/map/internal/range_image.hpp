@@ -15,12 +15,12 @@
 
 namespace saccade {
 
-/// How far a rectangle of beams is seen. A voxel nearer than `clear_m` is seen free (sample 1) in every beam of it that
-/// saw something; one farther than `reach_m` is seen in none.
+/// Visibility within a rectangle of beams. A voxel nearer than `clear_m` is seen free (sample 1) in every beam of it
+/// that saw something; a voxel farther than `reach_m` is seen in none.
 struct BeamBounds {
   float clear_m{0.0F};
   float reach_m{0.0F};
-  float nearest_m{0.0F};  ///< least range; 0: some beam saw nothing
+  float nearest_m{0.0F};  ///< smallest range; 0: some beam saw nothing
 };
 
 /// Rectangle of pixels, inclusive.
@@ -31,12 +31,12 @@ struct PixelRect {
   int v1{-1};
 };
 
-/// Depths turned into ranges ‖p − o‖ (eq. 2.1), 0 where there is no valid return, negative for "free up to". The bounds
-/// of cells of 4×4 pixels are kept, and of squares of 2, 4, … 16 cells from every cell: a small rectangle is covered by
-/// four overlapping squares. Building is O(pixels), a query O(1) up to 128 pixels and cheap beyond.
+/// Ranges ‖p − o‖ of a depth image (eq. 2.1): 0 where there is no valid return, negative for "free up to". Keeps the
+/// bounds of cells of 4×4 pixels, and of squares of 2, 4, … 16 cells from every cell, so that four overlapping squares
+/// cover a small rectangle. Building is O(pixels); a query is O(1) up to 128 pixels and cheap beyond.
 class RangeImage {
  public:
-  /// A cell has 4×4 pixels.
+  /// Cells have 4×4 pixels.
   static constexpr int kCellShift{2};
   static constexpr int kCellPx{1 << kCellShift};
   static constexpr std::size_t kLevels{5};
@@ -46,13 +46,13 @@ class RangeImage {
   [[nodiscard]] const tsdf::FusionCamera& camera() const { return camera_; }
   [[nodiscard]] const float* ranges() const { return ranges_.data(); }
   [[nodiscard]] std::size_t valid_pixels() const { return valid_pixels_; }
-  /// Upper bound of the reach over the whole image.
+  /// Returns an upper bound of the reach over the whole image.
   [[nodiscard]] float max_reach_m() const { return max_reach_m_; }
-  /// Conservative bounds over all pixels of `rect`, which must lie within the image.
+  /// Returns conservative bounds over all pixels of `rect`, which must lie within the image.
   [[nodiscard]] BeamBounds bounds(const PixelRect& rect) const;
 
  private:
-  /// Componentwise least: clear_m, −reach_m, nearest_m.
+  /// Componentwise minimum: clear_m, −reach_m, nearest_m.
   using Least = Eigen::Array4f;
   [[nodiscard]] Least* level(std::size_t i) { return least_.data() + i * level_size_; }
   [[nodiscard]] const Least* level(std::size_t i) const { return least_.data() + i * level_size_; }
@@ -76,7 +76,8 @@ inline BeamBounds RangeImage::bounds(const PixelRect& rect) const {
   const int y0 = rect.v0 >> kCellShift;
   const int x1 = (rect.u1 >> kCellShift) + 1;
   const int y1 = (rect.v1 >> kCellShift) + 1;
-  // The largest square that fits, repeated; the last of a row or column ends where the rectangle does.
+  // Covers the rectangle with the largest square that fits; the last square of a row or column ends where the rectangle
+  // does.
   const auto edge_cells = static_cast<unsigned>(std::min(x1 - x0, y1 - y0));
   const std::size_t k = std::min(static_cast<std::size_t>(std::bit_width(edge_cells)) - 1, kLevels - 1);
   const int square = 1 << k;

@@ -10,7 +10,7 @@ HWY_BEFORE_NAMESPACE();
 namespace saccade::tile_cast::HWY_NAMESPACE {
 namespace {
 
-/// Some rays of the tile within one brick.
+/// Packet of rays of the tile within one brick.
 class Packet {
  public:
   HWY_INLINE Packet(const TileRays& rays, const Index3& lo, const SurfaceBrick& surface, std::size_t first)
@@ -30,7 +30,7 @@ class Packet {
                static_cast<float>(lo.z + box.hi.z)};
   }
 
-  /// The rays' part within the box; false when no ray that did not end earlier enters it.
+  /// Finds the part of the rays within the box. Returns false when every ray misses it or ended earlier.
   HWY_INLINE bool enter(float farthest_m, const Event& ended) {
     const RayLanes::Span span = in_cells_.rays.clip(box_lo_, box_hi_);
     enter_ = span.enter;
@@ -39,7 +39,7 @@ class Packet {
     return any(active_);
   }
 
-  /// Walks through the cells until every ray has met the surface or left the box.
+  /// Walks through the cells until each ray has met the surface or left the box.
   HWY_INLINE void walk() {
     start();
     entered_t_ = enter_.t;
@@ -47,8 +47,8 @@ class Packet {
     cell_ = hn::Zero(i_);
     change_ = {hn::Zero(f_), hn::Zero(f_), hn::Zero(f_), hn::Zero(f_)};
     while (any(active_)) {
-      // On to the next cell with a surface; rays that are at one wait for the others, since looking costs more than
-      // steps.
+      // Moves on to the next cell with a surface. Rays that have reached one wait for the others, since a look into a
+      // cell costs more than steps.
       M walking = active_;
       M waiting = none();
       for (;;) {
@@ -88,7 +88,7 @@ class Packet {
   }
 
  private:
-  /// The cells that the rays enter first.
+  /// Finds the first cells that the rays enter.
   HWY_INLINE void start() {
     index_ = hn::Zero(i_);
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -99,10 +99,10 @@ class Packet {
       const VI in_brick = hn::ConvertTo(i_, hn::Sub(p, hn::Set(f_, in_cells_.brick_lo[axis])));
       index_ = hn::Add(index_, hn::Mul(in_brick, hn::Set(i_, kStride[axis])));
     }
-    index_ = hn::And(index_, hn::Set(i_, kBrickVoxels - 1));  // of rays that are not in the box: anything
+    index_ = hn::And(index_, hn::Set(i_, kBrickVoxels - 1));  // arbitrary for rays outside the box
   }
 
-  /// Takes rays to their next cells; returns those that have one.
+  /// Moves rays to their next cells; returns the rays that have one.
   HWY_INLINE M step(M rays) {
     const NextPlanes::First leave = next_.first();
     const M moved = hn::And(rays, before(leave.event, exit_));
@@ -126,7 +126,8 @@ class Packet {
     return hn::RebindMask(f_, hn::Ne(hn::And(shifted, hn::Set(i_, 1)), hn::Zero(i_)));
   }
 
-  /// First half of cross_cell, for the lanes of a mask: whether the sign of v changes between entering and leaving.
+  /// First half of cross_cell for the lanes of a mask: tells whether the sign of v changes between entering and
+  /// leaving.
   HWY_INLINE void cross(M lanes) {
     const VF t0 = entered_t_;
     const VF t1 = hn::Min(next_.first().event.t, exit_.t);
@@ -150,12 +151,12 @@ class Packet {
   std::array<float, 3> box_lo_;  ///< planes of the box around the cells
   std::array<float, 3> box_hi_;
   CellLanes in_cells_;
-  Event enter_, exit_;  ///< of the box
+  Event enter_, exit_;  ///< where the rays enter and leave the box
   M active_, stopped_, front_;
   VI index_;      ///< child_index of the rays' cells
-  VF entered_t_;  ///< when they entered them
+  VF entered_t_;  ///< depth at which they entered them
   NextPlanes next_;
-  VI cell_;            ///< in which the ray stopped, …
+  VI cell_;            ///< cell in which the ray stopped, …
   SignChange change_;  ///< … and how v changed in it
 };
 

@@ -13,7 +13,7 @@ namespace {
 /// Slack of the conservative tests: far above the rounding of the floats, far below a voxel or a pixel.
 constexpr float kTileSlackM{1e-4F};
 constexpr float kSlackPx{0.1F};
-/// Bricks that reach nearer than this to the camera's plane are on every tile's list.
+/// Smallest distance from the camera's plane for projection; nearer bricks are on the list of every tile.
 constexpr float kNearestZ{0.02F};
 
 /// A brick's rectangle of blocks, and its nearest depth.
@@ -23,7 +23,7 @@ struct Footprint {
   float nearest_m;
 };
 
-/// Projects bricks; one per frame.
+/// Projector of bricks; one per frame.
 class BrickProjector {
  public:
   BrickProjector(const PinholeCamera& camera, const Pose& T_world_camera, double voxel_size_m)
@@ -36,14 +36,14 @@ class BrickProjector {
         last_v_{(camera.height - 1) / SurfaceTiles::kBlockPx},
         step_{(T_camera_world_.linear() * voxel_size_m).cast<float>()} {}
 
-  /// Whether a ball can be in the image at all.
+  /// Tells whether a ball can be in the image at all.
   [[nodiscard]] bool may_see(const Eigen::Vector3d& center_world, double radius_m) const {
     const Eigen::Vector3d c = T_camera_world_ * center_world;
     if (c.z() + radius_m < 0.0 || c.z() - radius_m > camera_.max_range_m) return false;
     return columns_.beside(c.x(), c.z()) < radius_m && rows_.beside(c.y(), c.z()) < radius_m;
   }
 
-  /// False: the box of cells is not in the image.
+  /// Returns false when the box of cells is not in the image.
   [[nodiscard]] bool project(Footprint& out) const {
     // Cells reach from the centre of their first voxel to that of the voxel beyond their last.
     const IndexBox& box = out.brick.box;
@@ -89,7 +89,7 @@ class BrickProjector {
   }
 
  private:
-  /// The two planes that bound the image on an axis.
+  /// Two planes that bound the image on an axis.
   struct Sides {
     double low;
     double high;
@@ -101,7 +101,7 @@ class BrickProjector {
           high{(size - 0.5 - principal) / focal},
           low_scale{1.0 / std::hypot(1.0, low)},
           high_scale{1.0 / std::hypot(1.0, high)} {}
-    /// How far a point lies outside the nearer of the two; negative inside.
+    /// Returns how far a point lies outside the nearer plane; negative inside.
     [[nodiscard]] double beside(double x, double z) const {
       return std::max((low * z - x) * low_scale, (x - high * z) * high_scale);
     }
@@ -156,7 +156,7 @@ SurfaceTiles::SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, con
   });
 
   first_entry_.resize(static_cast<std::size_t>(width_) * static_cast<std::size_t>(height_) + 1);
-  // Calls body(tile, its blocks in the footprint).
+  // Calls body(tile, blocks of the tile in the footprint).
   const auto for_each_tile = [&](const Footprint& footprint, const auto& body) {
     const auto halves = [](int tile, int first, int last) {
       return (2 * tile >= first ? 1 : 0) | (2 * tile + 1 <= last ? 2 : 0);

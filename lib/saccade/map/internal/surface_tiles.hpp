@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfaceTiles: which bricks of the mapped surface each tile of an image can see.
+// SurfaceTiles: the bricks of the mapped surface that each tile of an image can see.
 
 #include <cstdint>
 #include <span>
@@ -13,9 +13,9 @@
 
 namespace saccade {
 
-/// Per tile of 8×8 pixels, the bricks that may hold a surface cell crossed by a ray of the tile: all of those, and some
-/// more. A cell lies between eight voxel centres and is named by its lowest corner, in bricks like that voxel.
-/// O(bricks with occupied voxels + entries).
+/// Lists, for each tile of 8×8 pixels, all bricks that may hold a surface cell crossed by a ray of the tile, and some
+/// more. A cell lies between eight voxel centres and is named by its lowest corner, whose brick it belongs to. O(bricks
+/// with occupied voxels + entries).
 class SurfaceTiles {
  public:
   static constexpr int kTilePx{8};
@@ -24,12 +24,12 @@ class SurfaceTiles {
 
   /// A brick in the list of a tile.
   struct Entry {
-    float nearest_m{0.0F};   ///< its cells lie no nearer, along the camera's z
+    float nearest_m{0.0F};   ///< smallest depth of its cells, along the camera's z
     std::uint32_t brick{0};  ///< index into bricks()
     std::uint8_t blocks{0};  ///< bit x + 2 y: block (x, y) of the tile may see it
   };
 
-  /// `sectors` covers the grid.
+  /// Lists the bricks for each tile. `sectors` covers the grid.
   SurfaceTiles(const TsdfGrid& grid, const SectorTable& sectors, const PinholeCamera& camera,
                const Pose& T_world_camera, double voxel_size_m, const Executor& executor);
 
@@ -39,10 +39,10 @@ class SurfaceTiles {
   struct Brick {
     Index3 index;
     Mask512 cells;  ///< crossed_cells
-    IndexBox box;   ///< around them, voxels within the brick
+    IndexBox box;   ///< box around the cells, voxels within the brick
   };
   [[nodiscard]] const std::vector<Brick>& bricks() const { return bricks_; }
-  /// In no particular order.
+  /// Returns the entries of a tile in no particular order.
   [[nodiscard]] std::span<const Entry> entries(int tile_u, int tile_v) const {
     const auto tile =
         static_cast<std::size_t>(tile_v) * static_cast<std::size_t>(width_) + static_cast<std::size_t>(tile_u);

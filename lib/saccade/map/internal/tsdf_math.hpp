@@ -31,7 +31,7 @@ struct FusionCamera {
   float inv_truncation;  ///< 1 / M_v
 };
 
-/// Where a brick's voxels lie in camera coordinates: centre of voxel (0, 0, 0), and one step along each axis.
+/// Brick in camera coordinates: centre of voxel (0, 0, 0), and one step along each axis.
 struct BrickFrame {
   Float3 origin;
   Float3 step_x;
@@ -39,26 +39,27 @@ struct BrickFrame {
   Float3 step_z;
 };
 
-/// Voxels nearer to the camera's plane than this are not updated.
+/// Smallest distance from the camera's plane at which voxels are updated.
 constexpr float kNearestZ{1e-3F};
 /// A sample of 1: v of voxels farther than the truncation in front of the surface.
 constexpr int kSampleOne{32767};
-/// No observation of this voxel.
+/// Sample of a voxel that was not observed.
 constexpr int kNotSeen{-32768};
 
-/// Nearest integer, ties to even, for |x| < 2²²; the same on every machine without touching the rounding mode.
+/// Rounds to the nearest integer, ties to even, for |x| < 2²². Equal on every machine, without touching the rounding
+/// mode.
 SACCADE_HD inline float round_to_even(float x) {
   constexpr float kMagic{12582912.0F};  // 1.5 · 2²³
   return (x + kMagic) - kMagic;
 }
 
-/// ((u − c_x) / f_x)² of a column u, or the like of a row.
+/// Returns ((u − c_x) / f_x)² of a column u, or the equivalent for a row.
 SACCADE_HD inline float squared_slope(int pixel, float center, float focal_length) {
   const float slope = (static_cast<float>(pixel) - center) / focal_length;
   return slope * slope;
 }
 
-/// ‖p − o‖ of eq. 2.1 for a depth d at pixel (u, v); the sign of d is kept (d < 0: free up to |d|).
+/// Returns ‖p − o‖ of eq. 2.1 for a depth d at pixel (u, v), with the sign of d (d < 0: free up to |d|).
 SACCADE_HD inline float range_of_depth(const FusionCamera& camera, int u, int v, float depth_m) {
   const float dx_squared = squared_slope(u, camera.cx, camera.fx);
   const float dy_squared = squared_slope(v, camera.cy, camera.fy);
@@ -74,8 +75,8 @@ SACCADE_HD inline Float3 voxel_in_camera(const BrickFrame& frame, int x, int y, 
           ((frame.origin.z + frame.step_z.z * fz) + frame.step_y.z * fy) + frame.step_x.z * fx};
 }
 
-/// The pixel whose beam holds p; outside the image `inside` is false and the pixel (0, 0). Without branches, so that
-/// loops over it become vector code.
+/// Pixel whose beam holds p. Outside the image, `inside` is false and the pixel is (0, 0). Computed without branches,
+/// so that loops become vector code.
 struct Pixel {
   int u;
   int v;
@@ -90,8 +91,8 @@ SACCADE_HD inline Pixel pixel_of(const FusionCamera& camera, const Float3& p) {
   return {static_cast<int>(inside ? u : 0.0F), static_cast<int>(inside ? v : 0.0F), inside};
 }
 
-/// The new observation of a voxel at p, given the range seen in its beam (0: none): clamp(v_SDF / M_v) of eq. 2.2 in
-/// units of 1/32767, or kNotSeen behind the truncation.
+/// Returns the new observation of a voxel at p, given the range seen in its beam (0: none): clamp(v_SDF / M_v) of eq.
+/// 2.2 in units of 1/32767, or kNotSeen behind the truncation.
 SACCADE_HD inline int sample_voxel(const FusionCamera& camera, const Float3& p, float range_m) {
   const float distance = std::sqrt((p.x * p.x + p.y * p.y) + p.z * p.z);
   const float sdf = range_m - distance;  // eq. 2.1
@@ -104,30 +105,30 @@ SACCADE_HD inline int sample_voxel(const FusionCamera& camera, const Float3& p, 
   return hit ? sample : (seen_free ? kSampleOne : kNotSeen);
 }
 
-/// What an observation counts as: where it sees farther than the truncation past a voxel that was found near a surface,
-/// it is only so large a share of the way from the old v to 1 (docs/decisions/0021).
+/// Returns the observation that enters the average. Where a beam sees farther than the truncation past a voxel found
+/// near a surface, it moves v towards 1 by only `share` of the distance (docs/decisions/0021).
 SACCADE_HD inline int clearing_sample(std::int16_t v, std::uint16_t w, int sample, float share) {
   const int way = static_cast<int>(round_to_even(static_cast<float>(kSampleOne - static_cast<int>(v)) * share));
   return sample == kSampleOne && w > 0 ? static_cast<int>(v) + way : sample;
 }
 
-/// Eq. 2.2 in fixed point. The numerator is exact in float for w ≤ 500.
+/// Averages v by eq. 2.2 in fixed point. The numerator is exact in float for w ≤ 500.
 SACCADE_HD inline std::int16_t average_v(std::int16_t v, std::uint16_t w, int sample) {
   const int numerator = static_cast<int>(v) * static_cast<int>(w) + sample;
   return static_cast<std::int16_t>(round_to_even(static_cast<float>(numerator) / static_cast<float>(w + 1)));
 }
 
-/// Eq. 2.3; where v = 1 the weight saturates at W_th already (docs/decisions/0001).
+/// Returns the next weight by eq. 2.3; where v = 1 it saturates at W_th already (docs/decisions/0001).
 SACCADE_HD inline std::uint16_t next_w(std::int16_t new_v, std::uint16_t w, std::uint16_t max_weight,
                                        std::uint16_t free_weight) {
   const std::uint16_t limit = new_v == kSampleOne ? free_weight : max_weight;
   return w + 1 < limit ? static_cast<std::uint16_t>(w + 1) : limit;
 }
 
-/// Observations that a colour averages over; more would no longer move 8-bit values.
+/// Limit of observations that a colour averages over; more would no longer move 8-bit values.
 constexpr int kColorWeight{15};
 
-/// Running average of one colour channel; w counts earlier observations.
+/// Averages one colour channel; w counts earlier observations.
 SACCADE_HD inline std::uint8_t average_color(std::uint8_t old_value, std::uint16_t w, std::uint8_t sample) {
   const int weight = w < kColorWeight ? w : kColorWeight;
   return static_cast<std::uint8_t>((old_value * weight + sample + (weight + 1) / 2) / (weight + 1));

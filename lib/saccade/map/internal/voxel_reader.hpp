@@ -10,19 +10,19 @@
 
 namespace saccade {
 
-/// Reads voxels through a small cache of bricks, so that neighbouring reads cost an array access. One per thread; the
+/// Reader of voxels with a small cache of bricks, so that neighbouring reads cost one array access. One per thread; the
 /// table and its grid must outlive it and stay unchanged.
 class VoxelReader {
  public:
   explicit VoxelReader(const SectorTable& sectors) : sectors_{&sectors} {}
 
-  /// nullopt: unknown.
+  /// Returns the value of a voxel; nullopt where unknown.
   [[nodiscard]] std::optional<float> value(const Index3& voxel) {
     const Slot& slot = find(parent(voxel));
     return read(slot, child_index(voxel));
   }
 
-  /// The cell whose lower corner is `base`; nullopt when one of its corners is unknown.
+  /// Returns the cell whose lower corner is `base`; nullopt when one of its corners is unknown.
   [[nodiscard]] std::optional<Cell> cell(const Index3& base) {
     Cell cell;
     if ((base.x & 7) != 7 && (base.y & 7) != 7 && (base.z & 7) != 7) {
@@ -44,7 +44,7 @@ class VoxelReader {
     return cell;
   }
 
-  /// nullopt where there is none.
+  /// Returns the colour of a voxel; nullopt where it has none.
   [[nodiscard]] std::optional<Rgb8> color(const Index3& voxel) {
     const Slot& slot = find(parent(voxel));
     if (slot.dense == nullptr || slot.dense->colors == nullptr) return std::nullopt;
@@ -70,7 +70,8 @@ class VoxelReader {
     return known ? std::optional{static_cast<float>(kTsdfOne)} : std::nullopt;
   }
 
-  /// Bricks whose coordinates have different parity never evict each other: a cell's bricks all stay.
+  /// Finds the cached brick. Bricks whose coordinates differ in parity never evict each other, so all bricks of a cell
+  /// stay.
   [[nodiscard]] const Slot& find(const Index3& brick) {
     Slot& slot = slots_[static_cast<std::size_t>((brick.x & 1) | ((brick.y & 1) << 1) | ((brick.z & 1) << 2))];
     if (slot.filled && slot.brick == brick) return slot;

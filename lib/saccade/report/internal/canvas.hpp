@@ -15,7 +15,7 @@ namespace saccade {
 struct LineStyle {
   Rgb8 color{40, 44, 52};
   double width_px{1.5};
-  double hidden_opacity{0.0};  ///< of the parts behind what is already drawn
+  double hidden_opacity{0.0};  ///< opacity of the parts behind what is already drawn
 };
 
 /// Drawn at `samples`² points per pixel and averaged by finish(), so edges are smooth. Depth is along the camera's z.

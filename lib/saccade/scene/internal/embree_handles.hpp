@@ -26,7 +26,7 @@ using EmbreeScene = std::unique_ptr<RTCSceneTy, EmbreeSceneRelease>;
   return Error{Errc::unavailable, "Embree failed with its error " + std::to_string(rtcGetDeviceError(device)), "scene"};
 }
 
-/// Copies the mesh into buffers that Embree owns; the geometry gets the number `id`. False without memory.
+/// Copies the mesh into buffers that Embree owns; the geometry gets the number `id`. Returns false without memory.
 [[nodiscard]] inline bool attach_mesh(RTCDevice device, RTCScene scene, const TriangleMesh& mesh, unsigned id) {
   RTCGeometry geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_TRIANGLE);
   auto* vertices = static_cast<float*>(rtcSetNewGeometryBuffer(geometry, RTC_BUFFER_TYPE_VERTEX, 0, RTC_FORMAT_FLOAT3,

@@ -13,14 +13,14 @@ using Eigen::Vector3d;
 
 constexpr double kTwoPi{2.0 * std::numbers::pi};
 
-/// The vertices of one ring: `count` of them from `first` on; one vertex is a point on the axis.
+/// Vertices of one ring: `count` of them from `first` on; a single vertex is a point on the axis.
 struct Ring {
   std::uint32_t first{0};
   std::uint32_t count{1};
   [[nodiscard]] std::uint32_t operator[](std::uint32_t i) const { return count == 1 ? first : first + i % count; }
 };
 
-/// The strip between two rings, seen counter-clockwise from the side that lies to the right of lower → upper.
+/// Adds the strip between two rings, counter-clockwise seen from the right of lower → upper.
 void add_strip(const Ring& lower, const Ring& upper, TriangleMesh& mesh) {
   const std::uint32_t count = std::max(lower.count, upper.count);
   if (count == 1) return;

@@ -53,7 +53,7 @@ void SceneMaker::cable(const std::string& name, std::span<const Vector3d> points
   Vector3d from = points.front();
   std::size_t rods = 0;
   for (std::size_t i = 0; i + 1 < points.size(); ++i) {
-    // Catmull and Rom's cubic, which passes through the points.
+    // Catmull–Rom spline, which passes through the points.
     const Vector3d& a = points[i > 0 ? i - 1 : i];
     const Vector3d& b = points[i];
     const Vector3d& c = points[i + 1];

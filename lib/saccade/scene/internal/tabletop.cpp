@@ -6,7 +6,7 @@ namespace {
 
 using Eigen::Vector3d;
 
-/// Floor and walls around the table: a depth camera that looks past it sees them.
+/// Adds floor and walls around the table, which a depth camera sees when it looks past it.
 void add_room(Scene& scene) {
   const auto add = [&scene](const char* name, const Vector3d& size_m, const Vector3d& at) {
     SceneObject part;

@@ -15,13 +15,13 @@ using Eigen::Vector3d;
 struct TruthLabels::Impl {
   RayScene scene;
   SegmentTable segments;
-  EmbreeDevice device;    // released after
-  EmbreeScene triangles;  // its triangles
+  EmbreeDevice device;    // released last
+  EmbreeScene triangles;  // scene of this device
 };
 
 namespace {
 
-constexpr double kAbove_m{1e-4};  // from where a surface point looks out of its body
+constexpr double kAbove_m{1e-4};  // height above the surface from which a point looks out of its body
 
 struct SurfaceQuery {
   const RayScene& scene;
@@ -33,7 +33,7 @@ struct SurfaceQuery {
   Vector3d normal_at{Vector3d::Zero()};
 };
 
-/// Inside another body: the ray outwards leaves that body before it enters any.
+/// Tells whether a point lies inside another body: a ray outwards leaves that body before it enters any.
 bool covered(const RayScene& scene, const Vector3d& at, const Vector3d& normal) {
   const auto hit = scene.cast(at + kAbove_m * normal, normal);
   return hit && hit->normal_world.dot(normal) > 0.0;
@@ -56,7 +56,7 @@ bool consider(RTCPointQueryFunctionArguments* arguments) {
   query.object = arguments->geomID;
   query.at = at;
   query.normal_at = normal;
-  // Rounded up, and a little more: single precision must not lose a triangle that is nearer still.
+  // Rounded up with some margin: single precision must not miss a triangle that is nearer still.
   arguments->query->radius =
       std::nextafter(static_cast<float>(distance_m * (1.0 + 1e-5)), std::numeric_limits<float>::max());
   return true;

@@ -13,7 +13,8 @@ namespace {
 
 constexpr std::size_t kCellsAtOnce{128};
 
-/// Steps to all cells with a place nearer than two widths, by the distance of their middles.
+/// Returns the steps to all cells that may hold a point nearer than two widths, sorted by the distance of their
+/// middles.
 std::vector<std::uint64_t> offsets_within_two() {
   constexpr int kSteps{2};
   std::vector<std::pair<int, std::array<int, 3>>> steps;
@@ -30,11 +31,11 @@ std::vector<std::uint64_t> offsets_within_two() {
 
 }  // namespace
 
-/// Labels by node, and of each cell what its points have in common.
+/// Labels by node, and the common label of each cell.
 struct BoundaryFinder::Labelled {
   std::vector<std::uint32_t> labels;
-  std::vector<std::uint32_t> of_cell;  ///< of its first point
-  std::vector<std::uint8_t> is_mixed;  ///< not all of its points have it
+  std::vector<std::uint32_t> of_cell;  ///< label of its first point
+  std::vector<std::uint8_t> is_mixed;  ///< whether its points have several labels
 
   [[nodiscard]] bool all_have(std::size_t cell, std::uint32_t label) const {
     return is_mixed[cell] == 0 && of_cell[cell] == label;
@@ -76,7 +77,7 @@ std::uint32_t BoundaryFinder::nearest_other(const Labelled& labelled, std::size_
   const Eigen::Vector3d p_m = positions_m_[node].cast<double>();
   const std::uint32_t own = labelled.labels[node];
   const double size_m = cells_.size_m();
-  const double margin_m = 1e-6 * size_m;  // for the rounding of places to cells
+  const double margin_m = 1e-6 * size_m;  // covers the rounding of positions to cells
   double least_m2 = reach_m_ * reach_m_;
   std::uint32_t nearest{kUnlabelled};
   for (std::uint32_t i = around_starts_[cell]; i < around_starts_[cell + 1]; ++i) {

@@ -41,7 +41,7 @@ void BoundarySide::look_at(const BoundarySide& other) {
 
 namespace {
 
-/// Who is paired with whom, by node; kUnlabelled: nobody.
+/// Pairs by node; kUnlabelled where a node is unpaired.
 class Pairs {
  public:
   Pairs(const BoundarySide& a, const BoundarySide& b, double reach_m)
@@ -64,7 +64,7 @@ class Pairs {
   }
   [[nodiscard]] std::uint32_t of_a(std::uint32_t a) const { return of_a_[a]; }
 
-  /// Of all pairs within reach whose two are still alone, the nearest, until there is none.
+  /// Pairs the nearest unpaired points within reach, until there is none.
   void make_nearest_first() {
     using Candidate = std::tuple<double, std::uint32_t, std::uint32_t>;  // squared distance, of a, of b
     std::priority_queue<Candidate, std::vector<Candidate>, std::greater<>> candidates;
@@ -89,7 +89,8 @@ class Pairs {
     }
   }
 
-  /// Hopcroft and Karp: along shortest ways from one that is alone to another, as many at once as share nothing.
+  /// Maximises the number of pairs (Hopcroft and Karp): augments along shortest paths from unpaired nodes, many
+  /// disjoint paths at once.
   void make_as_many_as_can_be() {
     while (find_shortest_ways()) {
       left_.reset();
@@ -102,7 +103,7 @@ class Pairs {
  private:
   [[nodiscard]] std::uint32_t next(NearNodes& near) { return near.next(a_, b_, left_, reach_m2_); }
 
-  /// How many steps from those of a that are alone, up to the nearest that is alone of b.
+  /// Finds the number of steps from the unpaired nodes of a, up to the nearest unpaired node of b.
   [[nodiscard]] bool find_shortest_ways() {
     left_.reset();
     std::fill(steps_b_.begin(), steps_b_.end(), kUnlabelled);
@@ -201,7 +202,7 @@ void for_each_cluster(const BoundarySide& a, const BoundarySide& b, double reach
   }
 }
 
-/// Makes the pairs of a cluster anew: as many as can be, of such the nearest.
+/// Pairs a cluster anew: as many pairs as possible, of these the nearest.
 void assign(const BoundarySide& a, const BoundarySide& b, double reach_m, const Cluster& cluster, Pairs& pairs) {
   for (const std::uint32_t node : cluster.a) {
     if (pairs.of_a(node) != kUnlabelled) pairs.clear(node, pairs.of_a(node));
@@ -246,7 +247,7 @@ Result<BoundaryMatching> match_boundaries(std::span<const Eigen::Vector3f> posit
                                           std::span<const std::uint32_t> a, std::span<const std::uint32_t> b,
                                           const BoundaryMatchingConfig& config) {
   SACCADE_CHECK(config.validate());
-  if (a.size() > b.size()) {  // ways are looked for from a, so the fewer the better
+  if (a.size() > b.size()) {  // paths are searched from a, so a should be the smaller side
     SACCADE_TRY(BoundaryMatching matching, match_boundaries(positions_m, b, a, config));
     for (auto& [first, second] : matching.pairs) std::swap(first, second);
     std::sort(matching.pairs.begin(), matching.pairs.end());

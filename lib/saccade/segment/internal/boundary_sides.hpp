@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// BoundarySide, PointsLeft: two sets of points and which of them are within reach, for match_boundaries.
+// BoundarySide, PointsLeft: two sets of points and the pairs within reach, for match_boundaries.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -13,12 +13,13 @@
 
 namespace saccade {
 
-/// Points of one boundary by node, those of a cell next to each other; cells are as wide as the reach.
+/// Points of one boundary by node, with those of a cell adjacent; cells are as wide as the reach.
 struct BoundarySide {
   PointCells cells;
   std::vector<Eigen::Vector3d> positions_m;
   std::vector<std::uint32_t> cell_of;        ///< by node
-  std::vector<std::uint32_t> around_starts;  ///< of a cell's neighbours among the other side's, one more than cells
+  std::vector<std::uint32_t> around_starts;  ///< first neighbour of each cell among the other side's; one entry more
+                                             ///< than cells
   std::vector<std::uint32_t> around;
 
   [[nodiscard]] std::size_t size() const { return positions_m.size(); }
@@ -26,17 +27,17 @@ struct BoundarySide {
 
   [[nodiscard]] static Result<BoundarySide> create(std::span<const Eigen::Vector3f> positions_m,
                                                    std::span<const std::uint32_t> points, double reach_m);
-  /// Which cells of the other side are near; once, before anything else.
+  /// Finds the nearby cells of the other side. Call this once, before anything else.
   void look_at(const BoundarySide& other);
 };
 
-/// Nodes of a side that were not taken yet, in their order; what was taken costs next to nothing to pass over.
+/// Nodes of a side that are not yet taken, in their order. Skipping taken nodes costs almost nothing.
 class PointsLeft {
  public:
   explicit PointsLeft(std::size_t count) : next_(count + 1) { reset(); }
   void reset() { std::iota(next_.begin(), next_.end(), std::uint32_t{0}); }
   void take(std::uint32_t node) { next_[node] = node + 1; }
-  /// The first that is left from `node` on, or the end of all.
+  /// Returns the first remaining node from `node` on, or the end of all.
   [[nodiscard]] std::uint32_t from(std::uint32_t node) {
     while (next_[node] != node) node = next_[node] = next_[next_[node]];
     return node;
@@ -46,7 +47,7 @@ class PointsLeft {
   std::vector<std::uint32_t> next_;
 };
 
-/// Goes through the nodes of the other side that are left and within reach of one node; others may be taken meanwhile.
+/// Iterates over the remaining nodes of the other side within reach of one node; others may be taken meanwhile.
 class NearNodes {
  public:
   NearNodes(const BoundarySide& side, const BoundarySide& other, std::uint32_t node)
@@ -57,7 +58,7 @@ class NearNodes {
   }
 
   [[nodiscard]] std::uint32_t node() const { return node_; }
-  /// kUnlabelled: no more.
+  /// Returns the next node, or kUnlabelled at the end.
   [[nodiscard]] std::uint32_t next(const BoundarySide& side, const BoundarySide& other, PointsLeft& left,
                                    double reach_m2) {
     const Eigen::Vector3d& p_m = side.positions_m[node_];

@@ -16,7 +16,7 @@ std::vector<std::size_t> least_assignment(const Eigen::MatrixXd& costs) {
   Eigen::VectorXd column_price = Eigen::VectorXd::Zero(columns);
   std::vector<Eigen::Index> row_of(static_cast<std::size_t>(columns), kFree);
   for (Eigen::Index start = 0; start < rows; ++start) {
-    // The cheapest way from the row to a free column, by way of columns that others have to give up.
+    // Cheapest path from the row to a free column, through columns that other rows give up.
     Eigen::VectorXd cost = Eigen::VectorXd::Constant(columns, std::numeric_limits<double>::infinity());
     std::vector<Eigen::Index> from(static_cast<std::size_t>(columns), kFree);  // the column before; kFree: the start
     std::vector<bool> is_settled(static_cast<std::size_t>(columns), false);

@@ -11,7 +11,7 @@ namespace {
 
 constexpr std::size_t kSeedGrain{512};
 
-/// Of places, normals and colours.
+/// Sum of positions, normals and colours.
 class VoxelSum {
  public:
   void add(const CloudVoxel& voxel) {
@@ -20,7 +20,7 @@ class VoxelSum {
     color_ += voxel.color.cast<double>();
     count_ += 1.0;
   }
-  /// Where it is counts by its place; its normal is of unit length, or zero where the sum is.
+  /// Returns the mean. `position_m` stays zero; the normal has unit length, or is zero where the sum is.
   [[nodiscard]] CloudVoxel mean() const {
     return {(place_ / count_).cast<float>(), Eigen::Vector3f::Zero(), normal_.normalized().cast<float>(),
             (color_ / count_).cast<float>(), 0};
@@ -101,7 +101,7 @@ SupervoxelGrowth::Grown SupervoxelGrowth::grow(double steps, std::span<const std
   return std::move(grown_);
 }
 
-/// How much normals and colours differ from the neighbours'.
+/// Returns the difference of normals and colours from the neighbours'.
 float SupervoxelGrowth::gradient(std::uint32_t voxel) const {
   const CloudVoxel& here = cloud_.voxels[voxel];
   float sum{0.0F};
@@ -147,7 +147,7 @@ void SupervoxelGrowth::voxels_around(std::uint32_t centre, double radius, std::v
   for (const std::uint32_t voxel : around) met[voxel] = false;
 }
 
-/// What voxels got in the last step they offer to their neighbours, which take it if it is nearer; all at once.
+/// Offers the labels of the last step to the neighbours, which take them if nearer; all at once.
 void SupervoxelGrowth::step() {
   std::vector<std::pair<std::uint32_t, std::uint32_t>> offers;
   offers.reserve(changed_.size());
@@ -160,7 +160,7 @@ void SupervoxelGrowth::step() {
     const CloudVoxel& centre = centres_[label];
     for (const std::uint32_t other : cloud_.neighbours(voxel)) {
       if (grown_.labels[other] == label || distances_[other] == kOutside) continue;
-      if (distances_[other] == 0.0F && grown_.seeds[grown_.labels[other]] == other) continue;  // a seed keeps its own
+      if (distances_[other] == 0.0F && grown_.seeds[grown_.labels[other]] == other) continue;  // a seed keeps its label
       const float distance = difference_.of(cloud_.voxels[other], centre);
       if (std::pair{distance, label} >= std::pair{distances_[other], grown_.labels[other]}) continue;
       grown_.labels[other] = label;

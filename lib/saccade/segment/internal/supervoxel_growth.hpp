@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// VoxelDifference, SupervoxelGrowth: seeds, and their growth from voxel to voxel; the part of VCCS that clouds and maps
-// share.
+// VoxelDifference, SupervoxelGrowth: seeds, and their growth from voxel to voxel; the part of VCCS that is common to
+// clouds and maps.
 
 #include <cstddef>
 #include <cstdint>
@@ -13,7 +13,7 @@
 
 namespace saccade {
 
-/// Papon et al., CVPR 2013, section 3.3, with the weights of a config.
+/// Difference of voxels by Papon et al., CVPR 2013, section 3.3, with the weights of a config.
 class VoxelDifference {
  public:
   VoxelDifference(const SupervoxelConfig& config, double seed_spacing_m)
@@ -21,13 +21,13 @@ class VoxelDifference {
         normal_{static_cast<float>(config.normal_weight)},
         color_{static_cast<float>(config.color_weight)} {}
 
-  /// Of normals and colours.
+  /// Returns the difference in normals and colours.
   [[nodiscard]] float of_surfaces(const CloudVoxel& a, const CloudVoxel& b) const {
     float sum = normal_ * (1.0F - a.normal.dot(b.normal));
     if (color_ > 0.0F) sum += color_ * (a.color - b.color).norm();
     return sum;
   }
-  /// Of these and of places.
+  /// Returns the difference in normals, colours and positions.
   [[nodiscard]] float of(const CloudVoxel& a, const CloudVoxel& b) const {
     return spatial_ * (a.place - b.place).norm() + of_surfaces(a, b);
   }
@@ -36,29 +36,29 @@ class VoxelDifference {
   float spatial_, normal_, color_;
 };
 
-/// Borrows the cloud. Where a voxel ends up depends on nothing farther from it than the seeds' reach and the cells of
-/// those seeds, and on no number but the order of cells and of neighbours.
+/// Growth of supervoxels. Borrows the cloud. A voxel's label depends only on voxels and seeds within the seeds' reach
+/// and the cells of those seeds, and on the order of cells and of neighbours.
 class SupervoxelGrowth {
  public:
   SupervoxelGrowth(const VoxelCloud& cloud, const VoxelDifference& difference)
       : cloud_{cloud}, difference_{difference} {}
 
-  /// In each cell the voxel nearest to the mean of those in it, moved to the least change of normals and colours within
-  /// the radius; none where fewer than `fewest` voxels lie there. Of two seeds at one voxel the one of the lower cell
-  /// stays.
+  /// Places seeds: in each cell the voxel nearest to the mean of its voxels, moved to the smallest change of normals
+  /// and colours within the radius. Cells with fewer than `fewest` voxels within the radius get none. Of two seeds at
+  /// one voxel, that of the lower cell stays.
   void seed(std::span<const std::uint32_t> cell_of, std::size_t cells, double radius, double fewest,
             const Executor& executor);
 
   struct Grown {
-    std::vector<std::uint32_t> labels;  ///< per voxel: a seed; kUnlabelled: none came there
-    std::vector<std::uint32_t> seeds;   ///< voxels, in the order of their cells
+    std::vector<std::uint32_t> labels;  ///< per voxel: a seed; kUnlabelled where none arrived
+    std::vector<std::uint32_t> seeds;   ///< seed voxels, in the order of their cells
   };
-  /// As many steps from voxel to voxel, among those that are not `outside` (one flag per voxel, or none: all). A seed
-  /// outside does not grow. One thread.
+  /// Grows for a number of steps from voxel to voxel, among those that are not `outside` (one flag per voxel, or empty:
+  /// all). A seed outside does not grow. One thread.
   [[nodiscard]] Grown grow(double steps, std::span<const std::uint8_t> outside = {});
 
-  /// What has grown is to grow anew: from the means of its voxels' places, normals and colours, and from the voxel
-  /// nearest to the mean place.
+  /// Restarts growth from the means of the voxels' positions, normals and colours, and from the voxel nearest to the
+  /// mean position.
   void move_to_means(const Grown& grown);
 
  private:
@@ -73,9 +73,9 @@ class SupervoxelGrowth {
   const VoxelCloud& cloud_;
   VoxelDifference difference_;
   Grown grown_;
-  std::vector<CloudVoxel> centres_;     ///< of supervoxels, from which voxels differ; at first their seeds
-  std::vector<float> distances_;        ///< from the centre of the label; of those outside kOutside
-  std::vector<std::uint32_t> changed_;  ///< in the last step
+  std::vector<CloudVoxel> centres_;     ///< centres of supervoxels, to which voxels are compared; at first their seeds
+  std::vector<float> distances_;        ///< distance from the label's centre; kOutside for voxels outside
+  std::vector<std::uint32_t> changed_;  ///< voxels changed in the last step
   std::vector<std::uint8_t> is_changed_;
 };
 

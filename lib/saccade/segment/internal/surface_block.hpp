@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// SurfaceBlock: 8³ voxels of the surface of a map, and what supervoxels have in them; SurfaceBlocks: all of them, with
-// their neighbours. Used by LiveSegments.
+// SurfaceBlock: 8³ voxels of the surface of a map, and the parts of supervoxels in them. SurfaceBlocks: all blocks,
+// with their neighbours. Used by LiveSegments.
 
 #include <Eigen/Core>
 #include <array>
@@ -18,44 +18,44 @@
 
 namespace saccade {
 
-/// A voxel of the surface, and the name of the supervoxel whose seed it is: slot of the block · 512 + child_index.
+/// Voxel of the surface, and name of the supervoxel whose seed it is: slot of the block · 512 + child_index.
 using VoxelName = std::uint32_t;
 
-/// Points, voxels and labels in z-y-x order of voxels.
+/// Block of points, voxels and labels in z-y-x order of voxels.
 struct SurfaceBlock {
-  /// What a supervoxel has in this block.
-  struct Part {
+  /// Part of a supervoxel in this block.
+  struct SupervoxelPart {
     VoxelName supervoxel{0};
     std::uint32_t voxels{0};
     std::uint32_t points{0};
-    Eigen::Matrix<double, 9, 1> sum;  ///< of positions, normals and colours
-    [[nodiscard]] bool operator==(const Part&) const = default;
+    Eigen::Matrix<double, 9, 1> sum;  ///< sum of positions, normals and colours
+    [[nodiscard]] bool operator==(const SupervoxelPart&) const = default;
   };
-  /// A supervoxel whose seed lies in this block.
-  struct Own {
+  /// Supervoxel whose seed lies in this block.
+  struct OwnedSupervoxel {
     VoxelName name{0};
     Supervoxel supervoxel;
   };
-  /// From one of `own` to a supervoxel that comes later.
+  /// Edge from one of `own` to a later supervoxel.
   struct Edge {
-    std::uint32_t from{0};  ///< position in `own`
+    std::uint32_t from{0};  ///< index in `own`
     VoxelName to{0};
     bool convex{false};
   };
 
-  Index3 key;  ///< in blocks
+  Index3 key;  ///< block coordinates
   std::vector<Eigen::Vector3f> positions_m;
   std::vector<Eigen::Vector3f> normals;
-  std::vector<Eigen::Vector3f> colors;  ///< none if no point has one
-  std::vector<std::uint16_t> voxel_of;  ///< per point: position in `voxels`
-  Mask512 mask;                         ///< where voxels are
+  std::vector<Eigen::Vector3f> colors;  ///< empty where no point has a colour
+  std::vector<std::uint16_t> voxel_of;  ///< per point: index in `voxels`
+  Mask512 mask;                         ///< positions of the voxels
   std::vector<CloudVoxel> voxels;
 
   std::vector<VoxelName> labels;  ///< per voxel
-  std::vector<Part> parts;
-  std::vector<std::pair<VoxelName, VoxelName>> touching;  ///< a label here, and another next to it; sorted
-  std::vector<Own> own;                                   ///< by name
-  std::vector<Edge> edges;                                ///< by supervoxel, then by the place of the other
+  std::vector<SupervoxelPart> parts;
+  std::vector<std::pair<VoxelName, VoxelName>> touching;  ///< a label in this block, and an adjacent one; sorted
+  std::vector<OwnedSupervoxel> own;                       ///< by name
+  std::vector<Edge> edges;                                ///< sorted by supervoxel, then by the position of the other
 
   [[nodiscard]] bool same_surface(const SurfaceBlock& other) const {
     return positions_m == other.positions_m && normals == other.normals && colors == other.colors &&
@@ -63,7 +63,7 @@ struct SurfaceBlock {
   }
 };
 
-/// Blocks by slot and by key. Slots of blocks that went are taken again.
+/// Blocks by slot and by key. Slots of removed blocks are reused.
 class SurfaceBlocks {
  public:
   static constexpr std::uint32_t kNone{~std::uint32_t{0}};
@@ -72,23 +72,23 @@ class SurfaceBlocks {
   [[nodiscard]] SurfaceBlock& operator[](std::uint32_t slot) { return blocks_[slot]; }
   [[nodiscard]] const SurfaceBlock& operator[](std::uint32_t slot) const { return blocks_[slot]; }
   [[nodiscard]] const Around& around(std::uint32_t slot) const { return around_[slot]; }
-  /// More than any slot.
+  /// Returns a number larger than any slot.
   [[nodiscard]] std::size_t slots() const { return blocks_.size(); }
   [[nodiscard]] std::uint32_t find(const Index3& key) const {
     const auto found = slot_of_.find(key);
     return found == slot_of_.end() ? kNone : found->second;
   }
-  /// The slot of a new block.
+  /// Inserts a block and returns its slot.
   std::uint32_t insert(SurfaceBlock&& block);
   void erase(std::uint32_t slot);
-  /// These blocks, and those up to so many blocks away to which blocks lead; by slot.
+  /// Returns these blocks and those connected through up to `rings` neighbours, sorted by slot.
   [[nodiscard]] std::vector<std::uint32_t> with_rings(std::span<const std::uint32_t> slots, int rings) const;
 
-  /// Order of blocks, which is the same whatever slots they have.
+  /// Tells whether block a precedes block b, independent of their slots.
   [[nodiscard]] bool block_before(std::uint32_t a, std::uint32_t b) const {
     return zyx_less(blocks_[a].key, blocks_[b].key);
   }
-  /// Order of voxels, by block and then within it.
+  /// Tells whether voxel a precedes voxel b: by block and then within it.
   [[nodiscard]] bool before(VoxelName a, VoxelName b) const {
     const Index3& key_a = blocks_[a / kBrickVoxels].key;
     const Index3& key_b = blocks_[b / kBrickVoxels].key;
@@ -102,16 +102,16 @@ class SurfaceBlocks {
   std::unordered_map<Index3, std::uint32_t, Index3Hash> slot_of_;
 };
 
-/// Where in a block the voxels lie that touch the block of which it is neighbour n, as in SurfaceBlocks::Around.
+/// Returns the voxels of a block that touch its neighbour n, numbered as in SurfaceBlocks::Around.
 [[nodiscard]] const Mask512& border_towards(std::size_t n);
 
-/// Something of every voxel of a block and of those next to it, so that neighbours are a stride away.
+/// Values of all voxels of a block and of those around it, so that neighbours are a stride apart.
 class PaddedBlock {
  public:
   static constexpr int kEdge{kBrickEdge + 2};
   static constexpr std::uint32_t kNothing{~std::uint32_t{0}};
 
-  /// value(slot, position of the voxel in its block).
+  /// Loads value(slot, position of the voxel in its block).
   template <class Value>
   void load(const SurfaceBlocks& blocks, std::uint32_t slot, const Value& value) {
     values_.fill(kNothing);
@@ -142,7 +142,7 @@ class PaddedBlock {
     [[nodiscard]] const std::uint32_t* begin() const { return values.data(); }
     [[nodiscard]] const std::uint32_t* end() const { return values.data() + count; }
   };
-  /// What is there next to the voxel, z slowest.
+  /// Reads the voxel's neighbours, z slowest.
   void read_neighbours(std::size_t child, Neighbours& to) const {
     const std::uint32_t* here = &values_[static_cast<std::size_t>(index(child_offset(static_cast<int>(child))))];
     to.count = 0;

@@ -13,15 +13,16 @@ namespace saccade {
 
 namespace {
 
-/// 2 to the power of this is wider than the surfel. Sizes within a factor of four share a grid: looking into another
-/// one costs more than the points of wider cells.
+/// Returns an exponent: 2 to its power is wider than the surfel. Sizes within a factor of four share a grid, because
+/// visiting another grid costs more than the points of wider cells.
 int size_exponent(float radius_m) {
   int exponent{0};
   static_cast<void>(std::frexp(2.0F * radius_m, &exponent));
   return exponent + (exponent & 1);
 }
 
-/// Surfels much smaller than most do not get grids of their own, in which their neighbours would be hard to find.
+/// Returns the smallest exponent of a grid: surfels much smaller than most get no grid of their own, in which
+/// neighbours would be hard to find.
 int least_exponent(std::span<const float> radii_m, std::span<const std::uint32_t> surfels) {
   constexpr int kBelowMedian{2};
   std::vector<float> radii;
@@ -43,8 +44,7 @@ Result<SurfelGraph> SurfelGraph::create(const PointCloud& cloud) {
   if (cloud.radii_m.empty()) return Error{Errc::invalid_argument, "surfels need radii", "surfel graph"};
   for (const std::uint32_t surfel : surfels) {
     if (!(std::isfinite(cloud.radii_m[surfel]) && cloud.radii_m[surfel] >= 0.0F)) {
-      return Error{Errc::invalid_argument, "a radius that is not finite, or negative",
-                   "point " + std::to_string(surfel)};
+      return Error{Errc::invalid_argument, "a radius is not finite, or negative", "point " + std::to_string(surfel)};
     }
   }
   const int least = least_exponent(cloud.radii_m, surfels);
@@ -80,7 +80,7 @@ void SurfelGraph::gather(std::size_t level, std::size_t cell, Nearby& near) cons
   const PointCells& cells = levels_[level].cells;
   add(range_of(level, static_cast<std::uint32_t>(cell)));
   near.own = near.nodes.size();
-  // Half of the cells around it, so that a pair comes once, and all around it in coarser grids.
+  // Half of the cells around it, so that each pair occurs once, and all around it in coarser grids.
   const auto& around = neighbour_offsets();
   for (std::size_t i = 0; i < around.size() / 2; ++i) add_cell(level, cells.key(cell) + around[i]);
   const Eigen::Vector3f p_m = nodes_[near.nodes.front()].head<3>();
@@ -113,7 +113,7 @@ void SurfelGraph::find_near(std::size_t i, Nearby& near) {
     }
     near.found[block] = std::bit_cast<std::uint64_t>(flags);
   }
-  const std::size_t first = (i + 1) / kBlock;  // up to i itself there is nothing to find
+  const std::size_t first = (i + 1) / kBlock;  // partners of i come after it
   if (first < near.found.size()) near.found[first] &= ~std::uint64_t{0} << (8 * ((i + 1) % kBlock));
 }
 
@@ -122,7 +122,7 @@ SurfelComponents number_components(const SurfelGraph& graph, DisjointSets& sets)
   components.labels.assign(graph.points(), kUnlabelled);
   const std::span<const std::uint32_t> surfels = graph.surfels();
   for (std::uint32_t node = 0; node < surfels.size(); ++node) components.labels[surfels[node]] = sets.root(node);
-  std::vector<std::uint32_t> numbers(surfels.size(), kUnlabelled);  // of roots
+  std::vector<std::uint32_t> numbers(surfels.size(), kUnlabelled);  // numbers of roots
   for (std::uint32_t& label : components.labels) {
     if (label == kUnlabelled) continue;
     if (numbers[label] == kUnlabelled) numbers[label] = static_cast<std::uint32_t>(components.count++);
@@ -139,7 +139,7 @@ Result<SurfelComponents> split_unconnected(const SurfelGraph& graph, std::span<c
   const std::span<const std::uint32_t> surfels = graph.surfels();
   SurfelComponents parts = connected_surfels(
       graph, executor, [&](std::uint32_t a, std::uint32_t b) { return labels[surfels[a]] == labels[surfels[b]]; });
-  std::vector<std::uint32_t> numbers(parts.count, kUnlabelled);  // without the parts that have no label
+  std::vector<std::uint32_t> numbers(parts.count, kUnlabelled);  // excludes parts without a label
   parts.count = 0;
   for (std::size_t i = 0; i < labels.size(); ++i) {
     std::uint32_t& part = parts.labels[i];

@@ -18,26 +18,26 @@
 
 namespace saccade {
 
-/// The neighbourhood graph of a surfel cloud: two surfels touch when ‖p₁ − p₂‖ < r₁ + r₂ (thesis eq. 4.13). Its edges
-/// are found anew each time that they are asked for, and never stored.
+/// Neighbourhood graph of a surfel cloud: two surfels touch when ‖p₁ − p₂‖ < r₁ + r₂ (thesis eq. 4.13). Edges are found
+/// anew on each request, never stored.
 ///
-/// Surfels lie in grids by their size, each at most as wide as half a cell of its grid, so that a few large ones cost
-/// the small ones nothing. Cells of a coarser grid are made of cells of the finer ones.
+/// Surfels lie in grids by their size, each at most half as wide as a cell of its grid, so that a few large ones do not
+/// slow down the small ones. Cells of a coarser grid consist of cells of the finer ones.
 class SurfelGraph {
  public:
-  /// Copies places and radii. A point that is not finite is no surfel.
+  /// Copies positions and radii. A point that is not finite is no surfel.
   /// @return an error of the cloud; invalid_argument without radii, for a surfel whose radius is negative or not
   /// finite, or one that lies farther away than a million times its size.
   /// O(surfels), one thread.
   [[nodiscard]] static Result<SurfelGraph> create(const PointCloud& cloud);
 
-  /// Surfels by node: those of a cell next to each other.
+  /// Returns the surfels by node, with those of a cell adjacent.
   [[nodiscard]] std::span<const std::uint32_t> surfels() const { return surfels_; }
-  /// Of the cloud, those that are no surfels included.
+  /// Returns the number of points of the cloud, including those that are no surfels.
   [[nodiscard]] std::size_t points() const { return points_; }
 
-  /// Calls body(a, b) with nodes once for every edge, from several threads at once, in any order.
-  /// O(surfels · those nearby).
+  /// Calls body(a, b) with nodes once for every edge, from several threads at once, in any order. O(surfels ·
+  /// neighbours).
   template <class Body>
   void for_each_edge(const Executor& executor, const Body& body) const {
     for (std::size_t level = 0; level < levels_.size(); ++level) {
@@ -62,11 +62,11 @@ class SurfelGraph {
 
  private:
   struct Range {
-    std::uint32_t begin, end;  ///< nodes
+    std::uint32_t begin, end;  ///< range of nodes
   };
   struct Level {
     PointCells cells;
-    std::uint32_t first{0};  ///< node
+    std::uint32_t first{0};  ///< first node
   };
 
   [[nodiscard]] Range range_of(std::size_t level, std::uint32_t cell) const {
@@ -75,15 +75,15 @@ class SurfelGraph {
   }
 
   static constexpr std::size_t kBlock{8};
-  /// Surfels of a cell, and all that may touch these and come later in the order of pairs; in whole blocks.
+  /// Surfels of a cell, followed by all later ones in the order of pairs that may touch them; in whole blocks.
   struct Nearby {
-    std::size_t own{0};  ///< of the cell, which are the first
+    std::size_t own{0};  ///< number of the cell's own surfels, which come first
     std::vector<std::uint32_t> nodes;
-    std::array<std::vector<float>, 4> lanes;  ///< x, y, z, radius; of those that fill up the last block NaN
-    std::vector<std::uint64_t> found;         ///< by block: a byte for each, not 0 for those that may touch
+    std::array<std::vector<float>, 4> lanes;  ///< x, y, z, radius; NaN where the last block is padded
+    std::vector<std::uint64_t> found;         ///< by block: one byte each, not 0 for surfels that may touch
   };
   void gather(std::size_t level, std::size_t cell, Nearby& near) const;
-  /// Which ones after `i` may touch it, by single precision and a margin for its rounding.
+  /// Marks the surfels after `i` that may touch it, in single precision with a margin for rounding.
   static void find_near(std::size_t i, Nearby& near);
 
   [[nodiscard]] bool touch(std::uint32_t a, std::uint32_t b) const {
@@ -93,17 +93,17 @@ class SurfelGraph {
     return (i.head<3>().cast<double>() - k.head<3>().cast<double>()).squaredNorm() < sum_m * sum_m;
   }
 
-  std::vector<Level> levels_;           ///< the finest first
-  std::vector<Eigen::Vector4f> nodes_;  ///< place and radius
+  std::vector<Level> levels_;           ///< finest first
+  std::vector<Eigen::Vector4f> nodes_;  ///< position and radius
   std::vector<std::uint32_t> surfels_;
   std::size_t points_{0};
 };
 
-/// From sets of nodes.
+/// Numbers the components of sets of nodes.
 [[nodiscard]] SurfelComponents number_components(const SurfelGraph& graph, DisjointSets& sets);
 
-/// What edges connect whose ends are alike. `alike` is given nodes, by several threads at once.
-/// Near-linear in the edges. The thread count never changes the result.
+/// Finds the components connected by edges whose ends satisfy `alike`, which is called with nodes by several threads at
+/// once. Near-linear in the edges. The thread count never changes the result.
 template <class Alike>
 [[nodiscard]] SurfelComponents connected_surfels(const SurfelGraph& graph, const Executor& executor,
                                                  const Alike& alike) {
@@ -114,8 +114,8 @@ template <class Alike>
   return number_components(graph, sets);
 }
 
-/// Labels with the parts of each that do not touch told apart (thesis §4.1.3: truth segments that are not connected on
-/// the graph are split). A point without a label, or without a place, has none.
+/// Splits labels into parts that do not touch (thesis §4.1.3: truth segments that are not connected on the graph are
+/// split). A point without a label or position gets none.
 /// @return size_mismatch unless there is one label per point.
 [[nodiscard]] Result<SurfelComponents> split_unconnected(const SurfelGraph& graph,
                                                          std::span<const std::uint32_t> labels,

@@ -16,11 +16,11 @@ namespace {
 
 namespace hn = hwy::HWY_NAMESPACE;
 
-// Two rows of an image share most of what their windows add up. A column's sum begins with the pixels of both rows, and
-// goes on with one above and one below; the sum of a window is that of its columns. The order is the same for every
-// width of a vector and whoever has the rows: no instruction set and no number of threads changes a bit. Products of
-// channels are exact in double precision, for these are floats: there a fused multiply-add rounds no other way than
-// product and sum. Elsewhere the two stay apart.
+// Two rows of an image share most of their windows' sums. A column's sum begins with the pixels of both rows, and
+// continues with one above and one below; a window's sum is that of its columns. The order is independent of the vector
+// width and of the thread, so no instruction set and no number of threads changes a bit. Products of channels are exact
+// in double precision, because channels are floats: there a fused multiply-add rounds like product and sum. Elsewhere
+// the two stay separate.
 using Doubles = hn::CappedTag<double, kBlock>;
 using Floats = hn::Rebind<float, Doubles>;
 using V = hn::Vec<Doubles>;
@@ -30,15 +30,15 @@ HWY_INLINE V set(double value) { return hn::Set(Doubles{}, value); }
 HWY_INLINE V load(const double* from) { return hn::LoadU(Doubles{}, from); }
 HWY_INLINE V load_floats(const float* from) { return hn::PromoteTo(Doubles{}, hn::LoadU(Floats{}, from)); }
 
-/// The two channels of each moment: those with the mask, which is 1 or 0, are the count and the sums. In the first half
-/// depth does not come: each half needs few channels.
+/// The two channels of each moment. Those with the mask, which is 1 or 0, give the count and the sums. Depth does not
+/// occur in the first half, so that each half needs few channels.
 constexpr std::array<std::size_t, kMoments> kFirstChannel{0, 0, 0, 0, 1, 1, 1, 2, 2, 3, 0, 1, 2, 3, 4, 0, 1, 2, 3, 4};
 constexpr std::array<std::size_t, kMoments> kOtherChannel{0, 1, 2, 3, 1, 2, 3, 2, 3, 3, 4, 4, 4, 4, 4, 5, 5, 5, 5, 5};
 
-/// Sums of so many moments at a time stay in registers: AVX-512 has 32 of them.
+/// Number of moments whose sums stay in registers at a time; AVX-512 has 32 of them.
 constexpr std::size_t kGroup{HWY_MAX_BYTES == 64 ? kMoments : kMoments / 2};
 
-/// What is summed, of one vector of pixels: moments kFirst and on. `pixels` is where their masks are.
+/// Terms of the sums for one vector of pixels: moments from kFirst on. `pixels` points to their masks.
 template <std::size_t kFirst>
 struct MomentsOf {
   static constexpr std::size_t kCount{kGroup};
@@ -56,7 +56,7 @@ struct MomentsOf {
   }
 };
 
-/// And fits, of which the last is not summed.
+/// Terms of the sums of fits, without the last value.
 struct FitsOf {
   static constexpr std::size_t kCount{kFits - 1};
   const double* fits;
@@ -95,7 +95,7 @@ HWY_INLINE void add_to_stored(const Terms& terms, const double* from, V (&sum)[T
   ((sum[kSum] = terms.template added_to<kSum>(load(from + kSum * kSumColumns))), ...);
 }
 
-/// Where the sums of some columns are: levels of the upper one of two rows, and behind them those of the lower.
+/// Sums of some columns: levels of the upper of two rows, followed by those of the lower.
 struct ColumnSums {
   double* upper;
   std::ptrdiff_t per_level;
@@ -105,8 +105,8 @@ struct ColumnSums {
       : upper{sums}, per_level{static_cast<std::ptrdiff_t>(planes * kSumColumns)}, per_row{disc.levels * per_level} {}
 };
 
-/// Sums of all levels, of the columns of one vector, for two rows: at `at`. terms(row) is of a row of the windows,
-/// whose middle ones are R and R + 1.
+/// Sums all levels for the columns of one vector and two rows, into `at`. terms(row) gives the terms of a row of the
+/// windows, whose middle rows are R and R + 1.
 template <std::size_t kCount, class TermsOf>
 HWY_INLINE void sum_columns(const Disc& disc, const ColumnSums& sums, std::ptrdiff_t at, const TermsOf& terms) {
   constexpr std::make_index_sequence<kCount> kAll;
@@ -130,8 +130,8 @@ HWY_INLINE void sum_columns(const Disc& disc, const ColumnSums& sums, std::ptrdi
   }
 }
 
-/// The sums over the window of one vector of pixels, from those of columns around them: `columns` is where the sums of
-/// its own are. Its first and its last column are single pixels: terms(column).
+/// Sums over the window of one vector of pixels, from the column sums around it; `columns` points to the sums of its
+/// own columns. Its first and last columns are single pixels: terms(column).
 template <std::size_t kCount, class TermsOf>
 HWY_INLINE void sum_window(const Disc& disc, const double* columns, std::ptrdiff_t per_level, V (&sum)[kCount],
                            const TermsOf& terms) {
@@ -145,15 +145,15 @@ HWY_INLINE void sum_window(const Disc& disc, const double* columns, std::ptrdiff
   }
 }
 
-/// a · b, subtracted.
+/// Returns from − a · b.
 HWY_INLINE V less(V from, V a, V b) { return hn::Sub(from, hn::Mul(a, b)); }
 
-/// a · b − c · d.
+/// Returns a · b − c · d.
 HWY_INLINE V difference(V a, V b, V c, V d) { return hn::Sub(hn::Mul(a, b), hn::Mul(c, d)); }
 
-/// Lines 1 to 8 of Algorithm 7, from the moments of one vector of pixels. With n pixels in the window, a is the same
-/// for n²(Σ + Σ_E) = L D Lᵀ and n²κ as for Σ + Σ_E and κ. s_ij is what is left of that matrix's column j once those
-/// before it are eliminated, L_ij D_j.
+/// Computes lines 1 to 8 of Algorithm 7 from the moments of one vector of pixels. With n pixels in the window, n²(Σ +
+/// Σ_E) = L D Lᵀ and n²κ give the same a as Σ + Σ_E and κ. s_ij is the rest of the matrix's column j after eliminating
+/// those before it, L_ij D_j.
 HWY_INLINE void fit(const V (&moments)[kMoments / kGroup][kGroup], const Variances& variances, V (&fits)[kFits]) {
   const auto moment = [&](std::size_t i) HWY_ATTR { return moments[i / kGroup][i % kGroup]; };
   const V n = moment(0);
@@ -210,14 +210,14 @@ HWY_INLINE void fit(const V (&moments)[kMoments / kGroup][kGroup], const Varianc
   fits[5] = share;
 }
 
-/// Whether columns [first, end) of a loaded row, whose masks are at `used`, have a pixel that is used.
+/// Tells whether columns [first, end) of a loaded row, whose masks are at `used`, have a used pixel.
 HWY_INLINE bool any_used(const float* used, int first, int end) {
   V any = hn::Zero(Doubles{});
   for (int u = first; u < end; u += lanes()) any = hn::Or(any, load_floats(used + u));
   return !hn::AllTrue(Doubles{}, hn::Eq(any, hn::Zero(Doubles{})));
 }
 
-/// Columns on either side of a strip that its windows reach, in whole vectors.
+/// Returns the number of columns on either side of a strip that its windows reach, in whole vectors.
 HWY_INLINE int reach_of(const Disc& disc) { return (disc.radius_px + lanes() - 2) / lanes() * lanes(); }
 
 /// Calls group(first) with the first moment of each group, as a constant.
@@ -227,7 +227,7 @@ HWY_INLINE void for_groups(const Group& group) {
   if constexpr (kGroup < kMoments) group(std::integral_constant<std::size_t, kGroup>{});
 }
 
-/// Fits of one vector of pixels, whose masks are at `pixels`; `columns`: where the sums of their columns are.
+/// Fits one vector of pixels, whose masks are at `pixels`; `columns` points to the sums of their columns.
 HWY_INLINE void fit_pixels(const Disc& disc, const Variances& variances, const float* pixels, std::size_t stride,
                            const double* columns, std::ptrdiff_t per_level, double* fits) {
   const Doubles d;
@@ -275,7 +275,7 @@ void fit_rows_kernel(const RowShape& shape, const Disc& disc, const Variances& v
   }
 }
 
-/// Enhanced depth of one vector of pixels; arguments as of fit_pixels.
+/// Enhances the depth of one vector of pixels; parameters as in fit_pixels.
 HWY_INLINE void enhance_pixels(const Disc& disc, const float* pixels, std::size_t stride, const double* columns,
                                std::ptrdiff_t per_level, const double* fits, float* enhanced_m) {
   V sum[FitsOf::kCount];
@@ -310,7 +310,7 @@ void enhance_rows_kernel(const RowShape& shape, const Disc& disc, const float* c
   }
 }
 
-/// Columns [first, width) of load_row, in whole vectors; returns where it stopped.
+/// Loads columns [first, width) in whole vectors, as load_row; returns where it stopped.
 template <class D>
 HWY_INLINE int load_columns(D d, int first, const RowShape& shape, const float* depth_m, const float* guidance,
                             const std::uint8_t* used, float* row) {

@@ -11,7 +11,7 @@ namespace {
 constexpr int kMostShifts{20};
 constexpr double kStill{1e-5};  ///< a shift that changes nothing in 8 bits
 
-/// Mean of the modes' colours under a Gaussian at a place, and the weight there.
+/// Mean of the modes' colours under a Gaussian at a point, and the weight there.
 struct Density {
   Density(std::span<const SurfelMode> modes, const Eigen::Vector3d& at, double bandwidth) {
     for (const SurfelMode& mode : modes) {
@@ -28,7 +28,8 @@ struct Density {
   double sum{0.0};
 };
 
-/// `favoured` colours, in [0, 1], are begun with rather than others that are as dense.
+/// Finds the densest point. Modes whose colour, in [0, 1], satisfies `favoured` are preferred as start among equally
+/// dense ones.
 template <class Favoured>
 SurfelMode densest_of(std::span<const SurfelMode> modes, double bandwidth, const Favoured& favoured) {
   SACCADE_EXPECTS(bandwidth > 0.0);

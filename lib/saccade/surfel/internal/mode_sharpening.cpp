@@ -12,11 +12,11 @@
 namespace saccade {
 namespace {
 
-constexpr std::size_t kSampled{48};      ///< neighbours that are asked, or a few more
-constexpr float kMostOneSided{0.25F};    ///< of the reach: where the neighbours' middle is farther off, λ is 0
-constexpr std::size_t kCellsPerTask{8};  ///< of the grid
+constexpr std::size_t kSampled{48};      ///< neighbours to sample, approximately
+constexpr float kMostOneSided{0.25F};    ///< share of the reach: where the neighbours' mean is farther off, λ is 0
+constexpr std::size_t kCellsPerTask{8};  ///< cells of the grid
 
-/// 1 at 0, much like a Gaussian, and 0 beyond 2.8 σ. `half_inverse`: 1 / 2σ².
+/// Returns 1 at 0, approximately a Gaussian, and 0 beyond 2.8 σ. `half_inverse`: 1 / 2σ².
 float likeness(float squared, float half_inverse) {
   const float left = std::max(0.0F, 1.0F - 0.25F * squared * half_inverse);
   return left * left * left * left;
@@ -24,7 +24,7 @@ float likeness(float squared, float half_inverse) {
 
 float half_inverse(double sigma) { return static_cast<float>(1.0 / (2.0 * sigma * sigma)); }
 
-/// A colour and its share of a surfel's weight.
+/// Colour and its share of a surfel's weight.
 struct ColorShare {
   Eigen::Vector3f color;
   float share;
@@ -38,7 +38,7 @@ float share_like(std::span<const ColorShare> shares, const Eigen::Vector3f& colo
   return sum;
 }
 
-/// Surfels that have modes, in cubes whose sides are the reach.
+/// Surfels with modes, in cubes whose sides are the reach.
 class SurfelGrid {
  public:
   SurfelGrid(const ModeStore& store, double side_m, const Executor& executor) : positions_m_(store.size()) {
@@ -72,11 +72,11 @@ class SurfelGrid {
 
   [[nodiscard]] std::size_t cells() const { return keys_.size(); }
   [[nodiscard]] const Eigen::Vector3f& position_m(SurfelId id) const { return positions_m_[id]; }
-  /// In ascending order.
+  /// Returns the surfels of a cell in ascending order.
   [[nodiscard]] std::span<const SurfelId> surfels(std::size_t cell) const {
     return {ids_.data() + begins_[cell], begins_[cell + 1] - begins_[cell]};
   }
-  /// Calls back with the surfels of a cell and of those around it.
+  /// Calls visit with the surfels of a cell and of the cells around it.
   template <class Visit>
   void visit_around(std::size_t cell, const Visit& visit) const {
     for (std::uint64_t dx = 0; dx < 3; ++dx) {
@@ -109,7 +109,7 @@ class SurfelGrid {
   std::vector<SurfelId> ids_;
 };
 
-/// Surfels of a cell and around it, side by side in memory.
+/// Surfels in a cell and around it, contiguous in memory.
 class Neighbours {
  public:
   void gather(const ModeStore& store, const SurfelGrid& grid, std::size_t cell) {
@@ -143,7 +143,7 @@ class Neighbours {
   std::vector<ColorShare> shares_;
 };
 
-/// Chooses among the modes of one surfel after the other.
+/// Choice among the modes of one surfel after the other.
 class Sharpening {
  public:
   Sharpening(const ModeSharpeningConfig& config, double bandwidth, const Neighbours& neighbours)
@@ -159,13 +159,13 @@ class Sharpening {
     if (groups_.size() < 2) return densest_mode(modes, bandwidth_);
     weigh_groups(id, position_m);
     const auto best = std::max_element(groups_.begin(), groups_.end(), [](const Group& a, const Group& b) {
-      return a.score < b.score;  // the first, thus denser, of equal ones
+      return a.score < b.score;  // at a tie the first, which is denser
     });
     return densest_mode_like(modes, bandwidth_, best->color, config_.color_sigma);
   }
 
  private:
-  /// Modes that look like the densest of them.
+  /// Modes that look like the densest among them.
   struct Group {
     Eigen::Vector3f color;
     float density{0.0F};
@@ -174,7 +174,7 @@ class Sharpening {
     float score{0.0F};
   };
 
-  /// The densest mode, the densest of those that do not look like it, and so on.
+  /// Finds the densest mode, then the densest of those that do not look like it, and so on.
   void find_groups(std::span<const SurfelMode> modes) {
     all_.clear();
     for (const SurfelMode& mode : modes) {

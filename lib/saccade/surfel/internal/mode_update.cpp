@@ -14,7 +14,7 @@ namespace {
 constexpr std::size_t kBatch{ModeMerges::kMost};
 
 std::int64_t whole(double squared) {
-  constexpr std::int64_t kFarthest{std::int64_t{1} << 46};  // no colours are so far apart
+  constexpr std::int64_t kFarthest{std::int64_t{1} << 46};  // beyond the distance of any two colours
   return squared < static_cast<double>(kFarthest) ? static_cast<std::int64_t>(squared) : kFarthest;
 }
 
@@ -27,24 +27,24 @@ void merge(const StoredModes& modes, std::size_t n, std::size_t i) {
   modes.weight(n) = sum;
 }
 
-/// Line 22: p_N(c_i, c_n, σ_c) · w_n > p_N(c_i, c_i, σ_c) · w_i; the common factor of the densities is left out.
+/// Tests line 22: p_N(c_i, c_n, σ_c) · w_n > p_N(c_i, c_i, σ_c) · w_i, without the densities' common factor.
 bool absorbs(const StoredModes& modes, std::size_t n, std::size_t i, double sigma) {
   const auto squared = static_cast<double>(
       squared_distance(ColorUnits::unpacked(modes.colors[n]), ColorUnits::unpacked(modes.colors[i])));
   return std::exp(-squared / (2.0 * sigma * sigma)) * double{modes.weight(n)} > double{modes.weight(i)};
 }
 
-/// The first of those that are equally light. Which one it is nobody can guess: there is no branch.
+/// Returns the first of the lightest modes. Free of branches, since they would be unpredictable.
 std::size_t lightest_mode(const StoredModes& modes) {
   constexpr unsigned kIndexBits{8};
   std::uint64_t least{std::numeric_limits<std::uint64_t>::max()};
-  for (std::size_t i = 0; i < modes.count(); ++i) {  // weights are positive: in the order of their bits
+  for (std::size_t i = 0; i < modes.count(); ++i) {  // positive weights sort as their bits do
     least = std::min(least, std::uint64_t{std::bit_cast<std::uint32_t>(modes.weight(i))} << kIndexBits | i);
   }
   return least & ((std::uint64_t{1} << kIndexBits) - 1);
 }
 
-/// ⌊log₂ weight⌋ and a constant.
+/// Returns ⌊log₂ weight⌋ plus a constant.
 float octave(float weight) { return static_cast<float>(std::bit_cast<std::int32_t>(weight) >> 23); }
 
 }  // namespace
@@ -67,7 +67,7 @@ ModeUpdate::ModeUpdate(const ModeFilterConfig& config, const ColorLimits& limits
       back_project_{seen} {}
 
 void ModeUpdate::take(const SeenRounds& rounds, ModeFilterReport& counts) {
-  // Guidance is that of the frame's beginning: of all pixels of a surfel before its first is taken in.
+  // Guidance is that of the frame's beginning, so all pixels of a surfel get it before the first is merged.
   for (std::size_t k = 1; guidance_ != nullptr && k < rounds.size(); ++k) {
     for_batches(rounds[k], [&](Pixels pixels) { guide(pixels, counts); });
   }
@@ -79,7 +79,7 @@ void ModeUpdate::take(const SeenRounds& rounds, ModeFilterReport& counts) {
   }
 }
 
-/// Calls visit for some pixels at a time, whose nearest modes are known, while memory is asked for the next ones.
+/// Calls visit for batches of pixels whose nearest modes are known, while prefetching the next batch.
 template <class Visit>
 void ModeUpdate::for_batches(Pixels round, const Visit& visit) {
   for (const SurfelPixel& pixel : round.first(std::min(kBatch, round.size()))) store_.fetch_count(pixel.id);
@@ -90,7 +90,7 @@ void ModeUpdate::for_batches(Pixels round, const Visit& visit) {
   }
 }
 
-/// Lines 6 and 8, for each pixel.
+/// Performs lines 6 and 8 for each pixel.
 void ModeUpdate::ask(Pixels pixels, Pixels next) {
   queries_.resize(pixels.size());
   const Rgb8* colors = frame_.color->data();
@@ -101,7 +101,7 @@ void ModeUpdate::ask(Pixels pixels, Pixels next) {
     if (ahead != end) store_.fetch_count((ahead++)->id);
     if (query - queries_.data() < static_cast<std::ptrdiff_t>(kQueriesAhead)) store_.fetch_colors(pixel.id);
     const StoredModes modes = store_.modes(pixel.id);
-    query->packed = modes.colors;  // member by member: what is stored in parts is slow to copy
+    query->packed = modes.colors;  // assigned member by member, since copying a partly stored struct is slow
     query->count = modes.count();
     query->color = color_units(colors[index(pixel)]);
     ++query;
@@ -109,7 +109,7 @@ void ModeUpdate::ask(Pixels pixels, Pixels next) {
   find_nearest(queries_, static_cast<std::size_t>(config_.max_modes));
   near_count_ = 0;
   far_count_ = 0;
-  for (std::size_t k = 0; k < pixels.size(); ++k) {  // nobody can guess which, so nothing depends on it
+  for (std::size_t k = 0; k < pixels.size(); ++k) {  // unpredictable, hence without branches
     const ColorQuery& answered = queries_[k];
     const bool is_near = answered.count != 0 && answered.nearest.squared_units <= limits_.squared_new;
     near_[near_count_] = static_cast<std::uint8_t>(k);
@@ -135,14 +135,14 @@ void ModeUpdate::guide(Pixels pixels, ModeFilterReport& counts) {
   counts.guided += near_count_;
 }
 
-/// Lines 7–15 and 20–26, for each pixel.
+/// Performs lines 7–15 and 20–26 for each pixel.
 void ModeUpdate::observe(Pixels pixels, std::size_t round, ModeFilterReport& counts) {
   for (const std::uint8_t k : far()) add_mode(pixels[k], queries_[k].color, round, counts);
   merge_near(pixels, round, counts);
   counts.pixels += pixels.size();
 }
 
-/// Lines 20–26 for the near ones, each with its nearest mode.
+/// Performs lines 20–26 for the near pixels, each with its nearest mode.
 void ModeUpdate::merge_near(Pixels pixels, std::size_t round, ModeFilterReport& counts) {
   const std::span<const std::uint8_t> which = near();
   auto& mode = merges_.mode;
@@ -196,7 +196,7 @@ void ModeUpdate::merge_near(Pixels pixels, std::size_t round, ModeFilterReport& 
   }
 }
 
-/// Lines 21–26; returns where mode n is afterwards.
+/// Performs lines 21–26; returns the index of mode n afterwards.
 std::size_t ModeUpdate::compress(const SurfelPixel& pixel, std::size_t n, std::size_t round, ModeFilterReport& counts) {
   const StoredModes modes = store_.modes(pixel.id);
   for (std::size_t i = 0; i < modes.count();) {
@@ -212,7 +212,7 @@ std::size_t ModeUpdate::compress(const SurfelPixel& pixel, std::size_t n, std::s
   return n;
 }
 
-/// Lines 9–13.
+/// Performs lines 9–13.
 void ModeUpdate::add_mode(const SurfelPixel& pixel, const ColorUnits& color, std::size_t round,
                           ModeFilterReport& counts) {
   const StoredModes modes = store_.modes(pixel.id);
@@ -228,8 +228,8 @@ void ModeUpdate::add_mode(const SurfelPixel& pixel, const ColorUnits& color, std
   ++counts.new_modes;
 }
 
-/// And what earlier pixels of the same surfel went into: they are no more than two pixels away.
-void ModeUpdate::remove(const SurfelPixel& pixel, std::size_t i, std::uint8_t heir, std::size_t round) {
+/// Removes mode i, also from the record of earlier pixels of the surfel, which are at most two pixels away.
+void ModeUpdate::remove(const SurfelPixel& pixel, std::size_t i, std::uint8_t replacement, std::size_t round) {
   store_.modes(pixel.id).remove(i);
   if (guidance_ == nullptr || round == 0) return;
   constexpr int kApart{2 * SurfelAssociation::kReach_px};
@@ -239,7 +239,7 @@ void ModeUpdate::remove(const SurfelPixel& pixel, std::size_t i, std::uint8_t he
     for (int u = std::max(pixel.u - kApart, 0); u <= last_u; ++u) {
       if (seen_.of_pixel(u, v) != pixel.id) continue;
       std::uint8_t& mode = guidance_->mode_of_pixel[static_cast<std::size_t>(v) * width_ + static_cast<std::size_t>(u)];
-      if (mode == i) mode = heir;
+      if (mode == i) mode = replacement;
       if (mode != ModeGuidance::kNoMode && mode > i) --mode;
     }
   }

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ModeUpdate: takes the pixels of a frame into the modes of the surfels that they saw.  Thesis §4.1.1, Algorithm 6.
-// For mode_filter.cpp.
+// ModeUpdate: merges the pixels of a frame into the modes of the surfels that they saw. Thesis §4.1.1, Algorithm 6. For
+// mode_filter.cpp.
 
 #include <array>
 #include <cstddef>
@@ -17,26 +17,26 @@
 
 namespace saccade {
 
-/// Algorithm 6's parameters, in units of ColorUnits.
+/// Parameters of Algorithm 6, in units of ColorUnits.
 struct ColorLimits {
   ColorLimits(const ModeFilterConfig& config, float lightest_pixel);
 
   double sigma;
   std::int64_t squared_new;  ///< (K · σ_c)²
   float squared_per_octave;  ///< 2σ_c² ln 2: line 22 holds within 2σ_c² ln(w_n / w_i)
-  float lightest;            ///< no mode is lighter
+  float lightest;            ///< smallest weight of a mode
 };
 
-/// Lines 1–15 and 20–26 for the surfels of a group, with measured depths. The first pixels of all surfels come before
-/// the second ones, so that of each surfel's pixels one is worked on beside those of others: many searches and means at
-/// a time.
+/// Performs lines 1–15 and 20–26 for the surfels of a group, with measured depths. The first pixels of all surfels
+/// precede the second ones. Each surfel's pixel is thus processed beside pixels of other surfels: many searches and
+/// means at a time.
 class ModeUpdate {
  public:
-  /// @param guidance  of all pixels: what the guided filter needs; or none.
+  /// @param guidance  output: guidance of all pixels for the guided filter; may be null.
   ModeUpdate(const ModeFilterConfig& config, const ColorLimits& limits, const Frame& frame,
              const SurfelAssociation& seen, ModeStore& store, ModeGuidance* guidance);
 
-  /// Adds to `counts`.
+  /// Merges pixels, and adds to `counts`.
   void take(const SeenRounds& rounds, ModeFilterReport& counts);
 
  private:
@@ -52,7 +52,7 @@ class ModeUpdate {
   [[nodiscard]] std::size_t compress(const SurfelPixel& pixel, std::size_t n, std::size_t round,
                                      ModeFilterReport& counts);
   void add_mode(const SurfelPixel& pixel, const ColorUnits& color, std::size_t round, ModeFilterReport& counts);
-  void remove(const SurfelPixel& pixel, std::size_t i, std::uint8_t heir, std::size_t round);
+  void remove(const SurfelPixel& pixel, std::size_t i, std::uint8_t replacement, std::size_t round);
   [[nodiscard]] std::size_t index(const SurfelPixel& pixel) const {
     return static_cast<std::size_t>(pixel.v) * width_ + pixel.u;
   }
@@ -65,9 +65,9 @@ class ModeUpdate {
   ModeGuidance* guidance_;
   std::size_t width_;
   BackProjection back_project_;
-  std::vector<ColorQuery> queries_;                     ///< of a batch, with answers
-  std::array<std::uint8_t, ModeMerges::kMost> near_{};  ///< pixels of the batch with a mode that is near enough
-  std::array<std::uint8_t, ModeMerges::kMost> far_{};   ///< and without
+  std::vector<ColorQuery> queries_;                     ///< queries of a batch, with answers
+  std::array<std::uint8_t, ModeMerges::kMost> near_{};  ///< pixels of the batch with a mode near enough
+  std::array<std::uint8_t, ModeMerges::kMost> far_{};   ///< pixels without
   std::size_t near_count_{0};
   std::size_t far_count_{0};
   std::vector<NearbyQuery> nearby_;

@@ -18,11 +18,11 @@ namespace saccade {
 namespace {
 
 constexpr std::size_t kBatch{32};
-/// A radius that is so much larger comes from too far away to say anything of this surfel's.
+/// Largest ratio of radii that are averaged; a larger radius comes from too far away to inform this surfel's.
 constexpr float kComparableRadius{1.5F};
 static_assert(sizeof(SurfelDisc) == 8 * sizeof(float) && sizeof(SurfelColor) == 4 * sizeof(float));
 
-/// Surfels and their pixels, brought together from where they are in memory.
+/// Surfels and their pixels, gathered from memory.
 struct Batch {
   float places[4 * kBatch]{};   ///< x, y, z, radius
   float normals[4 * kBatch]{};  ///< x, y, z, weight
@@ -40,7 +40,7 @@ HWY_BEFORE_NAMESPACE();
 namespace saccade::HWY_NAMESPACE {
 namespace {
 
-/// What is the same for all pixels of a frame.
+/// Data shared by all pixels of a frame.
 struct View {
   BackProjection back_project;
   float focal;
@@ -94,7 +94,7 @@ HWY_INLINE void average_colors(Batch& batch, std::size_t i) {
   hn::StoreInterleaved4(color.x, color.y, color.z, sum, d, batch.colors + 4 * i);
 }
 
-/// The k-th of a batch.
+/// Gathers the k-th element of a batch.
 HWY_INLINE void bring(const ObservedFrame& frame, const SurfelMap& map, const SurfelPixel& pixel, std::size_t k,
                       Batch& batch) {
   const bool is_new = pixel.id >= frame.seen.first_new;

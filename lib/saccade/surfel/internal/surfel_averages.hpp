@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// average_pixels: takes pixels of a frame into the averages of the surfels that they saw.  Thesis §4.1.1, eq. 4.1.
-// For surfel_fusion.cpp.
+// average_pixels: adds pixels of a frame to the averages of the surfels that they saw. Thesis §4.1.1, eq. 4.1. For
+// surfel_fusion.cpp.
 
 #include <span>
 
@@ -12,15 +12,15 @@
 
 namespace saccade {
 
-/// What is averaged.
+/// Observations to average.
 struct ObservedFrame {
   const SurfelAssociation& seen;
   const PointImage& points;
-  const ColorImage* color;  ///< or none
+  const ColorImage* color;  ///< or nullptr
   float max_radius_m;
 };
 
-/// Weighted means of position, normal, radius and colour; surfels from seen.first_new on begin with their pixel.
+/// Averages position, normal, radius and colour with weights; surfels from seen.first_new on begin with their pixel.
 /// Expects no surfel twice. simd_target() changes nothing.
 void average_pixels(const ObservedFrame& frame, std::span<const SurfelPixel> pixels, SurfelMap& map);
 

@@ -18,7 +18,7 @@ constexpr int kMostLanes{16};
 constexpr int kReach_px{1};
 static_assert(SurfelCells::kMargin >= kMostLanes + kReach_px);
 
-/// Pixels of a row: as many as the widest vector has lanes.
+/// Pixels of a row, one per lane of the widest vector.
 struct PixelBlock {
   const float *z, *nx, *ny, *nz;
   SurfelId* of_pixel;
@@ -38,7 +38,7 @@ using IdTag = hn::RebindToUnsigned<Tag>;
 using V = hn::Vec<Tag>;
 using Ids = hn::Vec<IdTag>;
 
-/// Pixels u and on; `here` is where their block's lanes begin.
+/// Pixels from u on; `here` is the place in the block where their lanes begin.
 struct Pixels {
   V z, nx, ny, nz, ray_x, ray_y;
 };
@@ -69,7 +69,7 @@ HWY_INLINE void associate_block(const SurfelCells& cells, const AssociationLimit
       hn::Not(hn::And(hn::And(hn::Eq(pixels.nx, zero), hn::Eq(pixels.ny, zero)), hn::Eq(pixels.nz, zero)));
   const auto is_point = hn::And(hn::Gt(pixels.z, zero), has_normal);
 
-  // The own cell's surfel.
+  // The surfel of the pixel's own cell.
   const V own_z = hn::LoadU(d, cells.row(SurfelCells::kZ, v) + u);
   const auto own_near = hn::Le(hn::Abs(hn::Sub(own_z, pixels.z)), limit);
   const auto own_fits = hn::And(own_near, hn::Ge(dot(cells, pixels, u, v), least_dot));
@@ -78,7 +78,7 @@ HWY_INLINE void associate_block(const SurfelCells& cells, const AssociationLimit
   auto found = own_fits;
 
   if (!hn::AllTrue(d, hn::Or(own_fits, hn::Not(is_point)))) {
-    // Else, of the surfels around that cover the pixel's ray, the nearest to it.
+    // Otherwise the nearest of the surrounding surfels that cover the pixel's ray.
     V least = hn::Set(d, std::numeric_limits<float>::max());
     for (int row = v - kReach_px; row <= v + kReach_px; ++row) {
       for (int column = u - kReach_px; column <= u + kReach_px; ++column) {
@@ -100,7 +100,7 @@ HWY_INLINE void associate_block(const SurfelCells& cells, const AssociationLimit
     }
   }
 
-  // Nothing is there: a surfel, unless it is seen too flat.
+  // Otherwise the pixel creates a surfel, unless the view is too flat.
   const V toward = hn::Add(hn::Add(hn::Mul(pixels.nx, pixels.ray_x), hn::Mul(pixels.ny, pixels.ray_y)), pixels.nz);
   const V length = hn::Sqrt(
       hn::Add(hn::Add(hn::Mul(pixels.ray_x, pixels.ray_x), hn::Mul(pixels.ray_y, pixels.ray_y)), hn::Set(d, 1.0F)));

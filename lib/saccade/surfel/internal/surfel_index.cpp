@@ -23,7 +23,7 @@ struct Discs {
   Vector normal;
 };
 
-/// As many discs as there are lanes, one after the other: of what is loaded in fours every second lane is a normal's.
+/// Loads one disc per lane, one after the other; of the groups of four loaded, every second holds a normal.
 HWY_INLINE Discs load_discs(const float* from) {
   const Tag d;
   V low[4];
@@ -36,7 +36,7 @@ HWY_INLINE Discs load_discs(const float* from) {
 }
 
 std::size_t project_kernel(const FloatView& view, std::span<const SurfelDisc> discs, SurfelId first,
-                           std::span<Landing, kMostLandings> landings) {
+                           std::span<ProjectedSurfel, kMaxProjected> landings) {
   const Tag d;
   const IdTag di;
   const std::size_t lanes = hn::Lanes(d);
@@ -137,7 +137,7 @@ HWY_EXPORT(fill_row_kernel);
 }  // namespace
 
 std::size_t project_discs(const FloatView& view, std::span<const SurfelDisc> discs, SurfelId first,
-                          std::span<Landing, kMostLandings> landings) {
+                          std::span<ProjectedSurfel, kMaxProjected> landings) {
   return HWY_DYNAMIC_DISPATCH(project_kernel)(view, discs, first, landings);
 }
 

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// project_discs: where surfels are in an image; fill_row: what fills a row of the index image, in the camera's frame.
-// For surfel_fusion.cpp.
+// project_discs: projects surfels into an image. fill_row: fills a row of the index image, in the camera's frame. For
+// surfel_fusion.cpp.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -32,21 +32,21 @@ struct FloatView {
   int width, height;
 };
 
-/// A surfel that faces the camera, in the cell that its centre projects into.
-struct Landing {
+/// Surfel that faces the camera, with the cell that its centre projects into.
+struct ProjectedSurfel {
   std::uint32_t cell;  ///< row-major
   SurfelId id;
   float z;  ///< metres along the camera's axis
 };
 
-constexpr std::size_t kMostLandings{64};
+constexpr std::size_t kMaxProjected{64};
 
-/// Of at most kMostLandings discs, whose ids are `first` and on; returns how many land in the image.
+/// Projects up to kMaxProjected discs with consecutive ids from `first`. Returns the number that fall inside the image.
 [[nodiscard]] std::size_t project_discs(const FloatView& view, std::span<const SurfelDisc> discs, SurfelId first,
-                                        std::span<Landing, kMostLandings> landings);
+                                        std::span<ProjectedSurfel, kMaxProjected> landings);
 
-/// Row v of `cells` from the ids of its surfels, kNoSurfel where there is none: what lies side by side in the image is
-/// far apart in the map.
+/// Fills row v of `cells` from the ids of its surfels, kNoSurfel where there is none. Neighbours in the image are far
+/// apart in the map, so the row gathers them.
 void fill_row(const FloatView& view, const SurfelMap& map, const SurfelId* ids, int v, SurfelCells& cells);
 
 }  // namespace saccade

@@ -1,8 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
-// No include guard of the usual kind: included once per instruction set, by files with vector kernels.
+// No include guard of the usual kind: files with vector kernels include this once per instruction set.
 //
-// Points of surfels in vectors of lanes. Sums are made as Eigen makes them, x + (y + z): plain code gives the same
-// bits.
+// Points of surfels in vectors of lanes. Sums follow Eigen's order, x + (y + z), so that scalar code gives equal bits.
 #if defined(SACCADE_SURFEL_LANES_INL) == defined(HWY_TARGET_TOGGLE)
 #ifdef SACCADE_SURFEL_LANES_INL
 #undef SACCADE_SURFEL_LANES_INL
@@ -48,13 +47,13 @@ HWY_INLINE Vector turned(const Eigen::Matrix3f& R, const Vector& p) {
   return {row_dot(R, 0, p), row_dot(R, 1, p), row_dot(R, 2, p)};
 }
 
-/// weighted_mean with `share` = weight_b / (weight_a + weight_b).
+/// Returns weighted_mean with `share` = weight_b / (weight_a + weight_b).
 HWY_INLINE V mean(V a, V b, V share) { return hn::Add(a, hn::Mul(hn::Sub(b, a), share)); }
 HWY_INLINE Vector mean(const Vector& a, const Vector& b, V share) {
   return {mean(a.x, b.x, share), mean(a.y, b.y, share), mean(a.z, b.z, share)};
 }
 
-/// `yes` where the mask is true.
+/// Returns `yes` where the mask is true, otherwise `no`.
 template <class Mask>
 HWY_INLINE Vector choose(Mask mask, const Vector& yes, const Vector& no) {
   return {hn::IfThenElse(mask, yes.x, no.x), hn::IfThenElse(mask, yes.y, no.y), hn::IfThenElse(mask, yes.z, no.z)};

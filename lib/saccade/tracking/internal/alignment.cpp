@@ -80,12 +80,9 @@ Alignment::Alignment(const PointImage& model, const PinholeCamera& camera, const
 }
 
 NormalEquations Alignment::linearize(const Pose& T_model_camera, const Level& level, const Executor& executor) const {
-  PairingTask task = task_;
+  PairingTask task = this->task(T_model_camera);
   task.measured = level.points();
-  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>{task.R.data()} = T_model_camera.linear().cast<float>();
-  Eigen::Map<Eigen::Vector3f>{task.t.data()} = T_model_camera.translation().cast<float>();
   const auto rows = static_cast<std::size_t>(task.measured.height);
-  constexpr std::size_t kRowsPerChunk{8};
   std::vector<NormalEquations> chunks((rows + kRowsPerChunk - 1) / kRowsPerChunk);
   executor.parallel_for(rows, kRowsPerChunk, [&](std::size_t begin, std::size_t end) {
     PairSums sums;
@@ -95,6 +92,13 @@ NormalEquations Alignment::linearize(const Pose& T_model_camera, const Level& le
   NormalEquations equations;
   for (const NormalEquations& chunk : chunks) equations += chunk;
   return equations;
+}
+
+PairingTask Alignment::task(const Pose& T_model_camera) const {
+  PairingTask task = task_;
+  Eigen::Map<Eigen::Matrix<float, 3, 3, Eigen::RowMajor>>{task.R.data()} = T_model_camera.linear().cast<float>();
+  Eigen::Map<Eigen::Vector3f>{task.t.data()} = T_model_camera.translation().cast<float>();
+  return task;
 }
 
 Pose exponential(const Vector6d& x) {

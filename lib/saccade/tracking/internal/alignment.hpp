@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Alignment: normal equations of the point-to-plane distances between measured points and a model, by projection;
-// Level: every n-th of the measured points. For ICP and for the calibration of a camera's mount.
+// Alignment: normal equations of the point-to-plane distances between measured points and a model, paired by
+// projection. Level: every n-th of the measured points. For ICP and for hand-eye calibration.
 
 #include <Eigen/Core>
 #include <cstddef>
@@ -19,7 +19,7 @@ using Vector6d = Eigen::Matrix<double, 6, 1>;
 /// Sums of the normal equations Σ w JᵀJ x = −Σ w Jᵀ r, x = (rotation vector, translation) from the left, with w in
 /// 1/mm².
 struct NormalEquations {
-  Matrix6d JtJ{Matrix6d::Zero()};  ///< its lower half alone
+  Matrix6d JtJ{Matrix6d::Zero()};  ///< only its lower half
   Vector6d Jtr{Vector6d::Zero()};
   double squared_residuals{0.0};  ///< m², without weights
   std::size_t pairs{0};
@@ -28,7 +28,11 @@ struct NormalEquations {
   NormalEquations& operator+=(const NormalEquations& other);
 };
 
-/// Every stride-th point of every stride-th row, side by side; with stride 1 the image's own, which must outlive it.
+/// Rows of a level that are summed together; the sums of such chunks are added in order.
+constexpr std::size_t kRowsPerChunk{8};
+
+/// Every stride-th point of every stride-th row, side by side. With stride 1 it borrows the image, which must outlive
+/// it.
 class Level {
  public:
   Level(const PointImage& image, int stride);
@@ -48,19 +52,21 @@ struct PairLimits {
   double max_normal_angle_rad{0.6};
 };
 
-/// Expects a model of the camera's size that outlives it.
+/// Alignment with a model of the camera's size, which must outlive it.
 class Alignment {
  public:
   Alignment(const PointImage& model, const PinholeCamera& camera, const PairLimits& limits);
-  /// Sums run in fixed lanes and chunks, so that threads change no bit. O(points of the level).
+  /// Sums the normal equations in fixed lanes and chunks, so that threads change no bit. O(points of the level).
   [[nodiscard]] NormalEquations linearize(const Pose& T_model_camera, const Level& level,
                                           const Executor& executor) const;
+  /// Returns the task of a linearisation at this pose, without measured points.
+  [[nodiscard]] PairingTask task(const Pose& T_model_camera) const;
 
  private:
   PairingTask task_;
 };
 
-/// Rotation vector and translation applied from the left.
+/// Returns the pose of a rotation vector and translation applied from the left.
 [[nodiscard]] Pose exponential(const Vector6d& x);
 
 }  // namespace saccade

@@ -12,7 +12,7 @@ namespace saccade {
 namespace {
 
 constexpr double kStep_s{0.005};
-constexpr double kInterval_s{0.1};  // speeds are means over this long, so that tracking's noise averages out
+constexpr double kInterval_s{0.1};                // speeds are means over this time, which averages out tracking noise
 constexpr double kMinSpeedChange_rad_s{2.0_deg};  // standard deviation of the speed of turning
 constexpr std::size_t kMinIntervals{8};
 
@@ -36,7 +36,8 @@ std::vector<TurnInterval> intervals_of(std::span<const TimedPose> camera) {
   return intervals;
 }
 
-/// Mean squared difference of the speeds of turning; infinite where the record covers fewer than half of the intervals.
+/// Returns the mean squared difference of the turning speeds; infinite where the record covers fewer than half of the
+/// intervals.
 double mismatch(const FlangeRecord& record, const std::vector<TurnInterval>& intervals, double offset_s) {
   double sum{0.0};
   std::size_t count{0};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// FlangeRecord: where a flange was at a time; match_clocks: the offset of a camera's clock by speeds of turning.
+// FlangeRecord: poses of a flange over time. match_clocks: offset of a camera's clock, found from turning speeds.
 
 #include <optional>
 #include <span>
@@ -12,15 +12,15 @@
 
 namespace saccade {
 
-/// Borrows samples whose times rise.
+/// Flange poses over time. Borrows samples with increasing times.
 class FlangeRecord {
  public:
   explicit FlangeRecord(std::span<const FlangeSample> samples) : samples_{samples} {}
   [[nodiscard]] bool covers(double time_s) const;
-  /// Interpolates between samples, positions along lines and turns about one axis; stands still beyond the ends.
+  /// Returns the pose at a time: positions interpolated along lines, turns about one axis; at rest beyond the ends.
   /// Expects a sample. O(log samples).
   [[nodiscard]] Pose at(double time_s) const;
-  /// Turning velocity and velocity, in the flange's own frame, rad/s and m/s; from differences over 20 ms.
+  /// Returns angular velocity and velocity in the flange's own frame, rad/s and m/s, from differences over 20 ms.
   [[nodiscard]] Vector6d twist_at(double time_s) const;
 
  private:
@@ -34,11 +34,11 @@ struct TimedPose {
 
 struct ClockMatch {
   std::optional<double> offset_s;  ///< record's time = camera's time + this
-  std::string why;                 ///< where there is none
+  std::string why;                 ///< reason where there is no offset
 };
 
-/// Finds the offset, within ± max_offset_s, at which camera and flange turn equally fast; that is the same whatever the
-/// mount. To a few milliseconds. Says why where the turning is too little or too even, or matches nowhere or twice.
+/// Finds the offset, within ± max_offset_s, at which camera and flange turn equally fast, which holds for every mount.
+/// Accurate to a few milliseconds. Says why where the turning is too slow or too even, or matches nowhere or twice.
 [[nodiscard]] ClockMatch match_clocks(const FlangeRecord& record, std::span<const TimedPose> camera,
                                       double max_offset_s);
 

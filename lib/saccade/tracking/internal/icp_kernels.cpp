@@ -49,8 +49,8 @@ HWY_INLINE void add_products(float* sums, V factor, Vs... others) {
   ((add_to(sums, hn::Mul(factor, others)), sums += kPairLanes), ...);
 }
 
-/// Adds the pairs of one vector of pixels, those from `lane` on in the block, with rays (ray_x, ray_y, 1); tells how
-/// many they are.
+/// Adds the pairs of one vector of pixels, from `lane` on in the block, with rays (ray_x, ray_y, 1). Returns their
+/// number.
 HWY_INLINE std::size_t add_vector(const PairingTask& task, const Block& block, int lane, V ray_x, V ray_y,
                                   PairSums& sums) {
   const Tag d;
@@ -115,7 +115,7 @@ HWY_INLINE std::size_t add_vector(const PairingTask& task, const Block& block, i
   return hn::CountTrue(d, pair);
 }
 
-/// The last columns of a row, filled up with pixels of no return.
+/// The last columns of a row, padded with pixels without return.
 struct Tail {
   std::array<std::array<float, kPairLanes>, 4> planes{};
 

@@ -21,12 +21,12 @@ struct LevelPoints {
   int stride{1};
 };
 
-/// One linearisation: all measured points of a level, the model's points, and where the camera is thought to be.
+/// One linearisation: all measured points of a level, the model's points, and the assumed camera pose.
 struct PairingTask {
   LevelPoints measured;
   LevelPoints model;                             ///< stride 1
-  std::array<float, 9> R{};                      ///< of T_model_camera, row by row
-  std::array<float, 3> t{};                      ///< of T_model_camera, metres
+  std::array<float, 9> R{};                      ///< rotation of T_model_camera, row by row
+  std::array<float, 3> t{};                      ///< translation of T_model_camera, metres
   float fx{1.0F}, fy{1.0F}, cx{0.0F}, cy{0.0F};  ///< pixels
   float inverse_fx{1.0F}, inverse_fy{1.0F};
   float max_squared_distance_m2{0.0F};
@@ -53,7 +53,7 @@ struct DepthSigma {
   static constexpr float kGrowth_per_m{0.0019F};
   static constexpr float kFrom_m{0.4F};
 };
-constexpr float kHuberSigmas{1.5F};       ///< residuals count linearly beyond so many standard deviations
+constexpr float kHuberSigmas{1.5F};       ///< standard deviations beyond which residuals count linearly
 constexpr float kMinModelDepth_m{1e-3F};  ///< points nearer to the model's camera are not projected
 
 }  // namespace saccade

@@ -14,7 +14,7 @@ namespace saccade {
 namespace {
 
 constexpr double kMinTurn_rad{3_deg};
-constexpr double kMaxTurn_rad{170_deg};          // beyond, noise may turn a rotation vector round
+constexpr double kMaxTurn_rad{170_deg};          // beyond it, noise may flip a rotation vector
 constexpr double kMaxTurnDifference_rad{2_deg};  // camera and flange turn by one angle, whatever the mount
 constexpr int kReweightings{12};
 
@@ -23,7 +23,7 @@ Eigen::Vector3d turn_of(const Pose& T) {
   return turn.angle() * turn.axis();
 }
 
-/// Tukey's weights, with the scale from the median residual.
+/// Returns Tukey's weights, with the scale from the median residual.
 std::vector<double> tukey_weights(const std::vector<double>& residuals, double smallest_scale) {
   const double scale = std::max(1.4826 * median(residuals), smallest_scale);
   std::vector<double> weights;

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// solve_mount: AX = XB for the mount X of a camera on a flange; turns_of: about which axes a flange turned.
+// solve_mount: AX = XB for the mount X of a camera on a flange. turns_of: the axes about which a flange turned.
 
 #include <Eigen/Core>
 #include <optional>
@@ -11,13 +11,13 @@
 
 namespace saccade {
 
-/// One motion, seen twice: A X = X B.
+/// One motion measured twice: A X = X B.
 struct MotionPair {
   Pose T_flange_flange{Pose::Identity()};  ///< A
   Pose T_camera_camera{Pose::Identity()};  ///< B
 };
 
-/// Adds the motions between each two of the poses; of more than 60 poses, 60 are taken. Expects as many of both.
+/// Adds the motions between each two of the poses; of more than 60 poses, 60 are used. Expects equally many of both.
 void add_motions(std::span<const Pose> T_base_flange, std::span<const Pose> T_world_camera,
                  std::vector<MotionPair>& motions);
 
@@ -28,9 +28,9 @@ struct Turns {
 };
 [[nodiscard]] Turns turns_of(std::span<const Pose> T_base_flange);
 
-/// Rotation first (Park and Martin 1994: the rotation that takes the camera's rotation vectors to the flange's), then
-/// translation by least squares; both reweighted by Tukey's function. nullopt without motions that turn by more than 3°
-/// about two axes, or where they contradict each other.
+/// Solves for the rotation first (Park and Martin 1994: the rotation from the camera's rotation vectors to the
+/// flange's), then for the translation by least squares; both reweighted by Tukey's function. nullopt without motions
+/// that turn by more than 3° about two axes, or where the motions contradict each other.
 [[nodiscard]] std::optional<Pose> solve_mount(std::span<const MotionPair> motions);
 
 }  // namespace saccade

@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-/// One round of refinement: which points, up to where they are pairs, and whether views move by themselves, too.
+/// One round of refinement: the points used, the limit of pairs, and whether views move individually too.
 struct Round {
   int stride;
   double max_distance_m;
@@ -22,20 +22,20 @@ struct Round {
 constexpr std::array<Round, 5> kRounds{
     {{8, 0.10, false, 12}, {8, 0.05, false, 8}, {4, 0.03, true, 6}, {4, 0.02, true, 8}, {2, 0.02, true, 3}}};
 constexpr double kMaxNormalAngle_rad{0.6};
-constexpr double kConverged{2e-6};         // a step of that many metres and radians, per pixel of stride
+constexpr double kConverged{2e-6};         // step in metres and radians, per pixel of stride
 constexpr double kLargestStep{0.05};       // metres, radians and seconds together
-constexpr double kIndependentShare{0.05};  // counted of the points, as neighbours share errors
+constexpr double kIndependentShare{0.05};  // share of points that count as independent, since neighbours share errors
 
 using Matrix67d = Eigen::Matrix<double, 6, 7>;
 
-/// How exact flange poses are, by axis; found out from what views move by themselves.
+/// Accuracy of flange poses, per axis, estimated from the views' individual motions.
 struct FlangeSigma {
   static constexpr double kLeast_rad{0.005_deg};
   static constexpr double kLeast_m{0.00005};
   double rotation_rad{0.1_deg};
   double translation_m{0.001};
 
-  /// In units of the pairs' equations, 1/mm².
+  /// Returns the weights in units of the pairs' equations, 1/mm².
   [[nodiscard]] Vector6d weights() const {
     Vector6d weights;
     weights << Eigen::Vector3d::Constant(1e-6 / (rotation_rad * rotation_rad)),
@@ -44,17 +44,17 @@ struct FlangeSigma {
   }
 };
 
-/// Point-to-plane distances r of one pair of views, and how they depend on the unknowns.
+/// Point-to-plane distances r of one pair of views, and their derivatives by the unknowns.
 struct PairEquations {
   std::size_t measured{0};
   std::size_t model{0};
-  Matrix6d JtJ{Matrix6d::Zero()};  ///< by the twist of the measured view's points, seen from the model view
+  Matrix6d JtJ{Matrix6d::Zero()};  ///< derivative by the twist of the measured view's points, seen from the model view
   Vector6d Jtr{Vector6d::Zero()};
-  Matrix67d by_mount{Matrix67d::Zero()};   ///< that twist by mount and clock offset
+  Matrix67d by_mount{Matrix67d::Zero()};   ///< derivative of that twist by mount and clock offset
   Matrix6d by_measured{Matrix6d::Zero()};  ///< by the measured view's own motion; by the model view's it is −I
 };
 
-/// Normal equations, the lower half of H alone: mount (6), clock offset (1), then each view's own motion (6).
+/// Normal equations, only the lower half of H: mount (6), clock offset (1), then each view's own motion (6).
 struct JointEquations {
   Eigen::MatrixXd H;
   Eigen::VectorXd g;
@@ -87,7 +87,7 @@ void add_pair(const PairEquations& pair, double times, JointEquations& joint) {
   joint.g.segment<6>(j) -= Jtr;
 }
 
-/// Takes a twist (rotation vector, translation) of frame b to frame a.
+/// Returns the matrix that maps a twist (rotation vector, translation) from frame b to frame a.
 Matrix6d adjoint(const Pose& T_a_b) {
   const Eigen::Vector3d t = T_a_b.translation();
   Eigen::Matrix3d cross;
@@ -106,7 +106,7 @@ Vector6d logarithm(const Pose& T) {
   return x;
 }
 
-/// The whole matrix of what is given by its lower half; what it does not determine is held.
+/// Returns the full matrix of a lower half, regularised where it is singular.
 Eigen::MatrixXd regular(const JointEquations& joint) {
   Eigen::MatrixXd H = joint.H.selfadjointView<Eigen::Lower>();
   H.diagonal().array() += 1e-9 * joint.H.diagonal().maxCoeff();
@@ -116,7 +116,7 @@ Eigen::MatrixXd regular(const JointEquations& joint) {
 /// Returns x of H x = −g.
 Eigen::VectorXd solve_joint(const JointEquations& joint) { return regular(joint).ldlt().solve(-joint.g); }
 
-/// The views of one refinement, and their equations at a mount and an offset.
+/// Views of one refinement, and their equations at a mount and an offset.
 class Comparison {
  public:
   Comparison(std::span<const MountView> views, const PinholeCamera& camera, const FlangeRecord& record,
@@ -137,9 +137,9 @@ class Comparison {
     for (const MountView& view : views_) levels_.emplace_back(view.points, stride);
   }
 
-  /// Pair by pair. Camera i is at C_i = A_i X E_i, E_i being what the view moves by itself. x, δ and η_i move it by the
-  /// twist ε_i = Ad(E_i⁻¹) (x + δ v_i) + η_i in its own frame, v_i being its flange's twist seen from the mount; seen
-  /// from view j, the points of view i then move by Ad(T_j_i) ε_i − ε_j.
+  /// Returns the equations pair by pair. Camera i is at C_i = A_i X E_i, where E_i is the view's own motion. x, δ and
+  /// η_i move it by the twist ε_i = Ad(E_i⁻¹) (x + δ v_i) + η_i in its own frame, where v_i is its flange's twist seen
+  /// from the mount. Seen from view j, the points of view i then move by Ad(T_j_i) ε_i − ε_j.
   [[nodiscard]] std::vector<PairEquations> equations(const MountEstimate& at, double max_distance_m) const {
     const std::vector<Pose> T_base_camera = poses(at);
     const Matrix6d to_mount = adjoint(at.T_flange_camera.inverse());
@@ -166,7 +166,7 @@ class Comparison {
     return by_pair;
   }
 
-  /// All pairs together, with what is known of the flange poses.
+  /// Combines all pairs with the prior on the flange poses.
   [[nodiscard]] JointEquations joint(const std::vector<PairEquations>& by_pair, const FlangeSigma& sigma) const {
     const Eigen::Index size = first_of(views_.size());
     JointEquations joint{Eigen::MatrixXd::Zero(size, size), Eigen::VectorXd::Zero(size)};
@@ -187,7 +187,8 @@ class Comparison {
     }
   }
 
-  /// By axis, from what the views moved by themselves and how sure that is (a step of expectation–maximisation).
+  /// Estimates the accuracy per axis from the views' own motions and their certainty (a step of
+  /// expectation–maximisation).
   [[nodiscard]] FlangeSigma flange_sigma(const JointEquations& joint) const {
     const Eigen::Index size = joint.H.rows();
     const Eigen::MatrixXd covariance_mm2 = regular(joint).ldlt().solve(Eigen::MatrixXd::Identity(size, size));
@@ -206,8 +207,8 @@ class Comparison {
 
   [[nodiscard]] const std::vector<ViewPair>& pairs() const { return pairs_; }
 
-  /// Covariance by deleting one view at a time, with one Gauss–Newton step each. Errors of neighbouring pixels, and of
-  /// one view's flange pose, are not independent of each other; those of different views are.
+  /// Returns the covariance by deleting one view at a time, with one Gauss–Newton step each. Errors of neighbouring
+  /// pixels, and of one view's flange pose, are correlated; those of different views are independent.
   [[nodiscard]] Matrix7d jackknife(const std::vector<PairEquations>& by_pair, const FlangeSigma& sigma) const {
     const JointEquations all = joint(by_pair, sigma);
     std::vector<Vector7d> without(views_.size());
@@ -242,7 +243,7 @@ class Comparison {
   const FlangeRecord& record_;
   const Executor& executor_;
   std::vector<const PointImage*> points_;
-  std::vector<Pose> T_camera_own_;  ///< E_i, by view
+  std::vector<Pose> T_camera_own_;  ///< E_i of each view
   std::vector<ViewPair> pairs_;
   int stride_{0};
   std::deque<Level> levels_;

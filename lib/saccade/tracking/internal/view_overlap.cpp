@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-/// Calls meet(p_model, u, v) for every measured point that the model's camera has a depth for at pixel (u, v); returns
+/// Calls meet(p_model, u, v) for every measured point for which the model's camera has a depth at pixel (u, v). Returns
 /// the number of measured points.
 template <class Meet>
 std::size_t project(const PointImage& measured, const PointImage& model, const PinholeCamera& camera,

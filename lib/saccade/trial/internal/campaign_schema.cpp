@@ -8,8 +8,8 @@ namespace {
 
 constexpr std::int64_t kApplicationId{0x53434144};  // "SCAD", in the file's header
 
-// Version n + 1 of the tables is made of version n, 0 being an empty file. What is here stays as it is: files were made
-// by it.
+// Upgrades: version n + 1 of the tables is made from version n; 0 is an empty file. Existing entries never change,
+// because files were made with them.
 constexpr std::array kVersions{
     R"sql(
 CREATE TABLE runs (

@@ -10,7 +10,7 @@ namespace saccade {
 
 using Eigen::Vector3d;
 
-std::vector<MissingPoint> missing_of(const Truth& truth, const TsdfSnapshot& map, const Executor& executor) {
+std::vector<MissingPoint> missing_of(const GroundTruth& truth, const TsdfSnapshot& map, const Executor& executor) {
   const std::vector<Eigen::Vector3f>& points = truth.observable_points();
   const std::size_t stride = std::max<std::size_t>(1, points.size() / kOraclePoints);
   const TriangleMesh mesh = extract_mesh(map, executor);
@@ -28,8 +28,8 @@ std::vector<MissingPoint> missing_of(const Truth& truth, const TsdfSnapshot& map
 
 std::vector<std::size_t> visible_from(const Vector3d& center, std::span<const MissingPoint> missing,
                                       const RayScene& scene) {
-  constexpr double kLeastCosine{0.17364817766693041};  // of 80°
-  constexpr double kTolerance{1e-5};                   // of the distance: the point's own triangle is no obstacle
+  constexpr double kLeastCosine{0.17364817766693041};  // cosine of 80°
+  constexpr double kTolerance{1e-5};                   // share of the distance: the point's own triangle is no obstacle
   std::vector<std::size_t> visible;
   for (std::size_t i = 0; i < missing.size(); ++i) {
     const Vector3d ray = missing[i].p_world - center;

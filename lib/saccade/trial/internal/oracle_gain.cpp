@@ -7,7 +7,7 @@
 
 namespace saccade {
 
-OracleGain::OracleGain(Truth truth, const PinholeCamera& camera, double tilt_rad)
+OracleGain::OracleGain(GroundTruth truth, const PinholeCamera& camera, double tilt_rad)
     : truth_{std::move(truth)}, camera_{widened_vertically(camera, tilt_rad)} {}
 
 Result<std::vector<double>> OracleGain::evaluate(const PlanningContext& context, const RegionOfInterest& /*region*/,
@@ -45,7 +45,7 @@ NamedPlanner oracle_planner() {
                         std::make_shared<ContourViews>(setup.contour_views, setup.contours),
                         std::make_shared<OracleGain>(*setup.truth, setup.camera, setup.gain.tilt_rad), setup.planner};
   };
-  return {"oracle", "what one would choose who knew the scene", 200.0, false, true, make, "points"};
+  return {"oracle", "the view that shows most, chosen with the scene known", 200.0, false, true, make, "points"};
 }
 
 }  // namespace saccade

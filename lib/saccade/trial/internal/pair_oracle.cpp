@@ -32,7 +32,7 @@ std::optional<ViewPair> best_pair(std::span<const ShownPoints> shown, const Exec
   std::vector<std::size_t> order(views);
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return count[a] > count[b]; });
-  // The best partner of each view behind it in the order, if together they show more than `least`.
+  // Finds the best partner of each view behind it in the order, if together they show more than `least`.
   const auto best_with = [&](std::size_t i, std::size_t least) {
     ViewPair best{order[i], order[i], least};
     for (std::size_t j = i + 1; j < views && count[order[i]] + count[order[j]] > best.shown; ++j) {
@@ -42,7 +42,7 @@ std::optional<ViewPair> best_pair(std::span<const ShownPoints> shown, const Exec
     return best;
   };
   ViewPair best = best_with(0, 0);
-  if (best.second == best.first) return ViewPair{order[0], order[1], count[order[0]]};  // none shows anything more
+  if (best.second == best.first) return ViewPair{order[0], order[1], count[order[0]]};  // no pair shows more
   constexpr std::size_t kRound{256};  // views between updates of the bound, whatever the number of threads
   for (std::size_t begin = 1; begin < views && 2 * count[order[begin]] > best.shown; begin += kRound) {
     std::vector<ViewPair> found(std::min(kRound, views - begin));
@@ -77,7 +77,7 @@ Result<ViewCandidates> OracleViews::views(const PlanningContext& context, const 
   return found;
 }
 
-PairOracle::PairOracle(Truth truth, const PinholeCamera& camera, double tilt_rad, std::size_t max_views)
+PairOracle::PairOracle(GroundTruth truth, const PinholeCamera& camera, double tilt_rad, std::size_t max_views)
     : truth_{std::move(truth)}, camera_{widened_vertically(camera, tilt_rad)}, max_views_{max_views} {}
 
 std::vector<ShownPoints> PairOracle::shown_by(const PlanningContext& context,
@@ -142,9 +142,10 @@ NamedPlanner pair_oracle_planner() {
                         std::make_shared<PairOracle>(*setup.truth, setup.camera, setup.gain.tilt_rad, setup.max_views),
                         setup.planner};
   };
-  return {
-      "oracle-2", "the first of the best two views, among more, for one who knew the scene", 200.0, false, true, make,
-      "points"};
+  return {"oracle-2", "the first of the two views that together show most, chosen with the scene known",
+          200.0,      false,
+          true,       make,
+          "points"};
 }
 
 }  // namespace saccade

@@ -10,7 +10,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::int32_t kBelow_vox{2};  // margin below objects: what they stand on, not what is under that
+constexpr std::int32_t kBelow_vox{2};  // margin below objects: includes their support, not the space below it
 
 IndexBox box_around(const StateVolume& volume, std::span<const std::uint32_t> voxels) {
   IndexBox box = IndexBox::cube(volume.voxel(voxels.front()), 1);

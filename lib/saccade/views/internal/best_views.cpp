@@ -21,17 +21,17 @@ bool better(const OrderedView& a, const OrderedView& b) {
   return a.gain != b.gain ? a.gain > b.gain : a.index < b.index;
 }
 
-/// The best so many views that were evaluated.
-class Podium {
+/// Keeps the best places_ views evaluated so far.
+class TopViews {
  public:
-  Podium(std::size_t places, std::span<const Pose> poses) : places_{places}, poses_{poses} {}
+  TopViews(std::size_t places, std::span<const Pose> poses) : places_{places}, poses_{poses} {}
 
   void add(std::size_t pose, std::uint64_t gain) {
     const OrderedView view{pose, gain, poses_[pose]};
     views_.insert(std::upper_bound(views_.begin(), views_.end(), view, better), view);
     if (views_.size() > places_) views_.pop_back();
   }
-  /// What a pose must gain at least to get on it. At equal gains the index decides.
+  /// Returns the smallest gain with which a pose enters the list. At equal gains the index decides.
   [[nodiscard]] std::uint64_t entry(std::size_t pose) const {
     return views_.size() < places_ ? 0 : views_.back().gain + (pose > views_.back().index ? 1 : 0);
   }
@@ -56,7 +56,7 @@ Result<BestViews> evaluate_all(const TsdfSnapshot& map, const Region& region, st
   return best;
 }
 
-/// The pixels of windows, when they fall on each other.
+/// Returns the common pixel grid of windows whose pixels coincide.
 std::optional<PixelGrid> common_grid(const GainProblem& problem, std::span<const std::size_t> jobs) {
   constexpr double kOff_px{1e-3};
   PixelGrid hull = problem.jobs[jobs.front()].window.grid();
@@ -96,7 +96,7 @@ std::uint64_t bound_of(const CastWindow& window, const ShownPixels& shown) {
   return shown.footprint->count({shown.column, shown.column + columns, shown.row, shown.row + rows});
 }
 
-/// Of windows that have camera centre and axes in common.
+/// Bounds the gains of windows that share camera centre and axes.
 void bound_lattice(const GainProblem& problem, std::span<const std::size_t> jobs, Footprint& footprint,
                    std::vector<std::uint64_t>& bounds) {
   const std::optional<PixelGrid> common = common_grid(problem, jobs);
@@ -109,7 +109,7 @@ void bound_lattice(const GainProblem& problem, std::span<const std::size_t> jobs
   }
 }
 
-/// What each job gains at most.
+/// Returns an upper bound of the gain of each job.
 std::vector<std::uint64_t> bound_gains(const GainProblem& problem, const Executor& executor) {
   std::vector<std::uint64_t> bounds(problem.jobs.size());
   executor.parallel_for(problem.lattices.size(), kLatticeGrain, [&](std::size_t begin, std::size_t end) {
@@ -119,13 +119,13 @@ std::vector<std::uint64_t> bound_gains(const GainProblem& problem, const Executo
   return bounds;
 }
 
-/// What came of deciding a job's rays.
+/// Result of deciding a job's rays.
 struct Refined {
-  std::optional<std::uint64_t> gain;  ///< none: it does not come up to the best
+  std::optional<std::uint64_t> gain;  ///< none: below the best
   std::uint64_t rays_cast{0};
 };
 
-std::vector<Refined> refine(const GainProblem& problem, std::span<const std::size_t> jobs, const Podium& podium,
+std::vector<Refined> refine(const GainProblem& problem, std::span<const std::size_t> jobs, const TopViews& podium,
                             const Executor& executor) {
   std::vector<Refined> refined(jobs.size());
   executor.parallel_for(jobs.size(), 1, [&](std::size_t begin, std::size_t end) {
@@ -135,7 +135,7 @@ std::vector<Refined> refine(const GainProblem& problem, std::span<const std::siz
       draw(problem, job.window, job.window.grid(), footprint);
       GainCaster caster{problem.grid, job.window, problem.limits, nullptr, {&footprint, 0, 0}};
       caster.look_over(kLookOverPx);
-      caster.judge_open_tiles();
+      caster.classify_open_tiles();
       caster.refine(podium.entry(job.poses.front()));
       refined[i].rays_cast = caster.rays_cast();
       if (caster.decided()) refined[i].gain = caster.scored();
@@ -163,7 +163,7 @@ Result<BestViews> best_views(const TsdfSnapshot& map, const Region& region, std:
   std::iota(order.begin(), order.end(), std::size_t{0});
   std::stable_sort(order.begin(), order.end(), [&](std::size_t a, std::size_t b) { return bounds[a] > bounds[b]; });
 
-  Podium podium{count, T_world_camera};
+  TopViews podium{count, T_world_camera};
   std::vector<bool> in_a_job(T_world_camera.size());
   for (const GainJob& job : problem.jobs) {
     for (const std::size_t pose : job.poses) in_a_job[pose] = true;

@@ -22,7 +22,7 @@ struct Range {
 };
 constexpr Range kNowhere{1.0, 0.0};
 
-/// World to canonical camera coordinates, in voxels.
+/// Transform from the world to canonical camera coordinates, in voxels.
 class CameraFrame {
  public:
   CameraFrame(const SensorRays& rays, double voxel_size_m) {
@@ -52,7 +52,7 @@ std::optional<CameraSphere> sphere_in_camera(const SensorRays& rays, const Regio
                       sphere->radius_m / voxel_size_m + kHalfDiagonal_vox + kMargin_vox};
 }
 
-/// Image coordinates x / z of a disc seen in the plane of x and z.
+/// Returns the image coordinates x / z of a disc seen in the plane of x and z.
 Range disc_range(double x, double z, double radius) {
   const double distance = std::hypot(x, z);
   if (distance <= radius) return {};
@@ -89,7 +89,7 @@ ImageRange box_range(const CameraFrame& camera, const IndexBox& voxels) {
   return behind > 0 ? ImageRange{} : range;
 }
 
-/// Indices of the ascending, evenly spaced coordinates that lie in the range, and one more on either side.
+/// Returns the indices of the ascending, evenly spaced coordinates that lie in the range, and one more on either side.
 ColumnRange indices(std::span<const float> coordinates, double pixels_per_unit, const Range& range) {
   const auto size = static_cast<double>(coordinates.size());
   if (range.empty()) return {};
@@ -129,8 +129,8 @@ std::vector<ColumnRange> column_ranges(const CastWindow& window, const Region& r
   const Eigen::Vector3d& c = sphere->center;
   const double squared_tangent = c.squaredNorm() - sphere->radius * sphere->radius;
   const double quadratic = c.x() * c.x() - squared_tangent;
-  // Rays (a, b, 1) that meet the sphere satisfy (a·cx + b·cy + cz)² ≥ (a² + b² + 1)·(|c|² − R²); between two roots in
-  // a, as long as the quadratic term is negative.
+  // Rays (a, b, 1) that meet the sphere satisfy (a·cx + b·cy + cz)² ≥ (a² + b² + 1)·(|c|² − R²), that is a lies between
+  // two roots, as long as the quadratic term is negative.
   if (squared_tangent <= 0.0 || quadratic >= -1e-9 * squared_tangent) return {};
   std::vector<ColumnRange> ranges(window.b.size(), {0, width});
   for (std::size_t j = 0; j < ranges.size(); ++j) {

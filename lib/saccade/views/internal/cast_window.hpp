@@ -19,14 +19,14 @@ struct ColumnRange {
   int end{0};
 };
 
-/// A rectangle of the canonical image, and in each of its rows the columns to cast. The PixelAxes outlive it.
+/// Rectangle of the canonical image, with the columns to cast in each row. The PixelAxes must outlive it.
 struct CastWindow {
   SensorRays rays;
   std::span<const float> a;
   std::span<const float> b;
   double pixels_per_a{0.0};
   double pixels_per_b{0.0};
-  std::vector<ColumnRange> columns{};  ///< empty: all of every row
+  std::vector<ColumnRange> columns{};  ///< empty: all columns of every row
 
   [[nodiscard]] bool empty() const { return a.empty() || b.empty(); }
   [[nodiscard]] ColumnRange columns_of(int row) const {
@@ -36,22 +36,23 @@ struct CastWindow {
     return {static_cast<double>(a.front()), static_cast<double>(b.front()), pixels_per_a, pixels_per_b,
             static_cast<int>(a.size()),     static_cast<int>(b.size())};
   }
-  /// The same rays, so the same gain.
+  /// Tells whether the rays, and therefore the gain, are equal.
   [[nodiscard]] bool same_rays(const CastWindow& other) const {
     return rays.same_lattice(other.rays) && std::ranges::equal(a, other.a) && std::ranges::equal(b, other.b);
   }
 };
 
-/// All pixels of the image.
+/// Returns the window of all pixels of the image.
 [[nodiscard]] CastWindow whole_image(const SensorRays& rays, const PixelAxes& axes);
 
-/// At least the pixels whose rays meet a voxel that lies in the box of voxels and, for a sphere, whose centre lies in
-/// the sphere: bounded by the projections of the box and of the sphere enlarged by half a voxel's diagonal, and by a
-/// pixel more for rounding. `columns` stays empty: see column_ranges.
+/// Returns a window with at least the pixels whose rays meet a voxel in the box and, for a sphere, with its centre in
+/// the sphere. It is bounded by the projections of the box and of the sphere enlarged by half a voxel's diagonal, plus
+/// one pixel for rounding. `columns` stays empty: see column_ranges.
 [[nodiscard]] CastWindow window_of(const SensorRays& rays, const PixelAxes& axes, const IndexBox& voxels,
                                    const Region& region, double voxel_size_m);
 
-/// For each row of the window, the columns that can meet the region; empty, so all of them, unless it is a sphere.
+/// Returns for each row of the window the columns that can meet the region; empty, hence all columns, unless it is a
+/// sphere.
 [[nodiscard]] std::vector<ColumnRange> column_ranges(const CastWindow& window, const Region& region,
                                                      double voxel_size_m);
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// check_finite: poses that a gain can be asked about.
+// check_finite: checks poses before their gain is computed.
 
 #include <span>
 #include <string>
@@ -10,7 +10,7 @@
 
 namespace saccade {
 
-/// invalid_argument for a pose that contains NaN or infinity, with its index and who refuses it.
+/// Answers invalid_argument for a pose that contains NaN or infinity, with its index and the name of the gain.
 [[nodiscard]] inline Status check_finite(std::span<const Pose> T_world_camera, const char* who) {
   for (std::size_t i = 0; i < T_world_camera.size(); ++i) {
     if (T_world_camera[i].matrix().allFinite()) continue;

@@ -8,16 +8,16 @@
 namespace saccade {
 namespace {
 
-constexpr std::int32_t kAboveSupport{2};   // voxels: what lies lower is the support's own noise
-constexpr std::int32_t kBelowSupport{8};   // voxels behind the support's surface that fusion marks
+constexpr std::int32_t kAboveSupport{2};   // voxels; anything lower is noise of the support
+constexpr std::int32_t kBelowSupport{8};   // voxels behind the support's surface that fusion marks as occupied
 constexpr double kTouchesWall{6.0};        // voxels in front of a wall: nearer objects reach to it
-constexpr std::size_t kLeastVoxels{12};    // objects of fewer are noise
+constexpr std::size_t kLeastVoxels{12};    // objects with fewer voxels are noise
 constexpr std::int32_t kMaxShift{6};       // half voxels from the middle of a footprint to the axis of a half turn
-constexpr std::size_t kMaxTurned{400};     // voxels that half turns are tried with
-constexpr double kMaxContradicted{0.05};   // share of them that a half turn may take to known empty space
+constexpr std::size_t kMaxTurned{400};     // sample of voxels for testing half turns
+constexpr double kMaxContradicted{0.05};   // share of them that a half turn may map to known empty space
 constexpr std::int32_t kBaseThickness{2};  // voxels
 
-/// Layers of a support's surface, column by column.
+/// Layers of a support's surface, by column.
 using TopLayers = std::vector<std::int32_t>;
 
 bool is_of_wall(std::span<const Wall> walls, const StateVolume& volume, std::size_t voxel) {
@@ -30,7 +30,7 @@ bool is_of_wall(std::span<const Wall> walls, const StateVolume& volume, std::siz
   });
 }
 
-/// Occupied voxels that are part of no support or wall, in their order.
+/// Returns the occupied voxels that belong to no support or wall, in their order.
 std::vector<std::uint32_t> voxels_of_objects(const StateVolume& volume, const Surroundings& surroundings,
                                              const Executor& executor) {
   const std::span<const TopLayers> tops = surroundings.tops;
@@ -81,7 +81,7 @@ Index3 cell_of(const StateVolume& volume, std::uint32_t voxel) {
   return {at.x / 2, at.y / 2, at.z / 2};
 }
 
-/// Voxels of one object after the other, each in their order. Cells that touch belong to one object.
+/// Returns the voxels of one object after the other, each in their order. Cells that touch belong to one object.
 std::vector<std::vector<std::uint32_t>> connected(const StateVolume& volume, std::span<const std::uint32_t> seen) {
   constexpr std::uint16_t kFree{0xFFFFU};
   constexpr std::uint16_t kWaiting{0xFFFEU};
@@ -139,11 +139,11 @@ const TopLayers* base_of(std::span<const TopLayers> tops, std::span<const std::u
   return base;
 }
 
-/// Turns by 180° about a vertical axis: (x, y) becomes (sum_x − x, sum_y − y).
+/// Half turn about a vertical axis: maps (x, y) to (sum_x − x, sum_y − y).
 struct HalfTurn {
   std::int32_t sum_x{0};
   std::int32_t sum_y{0};
-  double contradicted{1.0};  ///< share of the seen voxels that it turns into known empty space
+  double contradicted{1.0};  ///< share of the seen voxels that it maps to known empty space
 };
 
 /// Returns whether a voxel (counted within the volume) and its neighbours along x and y are known to be empty.
@@ -155,7 +155,7 @@ bool is_well_empty(const StateVolume& volume, std::int32_t x, std::int32_t y, st
          at[volume.row()] == VoxelState::empty && at[-volume.row()] == VoxelState::empty;
 }
 
-/// Returns the half turn near one about the middle of a footprint that contradicts the least.
+/// Returns the half turn, about an axis near the middle of a footprint, with the fewest contradictions.
 HalfTurn best_half_turn(const StateVolume& volume, std::span<const std::uint32_t> voxels,
                         std::span<const std::uint32_t> footprint) {
   const auto row = static_cast<std::uint32_t>(volume.row());
@@ -248,7 +248,7 @@ CompletedObject completed(const StateVolume& volume, const Surroundings& surroun
   const std::int32_t lowest = object.seen.lo.z - volume.box().lo.z;
   const TopLayers* base = base_of(tops, voxels, layer);
   for (const std::uint32_t column : object.footprint) {
-    // Where the hull reaches beyond the support, the object ends at its lowest voxel.
+    // Where the hull extends beyond the support, the object ends at its lowest voxel.
     const bool stands = base != nullptr && (*base)[column] != kNoLayer;
     object.stands.push_back(stands ? 1 : 0);
     object.first.push_back(stands ? std::max((*base)[column], 0) : lowest);
@@ -260,7 +260,7 @@ CompletedObject completed(const StateVolume& volume, const Surroundings& surroun
   return object;
 }
 
-/// Writes how an object reaches to the voxels of a layer.
+/// Writes the roles of an object's voxels in a layer.
 void write_reach(const StateVolume& volume, const CompletedObject& object, std::int32_t z, VoxelRole* roles) {
   if (z > object.last) return;
   const auto row = static_cast<std::uint32_t>(volume.row());
@@ -278,8 +278,8 @@ void write_reach(const StateVolume& volume, const CompletedObject& object, std::
   }
 }
 
-/// Lowers squared distances along a line of cells `stride` apart to those of its neighbours, for `width` lines beside
-/// each other.
+/// Relaxes squared distances along a line of cells `stride` apart from those of its neighbours, for `width` adjacent
+/// lines.
 void spread(const std::uint16_t* from, std::uint16_t* to, std::size_t width, std::int32_t at, std::int32_t count,
             std::ptrdiff_t stride, std::int32_t reach) {
   std::copy_n(from + at * stride, width, to);

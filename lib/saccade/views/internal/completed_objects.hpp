@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// complete_objects: objects that stand on supports, each as far as it may reach; DistanceToObjects.
+// complete_objects: objects on supports, each with its possible extent; DistanceToObjects.
 
 #include <cstdint>
 #include <span>
@@ -13,63 +13,63 @@
 
 namespace saccade {
 
-/// What completion makes of a voxel.
+/// Role of a voxel in the completion.
 struct VoxelRole {
-  /// Bits 0 and 1: what lies there for the surface of an unknown neighbour.
+  /// Bits 0 and 1: state of this voxel as seen by an unknown neighbour.
   enum Opening : std::uint8_t { closed = 0, unknown = 1, empty = 2, openings = 3 };
-  /// Bits 2 and 3: how an object may reach there. Where hulls overlap, the larger holds.
+  /// Bits 2 and 3: relation of the voxel to an object. Where hulls overlap, the larger value holds.
   enum Reach : std::uint8_t {
     outside = 0,
     below = 4,    ///< up to two voxels below an object, in its support
-    carved = 8,   ///< in an object's hull, but empty on its other side
+    carved = 8,   ///< in an object's hull, but empty at its mirrored place
     inside = 12,  ///< in an object's hull
   };
   std::uint8_t bits{0};
   [[nodiscard]] std::uint8_t reach() const { return bits & inside; }
   [[nodiscard]] std::uint8_t opening() const { return bits & openings; }
-  /// Known to be empty, in an object's hull.
+  /// Tells whether the voxel is known to be empty and in an object's hull.
   [[nodiscard]] bool is_empty_inside() const { return bits == (+inside | +empty); }
 };
 
-/// What objects stand on and in front of.
+/// Supports and walls of the objects.
 struct Surroundings {
   std::span<const std::vector<std::int32_t>> tops;  ///< top_layers of each support
   std::span<const Wall> walls;
 };
 
-/// A connected set of occupied voxels. Indices of columns and layers count from the volume's lowest.
+/// Connected set of occupied voxels. Indices of columns and layers count from the volume's lowest.
 struct CompletedObject {
-  IndexBox seen;                         ///< around its voxels, indices of the map
+  IndexBox seen;                         ///< box around its voxels, indices of the map
   std::vector<std::uint32_t> footprint;  ///< columns of its convex hull
-  std::vector<std::int32_t> first;       ///< lowest layer of each: the first above its support
-  std::vector<std::uint8_t> stands;      ///< 1: the support reaches below that column
+  std::vector<std::int32_t> first;       ///< per column: lowest layer, the first above its support
+  std::vector<std::uint8_t> stands;      ///< per column: 1 where the support reaches below it
   std::int32_t last{0};                  ///< highest layer
   bool symmetric{false};                 ///< whether it may be carved
-  std::int32_t sum_x{0};                 ///< its half turn takes (x, y) to (sum_x − x, sum_y − y)
+  std::int32_t sum_x{0};                 ///< its half turn maps (x, y) to (sum_x − x, sum_y − y)
   std::int32_t sum_y{0};
 };
 
 struct CompletedObjects {
   std::vector<CompletedObject> objects;
   std::vector<std::uint32_t> seen;  ///< occupied voxels of all objects, in their order
-  /// One per voxel of the volume. Unknown voxels within or below objects and occupied ones are closed.
+  /// One role per voxel of the volume. Occupied voxels, and unknown ones within or below objects, are closed.
   std::vector<VoxelRole> roles;
 };
 
-/// Finds objects and extrudes their footprints' hulls from their supports to their tops. An object that a half turn
-/// about a vertical axis does not contradict, that is, takes next to none of its voxels to known empty space, is carved
-/// where the half turn takes the unknown to known empty space. Most things on tables have that symmetry.
-/// Objects that touch a wall reach to its surface. O(voxels of the volume); the thread count never changes a bit.
+/// Finds objects and extrudes their footprints' hulls from their supports to their tops. An object has the symmetry of
+/// a half turn about a vertical axis unless the turn maps more than a few of its voxels to known empty space; most
+/// things on tables have it. Such an object is carved where the half turn maps unknown space to known empty space.
+/// Objects that touch a wall extend to its surface. O(voxels of the volume); the thread count never changes a bit.
 [[nodiscard]] CompletedObjects complete_objects(const StateVolume& volume, const Surroundings& surroundings,
                                                 const Executor& executor);
 
-/// Distance to the nearest seen voxel of an object, for cells of 2³ voxels; as exact as these are.
+/// Distance to the nearest seen voxel of an object, for cells of 2³ voxels, with their accuracy.
 class DistanceToObjects {
  public:
   /// O(cells · reach); the thread count never changes a bit.
   DistanceToObjects(const StateVolume& volume, std::span<const std::uint32_t> seen, double reach_m,
                     const Executor& executor);
-  /// Distance from a voxel, given by its coordinates in the volume; infinity beyond the reach.
+  /// Returns the distance of a voxel, given by its coordinates in the volume; infinity beyond the reach.
   [[nodiscard]] float at_m(std::int32_t x, std::int32_t y, std::int32_t z) const {
     const std::uint16_t squared = squared_[static_cast<std::size_t>(z / 2) * layer_ +
                                            static_cast<std::size_t>(y / 2) * row_ + static_cast<std::size_t>(x / 2)];
@@ -79,7 +79,7 @@ class DistanceToObjects {
  private:
   std::size_t row_{0};
   std::size_t layer_{0};
-  std::vector<std::uint16_t> squared_;  ///< in cells, no more than metres_ goes
+  std::vector<std::uint16_t> squared_;  ///< in cells, limited to the range of metres_
   std::vector<float> metres_;           ///< by squared distance
 };
 

@@ -13,7 +13,7 @@ namespace {
 constexpr std::uint64_t kFirstColumn{0x0101010101010101ULL};
 constexpr std::uint64_t kLastColumn{kFirstColumn << 7};
 
-/// Every bit and those next to it along an axis; `before` and `after` are the masks next to this one.
+/// Sets every bit and its neighbours along an axis; `before` and `after` are the adjacent masks.
 Mask512 spread_x(const Mask512& before, const Mask512& mask, const Mask512& after) {
   Mask512 out;
   for (std::size_t z = 0; z < 8; ++z) {
@@ -40,7 +40,7 @@ Mask512 spread_z(const Mask512& before, const Mask512& mask, const Mask512& afte
   return out;
 }
 
-/// Every bit and its 6-neighbours. mask_at({x, y, z}) gives the masks around.
+/// Sets every bit and its 6-neighbours. mask_at({x, y, z}) returns the surrounding masks.
 template <class MaskAt>
 Mask512 spread_to_6(const MaskAt& mask_at) {
   const Mask512& mask = mask_at(Index3{});
@@ -49,7 +49,7 @@ Mask512 spread_to_6(const MaskAt& mask_at) {
          spread_z(mask_at({0, 0, -1}), mask, mask_at({0, 0, 1}));
 }
 
-/// Every bit and its 18-neighbours: those within one step along each of two axes, whichever two.
+/// Sets every bit and its 18-neighbours: those within one step along each of any two axes.
 template <class MaskAt>
 Mask512 spread_to_18(const MaskAt& mask_at) {
   const auto along_x = [&](int y, int z) {
@@ -61,7 +61,7 @@ Mask512 spread_to_18(const MaskAt& mask_at) {
          spread_y(along_z(-1), along_z(0), along_z(1));
 }
 
-/// Of the 3³ around, z slowest.
+/// Returns the number of a step among the 3³ around, z slowest.
 std::size_t number_of(const Index3& step) {
   return static_cast<std::size_t>(((step.z + 1) * 3 + step.y + 1) * 3 + step.x + 1);
 }
@@ -114,7 +114,7 @@ const ContourSector::Masks& ContourSector::masks(const Index3& local) {
   return masks;
 }
 
-/// Eq. 3.2.
+/// Applies eq. 3.2.
 Mask512 ContourSector::contour(const Index3& local) {
   const Masks& here = masks(local);
   Mask512 found = ~(here.occupied | here.unknown);
@@ -125,7 +125,7 @@ Mask512 ContourSector::contour(const Index3& local) {
   return found & spread_to_18([&](const Index3& step) -> const Mask512& { return masks(local + step).occupied; });
 }
 
-/// w' of eq. 3.6; 0 for what is outside the workspace and not known. The voxel counts from the sector's first one.
+/// Returns w' of eq. 3.6; 0 outside the workspace where unknown. The voxel counts from the sector's first one.
 int ContourSector::modified_weight(const Index3& local_voxel) const {
   const BrickRef& ref = brick(parent(local_voxel));
   const int i = child_index(local_voxel);
@@ -148,10 +148,10 @@ int ContourSector::modified_weight(const Index3& local_voxel) const {
   return saturated ? known_weight_ : std::min(w - known_weight_, known_weight_);
 }
 
-/// Eq. 3.5. Sums of whole numbers per length of step are exact, so the order of the neighbours does not matter, and
+/// Applies eq. 3.5. Sums of integers per length of step are exact, so the order of the neighbours does not matter, and
 /// they vanish only where the normal does.
 std::optional<Eigen::Vector3f> ContourSector::frontier_normal(const Index3& local_voxel) const {
-  std::array<Eigen::Vector3i, 3> sums;  // by how many axes a step goes along
+  std::array<Eigen::Vector3i, 3> sums;  // by the number of axes that a step follows
   sums.fill(Eigen::Vector3i::Zero());
   for (int z = -1; z <= 1; ++z) {
     for (int y = -1; y <= 1; ++y) {

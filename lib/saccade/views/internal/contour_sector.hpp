@@ -11,20 +11,20 @@
 
 namespace saccade {
 
-/// Finds contour voxels by masks of whole bricks; only those that there are get a normal. One per thread; map and table
-/// must outlive it. About 130 KiB.
+/// Finder of contour voxels by masks of whole bricks; only contour voxels get a normal computed. One per thread; map
+/// and table must outlive it. About 130 KiB.
 class ContourSector {
  public:
   ContourSector(const TsdfSnapshot& map, const SectorTable& table, std::uint16_t known_weight);
 
-  /// The contour voxels of these bricks, in order.
+  /// Returns the contour voxels of these bricks, in order.
   [[nodiscard]] std::vector<ContourVoxel> find(const SectorBricks& bricks);
 
  private:
-  static constexpr int kEdge{kSectorEdge + 2};  ///< of the bricks of a sector and those around it
+  static constexpr int kEdge{kSectorEdge + 2};  ///< bricks along an edge of the sector and its surroundings
   static constexpr std::size_t kBricks{std::size_t{kEdge} * kEdge * kEdge};
 
-  /// At the weight from which voxels are known. A voxel outside the workspace may be occupied, but not unknown.
+  /// Masks at the weight from which voxels are known. A voxel outside the workspace may be occupied, but not unknown.
   struct Masks {
     Mask512 occupied;
     Mask512 unknown;
@@ -44,7 +44,7 @@ class ContourSector {
   Index3 sector_;
   std::array<const Sector*, 27> around_{};  ///< z slowest, the sector itself in the middle; nullptr: unknown
   std::vector<Masks> masks_;                ///< by brick, from -1 on along each axis
-  std::bitset<kBricks> made_;               ///< those that are
+  std::bitset<kBricks> made_;               ///< masks that were computed
 };
 
 }  // namespace saccade

@@ -12,19 +12,19 @@ namespace {
 
 using Eigen::Vector3d;
 
-constexpr int kColumns{32};        // rays across the picture
-constexpr int kGlanceColumns{12};  // and for a quick look
+constexpr int kColumns{32};        // rays across the image
+constexpr int kGlanceColumns{12};  // rays across the image for a quick look
 constexpr double kSupportThickness_m{0.05};
 
 double above_m(const Support& support, const Vector3d& p) { return p.z() - support.height_at(p.head<2>()); }
 
-/// A ray from a camera to the end of its range.
+/// Ray from a camera to the end of its range.
 struct Ray {
   Vector3d from_m;
   Vector3d to_m;
 
   [[nodiscard]] Vector3d at(double share) const { return from_m + share * (to_m - from_m); }
-  /// The share of the ray at which it passes a support's plane, if it does.
+  /// Returns the share of the ray at which it passes a support's plane, if it does.
   [[nodiscard]] std::optional<double> passes(const Support& support) const {
     const double begin_m = above_m(support, from_m);
     const double rise_m = above_m(support, to_m) - begin_m;
@@ -32,7 +32,7 @@ struct Ray {
     const double share = -begin_m / rise_m;
     return share >= 0.0 && share <= 1.0 ? std::optional{share} : std::nullopt;
   }
-  /// The share of the ray at which it leaves a closed box for good, if it passes through it.
+  /// Returns the share of the ray at which it finally leaves a closed box, if it passes through it.
   [[nodiscard]] std::optional<double> leaves(const Box& box) const {
     double enter{0.0};
     double leave{1.0};
@@ -51,7 +51,7 @@ struct Ray {
   }
 };
 
-/// All voxels with their centre in the region, and half a voxel more, which is above any rounding.
+/// Returns the box of all voxels with their centre in the region, grown by half a voxel, which exceeds any rounding.
 Box grown_bounds(const Region& region, double voxel_size_m) {
   Box box = bounds(region);
   box.min.array() -= voxel_size_m;
@@ -64,7 +64,7 @@ Box grown_bounds(const Region& region, double voxel_size_m) {
 struct CredibleRays::Scene {
   StateVolume volume;
   std::vector<Support> supports;
-  bool holds_surface{false};  ///< some voxel is occupied
+  bool holds_surface{false};  ///< whether any voxel is occupied
   Region region;
   Box around_region;
   UnknownOutside outside;
@@ -93,7 +93,7 @@ struct CredibleRays::Scene {
     bool returns{false};
   };
 
-  /// Where a place lies in the grid of a support's columns; nullopt: outside.
+  /// Returns the column of a place in the grid of a support; nullopt outside.
   [[nodiscard]] std::optional<std::size_t> column_of(const Vector3d& p) const {
     const auto x = static_cast<std::int32_t>(std::floor(p.x() / volume.voxel_size_m())) - volume.box().lo.x;
     const auto y = static_cast<std::int32_t>(std::floor(p.y() / volume.voxel_size_m())) - volume.box().lo.y;
@@ -106,14 +106,14 @@ struct CredibleRays::Scene {
     return column && support.columns[*column] != 0;
   }
 
-  /// Whether a place below a support stands on another, as in a shelf.
+  /// Tells whether a place below a support stands on another, as in a shelf.
   [[nodiscard]] bool is_over_another(const Support& support, const Vector3d& p) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& other) {
       return &other != &support && above_m(other, p) > 0.0 && is_over(other, p);
     });
   }
 
-  /// Whether the ray comes to what it meets through a support or from below one.
+  /// Tells whether the ray reaches its voxel through a support or from below one.
   [[nodiscard]] bool is_hidden(const Ray& ray, double met) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
       if (above_m(support, ray.from_m) >= 0.0) return false;
@@ -124,7 +124,7 @@ struct CredibleRays::Scene {
     });
   }
 
-  /// Whether the ray comes to a support from above once it has met something.
+  /// Tells whether the ray reaches a support from above after its voxel.
   [[nodiscard]] bool ends_on_support(const Ray& ray, double met) const {
     return std::any_of(supports.begin(), supports.end(), [&](const Support& support) {
       if (above_m(support, ray.from_m) <= 0.0) return false;
@@ -133,11 +133,11 @@ struct CredibleRays::Scene {
     });
   }
 
-  /// The unknown voxel that the ray promises; nullopt: none.
+  /// Returns the unknown voxel that the ray promises; nullopt where there is none.
   [[nodiscard]] std::optional<Met> promised(const Ray& ray) const {
     const double nearest = sensor.min_range_m / sensor.max_range_m;
     const std::optional<double> past_region = ray.leaves(around_region);
-    if (!past_region) return std::nullopt;  // most rays, of a region as small as that of a hand
+    if (!past_region) return std::nullopt;  // holds for most rays of a small region, such as a hand's
     std::optional<Met> met;
     walk_line(volume, ray.from_m, ray.to_m, [&](std::size_t voxel, double share) {
       const VoxelState state = volume[voxel];
@@ -151,17 +151,17 @@ struct CredibleRays::Scene {
       if (!inside) return outside == UnknownOutside::blocks;
       if (share < nearest) return true;
       met = Met{voxel, share};
-      return !holds_surface;  // then nothing tells where returns come from
+      return !holds_surface;  // without any surface, no place of returns is known
     });
     if (met && !met->returns) met->returns = !holds_surface || ends_on_support(ray, met->share);
     return met;
   }
 
-  /// Rays of a look, counted.
+  /// Counts of a look's rays.
   struct Tally {
     std::size_t promise{0};  ///< rays that promise something
     std::size_t may{0};      ///< rays whose promise may be kept
-    double worth{0.0};       ///< the sum of how far they are believed
+    double worth{0.0};       ///< sum of their credits
 
     [[nodiscard]] double share() const { return promise > 0 ? worth / static_cast<double>(promise) : 1.0; }
     [[nodiscard]] double credit() const {
@@ -169,8 +169,8 @@ struct CredibleRays::Scene {
       return may > 0 ? worth / static_cast<double>(may) : 0.0;
     }
   };
-  /// Calls believed(what the ray meets, how far that is believed) for the rays whose promise may be kept, but for those
-  /// that is_behind_body(what the ray meets, u, v).
+  /// Calls believed(the voxel met, its credit) for the rays whose promise may be kept, except those for which
+  /// is_behind_body(the voxel met, u, v) holds.
   template <class Believed, class IsBehindBody>
   Tally cast(const PinholeCamera& rays, const Pose& T_world_camera, const Believed& believed,
              const IsBehindBody& is_behind_body) const;
@@ -178,7 +178,7 @@ struct CredibleRays::Scene {
   [[nodiscard]] bool may_be_kept(const Ray& ray, const Met& met) const {
     return trust == Trust::blind || (met.returns && !is_hidden(ray, met.share));
   }
-  /// How far a promise that may be kept is believed, in [0, 1].
+  /// Returns the credit of a promise that may be kept, in [0, 1].
   [[nodiscard]] double worth(const Ray& ray, const Met& met) const {
     if (trust == Trust::blind || credit.is_full()) return 1.0;
     return credit.of(ray.at(met.share), credit.seen_from(met.voxel), ray.from_m);
@@ -213,7 +213,7 @@ CredibleRays::Scene::Tally CredibleRays::Scene::cast(const PinholeCamera& rays, 
                                                      const Believed& believed,
                                                      const IsBehindBody& is_behind_body) const {
   Tally tally;
-  if (!T_world_camera.matrix().allFinite()) return tally;  // gains refuse such a pose
+  if (!T_world_camera.matrix().allFinite()) return tally;  // gains reject such a pose
   for (int v = 0; v < rays.height; ++v) {
     for (int u = 0; u < rays.width; ++u) {
       const Vector3d end{(u - rays.cx) / rays.fx, (v - rays.cy) / rays.fy, 1.0};

@@ -19,9 +19,9 @@ Credit::Credit(std::span<const CheckedView> checked, const PinholeCamera& sensor
                double through_m)
     : sensor_{sensor}, volume_{&volume}, through_m_{through_m} {
   for (const CheckedView& view : checked) {
-    if (view.kept >= kKept) continue;
+    if (view.kept_share >= kKept) continue;
     broken_.push_back({view.T_world_camera.inverse(Eigen::Isometry), view.T_world_camera.translation(),
-                       std::clamp(view.kept, 0.0, 1.0)});
+                       std::clamp(view.kept_share, 0.0, 1.0)});
   }
   constexpr std::size_t kMost{64};
   if (broken_.size() > kMost) broken_.erase(broken_.begin(), broken_.end() - kMost);
@@ -45,7 +45,7 @@ double Credit::of(const Eigen::Vector3d& place_m, InSight seen_from, const Eigen
   for (std::size_t i = 0; i < broken_.size(); ++i) {
     if ((seen_from >> i & 1U) == 0) continue;
     const bool from_same_side = (broken_[i].center_m - place_m).normalized().dot(towards) >= kSameSide;
-    credit *= from_same_side ? broken_[i].kept : kElsewhere + (1.0 - kElsewhere) * broken_[i].kept;
+    credit *= from_same_side ? broken_[i].kept_share : kElsewhere + (1.0 - kElsewhere) * broken_[i].kept_share;
   }
   return credit;
 }

@@ -14,7 +14,7 @@ namespace {
 
 constexpr int kRounds{5};
 
-/// Points by the cells of a lattice that they lie in.
+/// Points by cells of a lattice.
 class ClusterCells {
  public:
   ClusterCells(std::span<const Eigen::Vector3d> points, double cell_m) {
@@ -37,7 +37,7 @@ class ClusterCells {
   std::vector<std::vector<std::size_t>> members_;
 };
 
-/// Means of the points in each cell, as centres of clusters.
+/// Returns the means of the points in each cell, as initial centres of clusters.
 std::vector<Eigen::Vector3d> first_centers(std::span<const Eigen::Vector3d> points, double cell_m) {
   const ClusterCells cells{points, cell_m};
   std::vector<Eigen::Vector3d> centers;
@@ -51,7 +51,7 @@ std::vector<Eigen::Vector3d> first_centers(std::span<const Eigen::Vector3d> poin
   return centers;
 }
 
-/// Index of the centre nearest to each point, among those in cells up to two away: its cell held one at first.
+/// Returns the index of the centre nearest to each point, among cells up to two away; initially its cell held one.
 std::vector<std::size_t> nearest_centers(std::span<const Eigen::Vector3d> points,
                                          std::span<const Eigen::Vector3d> centers, double cell_m) {
   const ClusterCells cells{centers, cell_m};
@@ -68,7 +68,7 @@ std::vector<std::size_t> nearest_centers(std::span<const Eigen::Vector3d> points
   return nearest;
 }
 
-/// Pixels i with begin ≤ i < end whose centres lie in [low, high].
+/// Returns the pixels i with begin ≤ i < end whose centres lie in [low, high].
 std::pair<int, int> pixels_between(double low, double high, int size) {
   return {static_cast<int>(std::ceil(std::clamp(low, 0.0, static_cast<double>(size)))),
           static_cast<int>(std::floor(std::clamp(high, -1.0, static_cast<double>(size - 1)))) + 1};
@@ -113,7 +113,7 @@ std::optional<Ellipse> projected(const Ellipsoid& ellipsoid, const Pose& T_camer
   if (c.z() * c.z() <= shape(2, 2)) return std::nullopt;
   Eigen::Matrix3d intrinsics;
   intrinsics << camera.fx, 0.0, camera.cx, 0.0, camera.fy, camera.cy, 0.0, 0.0, 1.0;
-  // The dual of the outline: planes through the camera's centre that touch the ellipsoid.
+  // Dual of the outline: planes through the camera's centre that touch the ellipsoid.
   const Eigen::Matrix3d dual = intrinsics * (shape - c * c.transpose()) * intrinsics.transpose();
   Ellipse ellipse;
   ellipse.depth_m = c.z();

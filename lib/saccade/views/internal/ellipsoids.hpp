@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Ellipsoid, fitted_ellipsoids, Ellipse, projected: clusters of points as ellipsoids, and their outlines in an image.
+// Ellipsoid, fitted_ellipsoids, Ellipse, projected: ellipsoids around clusters of points, and their outlines in an
+// image.
 
 #include <Eigen/Core>
 #include <optional>
@@ -14,16 +15,16 @@ namespace saccade {
 
 struct Ellipsoid {
   Eigen::Vector3d center{Eigen::Vector3d::Zero()};
-  /// Shape: p is inside where (p − center)ᵀ shape⁻¹ (p − center) ≤ 1; square metres.
+  /// Shape matrix: p is inside where (p − center)ᵀ shape⁻¹ (p − center) ≤ 1; square metres.
   Eigen::Matrix3d shape{Eigen::Matrix3d::Identity()};
 };
 
-/// Ellipsoids around clusters of points: k-means from the cells of a lattice of cell_m, then of each cluster the mean
-/// and kSpread² times the covariance, to which a cube of point_m around each point adds.
-/// O(points · clusters nearby). In the order of the cells.
+/// Fits ellipsoids to clusters of points: k-means from the cells of a lattice of cell_m, then for each cluster the mean
+/// and kSpread² times the covariance, enlarged by a cube of point_m around each point. O(points · clusters nearby). In
+/// the order of the cells.
 [[nodiscard]] std::vector<Ellipsoid> fitted_ellipsoids(std::span<const Eigen::Vector3d> points, double cell_m,
                                                        double point_m);
-constexpr double kSpread{2.0};  ///< semi-axes in standard deviations: those of the outline of a uniform disc
+constexpr double kSpread{2.0};  ///< semi-axes in standard deviations, which gives the outline of a uniform disc
 
 /// Outline of an ellipsoid in an image.
 struct Ellipse {
@@ -39,7 +40,7 @@ struct Ellipse {
     return x.dot(conic * x) <= 0.0;
   }
 };
-/// nullopt where it lies outside the image or the range, or reaches behind the camera.
+/// Projects an ellipsoid; nullopt where it lies outside the image or the range, or reaches behind the camera.
 [[nodiscard]] std::optional<Ellipse> projected(const Ellipsoid& ellipsoid, const Pose& T_camera_world,
                                                const PinholeCamera& camera);
 

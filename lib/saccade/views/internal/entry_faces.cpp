@@ -6,7 +6,7 @@
 namespace saccade {
 namespace {
 
-constexpr std::int32_t kCellBricks{2};     // faces of so many bricks along each axis go into one group
+constexpr std::int32_t kCellBricks{2};     // bricks along each axis whose faces form one group
 constexpr std::size_t kFaceDirections{6};  // 2 · axis + forward
 
 using Squares = std::array<std::vector<FaceSquare>, kFaceDirections>;
@@ -21,11 +21,11 @@ Mask512 stops_of(const StopGrid& grid, const Index3& brick) {
   return found.flags == stop_flags::kClear ? Mask512{} : found.masks->stop;
 }
 
-/// The voxels whose neighbour one step back along an axis does not stop rays.
+/// Returns the voxels whose neighbour one step back along an axis does not stop rays.
 Mask512 open_behind(const Mask512& stop, const Mask512& beside, std::size_t axis, bool forward) {
   constexpr std::uint64_t kColumn0{0x0101010101010101ULL};
   constexpr std::uint64_t kColumn7{kColumn0 << 7};
-  Mask512 behind;  // of each voxel, whether the neighbour stops
+  Mask512 behind;  // per voxel: whether that neighbour stops rays
   for (std::size_t z = 0; z < kBrickEdge; ++z) {
     const std::uint64_t here = stop.words[z];
     const std::uint64_t other = beside.words[z];
@@ -44,7 +44,7 @@ Mask512 open_behind(const Mask512& stop, const Mask512& beside, std::size_t axis
   return ~behind;
 }
 
-/// Cuts what is set of 8 × 8 faces (bit 8 · v + u) into aligned squares.
+/// Splits the set bits of 8 × 8 faces (bit 8 · v + u) into aligned squares.
 template <class Body>
 void for_each_square(std::uint64_t faces, const Body& body) {
   for (int edge = kBrickEdge; edge >= 1 && faces != 0; edge /= 2) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// EntryFaces: the faces of voxels through which rays come to voxels that score.
+// EntryFaces: the faces of voxels through which rays enter scoring voxels.
 
 #include <array>
 #include <cstdint>
@@ -10,13 +10,13 @@
 
 namespace saccade {
 
-/// A square of faces in a plane across an axis.
+/// Square of faces in a plane across an axis.
 struct FaceSquare {
   Index3 corner;  ///< lowest, in voxels; on the plane of entry
   int edge_vox;
 };
 
-/// Squares that lie near each other, in planes across one axis and entered in one direction.
+/// Squares near each other, in planes across one axis and entered in one direction.
 struct FaceGroup {
   std::size_t begin;  ///< squares of EntryFaces; whole vectors of kLanes
   std::size_t end;
@@ -26,18 +26,18 @@ struct FaceGroup {
   Index3 hi;
 };
 
-/// A ray that scores enters its last voxel, which scores, from a neighbour that does not stop it: through one of these
-/// faces. They are put together to squares of 1, 2, 4 or 8 voxels, aligned within their brick.
+/// Faces through which rays score: a ray enters its last voxel, which scores, from a neighbour that does not stop it.
+/// They are merged to squares of 1, 2, 4 or 8 voxels, aligned within their brick.
 class EntryFaces {
  public:
-  static constexpr std::size_t kLanes{16};  ///< groups are filled up to multiples with copies of their last square
+  static constexpr std::size_t kLanes{16};  ///< groups are padded to multiples of this with copies of their last square
 
   EntryFaces() = default;
-  /// O(bricks around the scoring voxels + faces). Same result for every thread count.
+  /// Finds the faces. O(bricks around the scoring voxels + faces). The thread count never changes the result.
   EntryFaces(const StopGrid& grid, const Executor& executor);
 
   [[nodiscard]] const std::vector<FaceGroup>& groups() const { return groups_; }
-  /// Lowest corners of the squares by coordinate, in voxels; the plane of entry along the group's axis.
+  /// Returns the lowest corners of the squares by coordinate, in voxels; along the group's axis the plane of entry.
   [[nodiscard]] const std::vector<std::int32_t>& corners(std::size_t axis) const { return corners_[axis]; }
   [[nodiscard]] const std::vector<float>& edges_vox() const { return edges_vox_; }
 

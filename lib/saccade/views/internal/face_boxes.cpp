@@ -18,11 +18,11 @@ using VF = hn::Vec<F>;
 using VI = hn::Vec<I>;
 using M = hn::Mask<F>;
 
-constexpr float kClosest_vox{0.25F};  // what comes closer than this is not projected
+constexpr float kClosest_vox{0.25F};  // nearer points are not projected
 
-/// Pixels, both ends included.
+/// Fills a rectangle of pixels, both ends included.
 HWY_INLINE void fill(BitRaster raster, std::int32_t left, std::int32_t right, std::int32_t top, std::int32_t bottom) {
-  constexpr std::int32_t kAtOnce{56};  // fit into a word from any bit of its first byte
+  constexpr std::int32_t kAtOnce{56};  // bits that fit into a word from any bit of its first byte
   for (std::int32_t first = left; first <= right; first += kAtOnce) {
     const std::int32_t count = right - first + 1 < kAtOnce ? right - first + 1 : kAtOnce;
     const std::uint64_t bits = ((std::uint64_t{1} << count) - 1) << (first & 7);
@@ -38,7 +38,7 @@ HWY_INLINE void fill(BitRaster raster, std::int32_t left, std::int32_t right, st
 }
 
 struct Point {
-  VF column;  ///< times depth
+  VF column;  ///< multiplied by depth
   VF row;
   VF depth;
   [[nodiscard]] HWY_INLINE Point operator+(const Point& o) const {
@@ -73,7 +73,7 @@ class FaceDrawer {
   }
 
  private:
-  /// A step of the squares' edge along an axis.
+  /// Returns a step of the squares' edge along an axis.
   [[nodiscard]] HWY_INLINE Point edge(std::size_t axis, VF edge_vox) const {
     return {hn::Mul(edge_vox, hn::Set(f_, camera_.to_image[0][axis])),
             hn::Mul(edge_vox, hn::Set(f_, camera_.to_image[1][axis])),
@@ -129,7 +129,7 @@ class FaceDrawer {
     alignas(64) std::array<std::int32_t, EntryFaces::kLanes> right;
     alignas(64) std::array<std::int32_t, EntryFaces::kLanes> top;
     alignas(64) std::array<std::int32_t, EntryFaces::kLanes> bottom;
-    // Limits first, so that every number fits into an integer.
+    // Clamped first, so that every number fits into an integer.
     const auto first_pixel = [](VF x, float origin) HWY_ATTR {
       return hn::ConvertTo(
           i_, hn::Min(hn::Max(hn::Ceil(hn::Sub(x, hn::Set(f_, origin))), hn::Zero(f_)), hn::Set(f_, 1e6F)));
@@ -144,7 +144,7 @@ class FaceDrawer {
     hn::Store(hn::IfThenElse(hn::RebindMask(i_, counts), last, hn::Set(i_, -1)), i_, right.data());
     hn::Store(first_pixel(hn::Sub(bounds.top, margin), camera_.first_row), i_, top.data());
     hn::Store(last_pixel(hn::Add(bounds.bottom, margin), camera_.first_row, camera_.rows), i_, bottom.data());
-    const BitRaster raster{raster_};  // not to be read again after each byte written
+    const BitRaster raster{raster_};  // local copy, so that it is not read again after each byte written
     for (std::size_t i = 0; i < hn::Lanes(f_); ++i) fill(raster, left[i], right[i], top[i], bottom[i]);
   }
 

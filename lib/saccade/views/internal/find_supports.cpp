@@ -14,11 +14,11 @@ namespace {
 constexpr std::int32_t kPatchEdge{8};     // voxels
 constexpr std::size_t kLeastOfPatch{20};  // voxels
 constexpr double kFlat_vox{0.6};          // root mean square distance to the plane of a patch
-constexpr double kInlier_vox{1.0};        // voxels this far from a plane are part of it
-constexpr std::size_t kMaxSeeds{64};      // patches that planes are tried from
-constexpr std::size_t kMaxRefined{4096};  // voxels that a plane is fitted to in the end
+constexpr double kInlier_vox{1.0};        // voxels within this distance of a plane belong to it
+constexpr std::size_t kMaxSeeds{64};      // patches to try planes from
+constexpr std::size_t kMaxRefined{4096};  // voxels for the final fit of a plane
 
-/// An occupied voxel with an empty one above; columns and layers counted within the volume.
+/// Occupied voxel with an empty one above; columns and layers counted within the volume.
 struct Top {
   std::int32_t x{0};
   std::int32_t y{0};
@@ -26,14 +26,14 @@ struct Top {
   [[nodiscard]] double height_vox() const { return layer + 1.0; }
 };
 
-/// Height in voxels: offset + slope · (x, y), of columns' centres.
+/// Plane: height in voxels is offset + slope · (x, y), at the columns' centres.
 struct Plane {
   double offset{0.0};
   Eigen::Vector2d slope{Eigen::Vector2d::Zero()};
   [[nodiscard]] double at(double x, double y) const { return offset + slope.x() * x + slope.y() * y; }
 };
 
-/// Least squares. Planes are level as far as the points leave it open.
+/// Least squares fit. The plane is level in directions that the points leave open.
 class PlaneFit {
  public:
   void add(double x, double y, double height, double weight = 1.0) {
@@ -53,7 +53,7 @@ class PlaneFit {
     return plane;
   }
   [[nodiscard]] Eigen::Vector3d mean() const { return sum_ / weight_; }
-  /// Mean square distance along z to plane().
+  /// Returns the mean square distance along z to plane().
   [[nodiscard]] double residual() const {
     const Eigen::Vector3d mean = sum_ / weight_;
     const Eigen::Matrix3d spread = (squares_ - weight_ * mean * mean.transpose()) / weight_;
@@ -67,14 +67,14 @@ class PlaneFit {
   Eigen::Matrix3d squares_{Eigen::Matrix3d::Zero()};
 };
 
-/// A small flat part of a surface.
+/// Small flat part of a surface.
 struct Patch {
   Eigen::Vector3d mean;  ///< x, y and height in voxels
   Plane plane;
   double weight{0.0};
 };
 
-/// Layer by layer, row by row.
+/// Returns the tops layer by layer, row by row.
 std::vector<Top> tops_of(const StateVolume& volume, const Executor& executor) {
   const auto row = static_cast<std::size_t>(volume.row());
   const auto layer = static_cast<std::size_t>(volume.layer());
@@ -98,7 +98,7 @@ std::vector<Top> tops_of(const StateVolume& volume, const Executor& executor) {
   return tops;
 }
 
-/// Groups of tops in one tile of columns, without a gap in height, that lie on a plane.
+/// Returns groups of tops in one tile of columns, without a gap in height, that lie on a plane.
 std::vector<Patch> patches_of(std::span<const Top> tops, std::int32_t tiles_per_row) {
   std::vector<std::vector<const Top*>> tiles;
   for (const Top& top : tops) {
@@ -122,7 +122,7 @@ std::vector<Patch> patches_of(std::span<const Top> tops, std::int32_t tiles_per_
   return patches;
 }
 
-/// Returns the plane on which most of the patches lie, nullopt without patches.
+/// Returns the plane supported by most patches, nullopt without patches.
 std::optional<Plane> best_plane(std::span<const Patch> patches) {
   std::optional<Plane> best;
   double most{0.0};
@@ -131,7 +131,7 @@ std::optional<Plane> best_plane(std::span<const Patch> patches) {
     Plane plane = patches[seed].plane;
     double weight{0.0};
     for (int round = 0; round < 4; ++round) {
-      // The slope of one patch is known to within a degree or so.
+      // The slope of one patch is accurate to about a degree.
       const double per_vox = round == 0 ? 0.02 : 0.0;
       PlaneFit fit;
       for (const Patch& patch : patches) {
@@ -155,7 +155,7 @@ bool is_inlier(const Plane& plane, const Top& top) {
   return std::abs(top.height_vox() - plane.at(top.x, top.y)) <= kInlier_vox;
 }
 
-/// Height in voxels at which the signed distance is zero.
+/// Returns the height in voxels at which the signed distance is zero.
 double zero_crossing_vox(const TsdfSnapshot& map, const StateVolume& volume, const Top& top) {
   const Index3 below = volume.box().lo + Index3{top.x, top.y, top.layer};
   const int inside = map.grid.voxel(below).v;
@@ -196,7 +196,7 @@ Support support_of(const StateVolume& volume, const Plane& plane, std::span<cons
   return support;
 }
 
-/// Takes known holes out of a support's columns. Returns the number of them.
+/// Removes known holes from a support's columns. Returns their number.
 std::size_t leave_out_holes(const StateVolume& volume, Support& support) {
   const std::vector<std::int32_t> tops = top_layers(volume, support);
   std::size_t holes{0};
@@ -236,12 +236,12 @@ std::vector<std::uint32_t> hull_columns(std::span<const std::uint32_t> seen, std
       const Eigen::Vector2d& a = hull[i];
       const Eigen::Vector2d& b = hull[(i + 1) % hull.size()];
       if (std::min(a.y(), b.y()) > y || std::max(a.y(), b.y()) < y) continue;
-      const bool level = a.y() == b.y();  // then b is a corner of the next edge, too
+      const bool level = a.y() == b.y();  // then b also starts the next edge
       const double x = level ? a.x() : a.x() + (y - a.y()) / (b.y() - a.y()) * (b.x() - a.x());
       begin = std::min(begin, x);
       end = std::max(end, x);
     }
-    constexpr double kSlack{1e-9};  // corners lie in their own row
+    constexpr double kSlack{1e-9};  // keeps corners in their own row
     const auto first = static_cast<std::uint32_t>(y) * columns_per_row;
     for (double x = std::ceil(begin - kSlack); x <= end + kSlack; x += 1.0) {
       columns.push_back(first + static_cast<std::uint32_t>(x));

@@ -13,21 +13,21 @@ namespace {
 constexpr std::int32_t kWallTile{8};      // voxels
 constexpr double kLeastOfTile{60.0};      // voxels
 constexpr double kThin_vox{0.7};          // standard deviation across a tile's plane
-constexpr double kBesideWall_vox{1.0};    // voxels this far from a plane are part of it
-constexpr std::size_t kMaxWallSeeds{64};  // tiles that planes are tried from
-constexpr double kEdge_vox{2.5};          // how far a wall reaches beyond the centres of its outermost voxels
+constexpr double kBesideWall_vox{1.0};    // voxels within this distance of a plane belong to it
+constexpr std::size_t kMaxWallSeeds{64};  // tiles to try planes from
+constexpr double kEdge_vox{2.5};          // extent of a wall beyond the centres of its outermost voxels
 constexpr double kMaxKnownBehind{0.05};   // share of the voxels behind a wall
-constexpr double kBehindFrom_vox{6.0};    // fusion marks what is nearer
+constexpr double kBehindFrom_vox{6.0};    // fusion marks nearer voxels as occupied
 constexpr double kBehindTo_vox{16.0};
 
-/// An occupied voxel beside an empty one. Counted within the volume.
+/// Occupied voxel beside an empty one, counted within the volume.
 struct Side {
   Eigen::Vector2f at;
   std::int32_t layer{0};
-  Eigen::Vector2f out;  ///< towards empty voxels
+  Eigen::Vector2f out;  ///< direction towards empty voxels
 };
 
-/// Sides in a tile of columns, or a sum of such.
+/// Sides in a tile of columns, or their sum.
 struct SideSum {
   double weight{0.0};
   Eigen::Vector2d sum{Eigen::Vector2d::Zero()};
@@ -50,7 +50,7 @@ struct SideSum {
   [[nodiscard]] Eigen::Vector2d mean() const { return sum / weight; }
 };
 
-/// normal · (x, y) = offset, in voxels; the normal points to the empty side.
+/// Upright plane normal · (x, y) = offset, in voxels; the normal points to the empty side.
 struct UprightPlane {
   Eigen::Vector2d normal{Eigen::Vector2d::UnitX()};
   double offset{0.0};
@@ -69,7 +69,7 @@ UprightPlane upright_plane(const SideSum& sides) {
   return plane;
 }
 
-/// Layer by layer, row by row.
+/// Returns the sides layer by layer, row by row.
 std::vector<Side> sides_of(const StateVolume& volume, const Executor& executor) {
   const Index3 size = volume.box().size();
   std::vector<std::vector<Side>> found(static_cast<std::size_t>(size.z));
@@ -107,7 +107,7 @@ std::vector<SideSum> tiles_of(std::span<const Side> sides, std::int32_t width) {
   return tiles;
 }
 
-/// Returns the plane beside which most of the tiles lie, nullopt without tiles.
+/// Returns the plane supported by most tiles, nullopt without tiles.
 std::optional<UprightPlane> best_upright_plane(std::span<const SideSum> tiles) {
   std::optional<UprightPlane> best;
   double most{0.0};
@@ -116,7 +116,7 @@ std::optional<UprightPlane> best_upright_plane(std::span<const SideSum> tiles) {
     UprightPlane plane = upright_plane(tiles[seed]);
     double weight{0.0};
     for (int round = 0; round < 4; ++round) {
-      const double per_vox = round == 0 ? 0.05 : 0.0;  // the direction of one tile is known to a few degrees
+      const double per_vox = round == 0 ? 0.05 : 0.0;  // the direction of one tile is accurate to a few degrees
       SideSum inliers;
       for (const SideSum& tile : tiles) {
         const double far_vox = (tile.mean() - tiles[seed].mean()).norm();
@@ -145,7 +145,7 @@ Wall wall_of(const StateVolume& volume, const UprightPlane& plane, std::span<con
   const Index3 low = volume.box().lo;
   Wall wall;
   wall.normal = plane.normal;
-  // Its surface lies half a voxel in front of the centres of its voxels.
+  // The wall's surface lies half a voxel in front of the centres of its voxels.
   wall.offset_m = (plane.offset + plane.normal.dot(Eigen::Vector2d{low.x + 0.5, low.y + 0.5}) + 0.5) * voxel_m;
   wall.area_m2 = static_cast<double>(sides.size()) * voxel_m * voxel_m;
   wall.begin_m = wall.low_m = kFar;
@@ -161,7 +161,7 @@ Wall wall_of(const StateVolume& volume, const UprightPlane& plane, std::span<con
   return wall;
 }
 
-/// Returns the share of the voxels behind a wall and a little around it that are known.
+/// Returns the known share of the voxels behind a wall and slightly around it.
 double known_behind(const StateVolume& volume, const Wall& wall) {
   const double voxel_m = volume.voxel_size_m();
   const Eigen::Vector2d tangent{-wall.normal.y(), wall.normal.x()};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// find_walls: upright planes of a map that things stand in front of.
+// find_walls: upright planes of a map that objects stand in front of.
 
 #include <vector>
 
@@ -10,8 +10,8 @@
 namespace saccade {
 
 /// Finds upright planes that were seen over at least `min_area_m2`, the largest first. Planes are fitted to small
-/// patches of occupied voxels beside empty ones; voxels within one voxel of a plane are part of it. A plane with
-/// something known behind it is the side of a thing, no wall. O(voxels); the thread count never changes a bit.
+/// patches of occupied voxels beside empty ones; voxels within one voxel of a plane belong to it. A plane with known
+/// space behind it is the side of an object, not a wall. O(voxels); the thread count never changes a bit.
 [[nodiscard]] std::vector<Wall> find_walls(const StateVolume& volume, double min_area_m2, const Executor& executor);
 
 }  // namespace saccade

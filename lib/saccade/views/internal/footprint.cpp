@@ -11,10 +11,10 @@
 namespace saccade {
 namespace {
 
-// Far above what float32 can be off by, in the walk of the ray as well as here, and far below a voxel and a pixel.
+// Slack far above the error of float32, here and in the ray's walk, and far below a voxel and a pixel.
 constexpr double kSlack_vox{0.012};
 constexpr double kSlack_px{0.02};
-constexpr double kSlackRate{2e-5};  // of the focal length in pixels
+constexpr double kSlackRate{2e-5};  // per pixel of focal length
 
 /// Half-spaces through the camera's centre that hold all rays of a grid: normal · p ≥ −slack.
 using ViewPyramid = std::array<std::array<double, 3>, 4>;
@@ -34,7 +34,7 @@ ViewPyramid pyramid_of(const std::array<std::array<double, 3>, 3>& axes, const P
   return sides;
 }
 
-/// Boxes of which some square may be seen.
+/// Filter of boxes in which a square may be visible.
 class GroupFilter {
  public:
   GroupFilter(const FaceProjection& camera, const ViewPyramid& sides) : camera_{camera}, sides_{sides} {}

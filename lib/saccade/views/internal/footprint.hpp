@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Footprint: the pixels of a window whose rays may score, as far as the faces of scoring voxels show it.
+// Footprint: the pixels of a window whose rays may score, judged by the faces of scoring voxels.
 
 #include <cstddef>
 #include <cstdint>
@@ -29,9 +29,9 @@ struct PixelRectangle {
   int row_end;
 };
 
-/// All pixels whose rays pass, within rounding, the box in the image around a square of faces that is turned towards
-/// the camera and within the sensor's depths; whether anything hides it is not asked. All other rays score nothing, so
-/// the count bounds the gain from above.
+/// Pixels whose rays pass, within rounding, the bounding box in the image of a square of faces that is turned towards
+/// the camera and within the sensor's depths. Occlusion is ignored. All other rays score nothing, so the count bounds
+/// the gain from above.
 class Footprint {
  public:
   /// Draws all faces. `min_t`, `max_t`: the sensor's range in metres. O(faces near the view + pixels they cover).

@@ -10,13 +10,13 @@
 namespace saccade {
 namespace {
 
-constexpr int kRootTile{32};  // pixels; tiles start at this size,
-constexpr int kFineTile{8};   // from this size on they go by voxels,
-constexpr int kRayTile{2};    // and at this size the rays go by themselves
-constexpr int kSamplePx{8};   // rays that judge an open tile are so far apart
+constexpr int kRootTile{32};  // pixels; initial size of tiles
+constexpr int kFineTile{8};   // tiles of this size and below proceed by voxels
+constexpr int kRayTile{2};    // rays of tiles of this size are walked singly
+constexpr int kSamplePx{8};   // spacing of the rays that classify an open tile
 static_assert(kRootTile / kSamplePx * (kRootTile / kSamplePx) < RayPacket::kMost);
 
-/// The event by which a ray enters slab n of voxels along an axis.
+/// Returns the event at which a ray enters slab n of voxels along an axis.
 RayEvent slab_entry(const LatticeRay& ray, int major, int n) {
   if (n == 0) return kRayStart;
   return {ray.crossing(major, ray.positive(major) ? n : 1 - n), major};
@@ -24,21 +24,21 @@ RayEvent slab_entry(const LatticeRay& ray, int major, int n) {
 
 }  // namespace
 
-/// What the rays of a tile have met so far, slab by slab, until it is the same for all of them or differs.
-class GainCaster::Sight {
+/// State of a tile's rays, slab by slab, until it is decided for all of them or differs.
+class GainCaster::TileVisibility {
  public:
-  enum class Verdict { open, none_scores, all_score, differs };
+  enum class TileState { open, none_scores, all_score, differs };
 
-  /// Rays may be decided together only where their hits' depths certainly lie within the limits.
-  Sight(const RayBeam& beam, const CastLimits& limits, bool may_score, int start)
+  /// Rays may be decided together only where the depths of their hits certainly lie within the limits.
+  TileVisibility(const RayBeam& beam, const CastLimits& limits, bool may_score, int start)
       : nearest_{limits.min_t * beam.fastest() * (1.0F + kSlack)},
         farthest_{limits.max_t * beam.slowest() * (1.0F - kSlack)},
         may_score_{may_score},
         clear_until_{start} {}
 
-  /// The slab of voxels up to which no ray met anything.
+  /// Returns the slab of voxels up to which no ray met anything.
   [[nodiscard]] int clear_until() const { return clear_until_; }
-  [[nodiscard]] Verdict verdict() const { return verdict_; }
+  [[nodiscard]] TileState state() const { return state_; }
 
   /// Adds the slabs of voxels [n, end), through which the rays run between two distances. Returns whether to go on.
   bool add(unsigned flags, int n, int end, float near, float far) {
@@ -49,19 +49,19 @@ class GainCaster::Sight {
     met_ |= flags & (stop_flags::kScores | stop_flags::kBlocks);
     const bool too_near = (met_ & stop_flags::kScores) != 0 && (n == 0 || near < nearest_ || !may_score_);
     if (met_ == (stop_flags::kScores | stop_flags::kBlocks) || too_near) {
-      verdict_ = Verdict::differs;
+      state_ = TileState::differs;
     } else if ((flags & stop_flags::kSolid) != 0) {
       const bool scores = met_ == stop_flags::kScores;
-      verdict_ = !scores ? Verdict::none_scores : far <= farthest_ ? Verdict::all_score : Verdict::differs;
+      state_ = !scores ? TileState::none_scores : far <= farthest_ ? TileState::all_score : TileState::differs;
     }
-    return verdict_ == Verdict::open;
+    return state_ == TileState::open;
   }
-  /// Nothing can be said.
-  void differ() { verdict_ = Verdict::differs; }
-  /// No slab is left.
+  /// Marks the tile as undecidable.
+  void differ() { state_ = TileState::differs; }
+  /// Ends the tile: no slab is left.
   void finish() {
-    if (verdict_ != Verdict::open) return;
-    verdict_ = (met_ & stop_flags::kScores) != 0 ? Verdict::differs : Verdict::none_scores;
+    if (state_ != TileState::open) return;
+    state_ = (met_ & stop_flags::kScores) != 0 ? TileState::differs : TileState::none_scores;
   }
 
  private:
@@ -71,7 +71,7 @@ class GainCaster::Sight {
   bool may_score_;
   int clear_until_;
   unsigned met_{0};
-  Verdict verdict_{Verdict::open};
+  TileState state_{TileState::open};
 };
 
 GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const CastLimits& limits, VoxelSet* seen,
@@ -87,7 +87,7 @@ GainCaster::GainCaster(const StopGrid& grid, const CastWindow& window, const Cas
 
 void GainCaster::cast_rows(int begin, int end) {
   const auto width = static_cast<int>(window_.a.size());
-  const bool blocked = grid_.stops(window_.rays.origin.voxel);  // tiles look at what rays come to, not start in
+  const bool blocked = grid_.stops(window_.rays.origin.voxel);  // tiles ignore the voxel in which rays start
   if (!limits_.savings.tiles || !limits_.savings.empty_bricks || blocked) {
     cast_rays({0, width, begin, end, 0, 0});
     return;
@@ -112,7 +112,7 @@ void GainCaster::look_over(int tile_px) {
   }
 }
 
-void GainCaster::judge_open_tiles() {
+void GainCaster::classify_open_tiles() {
   const auto same_root = [](const OpenTile& a, const OpenTile& b) {
     return a.tile.row_begin / kRootTile == b.tile.row_begin / kRootTile &&
            a.tile.column_begin / kRootTile == b.tile.column_begin / kRootTile;
@@ -127,14 +127,14 @@ void GainCaster::judge_open_tiles() {
   });
 }
 
-/// Casts a few rays of tiles that were split from one, to tell about how many of theirs score.
+/// Casts a few rays of tiles that were split from one, to estimate how many of their rays score.
 void GainCaster::judge(std::span<OpenTile> tiles) {
   for (OpenTile& open : tiles) open.scoring = 0.5 * static_cast<double>(open.rays);
   if (!use_packets_) return;
   int slab = tiles.front().tile.slab;
   for (const OpenTile& open : tiles) slab = std::min(slab, open.tile.slab);
-  RayPacket packet = no_rays(tiles.front().tile.major, slab);
-  std::vector<std::size_t> ends;  // of the tiles' rays in the packet
+  RayPacket packet = empty_packet(tiles.front().tile.major, slab);
+  std::vector<std::size_t> ends;  // ends of the tiles' rays in the packet
   for (const OpenTile& open : tiles) {
     const Tile& tile = open.tile;
     for (int j = tile.row_begin + kSamplePx / 2; j < tile.row_end; j += kSamplePx) {
@@ -145,7 +145,7 @@ void GainCaster::judge(std::span<OpenTile> tiles) {
     }
     ends.push_back(packet.count);
   }
-  const RaysThatScore scoring = cast_alone(packet, grid_.flat(), limits_.min_t, limits_.max_t);
+  const ScoringRays scoring = cast_alone(packet, grid_.flat(), limits_.min_t, limits_.max_t);
   rays_cast_ += scoring.cast;
   std::size_t begin{0};
   for (std::size_t k = 0; k < tiles.size(); begin = ends[k++]) {
@@ -188,7 +188,7 @@ int GainCaster::last_slab(const RayBeam& beam) const {
 void GainCaster::cast_tile(const Tile& tile) {
   if (rays_in(tile) == 0) return;
   const RayBeam beam{window_, tile};
-  Sight sight{beam, limits_, seen_ == nullptr, tile.slab};
+  TileVisibility sight{beam, limits_, seen_ == nullptr, tile.slab};
   const int size = std::max(tile.columns(), tile.rows());
   if (!beam.one_way()) {
     sight.differ();
@@ -197,8 +197,8 @@ void GainCaster::cast_tile(const Tile& tile) {
   } else {
     look_by_voxels(beam, last_slab(beam), sight);
   }
-  if (sight.verdict() == Sight::Verdict::none_scores) return;
-  if (sight.verdict() == Sight::Verdict::all_score) {
+  if (sight.state() == TileVisibility::TileState::none_scores) return;
+  if (sight.state() == TileVisibility::TileState::all_score) {
     scored_ += static_cast<std::uint64_t>(tile.columns()) * static_cast<std::uint64_t>(tile.rows());
     return;
   }
@@ -211,7 +211,7 @@ void GainCaster::cast_tile(const Tile& tile) {
   }
 }
 
-/// A tile whose rays do not share their fate.
+/// Decides a tile whose rays have different results.
 void GainCaster::decide(const Tile& tile) {
   const int size = std::max(tile.columns(), tile.rows());
   if (use_packets_ && size <= kFineTile) {
@@ -223,7 +223,7 @@ void GainCaster::decide(const Tile& tile) {
   }
 }
 
-void GainCaster::look_by_bricks(const RayBeam& beam, int last, Sight& sight) const {
+void GainCaster::look_by_bricks(const RayBeam& beam, int last, TileVisibility& sight) const {
   for (int n = sight.clear_until(); n <= last;) {
     const int end = beam.first_voxel_slab(beam.brick_slab(n) + 1);
     const RayBeam::Voxels voxels = beam.voxels(n, end);
@@ -234,7 +234,7 @@ void GainCaster::look_by_bricks(const RayBeam& beam, int last, Sight& sight) con
   sight.finish();
 }
 
-void GainCaster::look_by_voxels(const RayBeam& beam, int last, Sight& sight) const {
+void GainCaster::look_by_voxels(const RayBeam& beam, int last, TileVisibility& sight) const {
   for (int n = sight.clear_until(); n <= last;) {
     const int end = beam.first_voxel_slab(beam.brick_slab(n) + 1);
     const RayBeam::Voxels voxels = beam.voxels(n, end);
@@ -248,8 +248,8 @@ void GainCaster::look_by_voxels(const RayBeam& beam, int last, Sight& sight) con
   sight.finish();
 }
 
-/// Halves the slabs until they are the same throughout, or so thin that looking costs more than walking rays.
-bool GainCaster::look_closer(const RayBeam& beam, int n, int end, Sight& sight) const {
+/// Halves the slabs until they are uniform, or so thin that a look costs more than walking rays.
+bool GainCaster::look_closer(const RayBeam& beam, int n, int end, TileVisibility& sight) const {
   const RayBeam::Voxels voxels = beam.voxels(n, end);
   const unsigned flags = grid_.flags_of_voxels(voxels.lo, voxels.hi);
   if (end - n <= finest_slabs_ || flags == stop_flags::kClear || (flags & stop_flags::kSolid) != 0) {
@@ -284,7 +284,7 @@ void GainCaster::cast_rays(const Tile& tile) {
 }
 
 void GainCaster::cast_packet(const Tile& tile) {
-  RayPacket packet = no_rays(tile.major, tile.slab);
+  RayPacket packet = empty_packet(tile.major, tile.slab);
   for (int j = tile.row_begin; j < tile.row_end; ++j) {
     const ColumnRange range = window_.columns_of(j);
     const int begin = std::max(range.begin, tile.column_begin);
@@ -302,7 +302,7 @@ void GainCaster::cast_packet(const Tile& tile) {
   rays_cast_ += tally.cast;
 }
 
-RayPacket GainCaster::no_rays(int major, int slab) const {
+RayPacket GainCaster::empty_packet(int major, int slab) const {
   RayPacket packet;
   packet.origin = window_.rays.origin;
   packet.major = major;
@@ -310,7 +310,7 @@ RayPacket GainCaster::no_rays(int major, int slab) const {
   return packet;
 }
 
-/// Of columns [begin, end) of a row.
+/// Adds the rays of columns [begin, end) of a row.
 void GainCaster::add_rays(int begin, int end, int row, RayPacket& packet) const {
   const auto count = static_cast<std::size_t>(end - begin);
   const float* const a = window_.a.data() + begin;
@@ -380,7 +380,7 @@ bool GainCaster::ends_in(const StopGrid::Brick& brick, const Index3& voxel, cons
 }
 
 void GainCaster::score(const Index3& voxel, const RayEvent& entered) {
-  if (entered.axis < 0 || entered.t < limits_.min_t) return;  // the camera's own voxel, or nearer than it measures
+  if (entered.axis < 0 || entered.t < limits_.min_t) return;  // the camera's own voxel, or nearer than its range
   ++scored_;
   if (seen_ != nullptr) seen_->insert(voxel);
 }

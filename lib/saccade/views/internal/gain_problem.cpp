@@ -13,7 +13,7 @@
 namespace saccade {
 namespace {
 
-constexpr double kFarthest_vox{1 << 28};  // coordinates of poses and regions
+constexpr double kFarthest_vox{1 << 28};  // limit of coordinates of poses and regions
 constexpr double kLongestRay_vox{1 << 22};
 
 Error invalid(std::string what) { return {Errc::invalid_argument, std::move(what), std::string{kEvaluation}}; }
@@ -23,7 +23,7 @@ Status check_poses(std::span<const Pose> poses, double voxel_size_m) {
     const Eigen::Matrix3d R = poses[i].linear();
     if (!poses[i].matrix().allFinite()) return invalid("pose " + std::to_string(i) + " contains NaN or infinity");
     if ((R * R.transpose() - Eigen::Matrix3d::Identity()).norm() > kRotationTolerance || R.determinant() <= 0.0) {
-      return invalid("pose " + std::to_string(i) + " is no rotation");
+      return invalid("pose " + std::to_string(i) + " is not a rotation");
     }
     if (poses[i].translation().cwiseAbs().maxCoeff() / voxel_size_m > kFarthest_vox) {
       return invalid("pose " + std::to_string(i) + " lies too far from the origin");
@@ -41,26 +41,7 @@ Status check_region(const Region& region, double voxel_size_m) {
   return {};
 }
 
-/// Longest ray of the sensor in voxels.
-double reach_vox(const PinholeCamera& camera, double voxel_size_m) {
-  const Eigen::Vector3d corner{std::max(camera.cx, camera.width - 1 - camera.cx) / camera.fx,
-                               std::max(camera.cy, camera.height - 1 - camera.cy) / camera.fy, 1.0};
-  return camera.max_range_m * corner.norm() / voxel_size_m + 2.0;
-}
-
-IndexBox region_in_workspace(const Region& region, const TsdfConfig& config) {
-  const IndexBox box = voxels_around(region, config.voxel_size_m);
-  return config.workspace ? box.intersection(voxels_with_center_in(*config.workspace, config.voxel_size_m)) : box;
-}
-
-bool within_reach(const Index3& voxel, const IndexBox& box, double reach) {
-  const auto near = [reach](std::int32_t x, std::int32_t lo, std::int32_t hi) {
-    return static_cast<double>(lo) - x <= reach && static_cast<double>(x) - hi <= reach;
-  };
-  return near(voxel.x, box.lo.x, box.hi.x) && near(voxel.y, box.lo.y, box.hi.y) && near(voxel.z, box.lo.z, box.hi.z);
-}
-
-/// Rays of poses within reach of the region, and the space that holds them up to the region.
+/// Rays of poses within reach of the region, and the space around them up to the region.
 struct Views {
   std::vector<std::size_t> poses;
   std::vector<SensorRays> rays;
@@ -78,19 +59,6 @@ Views views_within_reach(std::span<const Pose> poses, const IndexBox& region, do
     views.domain = views.domain.hull(IndexBox::cube(voxel, 1));
   }
   return views;
-}
-
-using LatticeKey = std::array<std::uint32_t, 15>;
-LatticeKey key_of(const SensorRays& rays) {
-  LatticeKey key{std::bit_cast<std::uint32_t>(rays.origin.voxel.x), std::bit_cast<std::uint32_t>(rays.origin.voxel.y),
-                 std::bit_cast<std::uint32_t>(rays.origin.voxel.z)};
-  for (std::size_t i = 0; i < 3; ++i) {
-    key[3 + i] = std::bit_cast<std::uint32_t>(rays.origin.fraction[i]);
-    key[6 + i] = std::bit_cast<std::uint32_t>(rays.x[i]);
-    key[9 + i] = std::bit_cast<std::uint32_t>(rays.y[i]);
-    key[12 + i] = std::bit_cast<std::uint32_t>(rays.z[i]);
-  }
-  return key;
 }
 
 void make_jobs(const Views& views, const Region& region, const GainSavings& savings, GainProblem& problem) {
@@ -122,6 +90,36 @@ void make_jobs(const Views& views, const Region& region, const GainSavings& savi
 
 }  // namespace
 
+LatticeKey key_of(const SensorRays& rays) {
+  LatticeKey key{std::bit_cast<std::uint32_t>(rays.origin.voxel.x), std::bit_cast<std::uint32_t>(rays.origin.voxel.y),
+                 std::bit_cast<std::uint32_t>(rays.origin.voxel.z)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    key[3 + i] = std::bit_cast<std::uint32_t>(rays.origin.fraction[i]);
+    key[6 + i] = std::bit_cast<std::uint32_t>(rays.x[i]);
+    key[9 + i] = std::bit_cast<std::uint32_t>(rays.y[i]);
+    key[12 + i] = std::bit_cast<std::uint32_t>(rays.z[i]);
+  }
+  return key;
+}
+
+double longest_ray_vox(const PinholeCamera& camera, double voxel_size_m) {
+  const Eigen::Vector3d corner{std::max(camera.cx, camera.width - 1 - camera.cx) / camera.fx,
+                               std::max(camera.cy, camera.height - 1 - camera.cy) / camera.fy, 1.0};
+  return camera.max_range_m * corner.norm() / voxel_size_m + 2.0;
+}
+
+IndexBox region_in_workspace(const Region& region, const TsdfConfig& config) {
+  const IndexBox box = voxels_around(region, config.voxel_size_m);
+  return config.workspace ? box.intersection(voxels_with_center_in(*config.workspace, config.voxel_size_m)) : box;
+}
+
+bool within_reach(const Index3& voxel, const IndexBox& box, double reach) {
+  const auto near = [reach](std::int32_t x, std::int32_t lo, std::int32_t hi) {
+    return static_cast<double>(lo) - x <= reach && static_cast<double>(x) - hi <= reach;
+  };
+  return near(voxel.x, box.lo.x, box.hi.x) && near(voxel.y, box.lo.y, box.hi.y) && near(voxel.z, box.lo.z, box.hi.z);
+}
+
 Status GainConfig::validate() const {
   SACCADE_CHECK(sensor.validate());
   if (!(tilt_rad >= 0.0)) return invalid("the tilt must not be negative");
@@ -131,19 +129,28 @@ Status GainConfig::validate() const {
   return {};
 }
 
+Status check_evaluation(const TsdfConfig& map, const Region& region, std::span<const Pose> T_world_camera,
+                        const GainConfig& config) {
+  SACCADE_CHECK(map.validate());
+  SACCADE_CHECK(config.validate());
+  SACCADE_CHECK(check_region(region, map.voxel_size_m));
+  SACCADE_CHECK(check_poses(T_world_camera, map.voxel_size_m));
+  const PinholeCamera sensor = widened_vertically(config.sensor, config.tilt_rad);
+  SACCADE_CHECK(sensor.validate());
+  if (longest_ray_vox(sensor, map.voxel_size_m) > kLongestRay_vox) {
+    return invalid("the sensor's range spans too many voxels; shorten it");
+  }
+  return {};
+}
+
 Result<GainProblem> GainProblem::prepare(const TsdfSnapshot& map, const Region& region,
                                          std::span<const Pose> T_world_camera, const GainConfig& config,
                                          const Executor& executor) {
   Stopwatch clock;
   const double voxel_size_m = map.config.voxel_size_m;
-  SACCADE_CHECK(map.config.validate());
-  SACCADE_CHECK(config.validate());
-  SACCADE_CHECK(check_region(region, voxel_size_m));
-  SACCADE_CHECK(check_poses(T_world_camera, voxel_size_m));
+  SACCADE_CHECK(check_evaluation(map.config, region, T_world_camera, config));
   const PinholeCamera sensor = widened_vertically(config.sensor, config.tilt_rad);
-  SACCADE_CHECK(sensor.validate());
-  const double reach = reach_vox(sensor, voxel_size_m);
-  if (reach > kLongestRay_vox) return invalid("the sensor's range spans too many voxels; shorten it");
+  const double reach = longest_ray_vox(sensor, voxel_size_m);
 
   GainProblem problem;
   problem.limits = {static_cast<float>(sensor.min_range_m), static_cast<float>(sensor.max_range_m), config.savings};

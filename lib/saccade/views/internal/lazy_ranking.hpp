@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// firm_best: the best of many, exactly, without looking into all of them.
+// firm_best: the exact best of many items, found without evaluating all.
 
 #include <algorithm>
 #include <cstddef>
@@ -9,17 +9,17 @@
 
 namespace saccade {
 
-/// Replaces bounds by values until it is certain which are the best `count`, and returns how many were looked into:
-/// they come first then, those before the first that another might beat in `firm`.
+/// Replaces bounds by values until the best `count` items are certain. `looked` is the number of evaluated items, which
+/// then come first; `firm` the number of those before the first that another might beat.
 struct FirmBest {
   std::size_t looked{0};
   std::size_t firm{0};
 };
 
-/// @param items  by decreasing bound; afterwards those that were looked into come first, by decreasing value
-/// @param beyond bounds what is not among the items; −∞: nothing is missing
-/// @param value_of(item) its bound, or its value once look(span of items) was called for it, which lowers it or not
-/// The items are looked into in batches of 16, whatever the threads, so that they never change the result.
+/// @param items  by decreasing bound; afterwards evaluated items come first, by decreasing value
+/// @param beyond bound of missing items; −∞: none is missing
+/// @param value_of(item) its bound, or its value after look(span of items), which may lower it
+/// Items are evaluated in batches of 16 for every thread count, so threads never change the result.
 template <class Item, class ValueOf, class Look>
 FirmBest firm_best(std::vector<Item>& items, double beyond, std::size_t count, const ValueOf& value_of,
                    const Look& look) {

@@ -8,7 +8,7 @@
 namespace saccade {
 namespace {
 
-/// Centres of the unknown voxels that count and have an empty and an occupied one among their 26 neighbours.
+/// Returns the centres of counted unknown voxels with an empty and an occupied one among their 26 neighbours.
 std::vector<Eigen::Vector3d> frontier_centers(const BaselineScene& scene, const Executor& executor) {
   const StateVolume& volume = scene.volume;
   const IndexBox inner = scene.counted.intersection(volume.box().grown(-1));
@@ -68,9 +68,9 @@ double frontier_pixels(const SceneEllipsoids& ellipsoids, const Pose& T_world_ca
   std::stable_sort(outlines.begin(), outlines.end(),
                    [](const Outline& a, const Outline& b) { return a.ellipse.depth_m < b.ellipse.depth_m; });
   const auto pixels = static_cast<std::size_t>(camera.width) * static_cast<std::size_t>(camera.height);
-  std::vector<double> weights(pixels, 1.0);  // 0: the nearest frontier was met
+  std::vector<double> weights(pixels, 1.0);  // 0 where the nearest frontier was met
   double area_px{0.0};
-  for (const Outline& outline : outlines) {  // from the nearest on
+  for (const Outline& outline : outlines) {  // nearest first
     const Ellipse& ellipse = outline.ellipse;
     for (int v = ellipse.v_begin; v < ellipse.v_end; ++v) {
       for (int u = ellipse.u_begin; u < ellipse.u_end; ++u) {

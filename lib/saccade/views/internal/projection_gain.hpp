@@ -1,26 +1,26 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// ProjectionGain: what projection_gain makes; frontier_pixels: the area of frontiers in an image.
+// ProjectionGain: the result of projection_gain. frontier_pixels: the area of frontiers in an image.
 
 #include "saccade/views/internal/baseline_scene.hpp"
 #include "saccade/views/internal/ellipsoids.hpp"
 
 namespace saccade {
 
-/// Cells from which clusters of voxels start.
+/// Cell size from which clusters of voxels start.
 constexpr double kClusterCell_m{0.03};
-constexpr double kOccludedWeight{0.5};  ///< ellipsoids are coarse: what one covers is perhaps hidden
+constexpr double kOccludedWeight{0.5};  ///< ellipsoids are coarse: a covered one may still be visible
 
-/// Ellipsoids around the voxels that count.
+/// Ellipsoids around the counted voxels.
 struct SceneEllipsoids {
   std::vector<Ellipsoid> frontier;  ///< around unknown voxels next to an empty and to an occupied one
   std::vector<Ellipsoid> occupied;  ///< around surface voxels
 };
-/// O(voxels that count).
+/// Fits the ellipsoids. O(counted voxels).
 [[nodiscard]] SceneEllipsoids scene_ellipsoids(const BaselineScene& scene, const Executor& executor);
 
-/// Counts the pixels covered by a frontier's ellipsoid, each less by kOccludedWeight for every occupied one that covers
-/// it, too, and whose centre is nearer.
+/// Counts the pixels covered by a frontier's ellipsoid, each reduced by the factor kOccludedWeight for every occupied
+/// ellipsoid that covers it too and whose centre is nearer.
 [[nodiscard]] double frontier_pixels(const SceneEllipsoids& ellipsoids, const Pose& T_world_camera,
                                      const PinholeCamera& camera);
 

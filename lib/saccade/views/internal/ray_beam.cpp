@@ -7,10 +7,10 @@
 namespace saccade {
 namespace {
 
-// Far above what float32 crossings can be off by (a few 2⁻²⁴ of the distance), far below a voxel.
+// Slack far above the error of float32 crossings (a few 2⁻²⁴ of the distance), and far below a voxel.
 constexpr float kBeamSlack_vox{0.01F};
 constexpr float kBeamSlackRate{2e-6F};
-constexpr float kSteepest{10.0F};  // of slopes; 1.4 where the major axis is that of the ray
+constexpr float kSteepest{10.0F};  // largest slope; 1.4 where the major axis is that of the ray
 
 struct Direction {
   float d[3];
@@ -40,7 +40,7 @@ RayBeam::RayBeam(const CastWindow& window, const Tile& tile)
   const float* const o = window.rays.origin.fraction;
   minor_[0].axis = major_ == 0 ? 1 : 0;
   minor_[1].axis = major_ == 2 ? 1 : 2;
-  // Directions are affine in the pixel, so their ratios have their extremes at the corners of the tile.
+  // Directions are affine in the pixel, so their ratios are extreme at the corners of the tile.
   const Direction corners[4]{
       direction(window, tile.column_begin, tile.row_begin), direction(window, tile.column_end - 1, tile.row_begin),
       direction(window, tile.column_begin, tile.row_end - 1), direction(window, tile.column_end - 1, tile.row_end - 1)};
@@ -54,7 +54,7 @@ RayBeam::RayBeam(const CastWindow& window, const Tile& tile)
     inverse[i] = 1.0F / speed;
   }
   float steepest{0.0F};
-  for (Minor& minor : minor_) {
+  for (MinorAxisBounds& minor : minor_) {
     minor.start = o[minor.axis];
     minor.slope_lo = minor.slope_hi = corners[0].d[minor.axis] * inverse[0];
     for (int i = 1; i < 4; ++i) {

@@ -1,48 +1,48 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RayBeam: where the rays of a tile of pixels run, in slabs of voxels or bricks along one axis.
+// RayBeam: bounds of the rays of a tile of pixels, in slabs of voxels or bricks along one axis.
 
 #include "saccade/views/internal/cast_window.hpp"
 
 namespace saccade {
 
-/// A rectangle of rays of a window: columns and rows [begin, end).
+/// Rectangle of rays of a window: columns and rows [begin, end).
 struct Tile {
   int column_begin;
   int column_end;
   int row_begin;
   int row_end;
-  int major;  ///< axis of the slabs; the rays' largest component
+  int major;  ///< axis of the slabs: that of the rays' largest component
   int slab;   ///< no ray meets anything before this slab of voxels
 
   [[nodiscard]] int columns() const { return column_end - column_begin; }
   [[nodiscard]] int rows() const { return row_end - row_begin; }
 };
 
-/// Axis along which the middle ray of a rectangle of a window advances fastest.
+/// Returns the axis along which the middle ray of a rectangle of a window advances fastest.
 [[nodiscard]] int major_axis(const CastWindow& window, const Tile& tile);
 
-/// Bounds on the rays of a tile. Slab n is the plane of voxels (or bricks) n steps from the camera's along the major
-/// axis; within it, every ray of the tile lies in the box given, the rounding of the exact walk included.
+/// Bounds of the rays of a tile. Slab n is the plane of voxels (or bricks) n steps from the camera's along the major
+/// axis. Within it, every ray of the tile lies in the box given, including the rounding of the exact walk.
 class RayBeam {
  public:
   RayBeam(const CastWindow& window, const Tile& tile);
 
-  /// Whether all rays advance along the major axis, and not too slowly. Only then are they bounded as said; not so for
+  /// Tells whether all rays advance along the major axis, and not too slowly. The bounds hold only then; they fail for
   /// wide tiles of a sensor with few pixels.
   [[nodiscard]] bool one_way() const { return one_way_; }
 
-  /// Distance along the major axis, in voxels, at which slab n of voxels begins and ends.
+  /// Distances along the major axis, in voxels, at which slab n of voxels begins and ends.
   [[nodiscard]] float near(int n) const { return n == 0 ? 0.0F : first_ + static_cast<float>(n - 1); }
   [[nodiscard]] float far(int n) const { return first_ + static_cast<float>(n); }
-  /// |d| of the rays along the major axis, in voxels per metre of depth.
+  /// Smallest and largest |d| of the rays along the major axis, in voxels per metre of depth.
   [[nodiscard]] float slowest() const { return slowest_; }
   [[nodiscard]] float fastest() const { return fastest_; }
 
-  /// The slab of bricks that holds a slab of voxels, and the first slab of voxels of a slab of bricks.
+  /// Slab of bricks that holds a slab of voxels, and first slab of voxels in a slab of bricks.
   [[nodiscard]] int brick_slab(int n) const { return (n + skipped_) >> 3; }
   [[nodiscard]] int first_voxel_slab(int bricks) const { return bricks == 0 ? 0 : bricks * kBrickEdge - skipped_; }
-  /// Last slab of voxels that cuts the box; negative when the box lies behind.
+  /// Returns the last slab of voxels that cuts the box; negative when the box lies behind.
   [[nodiscard]] int last_slab(const IndexBox& voxels) const;
 
   /// Voxels that rays may touch in the slabs [n, end) of voxels, as lowest and highest index.
@@ -60,7 +60,7 @@ class RayBeam {
     lo[major_] = positive_ ? at + n : at - (end - 1);
     hi[major_] = positive_ ? at + end - 1 : at - n;
     for (int k = 0; k < 2; ++k) {
-      const Minor& minor = minor_[k];
+      const MinorAxisBounds& minor = minor_[k];
       const float least = minor.start + minor.slope_lo * (minor.slope_lo < 0.0F ? to : from) - slack;
       const float most = minor.start + minor.slope_hi * (minor.slope_hi < 0.0F ? from : to) + slack;
       lo[minor.axis] = origin_[minor.axis] + floor_to_int(least);
@@ -70,7 +70,7 @@ class RayBeam {
   }
 
  private:
-  struct Minor {
+  struct MinorAxisBounds {
     int axis;
     float start;     // the camera in its voxel
     float slope_lo;  // per unit of distance along the major axis
@@ -91,7 +91,7 @@ class RayBeam {
   float fastest_;
   float slack_;
   float slack_rate_;
-  Minor minor_[2];
+  MinorAxisBounds minor_[2];
 };
 
 }  // namespace saccade

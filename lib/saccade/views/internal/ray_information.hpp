@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// RayInformation: what one ray, and the rays of a view together, tell; one metric of VolumetricInformation.
+// RayInformation: information gained by one ray, and by all rays of a view, in one metric of VolumetricInformation.
 
 #include <cmath>
 #include <cstddef>
@@ -9,18 +9,18 @@
 
 namespace saccade {
 
-/// Probabilities of occupancy. A TSDF keeps none, so each state has one. Empty voxels are certain: were they not, 0.8 m
-/// of known empty space in voxels of 6 mm would hide what lies behind.
+/// Probabilities of occupancy. A TSDF stores none, so each state has one. Empty voxels are certain: otherwise 0.8 m of
+/// known empty space in voxels of 6 mm would hide the space behind.
 constexpr double kUnknownOccupancy{0.5};
-constexpr double kOccupiedOccupancy{0.97};  ///< at which OctoMap clamps
+constexpr double kOccupiedOccupancy{0.97};  ///< clamping value of OctoMap
 
-/// Entropy of a voxel in nats; 0 for certain ones.
+/// Returns the entropy of a voxel in nats; 0 for certain ones.
 [[nodiscard]] inline double occupancy_entropy(double p) {
   if (p <= 0.0 || p >= 1.0) return 0.0;
   return -p * std::log(p) - (1.0 - p) * std::log(1.0 - p);
 }
 
-/// Rating of a share x of voxels of one kind where `wished` is best: 0 at 0 and 1, 1 at `wished`, smooth and cubic on
+/// Rates a share x of voxels of one kind where `wished` is best: 0 at 0 and 1, 1 at `wished`, smooth and cubic on
 /// either side. Vasquez-Gomez et al. 2014.
 [[nodiscard]] inline double share_rating(double x, double wished) {
   const double a = wished;
@@ -30,11 +30,11 @@ constexpr double kOccupiedOccupancy{0.97};  ///< at which OctoMap clamps
 }
 constexpr double kWishedOccupied{0.2};
 constexpr double kWishedOccplane{0.8};
-/// Share of a view's rays that must touch voxels that count: a handful has any shares by chance.
+/// Share of a view's rays that must touch counted voxels, since a handful can have any shares by chance.
 constexpr double kLeastTouched{0.1};
 
-/// Told of the voxels along each ray in their order, empty ones left out, those that do not count with the likelihood
-/// alone. One metric, chosen at compile time.
+/// Information along rays. It receives the voxels along each ray in order, without empty ones; voxels that do not count
+/// only affect visibility. The metric is chosen at compile time.
 template <VolumetricInformation kMetric>
 class RayInformation {
  public:
@@ -44,10 +44,10 @@ class RayInformation {
     entropy_ = 0.0;
     met_ = false;
   }
-  /// @param counts       false: nearer than the range, or outside what counts
+  /// @param counts       false: nearer than the range, or outside the counted voxels
   /// @param beside_empty the ray came from an empty voxel
   /// @param proximity    d_max − d where an occupied voxel is at d < d_max, else 0
-  /// @return whether the ray need not go on
+  /// @return whether the ray can stop
   bool meet_unknown(bool counts, bool adjacent, bool beside_empty, double proximity) {
     using enum VolumetricInformation;
     if constexpr (kMetric == area_factor) {
@@ -68,7 +68,7 @@ class RayInformation {
     return (kMetric == occlusion_aware || kMetric == unobserved_voxel) && visible_ < kInvisible;
   }
   /// @param after_unknown  the voxel before it on the ray is unknown
-  /// @param voxels         voxels that count, along the ray up to this one
+  /// @param voxels         counted voxels along the ray up to this one
   void meet_occupied(bool counts, bool after_unknown, double voxels) {
     using enum VolumetricInformation;
     if (!counts) return;
@@ -81,7 +81,7 @@ class RayInformation {
       voxels_ += voxels;
     }
   }
-  /// Information of all rays, `rays` in number.
+  /// Returns the information of all rays; `rays` is their number.
   [[nodiscard]] double value([[maybe_unused]] double rays) const {
     using enum VolumetricInformation;
     if constexpr (kMetric == average_entropy) return voxels_ > 0.0 ? sum_ / voxels_ : 0.0;
@@ -97,7 +97,7 @@ class RayInformation {
   static constexpr double kInvisible{1e-9};
   static inline const double kUnknownEntropy = occupancy_entropy(kUnknownOccupancy);
   static inline const double kOccupiedEntropy = occupancy_entropy(kOccupiedOccupancy);
-  double visible_{1.0};  ///< likelihood that the ray gets this far
+  double visible_{1.0};  ///< likelihood that the ray reaches this point
   double run_{0.0};      ///< visible entropy of the unknown voxels passed without a gap
   double entropy_{0.0};  ///< sum over the voxels of this ray
   bool met_{false};      ///< whether the last unknown voxel counts

@@ -13,9 +13,9 @@ HWY_BEFORE_NAMESPACE();
 namespace saccade::view_kernels::HWY_NAMESPACE {
 namespace {
 
-using namespace lanes::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): the vocabulary of these kernels
+using namespace lanes::HWY_NAMESPACE;  // NOLINT(google-build-using-namespace): these kernels use all of it
 
-/// Some rays on their way, one per lane.
+/// Unfinished rays, one per lane.
 class Walkers {
  public:
   HWY_INLINE Walkers(const LatticePoint& origin, const FlatStops& stops) : stops_{stops} {
@@ -24,8 +24,8 @@ class Walkers {
     strides_ = {1, size.x, size.x * size.y};
   }
 
-  /// Takes the packet's rays from `first` on from a slab of voxels to where they leave the box of scoring voxels;
-  /// returns how many of them meet it.
+  /// Starts the packet's rays from `first` on at a slab of voxels, until they leave the box of scoring voxels; returns
+  /// how many of them meet it.
   HWY_INLINE std::size_t start(const RayPacket& packet, std::size_t first, float max_t) {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       const VF d = hn::Load(f_, packet.d[axis].data() + first);
@@ -65,8 +65,8 @@ class Walkers {
     return cast;
   }
 
-  /// Goes on with the last of those that wait, as many as there are lanes.
-  HWY_INLINE void go_on(WaitingRays& waiting) {
+  /// Continues with the last of the waiting rays, one per lane.
+  HWY_INLINE void go_on(RayQueue& waiting) {
     const std::size_t taken = std::min(waiting.count, hn::Lanes(f_));
     const std::size_t first = waiting.count -= taken;
     for (std::size_t axis = 0; axis < 3; ++axis) {
@@ -81,8 +81,8 @@ class Walkers {
     ray_ = hn::LoadU(i_, waiting.ray.data() + first);
   }
 
-  /// Those that are neither stopped nor have left, behind others that wait.
-  HWY_INLINE void wait(WaitingRays& waiting) const {
+  /// Appends the active rays to the waiting ones.
+  HWY_INLINE void wait(RayQueue& waiting) const {
     for (std::size_t axis = 0; axis < 3; ++axis) {
       put(rays_.inv[axis], waiting.count, waiting.inv[axis]);
       put(plane_[axis], waiting.count, waiting.plane[axis]);
@@ -95,13 +95,13 @@ class Walkers {
     waiting.count += hn::CountTrue(f_, active_);
   }
 
-  /// Until at most so many rays are neither stopped nor have left; returns those that scored. Rays that were stopped go
-  /// on meanwhile, unheeded: so no step waits for what was looked up before it.
+  /// Walks until at most `at_most` rays are active; returns those that scored. Stopped rays continue meanwhile without
+  /// effect, so no step waits for a look-up of the previous one.
   HWY_INLINE M walk(float min_t, std::size_t at_most) {
     const VF counts_from = hn::Set(f_, min_t);
     const VI stops = hn::Set(i_, static_cast<std::int32_t>(FlatStops::kStops));
     const VI scores = hn::Set(i_, static_cast<std::int32_t>(FlatStops::kScores));
-    // Members that may be read through a pointer are written back at every look-up; these are not.
+    // Local copies: members that a pointer may alias would be written back at every look-up.
     Way x = way(0);
     Way y = way(1);
     Way z = way(2);
@@ -116,7 +116,7 @@ class Walkers {
       const M counts = hn::And(hn::RebindMask(f_, hn::TestBit(bits, scores)), hn::Ge(entered_t, counts_from));
       scored = hn::Or(scored, hn::And(stopped, counts));
       done = hn::Or(done, stopped);
-      // NextPlanes::first, but that the exit is asked of each axis by itself.
+      // As NextPlanes::first, but each axis tests the exit separately.
       const M y_first = hn::Lt(y.t, x.t);
       const VF t_xy = hn::IfThenElse(y_first, y.t, x.t);
       const M z_first = hn::Lt(z.t, t_xy);
@@ -135,7 +135,7 @@ class Walkers {
     return scored;
   }
 
-  /// A bit per ray of the packet.
+  /// Returns one bit per ray of the packet.
   [[nodiscard]] HWY_INLINE std::uint64_t bits_of(M rays_in_lanes) const {
     alignas(64) std::array<std::int32_t, hn::MaxLanes(I{})> rays;
     hn::Store(hn::Compress(ray_, hn::RebindMask(i_, rays_in_lanes)), i_, rays.data());
@@ -152,25 +152,24 @@ class Walkers {
     return {static_cast<float>(voxel.x), static_cast<float>(voxel.y), static_cast<float>(voxel.z)};
   }
 
-  /// The values of active rays, side by side. (Storing them compressed in one go takes some processors ten times as
-  /// long.)
+  /// Stores the values of active rays contiguously. (A compressed store takes some processors ten times as long.)
   template <class V, class Values>
   HWY_INLINE void put(V value, std::size_t at, Values& values) const {
     const hn::DFromV<V> d;
     hn::StoreU(hn::Compress(value, hn::RebindMask(d, active_)), d, values.data() + at);
   }
 
-  /// The rays along one axis.
+  /// Rays along one axis.
   struct Way {
     VF o;
     VF inv;
     VF onward;  ///< ± 1
-    VI stride;  ///< ± that of the table
-    VF exit_t;  ///< crossings of this axis come before the ray's exit where they come before this
-    VF plane;   ///< the next
-    VF t;       ///< of its crossing
+    VI stride;  ///< ± the table's stride
+    VF exit_t;  ///< upper bound of crossings of this axis before the ray's exit
+    VF plane;   ///< next plane
+    VF t;       ///< time of its crossing
 
-    /// NextPlanes::advance; returns by how much the voxel changes.
+    /// As NextPlanes::advance; returns the change of the voxel's index.
     HWY_INLINE VI cross(M rays) {
       plane = hn::IfThenElse(rays, hn::Add(plane, onward), plane);
       t = hn::IfThenElse(rays, hn::Mul(hn::Sub(plane, o), inv), t);
@@ -189,14 +188,14 @@ class Walkers {
             plane_[axis],
             rays_.crossing(axis, plane_[axis])};
   }
-  /// The least number above t ≥ 0.
+  /// Returns the smallest number above t ≥ 0.
   [[nodiscard]] static HWY_INLINE VF next_after(VF t) {
     const VF positive = hn::Add(t, hn::Zero(f_));  // −0 becomes 0
     return hn::BitCast(f_, hn::Add(hn::BitCast(i_, positive), hn::Set(i_, 1)));
   }
 
-  /// Of the voxels the rays are in, in the lowest two bits. They lie in the table: it holds all cameras and the box
-  /// that rays end in, so all between.
+  /// Returns the bits of the rays' voxels, in the lowest two bits. The voxels lie in the table, which holds all
+  /// cameras, the box in which rays end, and the space between.
   [[nodiscard]] HWY_INLINE VI bits_of(VI voxel) const {
     const VI word = hn::ShiftRight<4>(voxel);
     const VI words = hn::GatherIndex(i_, reinterpret_cast<const std::int32_t*>(stops_.bits.data()), word);
@@ -208,25 +207,25 @@ class Walkers {
   static constexpr I i_{};
   static constexpr hn::RebindToUnsigned<F> u_{};
   const FlatStops& stops_;
-  std::array<std::int32_t, 3> strides_;  ///< of the table
+  std::array<std::int32_t, 3> strides_;  ///< strides of the table
   RayLanes rays_;
-  VI ray_;        ///< in the packet
-  M active_;      ///< not yet at their exits
-  VF entered_t_;  ///< when they entered the voxels that they are in
+  VI ray_;        ///< index in the packet
+  M active_;      ///< rays before their exits
+  VF entered_t_;  ///< time of entering the current voxel
   Event exit_;
-  std::array<VF, 3> plane_;  ///< the next ones
-  VI voxel_;                 ///< in the table
+  std::array<VF, 3> plane_;  ///< next planes
+  VI voxel_;                 ///< index in the table
 };
 
-/// Rays end here and there: once so few of a vector are left, they wait, and go on with such of other vectors.
+/// Returns the number of active rays of a vector at which they wait to be joined with those of other vectors.
 HWY_INLINE std::size_t few() {
   const std::size_t lanes = hn::Lanes(F{});
   return lanes >= 8 ? lanes / 2 : 0;
 }
 
-/// Returns how many rays meet the box of scoring voxels. `ended` is told which of those in the walkers scored.
+/// Returns how many rays meet the box of scoring voxels. Calls `ended` with those in the walkers that scored.
 template <class Ended>
-HWY_INLINE std::uint64_t cast(const RayPacket& packet, float min_t, float max_t, WaitingRays& waiting, Walkers& walkers,
+HWY_INLINE std::uint64_t cast(const RayPacket& packet, float min_t, float max_t, RayQueue& waiting, Walkers& walkers,
                               const Ended& ended) {
   const std::size_t lanes = hn::Lanes(F{});
   std::uint64_t cast{0};
@@ -246,7 +245,7 @@ HWY_INLINE std::uint64_t cast(const RayPacket& packet, float min_t, float max_t,
 }
 
 PacketTally cast_with_others_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t,
-                                  WaitingRays& waiting) {
+                                  RayQueue& waiting) {
   Walkers walkers{packet.origin, stops};
   PacketTally tally;
   tally.cast = cast(packet, min_t, max_t, waiting, walkers,
@@ -254,17 +253,17 @@ PacketTally cast_with_others_simd(const RayPacket& packet, const FlatStops& stop
   return tally;
 }
 
-std::uint64_t finish_rays_simd(const LatticePoint& origin, const FlatStops& stops, float min_t, WaitingRays& waiting) {
+std::uint64_t finish_rays_simd(const LatticePoint& origin, const FlatStops& stops, float min_t, RayQueue& waiting) {
   if (waiting.count == 0) return 0;
   Walkers walkers{origin, stops};
   walkers.go_on(waiting);
   return hn::CountTrue(F{}, walkers.walk(min_t, 0));
 }
 
-RaysThatScore cast_alone_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
+ScoringRays cast_alone_simd(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
   Walkers walkers{packet.origin, stops};
-  WaitingRays waiting;
-  RaysThatScore rays;
+  RayQueue waiting;
+  ScoringRays rays;
   const auto add = [&](M scored) HWY_ATTR { rays.which |= walkers.bits_of(scored); };
   rays.cast = cast(packet, min_t, max_t, waiting, walkers, add);
   if (waiting.count == 0) return rays;
@@ -290,17 +289,17 @@ HWY_EXPORT(cast_alone_simd);
 }  // namespace view_kernels
 
 PacketTally cast_with_others(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t,
-                             WaitingRays& waiting) {
+                             RayQueue& waiting) {
   using namespace view_kernels;
   return HWY_DYNAMIC_DISPATCH(cast_with_others_simd)(packet, stops, min_t, max_t, waiting);
 }
 
-std::uint64_t finish_rays(const LatticePoint& origin, const FlatStops& stops, float min_t, WaitingRays& waiting) {
+std::uint64_t finish_rays(const LatticePoint& origin, const FlatStops& stops, float min_t, RayQueue& waiting) {
   using namespace view_kernels;
   return HWY_DYNAMIC_DISPATCH(finish_rays_simd)(origin, stops, min_t, waiting);
 }
 
-RaysThatScore cast_alone(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
+ScoringRays cast_alone(const RayPacket& packet, const FlatStops& stops, float min_t, float max_t) {
   using namespace view_kernels;
   return HWY_DYNAMIC_DISPATCH(cast_alone_simd)(packet, stops, min_t, max_t);
 }

@@ -12,7 +12,7 @@
 namespace saccade {
 namespace {
 
-/// Eight bytes that are 1 where a bit is set.
+/// Returns for each byte eight bytes, which are 1 where the bit is set.
 constexpr std::array<std::uint64_t, 256> bytes_of_bits() {
   std::array<std::uint64_t, 256> bytes{};
   for (std::size_t byte = 0; byte < 256; ++byte) {

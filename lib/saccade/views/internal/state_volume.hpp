@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// StateVolume: the states of the voxels of a box, one byte each, so that neighbours are a stride away.
+// StateVolume: the states of the voxels of a box, one byte each, so that neighbours are a stride apart.
 
 #include <Eigen/Core>
 #include <cstdint>
@@ -12,13 +12,14 @@
 
 namespace saccade {
 
-/// Voxels outside the box are transparent and hold nothing. Immutable; const use from many threads is safe.
+/// Volume of voxel states. Voxels outside the box are transparent and hold nothing. Immutable; const use from many
+/// threads is safe.
 class StateVolume {
  public:
-  /// An empty box: of no voxel.
+  /// Makes an empty box without voxels.
   StateVolume() = default;
-  /// @return invalid_argument for a box of more than kMostVoxels.
-  /// O(voxels of the box).
+  /// Reads a box of the map.
+  /// @return invalid_argument for a box of more than kMostVoxels. O(voxels of the box).
   [[nodiscard]] static Result<StateVolume> read(const TsdfSnapshot& map, const IndexBox& box, const Executor& executor);
   static constexpr double kMostVoxels{536'870'912.0};
 
@@ -29,7 +30,7 @@ class StateVolume {
   [[nodiscard]] std::ptrdiff_t row() const { return row_; }
   [[nodiscard]] std::ptrdiff_t layer() const { return layer_; }
 
-  /// Expects a voxel of the box.
+  /// Returns the index of a voxel. Expects a voxel of the box.
   [[nodiscard]] std::size_t index(const Index3& voxel) const {
     const Index3 i = voxel - box_.lo;
     return static_cast<std::size_t>(i.z * layer_ + i.y * row_ + i.x);
@@ -39,12 +40,13 @@ class StateVolume {
     return box_.lo + Index3{static_cast<std::int32_t>(i % row_), static_cast<std::int32_t>(i % layer_ / row_),
                             static_cast<std::int32_t>(i / layer_)};
   }
-  /// States by index().
+  /// Returns the states by index().
   [[nodiscard]] const VoxelState* data() const { return states_.data(); }
   [[nodiscard]] VoxelState operator[](std::size_t index) const { return states_[index]; }
 
-  /// Whether nothing hides a voxel of the box from a camera: the straight line from its centre to the camera's passes
-  /// empty voxels alone, unknown ones too over the first through_m. The voxel itself does not count. O(voxels between).
+  /// Tells whether nothing hides a voxel of the box from a camera: the straight line from its centre to the camera's
+  /// passes only empty voxels; over the first through_m also unknown ones. The voxel itself does not count. O(voxels
+  /// between).
   [[nodiscard]] bool is_visible(std::size_t voxel, const Eigen::Vector3d& camera_m, double through_m) const;
 
  private:
@@ -55,7 +57,7 @@ class StateVolume {
   std::vector<VoxelState> states_;
 };
 
-/// Whether any of `count` voxels in a row is occupied.
+/// Tells whether any of `count` voxels in a row is occupied.
 [[nodiscard]] inline bool any_occupied(const VoxelState* states, std::size_t count) {
   unsigned any{0};
   for (std::size_t i = 0; i < count; ++i) any |= states[i] == VoxelState::occupied ? 1U : 0U;

@@ -19,7 +19,7 @@ IndexBox bounds_of_mask(const Mask512& mask, const Index3& brick) {
   return {brick * kBrickEdge + lo, brick * kBrickEdge + hi};
 }
 
-/// Bits 0 … 7 at the even bits.
+/// Table that moves bits 0 … 7 to the even bits.
 constexpr std::array<std::uint16_t, 256> kSpread = [] {
   std::array<std::uint16_t, 256> spread{};
   for (unsigned i = 0; i < 256; ++i) {
@@ -29,7 +29,7 @@ constexpr std::array<std::uint16_t, 256> kSpread = [] {
   return spread;
 }();
 
-/// A brick into the table of FlatStops; strides in bytes.
+/// Writes a brick into the table of FlatStops; strides in bytes.
 void write_brick(const StopGrid::Brick& brick, std::byte* at, std::size_t row, std::size_t slice) {
   const bool uniform = stop_flags::uniform(brick.flags);
   const std::uint16_t all = brick.flags == stop_flags::kAllScore ? 0xFFFF : 0x5555;
@@ -52,7 +52,7 @@ IndexBox voxels_around(const Region& region, double voxel_size_m) {
   return voxels_with_center_in(bounds(region), voxel_size_m).grown(1);
 }
 
-/// Turns the sectors of the map into sectors of the stop grid, one at a time.
+/// Builder of the stop grid from the map's sectors, one at a time.
 class StopGrid::Builder {
  public:
   Builder(const TsdfSnapshot& map, const Region& region, UnknownOutside outside)
@@ -146,7 +146,7 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
 
   const Builder builder{map, region, outside};
   grid.table_.assign(count, grid.clear_.get());
-  std::vector<std::size_t> places;  // of the detailed sectors in the table
+  std::vector<std::size_t> places;  // indices of the detailed sectors in the table
   for (std::size_t i = 0; i < count; ++i) {
     const Index3 offset{static_cast<std::int32_t>(i % grid.size_x_),
                         static_cast<std::int32_t>(i / grid.size_x_ % grid.size_y_),
@@ -172,9 +172,10 @@ Result<StopGrid> StopGrid::build(const TsdfSnapshot& map, const Region& region, 
   return grid;
 }
 
-/// Which voxels have a neighbour that does not stop rays, and the flags and boxes that follow from it.
+/// Finds the voxels with a neighbour that does not stop rays, and derives flags and boxes.
 void StopGrid::find_exposed(const Executor& executor) {
-  std::vector<std::array<std::uint16_t, kSectorBricks>> codes(views_.size());  // neighbours read the old ones meanwhile
+  std::vector<std::array<std::uint16_t, kSectorBricks>> codes(
+      views_.size());  // separate, because neighbours still read the old ones
   executor.parallel_for(views_.size(), 1, [&](std::size_t begin, std::size_t end) {
     for (std::size_t k = begin; k < end; ++k) {
       SectorView& view = *views_[k];
@@ -205,7 +206,7 @@ void StopGrid::find_exposed(const Executor& executor) {
   for (std::size_t k = 0; k < views_.size(); ++k) views_[k]->codes = codes[k];
 }
 
-/// Whether a solid brick has only solid neighbours.
+/// Tells whether a solid brick has only solid neighbours.
 bool StopGrid::buried(const Index3& brick) const {
   return (brick_flags(brick + Index3{-1, 0, 0}) & brick_flags(brick + Index3{1, 0, 0}) &
           brick_flags(brick + Index3{0, -1, 0}) & brick_flags(brick + Index3{0, 1, 0}) &

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// StopGrid: what view rays meet in each brick of a box of space: which voxels stop them, and which of those score.
+// StopGrid: for each brick of a box of space, the voxels that stop view rays, and those among them that score.
 
 #include <algorithm>
 #include <cstdint>
@@ -16,42 +16,42 @@
 namespace saccade {
 
 /// Voxels of a brick that stop a ray; those among them that count for the gain (unknown, inside the region); and those
-/// that a ray can come to: a voxel all of whose six neighbours stop rays is reached by none.
+/// that a ray can reach. A voxel all of whose six neighbours stop rays is unreachable.
 struct StopMasks {
   Mask512 stop;
   Mask512 score;
   Mask512 exposed;
 };
 
-/// What a brick, or a box of bricks or voxels, holds.
+/// Content of a brick, or of a box of bricks or voxels.
 namespace stop_flags {
 constexpr unsigned kScores{1};  ///< an exposed voxel that stops a ray and scores
 constexpr unsigned kBlocks{2};  ///< an exposed voxel that stops a ray without scoring
 constexpr unsigned kSolid{4};   ///< every voxel stops a ray
 constexpr unsigned kMask{7};
-constexpr int kShift{3};       ///< a brick's code has the place of its masks above the flags
+constexpr int kShift{3};       ///< a brick's code holds the index of its masks above the flags
 constexpr unsigned kClear{0};  ///< empty
 constexpr unsigned kAllScore{kScores | kSolid};
 constexpr unsigned kAllBlock{kBlocks | kSolid};
-constexpr unsigned kBuried{kSolid};  ///< and no ray comes to it
-/// Whether the flags of a brick say all there is to know about it.
+constexpr unsigned kBuried{kSolid};  ///< and no ray reaches it
+/// Tells whether the flags of a brick describe it completely.
 [[nodiscard]] constexpr bool uniform(unsigned flags) {
   return flags == kClear || flags == kAllScore || flags == kAllBlock || flags == kBuried;
 }
 }  // namespace stop_flags
 
-/// The ternary map (eq. 2.11) as the rays of view evaluation see it: region (eq. 2.6), workspace and the treatment of
-/// unknown voxels outside the region are already worked in. Immutable; const use from many threads is safe.
+/// Ternary map (eq. 2.11) for the rays of view evaluation, with region (eq. 2.6), workspace and the treatment of
+/// unknown voxels outside the region already applied. Immutable; const use from many threads is safe.
 class StopGrid {
  public:
-  /// Covers the bricks of `domain` (voxels). Outside it everything is clear. Unless `only_exposed`, every voxel counts
-  /// as exposed.
-  /// @return invalid_argument when the domain holds too many sectors.
-  /// O(sectors in the domain + bricks of those that exist or touch the region). Same result for every thread count.
+  /// Covers the bricks of `domain` (voxels); everything outside is clear. Unless `only_exposed`, every voxel counts as
+  /// exposed.
+  /// @return invalid_argument when the domain holds too many sectors. O(sectors in the domain + bricks of those that
+  /// exist or touch the region). The thread count never changes the result.
   [[nodiscard]] static Result<StopGrid> build(const TsdfSnapshot& map, const Region& region, UnknownOutside outside,
                                               const IndexBox& domain, bool only_exposed, const Executor& executor);
 
-  /// Smallest box around the exposed voxels that score; empty when there are none.
+  /// Returns the smallest box around the exposed voxels that score; empty when there are none.
   [[nodiscard]] const IndexBox& scoring_voxels() const { return scoring_voxels_; }
 
   struct Brick {
@@ -66,11 +66,11 @@ class StopGrid {
     const std::uint16_t code = sector.codes[static_cast<std::size_t>(child_index(brick))];
     return {code & stop_flags::kMask, sector.masks.data() + (code >> stop_flags::kShift)};
   }
-  /// Flags of all bricks, or all voxels, from lo to hi, both included.
+  /// Return the joined flags of all bricks, or all voxels, from lo to hi, both included.
   [[nodiscard]] unsigned flags_of_bricks(const Index3& lo, const Index3& hi) const;
   [[nodiscard]] unsigned flags_of_voxels(const Index3& lo, const Index3& hi) const;
   [[nodiscard]] bool stops(const Index3& voxel) const;
-  /// For rays in packets; empty where the domain holds too many bricks.
+  /// Returns the table for rays in packets; empty where the domain holds too many bricks.
   [[nodiscard]] const FlatStops& flat() const { return flat_; }
 
  private:
@@ -103,14 +103,14 @@ class StopGrid {
   std::uint32_t size_z_{0};
   std::unique_ptr<const SectorView> clear_;
   std::unique_ptr<const SectorView> blocked_;
-  std::vector<std::unique_ptr<SectorView>> views_;  ///< of `detailed_`
+  std::vector<std::unique_ptr<SectorView>> views_;  ///< one per sector in `detailed_`
   std::vector<Index3> detailed_;                    ///< sectors
   std::vector<const SectorView*> table_;
   IndexBox scoring_voxels_;
   FlatStops flat_;
 };
 
-/// Flags of the voxels of one brick from lo to hi, relative to its corner, cut to the brick.
+/// Returns the flags of the voxels of one brick from lo to hi, relative to its corner, clipped to the brick.
 inline unsigned StopGrid::flags_within(const Brick& brick, const Index3& lo, const Index3& hi) {
   if (stop_flags::uniform(brick.flags)) return brick.flags;
   const int x0 = std::max(lo.x, 0);
@@ -170,7 +170,7 @@ inline unsigned StopGrid::flags_of_voxels(const Index3& lo, const Index3& hi) co
   return (any & ~stop_flags::kSolid) | all;
 }
 
-/// The voxels of a region, at most: all whose centre can lie inside.
+/// Returns a box that holds all voxels whose centre can lie inside the region.
 [[nodiscard]] IndexBox voxels_around(const Region& region, double voxel_size_m);
 
 }  // namespace saccade

@@ -13,7 +13,7 @@ namespace {
 constexpr std::int32_t kUnknownReach_vox{
     2};  // largest distance, along an axis, of the unknown voxel that belongs to a frontier
 
-/// A step to a neighbour within the density's radius.
+/// Step to a neighbour within the density's radius.
 struct Step {
   std::ptrdiff_t offset{0};
   Eigen::Vector3f step_vox;
@@ -44,9 +44,9 @@ bool has_empty_face(const StateVolume& volume, std::size_t voxel) {
   return false;
 }
 
-/// The surface around a voxel.
+/// Surface around a voxel.
 struct SurfacePatch {
-  double density{0.0};  ///< share of a plane's
+  double density{0.0};  ///< relative to a plane
   Eigen::Vector3f normal{Eigen::Vector3f::Zero()};
   Eigen::Vector3f mean_vox{Eigen::Vector3f::Zero()};  ///< centre of its voxels, relative to the middle one
 };
@@ -68,7 +68,7 @@ std::vector<FrontierPoint> frontier_points(const BaselineScene& scene, const Exe
   executor.parallel_for(surface.size(), 64, [&](std::size_t begin, std::size_t end) {
     for (std::size_t i = begin; i < end; ++i) {
       if (!inner.contains(volume.voxel(surface[i].voxel))) {
-        patches[i].density = 1.0;  // at the border of the workspace, where surface cannot go on
+        patches[i].density = 1.0;  // at the border of the workspace, where surface cannot continue
         continue;
       }
       float area_vox{0.0F};

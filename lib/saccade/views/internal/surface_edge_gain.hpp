@@ -1,26 +1,27 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// FrontierPoint, frontier_points: where observed surface ends beside unknown space; SurfaceEdgeGain counts them.
+// FrontierPoint, frontier_points: points where observed surface ends beside unknown space. SurfaceEdgeGain counts them.
 
 #include "saccade/views/internal/baseline_scene.hpp"
 
 namespace saccade {
 
-/// Radius within which surface counts for the density at a voxel, and the least density of core voxels as a share of
-/// that of a plane: 0.5 at the edge of a plane, 0.75 at the corner of a box.
+/// Radius of the neighbourhood for the surface density at a voxel, and the smallest density of core voxels relative to
+/// a plane: 0.5 at the edge of a plane, 0.75 at the corner of a box.
 constexpr double kDensityRadius_vox{4.0};
 constexpr double kCoreDensity{0.7};
-/// Largest angle between the line of sight and the direction in which a frontier faces.
+/// Cosine of the largest angle between the line of sight and the direction in which a frontier faces.
 constexpr double kFrontierCosine{0.5};
 
-/// An observed surface voxel at which the surface may go on.
+/// Observed surface voxel at which the surface may continue.
 struct FrontierPoint {
   std::uint32_t voxel{0};    ///< the surface voxel
-  std::uint32_t unknown{0};  ///< nearest unknown voxel with an empty one beside a face: what a view must reach
-  /// The bisector of the surface's normal and the direction in which the surface ends, of length 1.
+  std::uint32_t unknown{0};  ///< nearest unknown voxel with an empty one beside a face, which a view must reach
+  /// Unit bisector of the surface's normal and the direction in which the surface ends.
   Eigen::Vector3f facing{Eigen::Vector3f::UnitZ()};
 };
-/// In the order of their voxels. O(surface voxels · voxels within the radius). The thread count never changes a bit.
+/// Returns the points in the order of their voxels. O(surface voxels · voxels within the radius). The thread count
+/// never changes a bit.
 [[nodiscard]] std::vector<FrontierPoint> frontier_points(const BaselineScene& scene, const Executor& executor);
 
 class SurfaceEdgeGain final : public Gain {

@@ -59,10 +59,10 @@ Result<SurfaceProspect> SurfaceProspect::create(const PlanningContext& context, 
   return prospect;
 }
 
-std::vector<SurfaceProspect::Sight> SurfaceProspect::facing(const Eigen::Vector3d& camera_m) const {
-  std::vector<Sight> sights;
+std::vector<SurfaceProspect::TileVisibility> SurfaceProspect::facing(const Eigen::Vector3d& camera_m) const {
+  std::vector<TileVisibility> sights;
   const Eigen::Vector3f center = camera_m.cast<float>();
-  const auto reach_m = 2.0F * static_cast<float>(sensor_.max_range_m);  // no field of view is so wide
+  const auto reach_m = 2.0F * static_cast<float>(sensor_.max_range_m);  // wider than any field of view
   for (std::size_t i = 0; i < points_.size(); ++i) {
     const ExpectedPoint& point = surface_->points[points_[i]];
     if ((point.position_m - center).squaredNorm() > reach_m * reach_m) continue;
@@ -72,7 +72,7 @@ std::vector<SurfaceProspect::Sight> SurfaceProspect::facing(const Eigen::Vector3
 }
 
 template <class Visit>
-void SurfaceProspect::for_each_in_picture(std::span<const Sight> sights, const Pose& T_world_camera,
+void SurfaceProspect::for_each_in_picture(std::span<const TileVisibility> sights, const Pose& T_world_camera,
                                           const Visit& visit) const {
   const Eigen::Isometry3f T_camera_world = T_world_camera.inverse(Eigen::Isometry).cast<float>();
   const auto fx = static_cast<float>(sensor_.fx);
@@ -81,7 +81,7 @@ void SurfaceProspect::for_each_in_picture(std::span<const Sight> sights, const P
   const auto right = static_cast<float>(sensor_.width - 0.5 - sensor_.cx);
   const auto top = static_cast<float>(-0.5 - sensor_.cy);
   const auto bottom = static_cast<float>(sensor_.height - 0.5 - sensor_.cy);
-  for (const Sight& sight : sights) {
+  for (const TileVisibility& sight : sights) {
     const Eigen::Vector3f p = T_camera_world * sight.point->position_m;
     if (p.z() < static_cast<float>(sensor_.min_range_m) || p.z() > static_cast<float>(sensor_.max_range_m)) continue;
     const float u = fx * p.x();
@@ -97,18 +97,18 @@ double SurfaceProspect::in_sight(const ExpectedPoint& point, const Eigen::Vector
   return doubtful_share_ > 0.0 && volume.is_visible(point.voxel, camera_m, kThroughAll_m) ? doubtful_share_ : 0.0;
 }
 
-std::vector<SurfaceProspect::Sight> SurfaceProspect::visible(std::span<const Pose> T_world_camera) const {
+std::vector<SurfaceProspect::TileVisibility> SurfaceProspect::visible(std::span<const Pose> T_world_camera) const {
   const Eigen::Vector3d camera_m = T_world_camera.front().translation();
-  std::vector<Sight> sights = facing(camera_m);
+  std::vector<TileVisibility> sights = facing(camera_m);
   std::vector<std::uint8_t> in_a_picture(sights.size(), 0);
   for (const Pose& pose : T_world_camera) {
-    for_each_in_picture(sights, pose, [&](const Sight& sight, const Eigen::Vector3f&) {
+    for_each_in_picture(sights, pose, [&](const TileVisibility& sight, const Eigen::Vector3f&) {
       in_a_picture[static_cast<std::size_t>(&sight - sights.data())] = 1;
     });
   }
   std::size_t count{0};
   for (std::size_t i = 0; i < sights.size(); ++i) {
-    Sight sight = sights[i];
+    TileVisibility sight = sights[i];
     if (in_a_picture[i] == 0) continue;
     const double share = in_sight(*sight.point, camera_m);
     if (share == 0.0) continue;
@@ -122,10 +122,10 @@ std::vector<SurfaceProspect::Sight> SurfaceProspect::visible(std::span<const Pos
   return sights;
 }
 
-double SurfaceProspect::area_in_picture(std::span<const Sight> sights, const Pose& T_world_camera) const {
+double SurfaceProspect::area_in_picture(std::span<const TileVisibility> sights, const Pose& T_world_camera) const {
   double area_cm2{0.0};
   for_each_in_picture(sights, T_world_camera,
-                      [&](const Sight& sight, const Eigen::Vector3f&) { area_cm2 += sight.area_cm2; });
+                      [&](const TileVisibility& sight, const Eigen::Vector3f&) { area_cm2 += sight.area_cm2; });
   return area_cm2;
 }
 
@@ -142,7 +142,7 @@ Promise SurfaceProspect::promise(const Pose& T_world_camera) const {
   };
   Promise promise;
   for_each_in_picture(visible(std::span{&T_world_camera, 1}), T_world_camera,
-                      [&](const Sight& sight, const Eigen::Vector3f& p) {
+                      [&](const TileVisibility& sight, const Eigen::Vector3f& p) {
                         if (is_behind_body(p)) return;
                         promise.voxels.push_back({surface_->volume->voxel(sight.point->voxel), sight.area_cm2});
                       });

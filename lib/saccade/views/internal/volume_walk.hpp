@@ -11,8 +11,8 @@
 
 namespace saccade {
 
-/// Calls visit(index of the voxel, share of the line at which it is entered) for the voxels along the line that lie in
-/// the volume's box, in their order, until it returns true; then returns true. O(voxels).
+/// Calls visit(index of the voxel, share of the line at which it is entered) for the line's voxels within the volume's
+/// box, in order, until it returns true. Returns true if stopped. O(voxels).
 template <class Visit>
 bool walk_line(const StateVolume& volume, const Eigen::Vector3d& from_m, const Eigen::Vector3d& to_m, Visit&& visit) {
   const double size_m = volume.voxel_size_m();

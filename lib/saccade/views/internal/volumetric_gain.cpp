@@ -13,10 +13,10 @@
 namespace saccade {
 namespace {
 
-/// The states that rays meet, and which bricks hold none but empty voxels.
+/// States that rays meet, and the bricks with only empty voxels.
 struct RayMap {
   const BaselineScene* scene;
-  std::vector<float> distance_vox;  ///< per voxel that may count; empty: not asked for
+  std::vector<float> distance_vox;  ///< per counted voxel; empty: not needed
   IndexBox bricks;
   std::vector<std::uint8_t> is_empty;  ///< per brick, x fastest
 
@@ -28,7 +28,7 @@ struct RayMap {
            static_cast<std::size_t>(at.x);
   }
   [[nodiscard]] bool brick_is_empty(const Index3& brick) const { return is_empty[index_in(bricks, brick)] != 0; }
-  /// d_max − d as a share of d_max.
+  /// Returns d_max − d relative to d_max.
   [[nodiscard]] double proximity(const Index3& voxel, double reach_vox) const {
     if (distance_vox.empty()) return 0.0;
     return 1.0 - std::min(1.0, static_cast<double>(distance_vox[index_in(scene->counted, voxel)]) / reach_vox);
@@ -52,7 +52,7 @@ double steps_between(const Index3& a, const Index3& b) {
   return std::abs(a.x - b.x) + std::abs(a.y - b.y) + std::abs(a.z - b.z);
 }
 
-/// One ray, from where it enters the workspace to where it leaves the box that counts.
+/// Follows one ray from where it enters the workspace to where it leaves the counted box.
 template <VolumetricInformation kMetric>
 void follow(const LatticeRay& ray, const RayMap& map, const PinholeCamera& camera, double reach_vox,
             RayInformation<kMetric>& told) {
@@ -186,7 +186,7 @@ std::vector<float> distance_to_occupied(const StateVolume& volume, const IndexBo
   const Index3 size = box.size();
   const std::int32_t rows = size.x;
   const std::int32_t layers = size.x * size.y;
-  // Two sweeps; each takes the distances of the 13 neighbours that come before, forwards and then backwards.
+  // Two sweeps, forwards and backwards; each relaxes the distances from the 13 preceding neighbours.
   for (const std::int32_t ahead : {1, -1}) {
     const auto at = [ahead](std::int32_t i, std::int32_t count) { return ahead > 0 ? i : count - 1 - i; };
     for (std::int32_t k = 0; k < size.z; ++k) {

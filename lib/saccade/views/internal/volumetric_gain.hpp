@@ -1,12 +1,12 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// VolumetricGain: what volumetric_gain makes.
+// VolumetricGain: the result of volumetric_gain.
 
 #include "saccade/views/internal/baseline_scene.hpp"
 
 namespace saccade {
 
-/// Distance from which on voxels are no nearer to an occupied one: d_max of the proximity count.
+/// Distance d_max of the proximity count, beyond which voxels count as equally far from an occupied one.
 constexpr double kProximity_m{0.1};
 constexpr int kCoarser{3};
 constexpr std::size_t kFineViews{512};
@@ -17,8 +17,8 @@ class VolumetricGain final : public Gain {
   VolumetricGain(VolumetricInformation information, const BaselineGainConfig& config);
   [[nodiscard]] Result<std::vector<double>> evaluate(const PlanningContext& context, const RegionOfInterest& region,
                                                      std::span<const Pose> T_world_camera) override;
-  /// Goes through all poses with a kCoarser-th of the columns and rows, and through the best of them with all: those
-  /// that were attempted, and kFineViews or four times `count`.
+  /// Evaluates all poses with the kCoarser-th part of the columns and rows, and the best of them with all: the
+  /// attempted ones, and kFineViews or four times `count`.
   [[nodiscard]] Result<RankedViews> best(const PlanningContext& context, const RegionOfInterest& region,
                                          std::span<const Pose> T_world_camera, std::size_t count) override;
 
@@ -31,8 +31,8 @@ class VolumetricGain final : public Gain {
   BaselineGainConfig config_;
 };
 
-/// Distances to the nearest occupied voxel in voxels, to within a few per cent, `beyond_vox` where it is no nearer; per
-/// voxel of `box`, x fastest. O(voxels).
+/// Returns approximate distances to the nearest occupied voxel in voxels, to within a few per cent, at most
+/// `beyond_vox`; per voxel of `box`, x fastest. O(voxels).
 [[nodiscard]] std::vector<float> distance_to_occupied(const StateVolume& volume, const IndexBox& box, float beyond_vox);
 
 }  // namespace saccade

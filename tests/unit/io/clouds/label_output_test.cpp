@@ -180,7 +180,7 @@ TEST(Labels, ThatCannotBeReadAreErrorsThatSayWhere) {
       {"i.label", "12345", "4 bytes"},
       {"j.npy", "12345", "NumPy"},
       {"k.pcd", "VERSION 0.7\nFIELDS x label\nSIZE 4 4\nTYPE F I\nWIDTH 2\nDATA ascii\n1 5\n2 -5\n", "point 1"},
-      {"l.pcd", "VERSION 0.7\nFIELDS x label\nSIZE 4 4\nTYPE F F\nWIDTH 1\nDATA ascii\n1 nan\n", "no whole number"},
+      {"l.pcd", "VERSION 0.7\nFIELDS x label\nSIZE 4 4\nTYPE F F\nWIDTH 1\nDATA ascii\n1 nan\n", "not an integer"},
       {"m.pcd", "VERSION 0.7\nFIELDS x label\nSIZE 4 4\nTYPE F F\nCOUNT 1 2\nWIDTH 1\nDATA ascii\n1 1 1\n",
        "no field label"},
   };

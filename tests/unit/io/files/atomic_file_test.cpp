@@ -1,11 +1,18 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/io/files/file_io.hpp"
 
+#include <fcntl.h>
 #include <gtest/gtest.h>
+#include <sys/file.h>
 #include <sys/stat.h>
+#include <sys/wait.h>
+#include <unistd.h>
 
 #include <algorithm>
+#include <string>
+#include <vector>
 
+#include "saccade/io/files/leftovers.hpp"
 #include "support/small_disk.hpp"
 #include "support/temp_folder.hpp"
 
@@ -127,6 +134,55 @@ TEST(FileIo, ReadsWholeFilesOrSaysWhyNot) {
   EXPECT_EQ(read_file(folder.path()).error().code, Errc::io_failure);
   EXPECT_EQ(read_file(folder / "a/b").error().code, Errc::not_found);
   EXPECT_GT(read_text_file("/proc/self/status")->size(), 100U);  // a file whose size is said to be 0
+}
+
+/// Returns the number of a process that has ended.
+pid_t ended_process() {
+  const pid_t child = ::fork();
+  if (child == 0) ::_exit(0);
+  ::waitpid(child, nullptr, 0);
+  return child;
+}
+
+TEST(AtomicFile, RemovesWhatKilledProcessesLeftOfTheSameFile) {
+  const TempFolder folder;
+  const std::string gone = std::to_string(ended_process());
+  const std::string here = std::to_string(::getppid());
+  folder.write(".a.bin." + gone + "-0.tmp", "half");
+  folder.write(".a.bin." + gone + "-17.tmp", "");
+  for (const std::string& kept :
+       std::vector<std::string>{".a.bin." + here + "-0.tmp", ".b.bin." + gone + "-0.tmp", ".a.bin.x-0.tmp",
+                                ".a.bin.b." + gone + "-0.tmp", "a.bin." + gone + "-0.tmp", ".a.bin.tmp"}) {
+    folder.write(kept, "kept");
+  }
+  ASSERT_TRUE(write_file_atomically(folder / "a.bin", std::string_view{"whole"}));
+  EXPECT_EQ(entries(folder.path()), 7U);
+  EXPECT_FALSE(fs::exists(folder / (".a.bin." + gone + "-0.tmp")));
+  EXPECT_FALSE(fs::exists(folder / (".a.bin." + gone + "-17.tmp")));
+}
+
+TEST(AtomicFile, KeepsALockedTemporary) {
+  const TempFolder folder;
+  const fs::path other = folder.write(".a.bin." + std::to_string(ended_process()) + "-0.tmp", "of another machine");
+  const int fd = ::open(other.c_str(), O_RDONLY | O_CLOEXEC);
+  ASSERT_EQ(::flock(fd, LOCK_EX), 0);
+  ASSERT_TRUE(write_file_atomically(folder / "a.bin", std::string_view{"whole"}));
+  EXPECT_TRUE(fs::exists(other));
+  ::close(fd);
+  ASSERT_TRUE(write_file_atomically(folder / "a.bin", std::string_view{"again"}));
+  EXPECT_FALSE(fs::exists(other));
+}
+
+TEST(Leftovers, NamesOfTemporaries) {
+  const auto name = parse_temporary_name(make_temporary_name("map 1.sacmap"));
+  ASSERT_TRUE(name);
+  EXPECT_EQ(name->destination, "map 1.sacmap");
+  EXPECT_EQ(name->process, ::getpid());
+  EXPECT_NE(make_temporary_name("a"), make_temporary_name("a"));
+  for (const std::string_view wrong : {"", ".tmp", ".a.tmp", ".a.1.tmp", ".a.1-.tmp", ".a.-1.tmp", "..1-1.tmp",
+                                       "a.1-1.tmp", ".a.1-1.tm", ".a.0-1.tmp", ".a.99999999999-1.tmp"}) {
+    EXPECT_FALSE(parse_temporary_name(wrong)) << wrong;
+  }
 }
 
 }  // namespace

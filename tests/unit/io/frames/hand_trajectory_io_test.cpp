@@ -140,7 +140,7 @@ TEST(HandTrajectoryIo, FoldersAreSearchedByName) {
 
 TEST(HandTrajectoryIo, WrittenCsvReadsBackToTheBit) {
   const test::TempFolder folder;
-  const HandTrajectory trajectory = made_up_task(1).trajectory;
+  const HandTrajectory trajectory = synthetic_task(1).trajectory;
   ASSERT_TRUE(write_hand_csv(folder / "task.csv", trajectory));
   const HandTrajectory read = read_hand_trajectory(folder / "task.csv").value().trajectory;
   ASSERT_EQ(read.size(), trajectory.size());

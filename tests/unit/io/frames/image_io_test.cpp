@@ -257,7 +257,7 @@ TEST(ImageIo, ErrorsNameTheFile) {
   EXPECT_EQ(read_png16(folder / "none.png").error().code, Errc::not_found);
   const auto path = folder.write("text.png", "hello, this is text");
   EXPECT_EQ(read_color(path).error().to_string().rfind(path.string(), 0), 0U);
-  EXPECT_NE(read_color(path).error().message.find("neither a PNG nor a JPEG"), std::string::npos);
+  EXPECT_NE(read_color(path).error().message.find("neither PNG, JPEG"), std::string::npos);
   EXPECT_EQ(read_png16(sample("color.png")).error().code, Errc::unsupported);
   EXPECT_EQ(read_png16(folder.path()).error().code, Errc::io_failure);
   EXPECT_EQ(write_png(folder / "x.png", ColorImage{}).error().code, Errc::invalid_argument);

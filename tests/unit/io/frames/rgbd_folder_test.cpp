@@ -36,7 +36,7 @@ void write_seven_scenes(const TempFolder& folder) {
 
 void truncate_file(const fs::path& path) { fs::resize_file(path, fs::file_size(path) - 1); }
 
-/// What next() gives until the end: the depth of pixel (0, 0), or the error's text.
+/// Returns the results of next() until the end: the depth of pixel (0, 0), or the error's text.
 std::vector<std::string> outcomes(CameraSource& source) {
   std::vector<std::string> all;
   while (true) {
@@ -151,7 +151,7 @@ TEST(RgbdFolder, DamagedFramesAreNamedAndSkipped) {
        [](const TempFolder& f) {
          ASSERT_TRUE(write_png(f / "frame-000001.depth.png", MaskImage{8, 6}));
        },
-       "16-bit"},
+       "--depth-scale N"},
   };
   for (const Case& c : cases) {
     const TempFolder folder;
@@ -205,7 +205,7 @@ TEST(RgbdFolder, FolderErrorsSayWhatToDo) {
   write_seven_scenes(folder);
   fs::remove(folder / "camera-intrinsics.txt");
   EXPECT_NE(outcomes(folder.path()).front().find("--intrinsics fx,fy,cx,cy"), std::string::npos);
-  folder.write("camera-intrinsics.txt", "10 0 3.5\n0 -10 2.5\n0 0 1\n");
+  folder.write("camera-intrinsics.txt", "10 0 3.5\n0 0 2.5\n0 0 1\n");
   EXPECT_NE(outcomes(folder.path()).front().find("focal lengths"), std::string::npos);
   folder.write("camera-intrinsics.txt", "10 0 3.5 0 x");
   EXPECT_NE(outcomes(folder.path()).front().find("'x' is not a number"), std::string::npos);

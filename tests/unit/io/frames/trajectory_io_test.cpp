@@ -174,7 +174,7 @@ TEST(Intrinsics, EveryFormIsRead) {
 
 TEST(Intrinsics, BadOnesAreRefused) {
   for (const char* text :
-       {"", "1,2,3", "-5,5,1,1", "nan,5,1,1", "5 1 1\n0 5 1\n0 0 1\n", "5 0 1\n0 5 1\n0 0 2\n", "5 0 1 0 5 1 0 0", "{}",
+       {"", "1,2,3", "0,5,1,1", "nan,5,1,1", "5 1 1\n0 5 1\n0 0 1\n", "5 0 1\n0 5 1\n0 0 2\n", "5 0 1 0 5 1 0 0", "{}",
         "{", "five", R"({"intrinsic_matrix": [1,2,3]})", R"({"fx": "a", "fy": 1, "cx": 1, "cy": 1})",
         R"({"fx": 1, "fy": 1, "cx": 1, "cy": 1, "width": 0})", R"({"fx": 1, "fy": 1, "cx": 1, "cy": 1, "width": 1e9})",
         R"({"fx": 1, "fy": 1, "cx": 1, "cy": 1, "distortion": 3})"}) {

@@ -210,8 +210,8 @@ TEST(Sacmap, TrailingBytesAreAnError) {
 }
 
 TEST(Sacmap, OtherFilesAndNewerVersionsAreRefused) {
-  expect_corrupt({}, "no Saccade map");
-  expect_corrupt(Bytes(1000, std::byte{'x'}), "no Saccade map");
+  expect_corrupt({}, "not a Saccade map");
+  expect_corrupt(Bytes(1000, std::byte{'x'}), "not a Saccade map");
   Bytes newer = encoded(rich_map());
   newer[8] = std::byte{2};
   const auto map = decode_map(newer);

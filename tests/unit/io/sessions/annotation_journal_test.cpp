@@ -48,7 +48,7 @@ Bytes joined(const std::vector<Bytes>& parts) {
 
 struct Journal {
   std::vector<AnnotationAction> actions{actions_of_every_kind()};
-  std::vector<std::size_t> ends;  ///< of the header, then of each record
+  std::vector<std::size_t> ends;  ///< ends of the header, then of each record
   Bytes bytes;
 
   Journal() {
@@ -190,8 +190,8 @@ TEST(AnnotationJournalFormat, SoundRecordsOfWhatNoSessionWritesAreDamage) {
 TEST(AnnotationJournalFormat, OtherFilesAndVersionsAreNamed) {
   const std::string text =
       "not a session at all, but long enough that its header could be there, or so it is hoped here";
-  EXPECT_EQ(decode_journal(as_byte_span(text)).error().message, "this is no annotation session");
-  EXPECT_EQ(decode_journal({}).error().message, "this is no annotation session");
+  EXPECT_EQ(decode_journal(as_byte_span(text)).error().message, "this is not an annotation session");
+  EXPECT_EQ(decode_journal({}).error().message, "this is not an annotation session");
   Bytes newer = encode_journal_header(subject_of_journal());
   newer[8] = std::byte{2};
   EXPECT_EQ(decode_journal(newer).error().code, Errc::unsupported);
@@ -232,7 +232,7 @@ TEST(SessionSubject, HashIsOfPositionsInTheirOrder) {
   std::swap(cloud.positions_m[0], cloud.positions_m[1]);
   cloud.positions_m[3].z() = std::nextafter(cloud.positions_m[3].z(), 1.0F);
   EXPECT_NE(hash_positions(cloud), hash);
-  EXPECT_EQ(hash_positions(PointCloud{}), 0xa8c7f832281a39c5ULL);  // of eight zero bytes
+  EXPECT_EQ(hash_positions(PointCloud{}), 0xa8c7f832281a39c5ULL);  // hash of eight zero bytes
 }
 
 }  // namespace

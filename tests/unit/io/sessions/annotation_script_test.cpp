@@ -174,7 +174,7 @@ TEST(AnnotationScript, MistakesAreToldWithTheLine) {
   view(R"({"size": [100, 50.5], "clip_world": 1})", "whole pixels");
   view(R"({"size": [1e300, 50], "clip_world": 1})", "whole pixels");
   view(R"({"size": [100, 50], "clip_world": [[1, 0, 0, 0]]})", "four rows");
-  view(R"({"size": [100, 50], "clip_world": [[0,0,0,0],[0,0,0,0],[0,0,0,0],[0,0,0,0]]})", "no perspective");
+  view(R"({"size": [100, 50], "clip_world": [[0,0,0,0],[0,0,0,0],[0,0,0,0],[0,0,0,0]]})", "not a perspective");
   view(R"({"size": [100, 0], "clip_world": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]]})", "1 to 8192");
   view(R"({"size": [100, 50], "T_world_camera": 1, "fov_deg": 60})", "T_world_camera: ");
   view(R"({"size": [9, 9], "T_world_camera": [[1,0,0,0],[0,1,0,0],[0,0,1,0],[0,0,0,1]], "fov_deg": 180})",

@@ -47,7 +47,7 @@ void expect_same_state(const Annotation& a, const Annotation& b) {
   ASSERT_EQ(a.history().active(), b.history().active());
 }
 
-/// Applies actions that a seed decides until so many count; the annotation that it should be.
+/// Applies random actions until `actions` of them count; returns the expected annotation.
 Annotation annotate(AnnotationSession& session, std::uint64_t seed, std::size_t actions) {
   test::RandomActions random{seed};
   Annotation expected{std::make_shared<const Neighbourhood>(session.annotation().forest().neighbourhood())};
@@ -191,7 +191,7 @@ TEST(AnnotationSession, DamagedFilesStayAsTheyAre) {
   EXPECT_NE(session.error().message.find("at byte"), std::string::npos);
   EXPECT_EQ(read_file(path).value(), bytes);
   folder.write("text", "labels: []");
-  EXPECT_EQ(cloud.session(folder / "text").error().message, "this is no annotation session");
+  EXPECT_EQ(cloud.session(folder / "text").error().message, "this is not an annotation session");
   EXPECT_EQ(*read_text_file(folder / "text"), "labels: []");
 }
 
@@ -228,7 +228,7 @@ TEST(AnnotationSession, AFullDiskIsReportedAndLeavesWhatWasThere) {
   const AnnotatedCloud cloud{30};
   std::vector<std::uint32_t> many(800);
   std::iota(many.begin(), many.end(), 0U);
-  for (const rlim_t room : {0U, 1U, 12U, 500U, 3000U}) {  // of a record of 3.2 kB
+  for (const rlim_t room : {0U, 1U, 12U, 500U, 3000U}) {  // part of a record of 3.2 kB
     const TempFolder folder;
     const fs::path path = folder / "a";
     std::optional<Annotation> expected;
@@ -272,7 +272,7 @@ TEST(AnnotationSession, CannotBeginOnAFullDiskOrWithoutAFolder) {
   EXPECT_EQ(cloud.session("/dev/null").error().code, Errc::invalid_argument);
 }
 
-/// Root may write everything; until the end of this, the process is somebody else.
+/// Root may write everything; until the end of this, the process has another user.
 class WithoutPrivileges {
  public:
   WithoutPrivileges() : before_{::geteuid()} {
@@ -310,7 +310,7 @@ int kill_cases() {
   return wanted != nullptr ? std::atoi(wanted) : test::scaled_cases(30);
 }
 
-/// What a process annotates: in turn anything, and paint on all points, whose record is long.
+/// Actions of a process: alternately anything, and paint on all points, whose record is long.
 class LongAndShortActions {
  public:
   explicit LongAndShortActions(std::uint64_t seed) : random_{seed} {}

@@ -8,13 +8,17 @@
 #include "saccade/devices/internal/joint_messages.hpp"
 #include "saccade/devices/internal/process_messages.hpp"
 #include "saccade/io/clouds/internal/kitti_io.hpp"
+#include "saccade/io/clouds/internal/npy_cloud.hpp"
+#include "saccade/io/clouds/las_io.hpp"
 #include "saccade/io/clouds/pcd_io.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/clouds/text_cloud.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/npy_io.hpp"
 #include "saccade/io/frames/camera_io.hpp"
+#include "saccade/io/frames/depth_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
+#include "saccade/io/frames/internal/calibration.hpp"
 #include "saccade/io/frames/trajectory_io.hpp"
 #include "saccade/io/sessions/annotation_session.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
@@ -62,7 +66,25 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
             2U);
   EXPECT_GE(check_seeds("npy", [](const auto& content, const auto&) { return parse_npy(as_byte_span(content)).ok(); }),
             4U);
-  EXPECT_GE(check_seeds("poses", [](const auto& content, const auto&) { return parse_pose_list(content).ok(); }), 5U);
+  EXPECT_GE(
+      check_seeds(
+          "las",
+          [](const std::string& content, const std::string& name) {
+            const auto bytes = as_byte_span(content);
+            return name.ends_with(".npy") ? parse_npy_cloud(bytes).ok() : parse_las({bytes.begin(), bytes.end()}).ok();
+          }),
+      4U);
+  EXPECT_GE(check_seeds("poses", [](const auto& content, const auto&) { return parse_pose_list(content).ok(); }), 8U);
+  EXPECT_GE(check_seeds("depth_image", [](const std::string& content,
+                                          const auto&) { return decode_depth_image(as_byte_span(content), {}).ok(); }),
+            5U);
+  EXPECT_GE(check_seeds("calibration",
+                        [](const std::string& content, const std::string& name) {
+                          if (name == "info.txt") return parse_sensor_info(content).ok();
+                          if (name.ends_with(".json")) return parse_bop_cameras(content).ok();
+                          return parse_opencv_camera(content).ok() && parse_local_transform(content)->has_value();
+                        }),
+            3U);
   EXPECT_GE(check_seeds("camera",
                         [](const std::string& content, const std::string& name) {
                           if (name == "cam.info.txt") return parse_cam_info(content).ok();

@@ -61,7 +61,7 @@ TEST(LabelPresets, MistakesAreToldWithTheirPlace) {
   EXPECT_NE(error_of_presets("labels: []").find("at least one"), std::string::npos);
   EXPECT_NE(error_of_presets("- 1"), "");
   EXPECT_NE(error_of_presets(""), "");
-  EXPECT_NE(error_of_presets("labels: [").find("no YAML"), std::string::npos);
+  EXPECT_NE(error_of_presets("labels: [").find("not valid YAML"), std::string::npos);
 }
 
 TEST(LabelPresets, FilesAreNamedInErrors) {

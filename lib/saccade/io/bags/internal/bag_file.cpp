@@ -19,7 +19,7 @@ Result<BagFile> BagFile::open(const std::filesystem::path& path) {
     return Error{reason == ENOENT || reason == ENOTDIR ? Errc::not_found : Errc::io_failure,
                  std::string{"cannot be opened: "} + std::strerror(reason), path.string()};
   }
-  if (!S_ISREG(about.st_mode)) return Error{Errc::io_failure, "this is no file", path.string()};
+  if (!S_ISREG(about.st_mode)) return Error{Errc::io_failure, "this is not a file", path.string()};
   return BagFile{std::move(file), static_cast<std::uint64_t>(about.st_size)};
 }
 

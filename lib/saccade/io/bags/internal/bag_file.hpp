@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// BagFile: a file that is read in places; ByteWindow: bytes of a file or of memory, seen piece by piece.
+// BagFile: a file with random access. ByteWindow: bytes of a file or of memory, viewed piece by piece.
 
 #include <cstddef>
 #include <cstdint>
@@ -9,19 +9,19 @@
 #include <string>
 
 #include "saccade/core/result.hpp"
-#include "saccade/core/unset_vector.hpp"
+#include "saccade/core/uninitialized_vector.hpp"
 #include "saccade/io/files/file_io.hpp"
 
 namespace saccade::internal::io_bags {
 
-/// Largest piece that is held in memory at once: a chunk, or a message.
+/// Largest piece held in memory at once: a chunk, or a message.
 constexpr std::uint64_t kMaxPieceBytes{std::uint64_t{512} << 20U};
 
 class BagFile {
  public:
   [[nodiscard]] static Result<BagFile> open(const std::filesystem::path& path);
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Fills `out` from an offset. Returns how many bytes there are, fewer at the end of the file.
+  /// Fills `out` from an offset. Returns the number of bytes read, fewer at the end of the file.
   [[nodiscard]] std::size_t read(std::uint64_t offset, std::span<std::byte> out) const;
 
  private:
@@ -30,17 +30,17 @@ class BagFile {
   std::uint64_t size_{0};
 };
 
-/// Bytes from 0 to size(). What at() returned holds until the next at().
+/// Bytes from 0 to size(). The result of at() is valid until the next at().
 class ByteWindow {
  public:
   explicit ByteWindow(std::span<const std::byte> memory) : memory_{memory}, size_{memory.size()} {}
-  /// Clipped to the file.
+  /// Creates a window, clipped to the file.
   ByteWindow(const BagFile& file, std::uint64_t begin, std::uint64_t size);
-  /// Looks at another part of the file, with the memory that it has. Expects a window of a file.
+  /// Moves to another part of the file, reusing the memory. Expects a window of a file.
   void move_to(std::uint64_t begin, std::uint64_t size);
 
   [[nodiscard]] std::uint64_t size() const { return size_; }
-  /// Fewer bytes than `count` where the window ends. Expects count ≤ kMaxPieceBytes.
+  /// Returns `count` bytes, fewer where the window ends. Expects count ≤ kMaxPieceBytes.
   [[nodiscard]] std::span<const std::byte> at(std::uint64_t offset, std::size_t count);
 
  private:
@@ -48,7 +48,7 @@ class ByteWindow {
   const BagFile* file_{nullptr};
   std::uint64_t begin_{0};
   std::uint64_t size_{0};
-  UnsetVector<std::byte> buffer_;  ///< part of the file
+  UninitializedVector<std::byte> buffer_;  ///< part of the file
   std::uint64_t buffer_at_{0};
 };
 

@@ -19,7 +19,7 @@
 namespace saccade::internal::io_bags {
 namespace {
 
-/// What a decoder did: bytes that came out, and whether it went wrong before it had all.
+/// Result of a decoder: bytes produced, and whether it failed before the end.
 struct Unpacked {
   std::size_t bytes{0};
   bool damaged{false};
@@ -33,7 +33,7 @@ Unpacked unpack_zstd(std::span<const std::byte> packed, std::span<std::byte> out
   while (from.pos < from.size) {
     const std::size_t before = from.pos + to.pos;
     if (ZSTD_isError(ZSTD_decompressStream(context.get(), &to, &from)) != 0) return {to.pos, true};
-    if (from.pos + to.pos == before) return {to.pos, true};  // more than was said
+    if (from.pos + to.pos == before) return {to.pos, true};  // more than announced
   }
   return {to.pos, false};
 }
@@ -102,15 +102,15 @@ Packing packing_of(std::string_view name) {
   return name == "zstd" ? Packing::zstd : Packing::other;
 }
 
-Result<UnsetVector<std::byte>> unpack_chunk(Packing packing, std::span<const std::byte> packed, std::uint64_t size,
-                                            bool is_cut) {
+Result<UninitializedVector<std::byte>> unpack_chunk(Packing packing, std::span<const std::byte> packed,
+                                                    std::uint64_t size, bool is_cut) {
   if (size > kMaxPieceBytes) {
     return Error{
         Errc::unsupported,
         "a chunk of " + std::to_string(size) + " bytes; at most " + std::to_string(kMaxPieceBytes) + " are read",
         {}};
   }
-  UnsetVector<std::byte> out(static_cast<std::size_t>(size));
+  UninitializedVector<std::byte> out(static_cast<std::size_t>(size));
   if (out.empty()) return out;
   Unpacked unpacked;
   switch (packing) {

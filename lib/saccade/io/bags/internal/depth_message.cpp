@@ -22,7 +22,7 @@ Result<Message> read_ros(const BagMessage& message) {
   return messages::read_message<Message>(*message.wire, message.bytes);
 }
 
-/// Rows of an image, which may be padded. corrupt_data where they are not all there.
+/// Rows of an image, which may be padded. corrupt_data where some are missing.
 class ImageRows {
  public:
   static Result<ImageRows> create(const messages::Image& image, std::size_t pixel_bytes) {
@@ -47,7 +47,7 @@ class ImageRows {
     return image_.data.data() + std::size_t{image_.step} * std::size_t(v);
   }
 
-  /// Numbers in the machine's order.
+  /// Returns the numbers in the machine's order.
   template <class T>
   [[nodiscard]] Image<T> pixels() const {
     Image<T> out{width(), height()};
@@ -65,7 +65,7 @@ class ImageRows {
   const messages::Image& image_;
 };
 
-/// "16UC1; compressedDepth png": a head of twelve bytes, then a PNG. Floats are quantised by their inverse.
+/// Reads "16UC1; compressedDepth png": a head of twelve bytes, then a PNG. Floats are quantised by their inverse.
 Result<DepthImage> read_compressed_depth(const CompressedImage& image, const DepthEncoding& encoding) {
   const std::string_view format = image.format;
   if (format.find("rvl") != std::string_view::npos) {
@@ -143,8 +143,9 @@ Result<ColorImage> read_color_message(const BagMessage& message) {
   const bool is_grey = encoding == "mono8" || encoding == "8UC1";
   const bool is_bgr = encoding == "bgr8" || encoding == "bgra8" || encoding == "8UC3";
   if (!has_alpha && !is_grey && !is_bgr && encoding != "rgb8") {
-    return Error{
-        Errc::unsupported, quoted_encoding(image.encoding) + " is no colour that is read; rgb8 and bgr8 are", {}};
+    return Error{Errc::unsupported,
+                 quoted_encoding(image.encoding) + " is not a supported colour encoding; use rgb8 or bgr8",
+                 {}};
   }
   const std::size_t pixel_bytes = is_grey ? 1 : has_alpha ? 4 : 3;
   SACCADE_TRY(const ImageRows rows, ImageRows::create(image, pixel_bytes));

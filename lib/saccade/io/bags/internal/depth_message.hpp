@@ -8,7 +8,7 @@
 
 namespace saccade::internal::io_bags {
 
-/// What each image message begins with.
+/// Beginning of each image message.
 struct ImageHead {
   std::int64_t stamp_ns{0};
   std::string frame_id;
@@ -16,18 +16,20 @@ struct ImageHead {
 };
 
 [[nodiscard]] bool is_image(const BagTopic& topic);
-/// Whether an encoding, or a format, is one of depth.
+/// Tells whether an encoding, or a format, is for depth.
 [[nodiscard]] bool is_depth_encoding(std::string_view encoding);
 
-/// Pixels stay unread. corrupt_data; unsupported where it is no message of ROS.
+/// Reads the beginning without pixels. Answers corrupt_data; unsupported where it is not a ROS message.
 [[nodiscard]] Result<ImageHead> read_image_head(const BagMessage& message);
 
-/// Metres. 16UC1 and mono16 by the encoding given; 32FC1: metres, negative free up to there; compressedDepth.
+/// Reads depth in metres. 16UC1 and mono16 by the given encoding; 32FC1: metres, negative free up to there;
+/// compressedDepth.
 [[nodiscard]] Result<DepthImage> read_depth_message(const BagMessage& message, const DepthEncoding& encoding);
-/// rgb8, bgr8, rgba8, bgra8, mono8; JPEG and PNG of CompressedImage.
+/// Reads rgb8, bgr8, rgba8, bgra8, mono8; JPEG and PNG of CompressedImage.
 [[nodiscard]] Result<ColorImage> read_color_message(const BagMessage& message);
 
-/// Distortion of the plumb bob model; a rectified image has the intrinsics of P and none. unsupported: other lenses.
+/// Reads intrinsics with distortion of the plumb bob model; a rectified image has the intrinsics of P and no
+/// distortion. Answers unsupported for other lenses.
 [[nodiscard]] Result<Intrinsics> read_camera_info(const BagMessage& message, bool is_rectified);
 
 }  // namespace saccade::internal::io_bags

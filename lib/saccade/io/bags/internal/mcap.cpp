@@ -35,7 +35,7 @@ struct McapRecord {
   std::uint64_t end{0};
 };
 
-/// nullopt where no head of a record is. The data may reach beyond the window.
+/// Returns nullopt where no record begins. The data may reach beyond the window.
 std::optional<McapRecord> mcap_record_at(ByteWindow& window, std::uint64_t offset) {
   ByteReader reader{window.at(offset, 9)};
   if (!reader.has(9)) return std::nullopt;
@@ -48,7 +48,7 @@ std::optional<McapRecord> mcap_record_at(ByteWindow& window, std::uint64_t offse
   return record;
 }
 
-/// Content of a record; after the first thing that is not there all else is empty and 0.
+/// Fields of a record; after the first missing one all others are empty or 0.
 class McapFields {
  public:
   explicit McapFields(std::span<const std::byte> bytes) : reader_{bytes} {}
@@ -116,7 +116,7 @@ class Mcap final : public BagFormat {
     return MessageView{time_ns, id, bytes.subspan(kMessageHeadBytes)};
   }
 
-  /// Channels and chunks by the summary at the end of the file. False where there is none that can be used.
+  /// Reads channels and chunks from the summary at the end of the file. Returns false where it is missing or unusable.
   [[nodiscard]] bool read_summary(const BagFile& file, ByteWindow& window) {
     if (file.size() < kMcapMagic.size() + kFooterBytes) return false;
     const auto last = mcap_record_at(window, file.size() - kFooterBytes);
@@ -131,11 +131,11 @@ class Mcap final : public BagFormat {
     if (!walk_from(
             window, start, [](auto, auto, auto) {}, on_record))
       return false;
-    // Messages outside of chunks, and files whose summary leaves something out, are found by looking at all records.
+    // Otherwise a scan of all records finds messages outside of chunks, and what the summary lacks.
     return is_good_ && has_statistics_ && !chunks.empty() && chunks.size() == chunk_count_;
   }
 
-  /// Everything from the first record on.
+  /// Scans everything from the first record on.
   [[nodiscard]] Status scan(const BagFile& file, ByteWindow& window) {
     Status failed;
     std::uint64_t loose = 0;
@@ -157,7 +157,7 @@ class Mcap final : public BagFormat {
   }
 
  private:
-  /// Ends at the footer, too.
+  /// Walks records, ending at the footer, too.
   template <class OnRecord>
   bool walk_records(ByteWindow& window, std::uint64_t at, const OnRecord& on_record) {
     while (at < window.size()) {
@@ -215,7 +215,7 @@ class Mcap final : public BagFormat {
     channels[id] = {std::move(topic), type == schemas_.end() ? std::string{} : type->second, wire};
   }
 
-  /// A chunk's record, as far as the file goes.
+  /// Returns a chunk's record, as far as the file goes.
   static std::optional<Chunk> chunk_at(const BagFile& file, ByteWindow& window, const McapRecord& record) {
     constexpr std::uint64_t kMaxName{64};
     McapFields fields{window.at(record.data_at, kChunkHeadBytes + 8 + kMaxName)};

@@ -16,7 +16,7 @@ struct RosbagOp {
   enum : std::uint8_t { message_data = 2, bag_header = 3, index_data = 4, chunk = 5, chunk_info = 6, connection = 7 };
 };
 
-/// Header of a record, and where its data lies. Fields that it lacks are 0.
+/// Header of a record, and the position of its data. Missing fields are 0.
 struct RosbagRecord {
   std::uint8_t op{0};
   std::uint32_t conn{0}, count{0}, size{0}, conn_count{0}, chunk_count{0};
@@ -27,12 +27,12 @@ struct RosbagRecord {
   std::uint64_t end{0};
 };
 
-/// Seconds and nanoseconds, 32 bits each.
+/// Converts seconds and nanoseconds, 32 bits each.
 std::int64_t rosbag_ns(std::uint64_t time) {
   return static_cast<std::int64_t>(time & 0xFFFFFFFFU) * 1'000'000'000 + static_cast<std::int64_t>(time >> 32U);
 }
 
-/// Calls `on_field(name, value)` for each field of a header; false where they do not fill it.
+/// Calls `on_field(name, value)` for each field of a header; returns false where they do not fill it.
 template <class OnField>
 bool each_field(std::span<const std::byte> header, const OnField& on_field) {
   ByteReader reader{header};
@@ -67,7 +67,7 @@ void set_field(RosbagRecord& record, std::string_view name, std::string_view val
   if (name == "topic") record.topic = value;
 }
 
-/// nullopt where no whole header is. The data may reach beyond the window.
+/// Returns nullopt where no complete header begins. The data may reach beyond the window.
 std::optional<RosbagRecord> record_at(ByteWindow& window, std::uint64_t offset) {
   const auto uint32_at = [&window](std::uint64_t at) -> std::optional<std::uint32_t> {
     const auto bytes = window.at(at, 4);
@@ -136,7 +136,8 @@ class Rosbag final : public BagFormat {
     return MessageView{rosbag_ns(record->time), record->conn, bytes};
   }
 
-  /// Connections and chunks by the index at the end of the file. False where it is not as the bag's header says.
+  /// Reads connections and chunks from the index at the end of the file. Returns false where it contradicts the bag's
+  /// header.
   [[nodiscard]] bool read_index(const BagFile& file, ByteWindow& window, const RosbagRecord& header) {
     std::uint64_t at = header.index_pos;
     ByteWindow chunk_window{file, 0, file.size()};
@@ -166,7 +167,7 @@ class Rosbag final : public BagFormat {
     return true;
   }
 
-  /// Everything from the first record on.
+  /// Scans everything from the first record on.
   [[nodiscard]] Status scan(const BagFile& file, ByteWindow& window) {
     std::uint64_t at = kRosbagMagic.size();
     while (at < window.size()) {

@@ -54,7 +54,7 @@ void TfBuffer::add(const messages::TransformStamped& transform, bool is_static) 
   const auto pose = finite_pose(transform.transform);
   if (child.empty() || parent.empty() || child == parent || !pose) return;
   Link& link = links_[std::string{child}];
-  // A frame that gets another parent, or becomes fixed, is one of which the last word holds.
+  // For a frame that changes its parent, or becomes fixed, the last message holds.
   if (link.parent != parent || link.is_static || is_static) link = {std::string{parent}, is_static, {}};
   const messages::Quaternion& q = transform.transform.orientation;
   link.samples.push_back(

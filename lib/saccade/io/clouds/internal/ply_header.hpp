@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// The header of a PLY file: parsed and written. Used by ply_read.cpp and ply_write.cpp.
+// Header of a PLY file: parsing and writing. Used by ply_read.cpp and ply_write.cpp.
 
 #include <string>
 #include <string_view>
@@ -17,7 +17,7 @@ struct PlyHeader {
 
 [[nodiscard]] Result<PlyHeader> parse_ply_header(std::string_view text);
 [[nodiscard]] std::string ply_header_text(const PlyFile& file, PlyFormat format);
-/// The order of an element's properties: its own, or columns before lists.
+/// Returns the order of an element's properties: its own, or columns before lists.
 [[nodiscard]] std::vector<int> property_order(const PlyElement& element);
 
 }  // namespace saccade

@@ -11,7 +11,7 @@
 namespace saccade {
 namespace {
 
-/// What one more in the last digit of a token is worth.
+/// Returns the value of one unit in the last digit of a token.
 double last_digit(std::string_view token) {
   std::size_t point = token.size();
   std::size_t end = 0;
@@ -27,7 +27,7 @@ double last_digit(std::string_view token) {
   return std::pow(10.0, power);
 }
 
-/// Whether a float says as much as the token does.
+/// Tells whether a float keeps the token's digits.
 bool float_says(std::string_view token, double value) {
   if (!std::isfinite(value)) return true;
   if (std::abs(value) > static_cast<double>(std::numeric_limits<float>::max())) return false;

@@ -2,213 +2,260 @@
 #include "saccade/io/frames/internal/rgbd_layout.hpp"
 
 #include <algorithm>
-#include <cmath>
-#include <map>
+#include <array>
+#include <set>
 
 #include "saccade/io/files/file_io.hpp"
-#include "saccade/io/files/text_scan.hpp"
-#include "saccade/io/frames/trajectory_io.hpp"
+#include "saccade/io/frames/internal/layout_files.hpp"
 
 namespace saccade {
 namespace {
 
 namespace fs = std::filesystem;
+using Patterns = RgbdLayoutRule::Patterns;
 
-/// Regular files of a folder by name.
-Result<std::vector<fs::path>> files_in(const fs::path& folder) {
-  std::error_code code;
-  std::vector<fs::path> files;
-  fs::directory_iterator it{folder, code};
-  for (; !code && it != fs::directory_iterator{}; it.increment(code)) {
-    std::error_code ignored;
-    if (it->is_regular_file(ignored)) files.push_back(it->path());
+constexpr DepthEncoding kMillimetres{1000.0, false};
+constexpr DepthEncoding kTum{5000.0, false};
+constexpr DepthEncoding kPrinceton{10000.0, true};
+
+/// Layouts in the order in which they are tried. docs/reference/formats.md has this table for people.
+const std::vector<RgbdLayoutRule>& layout_rules() {
+  static const std::vector<RgbdLayoutRule> rules{
+      {.layout = RgbdLayout::princeton,
+       .title = "Princeton APC",
+       .marks = {{"cam.info.txt"}, {"#.depth.*"}},
+       .depth = {"#.depth.*"},
+       .color = {"#.color.*"},
+       .encoding = kPrinceton,
+       .complete = complete_princeton},
+      {.layout = RgbdLayout::bop,
+       .title = "BOP",
+       .marks = {{"scene_camera.json"}, {"depth/#.*"}},
+       .depth = {"depth/#.*"},
+       .color = {"rgb/#.*", "gray/#.*"},
+       .complete = complete_bop},
+      {.layout = RgbdLayout::bundlefusion,
+       .title = "BundleFusion",
+       .marks = {{"info.txt", "_info.txt"}, {"#.depth.*"}},
+       .depth = {"#.depth.*"},
+       .color = {"#.color.*"},
+       .pose_each = {"#.pose.txt"},
+       .intrinsics = {"info.txt", "_info.txt"},
+       .encoding = kMillimetres,
+       .complete = complete_bundlefusion},
+      {.layout = RgbdLayout::scannet,
+       .title = "ScanNet",
+       .marks = {{"intrinsic/intrinsic_depth.txt", "intrinsic_depth.txt", "intrinsics_depth.txt"}, {"depth/#.*"}},
+       .depth = {"depth/#.*"},
+       .color = {"color/#.*", "rgb/#.*"},
+       .pose_each = {"pose/#.txt", "poses/#.txt"},
+       .intrinsics = {"intrinsic/intrinsic_depth.txt", "intrinsic_depth.txt", "intrinsics_depth.txt"},
+       .encoding = kMillimetres,
+       .complete = complete_scannet},
+      {.layout = RgbdLayout::rtabmap,
+       .title = "RTAB-Map",
+       .marks = {{"calib/#.yaml", "*_calib/#.yaml"}, {"depth/#.*", "*_depth/#.*"}},
+       .depth = {"depth/#.*", "*_depth/#.*"},
+       .color = {"rgb/#.*", "*_rgb/#.*"},
+       .pose_list = {"*camera_poses*.txt", "poses.txt", "*poses*.txt", "*.g2o", "poses*.graph"},
+       .intrinsics = {"calib/#.yaml", "*_calib/#.yaml"},
+       .encoding = kMillimetres,
+       .complete = complete_rtabmap},
+      {.layout = RgbdLayout::replica,
+       .title = "Replica",
+       .marks = {{"results/depth#.*"}, {"traj.txt", "cam_params.json", "../cam_params.json", "results/frame#.*"}},
+       .depth = {"results/depth#.*"},
+       .color = {"results/frame#.*"},
+       .pose_list = {"traj.txt"},
+       .intrinsics = {"cam_params.json", "../cam_params.json"}},
+      {.layout = RgbdLayout::tum,
+       .title = "TUM RGB-D",
+       .marks = {{"depth.txt"}},
+       .pose_list = {"groundtruth.txt"},
+       .encoding = kTum,
+       .complete = complete_tum},
+      {.layout = RgbdLayout::icl_nuim,
+       .title = "ICL-NUIM and TUM with associations",
+       .marks = {{"associations.txt", "association.txt", "associated.txt", "associate.txt"}},
+       .pose_list = {"*.gt.freiburg", "groundtruth.txt", "*.freiburg"},
+       .encoding = kTum,
+       .complete = complete_associations},
+      {.layout = RgbdLayout::open3d,
+       .title = "Open3D, which Azure Kinect and RealSense are recorded in",
+       .marks = {{"depth/#.*", "depths/#.*", "depth_image/#.*", "depth_images/#.*", "aligned_depth/#.*"}},
+       .depth = {"depth/#.*", "depths/#.*", "depth_image/#.*", "depth_images/#.*", "aligned_depth/#.*"},
+       .color = {"color/#.*", "rgb/#.*", "image/#.*", "images/#.*", "colors/#.*"},
+       .pose_each = {"pose/#.txt", "poses/#.txt"},
+       .pose_list = {"trajectory.log", "trajectory.txt", "traj.txt", "traj_w_c.txt", "poses.txt", "groundtruth.txt"},
+       .encoding = kMillimetres},
+      {.layout = RgbdLayout::seven_scenes,
+       .title = "7-Scenes",
+       .marks = {{"#.depth.*"}},
+       .depth = {"#.depth.*"},
+       .color = {"#.color.*"},
+       .pose_each = {"#.pose.txt"},
+       .encoding = kMillimetres}};
+  return rules;
+}
+
+/// Patterns of depth images lead to files that can hold such.
+FileKind kind_of(const Patterns& patterns) {
+  return patterns.front().find("depth") != std::string_view::npos && patterns.front().ends_with(".*") ? FileKind::depth
+                                                                                                      : FileKind::any;
+}
+
+std::vector<const Patterns*> missing_marks(const fs::path& folder, const RgbdLayoutRule& rule) {
+  std::vector<const Patterns*> missing;
+  for (const Patterns& mark : rule.marks) {
+    if (find_first(folder, mark, kind_of(mark)).empty()) missing.push_back(&mark);
   }
-  if (code) return Error{Errc::io_failure, "cannot list the folder: " + code.message(), folder.string()};
-  std::sort(files.begin(), files.end());
-  return files;
+  return missing;
 }
 
-/// "frame-000001" of "frame-000001.depth.png", if the name ends so.
-std::optional<std::string> stem_before(const std::string& name, std::string_view ending) {
-  if (name.size() <= ending.size() || !name.ends_with(ending)) return std::nullopt;
-  return name.substr(0, name.size() - ending.size());
-}
-
-/// Frames by the stem of their depth, colour and pose files; a stem that lacks its depth stays, to be reported.
-Result<std::vector<RgbdFrameFiles>> frames_by_stem(const fs::path& folder) {
-  SACCADE_TRY(const auto files, files_in(folder));
-  std::map<std::string, RgbdFrameFiles> frames;
-  for (const fs::path& path : files) {
-    const std::string name = path.filename().string();
-    const auto put = [&](std::string_view ending, auto member) {
-      const auto stem = stem_before(name, ending);
-      if (!stem) return;
-      frames[*stem].name = *stem;
-      frames[*stem].*member = path;
-    };
-    put(".depth.png", &RgbdFrameFiles::depth);
-    put(".color.png", &RgbdFrameFiles::color);
-    put(".color.jpg", &RgbdFrameFiles::color);
-    put(".pose.txt", &RgbdFrameFiles::pose_file);
+const RgbdLayoutRule* recognise(const fs::path& folder) {
+  for (const RgbdLayoutRule& rule : layout_rules()) {
+    if (missing_marks(folder, rule).empty()) return &rule;
   }
-  std::vector<RgbdFrameFiles> list;
-  for (auto& [stem, frame] : frames) list.push_back(std::move(frame));
-  return list;
+  return nullptr;
 }
 
-Result<RgbdListing> list_seven_scenes(const fs::path& folder) {
-  RgbdListing listing{RgbdLayout::seven_scenes, {}, {}, {}, {}, false};
-  SACCADE_TRY(listing.frames, frames_by_stem(folder));
-  listing.has_poses = std::any_of(listing.frames.begin(), listing.frames.end(),
-                                  [](const RgbdFrameFiles& frame) { return frame.pose_file.has_value(); });
-  return listing;
+/// Writes a pattern as people do: "depth/N.*".
+std::string shown(std::string_view pattern) {
+  std::string text{pattern};
+  std::replace(text.begin(), text.end(), '#', 'N');
+  if (text.ends_with(".*")) text.replace(text.size() - 1, 1, "png");
+  return text;
 }
 
-Result<RgbdListing> list_princeton(const fs::path& folder) {
-  constexpr DepthEncoding kPrinceton{10000.0, true};
-  const fs::path info_path = folder / "cam.info.txt";
-  SACCADE_TRY(const std::string text, read_text_file(info_path));
-  const auto info = parse_cam_info(text);
-  if (!info) return in_file(info.error(), info_path);
-  RgbdListing listing{RgbdLayout::princeton, kPrinceton, info->color, info_path.string(), {}, false};
-  SACCADE_TRY(listing.frames, frames_by_stem(folder));
-  for (RgbdFrameFiles& frame : listing.frames) {
-    frame.pose_file.reset();
-    const auto pose = info->T_world_camera.find(frame.name);
-    if (pose != info->T_world_camera.end()) frame.T_world_camera = pose->second.T_world_camera;
-  }
-  listing.has_poses = !info->T_world_camera.empty();
-  return listing;
-}
-
-struct StampedPath {
-  double time_s{0.0};
-  fs::path path;
+/// Recordings that are one packed file, and how to get at their frames.
+struct PackedRecording {
+  std::string_view pattern;
+  std::string_view advice;
 };
+constexpr std::array<PackedRecording, 6> kPackedRecordings{
+    {{"*.sens", "is packed; unpack it with the reader that ScanNet offers"},
+     {"*.db", "is a database, perhaps of RTAB-Map; export it: rtabmap-export --images --poses_camera FILE"},
+     {"*.mkv", "is perhaps of an Azure Kinect; unpack it with azure_kinect_mkv_reader.py of Open3D"},
+     {"*.bag", "is a bag; pass it itself"},
+     {"*.mcap", "is a bag; pass it itself"},
+     {"*.oni", "is of OpenNI; play it as a camera"}}};
 
-/// "time path" lines of TUM's depth.txt and rgb.txt, in order of time.
-Result<std::vector<StampedPath>> read_stamped_paths(const fs::path& list) {
-  SACCADE_TRY(const std::string text, read_text_file(list));
-  std::vector<StampedPath> paths;
-  LineScanner lines{text};
-  while (const auto line = lines.next()) {
-    TokenScanner tokens{*line, " \t"};
-    const auto time = tokens.next();
-    if (!time || time->front() == '#') continue;
-    const auto path = tokens.next();
-    const auto time_s = parse_number(*time);
-    if (!path || !time_s || !std::isfinite(*time_s)) {
-      return Error{Errc::corrupt_data, "'time path' expected",
-                   list.string() + ", line " + std::to_string(lines.line())};
+/// Returns the first folders in a folder, by name.
+std::vector<fs::path> folders_in(const fs::path& folder) {
+  constexpr std::size_t kMostFolders{20};
+  std::vector<fs::path> folders;
+  std::error_code code;
+  for (fs::directory_iterator it{folder, code}; !code && it != fs::directory_iterator{}; it.increment(code)) {
+    std::error_code ignored;
+    if (it->is_directory(ignored)) folders.push_back(it->path());
+  }
+  std::sort(folders.begin(), folders.end());
+  folders.resize(std::min(folders.size(), kMostFolders));
+  return folders;
+}
+
+/// Counts what a folder has of a layout.
+std::size_t likeness(const fs::path& folder, const RgbdLayoutRule& rule, std::size_t missing) {
+  std::size_t found = rule.marks.size() - missing;
+  for (const Patterns* patterns : {&rule.color, &rule.pose_each, &rule.pose_list, &rule.intrinsics}) {
+    found += find_first(folder, *patterns).empty() ? 0 : 1;
+  }
+  return found;
+}
+
+/// Says which layout a folder is nearest to, and what to do.
+Error unknown_folder(const fs::path& folder) {
+  const RgbdLayoutRule* nearest = nullptr;
+  std::vector<const Patterns*> missing;
+  std::size_t most = 0;
+  for (const RgbdLayoutRule& rule : layout_rules()) {
+    auto lacking = missing_marks(folder, rule);
+    const std::size_t found = likeness(folder, rule, lacking.size());
+    if (found < most || (found == most && (nearest == nullptr || lacking.size() >= missing.size()))) continue;
+    nearest = &rule;
+    most = found;
+    missing = std::move(lacking);
+  }
+  std::string message{"no depth frames in any layout that is read"};
+  if (nearest != nullptr) {
+    message.append("; nearest is that of ").append(nearest->title).append(", which lacks ");
+    message += joined(missing, " and ", [](const Patterns* mark) { return joined(*mark, " or ", shown); });
+  }
+  for (const fs::path& inner : folders_in(folder)) {
+    const RgbdLayoutRule* rule = recognise(inner);
+    if (rule == nullptr) continue;
+    message.append("; ").append(inner.filename().string()).append("/ in it is one of ").append(rule->title);
+    break;
+  }
+  for (const PackedRecording& packed : kPackedRecordings) {
+    const auto files = find_files(folder, packed.pattern);
+    if (files.empty()) continue;
+    message.append("; ").append(files.front().path.filename().string()).append(" ").append(packed.advice);
+    break;
+  }
+  return {Errc::not_found, message + "; docs/reference/formats.md lists the layouts", folder.string()};
+}
+
+/// Names how many files of a kind belong to no depth image.
+void note_surplus(std::size_t files, std::size_t used, std::string_view one, std::string_view many,
+                  RgbdListing& listing) {
+  if (files <= used) return;
+  listing.notes.push_back(std::to_string(files - used) + " of " + counted(files, one, many) +
+                          " belong to no depth image and are left out");
+}
+
+/// Adds frames whose depth is missing, where depth, colour and pose of a frame are named alike: they are reported.
+void add_without_depth(const std::vector<KeyedFile>& files, std::set<std::string>& known, RgbdListing& listing) {
+  for (const KeyedFile& file : files) {
+    if (known.insert(file.key).second) listing.frames.push_back({file.key});
+  }
+}
+
+void list_frames(const fs::path& folder, const RgbdLayoutRule& rule, RgbdListing& listing) {
+  const auto depths = find_first(folder, rule.depth, FileKind::depth);
+  const auto colors = find_first(folder, rule.color, FileKind::color);
+  const auto poses = find_first(folder, rule.pose_each);
+  for (const KeyedFile& depth : depths) listing.frames.push_back({depth.key, {}, depth.path});
+  const bool is_flat = !rule.depth.empty() && rule.depth.front().starts_with('#');
+  if (is_flat && !depths.empty()) {
+    std::set<std::string> known;
+    for (const KeyedFile& depth : depths) known.insert(depth.key);
+    add_without_depth(colors, known, listing);
+    add_without_depth(poses, known, listing);
+    std::sort(listing.frames.begin(), listing.frames.end(),
+              [](const RgbdFrameFiles& a, const RgbdFrameFiles& b) { return comes_before(a.name, b.name); });
+  }
+  const FilesByFrame color_of{colors};
+  const FilesByFrame pose_of{poses};
+  std::size_t with_color = 0;
+  std::size_t with_pose = 0;
+  for (RgbdFrameFiles& frame : listing.frames) {
+    if (const fs::path* color = color_of.find(frame.name)) {
+      frame.color = *color;
+      ++with_color;
     }
-    paths.push_back({*time_s, list.parent_path() / *path});
+    if (const fs::path* pose = pose_of.find(frame.name)) {
+      frame.pose_file = *pose;
+      ++with_pose;
+    }
   }
-  std::stable_sort(paths.begin(), paths.end(),
-                   [](const StampedPath& a, const StampedPath& b) { return a.time_s < b.time_s; });
-  return paths;
+  listing.has_poses = with_pose > 0;
+  note_surplus(colors.size(), with_color, "colour image", "colour images", listing);
+  note_surplus(poses.size(), with_pose, "pose file", "pose files", listing);
+  if (!colors.empty() && with_color < listing.frames.size()) {
+    listing.notes.push_back(std::to_string(listing.frames.size() - with_color) + " of " +
+                            counted(listing.frames.size(), "depth image", "depth images") + " have no colour image");
+  }
 }
 
-/// Element nearest in time among `sorted`, the earlier one at a tie; nullptr beyond the tolerance.
-template <class T, class Time>
-const T* nearest_in_time(const std::vector<T>& sorted, double time_s, double tolerance_s, Time time_of) {
-  const auto after = std::lower_bound(sorted.begin(), sorted.end(), time_s,
-                                      [&](const T& element, double t) { return time_of(element) < t; });
-  const T* best = after != sorted.end() ? &*after : nullptr;
-  if (after != sorted.begin()) {
-    const T* before = &*std::prev(after);
-    if (best == nullptr || time_s - time_of(*before) <= time_of(*best) - time_s) best = before;
-  }
-  return best != nullptr && std::abs(time_of(*best) - time_s) <= tolerance_s ? best : nullptr;
-}
-
-Result<RgbdListing> list_tum(const fs::path& folder, double tolerance_s) {
-  RgbdListing listing{RgbdLayout::tum, {5000.0, false}, {}, {}, {}, false};
-  SACCADE_TRY(const auto depths, read_stamped_paths(folder / "depth.txt"));
-  std::vector<StampedPath> colors;
-  if (fs::exists(folder / "rgb.txt")) {
-    SACCADE_TRY(colors, read_stamped_paths(folder / "rgb.txt"));
-  }
-  for (const StampedPath& depth : depths) {
-    RgbdFrameFiles frame;
-    frame.name = depth.path.stem().string();
-    frame.time_s = depth.time_s;
-    frame.depth = depth.path;
-    const StampedPath* color =
-        nearest_in_time(colors, depth.time_s, tolerance_s, [](const auto& c) { return c.time_s; });
-    if (color != nullptr) frame.color = color->path;
-    listing.frames.push_back(std::move(frame));
-  }
-  return listing;
-}
-
-Result<RgbdListing> list_open3d(const fs::path& folder) {
-  RgbdListing listing{RgbdLayout::open3d, {}, {}, {}, {}, false};
-  SACCADE_TRY(const auto depths, files_in(folder / "depth"));
-  std::map<std::string, fs::path> colors;
-  for (const char* name : {"color", "rgb", "image"}) {
-    if (!colors.empty() || !fs::is_directory(folder / name)) continue;
-    SACCADE_TRY(const auto files, files_in(folder / name));
-    for (const fs::path& path : files) colors[path.stem().string()] = path;
-  }
-  for (const fs::path& path : depths) {
-    if (path.extension() != ".png") continue;
-    RgbdFrameFiles frame;
-    frame.name = path.stem().string();
-    frame.depth = path;
-    if (const auto color = colors.find(frame.name); color != colors.end()) frame.color = color->second;
-    listing.frames.push_back(std::move(frame));
-  }
-  return listing;
-}
-
-RgbdLayout recognise(const fs::path& folder) {
-  std::error_code ignored;
-  if (fs::exists(folder / "cam.info.txt", ignored)) return RgbdLayout::princeton;
-  if (fs::exists(folder / "depth.txt", ignored)) return RgbdLayout::tum;
-  if (fs::is_directory(folder / "depth", ignored)) return RgbdLayout::open3d;
-  return RgbdLayout::seven_scenes;
-}
-
-/// Attaches the poses of a list: by time where both sides have times, else by order.
-void attach_poses(RgbdListing& listing, std::vector<PoseEntry> poses, double tolerance_s) {
-  const auto time_of = [](const PoseEntry& entry) { return *entry.time_s; };
-  const bool timed = !poses.empty() && poses.front().time_s.has_value();
-  if (timed) {
-    std::stable_sort(poses.begin(), poses.end(),
-                     [](const PoseEntry& a, const PoseEntry& b) { return *a.time_s < *b.time_s; });
-  }
-  for (std::size_t i = 0; i < listing.frames.size(); ++i) {
-    RgbdFrameFiles& frame = listing.frames[i];
-    frame.pose_file.reset();
-    frame.T_world_camera.reset();
-    const PoseEntry* entry = i < poses.size() ? &poses[i] : nullptr;
-    if (timed && frame.time_s) entry = nearest_in_time(poses, *frame.time_s, tolerance_s, time_of);
-    if (entry != nullptr) frame.T_world_camera = entry->T_world_camera;
-  }
-  listing.has_poses = true;
-}
-
-Status attach_pose_file(RgbdListing& listing, const fs::path& path, double tolerance_s) {
-  SACCADE_TRY(auto poses, read_pose_list(path));
-  if (poses.empty()) return Error{Errc::not_found, "holds no pose", path.string()};
-  attach_poses(listing, std::move(poses), tolerance_s);
+/// Takes intrinsics from the layout's own file; those of any layout are looked for later.
+Status read_rule_intrinsics(const fs::path& folder, const RgbdLayoutRule& rule, RgbdListing& listing) {
+  if (listing.intrinsics || rule.intrinsics.empty() || listing.intrinsics_are_color) return {};
+  const auto files = find_first(folder, rule.intrinsics);
+  if (files.empty()) return {};
+  SACCADE_TRY(listing.intrinsics, read_intrinsics(files.front().path));
+  listing.intrinsics_from = files.front().path.string();
   return {};
-}
-
-std::optional<fs::path> folder_pose_file(const fs::path& folder, RgbdLayout layout) {
-  std::error_code ignored;
-  const fs::path path = folder / (layout == RgbdLayout::tum ? "groundtruth.txt" : "trajectory.log");
-  const bool used = layout == RgbdLayout::tum || layout == RgbdLayout::open3d;
-  return used && fs::exists(path, ignored) ? std::optional{path} : std::nullopt;
-}
-
-Result<RgbdListing> list_layout(const fs::path& folder, RgbdLayout layout, double tolerance_s) {
-  switch (layout) {
-    case RgbdLayout::princeton: return list_princeton(folder);
-    case RgbdLayout::tum: return list_tum(folder, tolerance_s);
-    case RgbdLayout::open3d: return list_open3d(folder);
-    default: return list_seven_scenes(folder);
-  }
 }
 
 }  // namespace
@@ -217,17 +264,35 @@ Result<RgbdListing> list_rgbd_folder(const fs::path& folder, const RgbdFolderCon
   std::error_code ignored;
   if (!fs::exists(folder, ignored)) return Error{Errc::not_found, "no such folder", folder.string()};
   if (!fs::is_directory(folder, ignored)) return Error{Errc::invalid_argument, "is not a folder", folder.string()};
-  const RgbdLayout layout = config.layout == RgbdLayout::automatic ? recognise(folder) : config.layout;
-  SACCADE_TRY(RgbdListing listing, list_layout(folder, layout, config.max_time_difference_s));
-  const bool any_depth = std::any_of(listing.frames.begin(), listing.frames.end(),
-                                     [](const RgbdFrameFiles& frame) { return frame.depth.has_value(); });
-  if (!any_depth) {
-    return Error{Errc::not_found,
-                 "no depth frames here; expected NAME.depth.png (7-Scenes), depth.txt (TUM) or depth/*.png (Open3D)",
-                 folder.string()};
+  const RgbdLayoutRule* rule = recognise(folder);
+  if (config.layout != RgbdLayout::automatic) {
+    const auto& rules = layout_rules();
+    rule = &*std::find_if(rules.begin(), rules.end(), [&](const auto& known) { return known.layout == config.layout; });
+    const auto missing = missing_marks(folder, *rule);
+    if (!missing.empty()) {
+      return Error{Errc::not_found,
+                   "is not in the layout of " + std::string{rule->title} + ": no depth frames, or not all that tells " +
+                       "them; it lacks " +
+                       joined(missing, " and ", [](const Patterns* mark) { return joined(*mark, " or ", shown); }),
+                   folder.string()};
+    }
   }
-  const auto pose_file = config.poses_file ? config.poses_file : folder_pose_file(folder, layout);
-  if (pose_file) SACCADE_CHECK(attach_pose_file(listing, *pose_file, config.max_time_difference_s));
+  if (rule == nullptr) return unknown_folder(folder);
+  RgbdListing listing;
+  listing.layout = rule->layout;
+  if (rule->encoding) listing.scale = DepthUnits{*rule->encoding, UnitsSource::layout};
+  list_frames(folder, *rule, listing);
+  if (rule->complete != nullptr) SACCADE_CHECK(rule->complete(folder, *rule, config, listing));
+  SACCADE_CHECK(read_rule_intrinsics(folder, *rule, listing));
+  if (listing.frames.empty()) {
+    return Error{Errc::not_found, "lists no depth frames", (folder / rule->marks.front().front()).string()};
+  }
+  if (config.poses_file) {
+    SACCADE_CHECK(attach_pose_file(listing, *config.poses_file, config));
+  } else if (const auto lists = find_first(folder, rule->pose_list); !lists.empty() && !listing.has_poses) {
+    SACCADE_CHECK(attach_pose_file(listing, lists.front().path, config));
+    if (lists.size() > 1) listing.notes.push_back("poses are those of " + lists.front().path.filename().string());
+  }
   return listing;
 }
 

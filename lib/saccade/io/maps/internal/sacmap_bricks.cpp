@@ -78,7 +78,7 @@ const char* fault_of_free(const FreeBrick& free, const TsdfConfig& config) {
   return free == FreeBrick::constant(free.weight(0)) ? "a constant brick is stored voxel by voxel" : nullptr;
 }
 
-/// One brick as it lies in the file, checked but for its voxels.
+/// One brick of the file, checked except for its voxels.
 struct Record {
   int child{0};
   BrickKind kind{BrickKind::unknown};

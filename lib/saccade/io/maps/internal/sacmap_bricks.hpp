@@ -20,13 +20,13 @@ constexpr std::size_t kDenseBytes{4 * kBrickVoxels};
 constexpr std::size_t kColorBytes{3 * kBrickVoxels};
 constexpr std::size_t kMaxSectorBytes{kSectorBricks * (kBrickHeaderBytes + kDenseBytes + kColorBytes)};
 
-/// What makes the brick one that no map of this configuration holds, or nullptr.
+/// Returns why no map of this configuration can hold the brick, or nullptr.
 [[nodiscard]] const char* fault_of(const BrickRef& brick, const TsdfConfig& config);
 
-/// All known bricks of the sector, in order of their index.
+/// Appends all known bricks of the sector, in order of their index.
 void append_bricks(const Sector& sector, std::vector<std::byte>& out);
 
-/// Fills an all-unknown sector and its summaries; the number of bricks read. corrupt_data naming the brick.
+/// Fills an all-unknown sector and its summaries; returns the number of bricks. Answers corrupt_data naming the brick.
 [[nodiscard]] Result<std::size_t> read_bricks(std::span<const std::byte> bytes, const TsdfConfig& config,
                                               Sector& sector);
 

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Reader and Writer: values of messages to and from bytes. One list of fields per message serves both, in both layouts.
+// Reader and Writer: conversion of message values from and to bytes. One list of fields per message serves both, in
+// both layouts.
 
 #include <algorithm>
 #include <cstring>
@@ -13,12 +14,12 @@ namespace saccade::messages::internal {
 template <class T>
 inline constexpr bool kIsScalar = std::is_arithmetic_v<T> || std::is_same_v<T, std::byte>;
 
-/// Pads as XCDR1 does: each scalar to a multiple of its size, counted from behind the header.
+/// Returns the padding of XCDR1: each scalar is aligned to its size, counted from the end of the header.
 constexpr std::size_t padding(Wire wire, std::size_t offset, std::size_t size) {
   return wire == Wire::cdr ? (size - (offset - 4) % size) % size : 0;
 }
 
-/// After the first failure values stay as they are, so that a message needs one check, at the end.
+/// Reader of values. After the first failure values stay unchanged, so a message needs only one check, at the end.
 class Reader {
  public:
   static constexpr bool kReads = true;

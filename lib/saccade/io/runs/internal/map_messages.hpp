@@ -17,14 +17,15 @@ namespace saccade {
 
 /// Keeps at most `most` points, evenly spread over their order.
 [[nodiscard]] std::vector<Eigen::Vector3f> thinned(std::vector<Eigen::Vector3f> points, std::size_t most);
-/// Fields x, y, z: float32.
+/// Returns a cloud with the fields x, y, z: float32.
 [[nodiscard]] messages::PointCloud2 cloud_of(messages::Header header, const std::vector<Eigen::Vector3f>& points);
-/// Centres of the workspace's occupied voxels, and rgb, packed as PCL does; grey where no colour was fused. At most
-/// `most`.
+/// Returns the centres of the workspace's occupied voxels, and rgb, packed as in PCL; grey where no colour was fused.
+/// At most `most`.
 [[nodiscard]] messages::PointCloud2 occupied_cloud(messages::Header header, const TsdfSnapshot& map, std::size_t most);
-/// The workspace from above: 100 where a voxel of the column is occupied, else -1 where one is unknown, else 0.
+/// Returns the workspace from above: 100 where a voxel of the column is occupied, otherwise -1 where one is unknown,
+/// otherwise 0.
 [[nodiscard]] messages::OccupancyGrid plan_of(messages::Header header, const TsdfSnapshot& map, const Box& workspace);
-/// 32FC1, metres.
+/// Returns an image of 32FC1, metres.
 [[nodiscard]] messages::Image depth_message(messages::Header header, const DepthImage& depth);
 [[nodiscard]] messages::CameraInfo info_message(messages::Header header, const PinholeCamera& camera);
 

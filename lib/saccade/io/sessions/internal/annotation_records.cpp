@@ -13,7 +13,7 @@
 namespace saccade {
 namespace {
 
-// Their order in AnnotationChange is the order of their numbers in files.
+// The order in AnnotationChange is the order of the numbers in files.
 constexpr std::size_t kKinds{std::variant_size_v<AnnotationChange>};
 static_assert(kKinds == 8);
 
@@ -65,7 +65,7 @@ struct Writer {
   void operator()(const RedoAction& /*redo*/) const {}
 };
 
-/// Reads on until something is missing; then everything is zero or empty.
+/// Reader that becomes zero or empty after the first missing value.
 class Reader {
  public:
   explicit Reader(std::span<const std::byte> bytes) : bytes_{bytes} {}
@@ -149,7 +149,7 @@ Result<AnnotationAction> read_action(std::span<const std::byte> bytes) {
   Reader in{bytes};
   const auto client = in.value<std::uint64_t>();
   std::optional<AnnotationChange> change = change_of_kind(in.value<std::uint8_t>(), std::make_index_sequence<kKinds>{});
-  if (!change) return Error{Errc::corrupt_data, "an action of a kind that is not known", {}};
+  if (!change) return Error{Errc::corrupt_data, "an action of an unknown kind", {}};
   std::visit([&](auto& kind) { read(in, kind); }, *change);
   if (!in.complete()) return Error{Errc::corrupt_data, "an action of a wrong length", {}};
   return AnnotationAction{client, std::move(*change)};

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Actions of an annotation as bytes, as the records of a journal hold them: append_action, read_action.
+// Actions of an annotation as bytes in the records of a journal: append_action, read_action.
 
 #include <cstddef>
 #include <span>
@@ -12,7 +12,7 @@ namespace saccade {
 
 void append_action(const AnnotationAction& action, std::vector<std::byte>& out);
 
-/// The inverse. corrupt_data unless the bytes are one action, no more and no fewer. What it names is not looked at
+/// Reads an action back. Answers corrupt_data unless the bytes are exactly one action. Does not check what it names
 /// (check_action).
 [[nodiscard]] Result<AnnotationAction> read_action(std::span<const std::byte> bytes);
 

@@ -1,0 +1,23 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// CudaCompute: memory and kernels of an NVIDIA GPU, by its driver alone.
+
+#include <memory>
+#include <string_view>
+
+#include "saccade/cuda/device.hpp"
+#include "saccade/cuda/internal/compute.hpp"
+
+namespace saccade::internal::cuda {
+
+/// The kernels as PTX text, made at build time; empty where no clang that compiles CUDA was found.
+[[nodiscard]] std::string_view kernel_ptx();
+/// Names the virtual architecture of the PTX.
+[[nodiscard]] std::string_view ptx_target();
+
+/// Opens the first device and loads the kernels. Answers unavailable, with the reason, where that cannot be.
+[[nodiscard]] Result<std::unique_ptr<Compute>> open_cuda();
+/// Describes the first device without loading anything onto it.
+[[nodiscard]] Result<CudaDevice> describe_cuda();
+
+}  // namespace saccade::internal::cuda

@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: Apache-2.0
+#pragma once
+// GpuRaycast: surface views of a BrickStore.
+
+#include "saccade/cuda/internal/brick_store.hpp"
+#include "saccade/cuda/internal/raycast_kernel.hpp"
+#include "saccade/map/raycast.hpp"
+
+namespace saccade::internal::cuda {
+
+/// Buffers of a ray cast, which stay for the next.
+class GpuRaycast {
+ public:
+  explicit GpuRaycast(Compute& compute)
+      : compute_{compute},
+        brick_has_cells_{compute},
+        block_has_cells_{compute},
+        coordinates_{compute},
+        depths_m_{compute},
+        normals_{compute} {}
+
+  [[nodiscard]] Result<SurfaceView> cast(const TsdfConfig& config, const PinholeCamera& camera,
+                                         const Pose& T_world_camera, const BrickStore& bricks);
+
+ private:
+  Compute& compute_;
+  Buffer<std::uint8_t> brick_has_cells_;
+  Buffer<std::uint8_t> block_has_cells_;
+  Buffer<double> coordinates_;
+  Buffer<float> depths_m_;
+  Buffer<float> normals_;
+};
+
+}  // namespace saccade::internal::cuda

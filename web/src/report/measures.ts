@@ -1,0 +1,57 @@
+// SPDX-License-Identifier: Apache-2.0
+// Definitions: what each measure means, for the heads of tables and the names of facts. docs/reference/metrics.md has them in full.
+
+const kDefinitions: Record<string, string> = {
+  coverage: "Share of the observable points of the objects that the reconstructed surface has within one voxel.",
+  "unknown left": "Unknown voxels in the workspace. Insides of bodies stay unknown, as no camera sees them.",
+  "unknown near objects": "Unknown voxels within 3 cm of an object's surface and outside all bodies.",
+  accuracy: "Mean distance from the reconstructed surface to the true one, supports left out.",
+  "Chamfer distance": "Mean of the accuracy and of the mean distance from the true surface to the reconstructed one.",
+  "F-score": "Harmonic mean of the shares of both surfaces that lie within 5 mm of each other.",
+  promised: "Information gain that was predicted of the view when it was chosen.",
+  delivered: "Information gain that was observed: how much of the promised surface or rays became known.",
+  kept: "Delivered gain as a share of the promised gain.",
+  candidates: "View poses among which the view was chosen, those included that the robot cannot take.",
+  evaluated: "Candidates whose gain was computed or bounded. The robot can take them all.",
+  refused: "Candidates that the robot cannot take.",
+  "reveals an object": "Whether at least a quarter of the voxels that became known lie within 5 cm of an object.",
+  "looks at an object": "Whether the optical axis comes within 5 cm of an object before it meets anything.",
+  frames: "Depth images that were fused at the view.",
+  motion: "Seconds that the motion takes the arm, by the limits of its joints.",
+  path: "Length of the camera's path to the view.",
+  time: "Wall time of all phases of the view. Measuring against the ground truth is not part of it.",
+  region: "Number of the region of interest that the view was taken for.",
+  "unknown in its region": "Unknown voxels in the region that the view was taken for, after the view.",
+  saliency: "How much a segment or region attracts attention, between 0 and 1.",
+  "unknown after the task": "Unknown voxels in the region after it was forgotten.",
+  "unknown at the end": "Unknown voxels in the region after the last view.",
+  "objects covered": "Share of the objects' observable points in the region that the surface has within one voxel.",
+  "surface covered": "Share of all observable points in the region that the surface has within one voxel.",
+  "gain left": "Predicted gain of the best view that was not taken.",
+  "over-segmentation": "Share of the objects' points outside the segment that overlaps each object most. 0 is best.",
+  "under-segmentation": "Points of best segments outside their object, as a share of the objects' points. 0 is best.",
+  "weighted overlap": "Intersection over union of each object with its best segment, weighted by size. 1 is best.",
+  "weighted overlap of objects": "The weighted overlap over objects alone, supports left out. 1 is best.",
+  "boundary precision": "Share of the segments' boundary that lies on a true boundary.",
+  "boundary recall": "Share of the true boundary that the segments' boundary has.",
+  "boundary F": "Harmonic mean of boundary precision and recall.",
+  "consistency error": "Bidirectional consistency error: 0 where both segmentations are equal, at most 1.",
+  "coverage after the scan": "Coverage before the first view.",
+  "coverage at the end": "Coverage after the last view.",
+  "area under coverage over views": "Mean coverage after 0, 1, … views up to the budget. A run that ended keeps its last value.",
+  "views taken": "Views after the initial scan.",
+  "views to 90 % coverage": "Least number of views after which the coverage is 90 %; runs that never reach it are left out.",
+  "views to 95 % coverage": "Least number of views after which the coverage is 95 %; runs that never reach it are left out.",
+  "object-directed views of the first five": "How many of the first five views reveal an object.",
+  "runs with all object-directed views first": "Share of the runs in which the views that reveal objects come before all others.",
+  "camera path": "Length of the camera's path over all views.",
+  "arm in motion": "Seconds that all motions take the arm, by the limits of its joints.",
+  "mean ± 95 % confidence": "Mean over the runs, and half the width of the 95 % confidence interval of that mean (Student's t).",
+  paired: "Mean difference of runs with the same scene and seed, and its 95 % confidence interval.",
+  "differs from 0": "Whether the 95 % confidence interval of the paired difference leaves out 0 (paired t-test at 5 %).",
+};
+
+/** undefined where there is nothing to explain. Names with a unit, "coverage, %", mean the name alone. */
+export function definitionOf(name: string): string | undefined {
+  return kDefinitions[name] ?? kDefinitions[name.replace(/, [^,]*$/, "")] ?? kDefinitions[name.replace(/ (after the scan|at the end)(, .*)?$/, "")];
+}

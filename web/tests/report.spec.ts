@@ -1,0 +1,187 @@
+// SPDX-License-Identifier: Apache-2.0
+// The page of reports, opened from disk as the program writes it: all kinds of runs, for eyes, keys, screen readers and paper.
+import { mkdtempSync, readFileSync, rmSync, statSync, writeFileSync } from "node:fs";
+import { tmpdir } from "node:os";
+import { join } from "node:path";
+import { expect, type Page, test } from "@playwright/test";
+import { cell, comparison, exploration, faults, filtered, partsOfPage, segments, tables, update, writeReport } from "./support/report";
+
+let folder = "";
+test.beforeEach(() => void (folder = mkdtempSync(join(tmpdir(), "saccade-report-"))));
+test.afterEach(() => rmSync(folder, { recursive: true, force: true }));
+
+/** @return errors of the page, and what it asked for from elsewhere */
+async function open(page: Page, address: string): Promise<string[]> {
+  const wrong: string[] = [];
+  page.on("pageerror", (error) => wrong.push(error.message));
+  page.on("console", (message) => message.type() === "error" && wrong.push(message.text()));
+  page.on("request", (request) => /^https?:/.test(request.url()) && wrong.push(request.url()));
+  await page.goto(address);
+  await expect(page.locator("main section").first()).toBeVisible();
+  return wrong;
+}
+
+const exploreAddress = (views = 4, scene?: string) => {
+  const { record, pictures } = exploration(views, scene);
+  return writeReport(folder, record, pictures);
+};
+
+const kinds: [name: string, address: () => string, heading: string, parts: string[]][] = [
+  ["explore", () => exploreAddress(), "Exploration of tabletop-1", ["Summary", "Views", "Run"]],
+  ["update", () => { const { record, pictures, details } = update(); return writeReport(folder, record, pictures, details); }, "Update of jug", ["Summary", "Task", "Looking again", "Run"]],
+  ["cell", () => { const { record, pictures } = cell(); return writeReport(folder, record, pictures); }, "Updates of my cell", ["The map now", "Tasks", "Run"]],
+  ["compare", () => { const { record, details } = comparison(); return writeReport(folder, record, [], details); }, "Strategies compared", ["All scenes", "clutter:5", "clutter:6", "Comparison"]],
+  ["reproduce", () => { const { record, pictures } = tables(); return writeReport(folder, record, pictures); }, "Tables of the thesis", ["Table 4.4", "Run"]],
+  ["segment", () => { const { record, pictures } = segments(); return writeReport(folder, record, pictures); }, "Segments of table.pcd", ["Summary", "Run"]],
+  ["filter", () => { const { record, pictures } = filtered(); return writeReport(folder, record, pictures); }, "Filtered frames of filtered", ["Summary", "Run"]],
+];
+
+for (const [name, address, heading, parts] of kinds) {
+  test(`${name}: all parts, on a wide and a narrow page, in the light and in the dark`, async ({ page }) => {
+    test.slow(); // axe-core goes through the page four times
+    const wrong = await open(page, address());
+    await expect(page.getByRole("heading", { level: 1 })).toHaveText(heading);
+    await expect(page.getByRole("heading", { level: 2 })).toHaveText(parts);
+    await page.evaluate(() => document.querySelectorAll<HTMLDetailsElement>("details").forEach((fold) => (fold.open = true)));
+    for (const colorScheme of ["light", "dark"] as const) {
+      for (const width of [1280, 400, 360]) {
+        await page.setViewportSize({ width, height: 800 });
+        await page.emulateMedia({ colorScheme });
+        await page.evaluate(() => new Promise((resolve) => requestAnimationFrame(() => requestAnimationFrame(resolve))));
+        expect(await page.evaluate(() => document.documentElement.scrollWidth - document.documentElement.clientWidth), `${width} px`).toBe(0);
+        if (width !== 360) expect(await faults(page), `${width} px, ${colorScheme}`).toEqual([]);
+      }
+    }
+    expect(wrong).toEqual([]);
+  });
+}
+
+test("the cells of reproduced tables are shown with their own drawings", async ({ page }) => {
+  const { record, pictures } = tables();
+  await open(page, writeReport(folder, record, pictures));
+  const table = page.getByRole("table", { name: "Parameters & options" });
+  await expect(table.locator("tbody tr").first()).toContainText("R_seed");
+  await expect(table.locator("tbody tr").last()).toContainText("0.70");
+  await expect(page.locator("main img")).toHaveCount(1);
+  await expect(page.getByRole("img", { name: "Table 4.4: table-4-4.png" })).toBeVisible();
+});
+
+test("segments say how to see their cloud in 3-D", async ({ page }) => {
+  const { record, pictures } = segments();
+  await open(page, writeReport(folder, record, pictures));
+  await expect(page.getByText("saccade show FOLDER/segments.ply")).toBeVisible();
+  await expect(page.getByRole("table", { name: /^Segments/ }).locator("tbody tr")).toHaveCount(3);
+});
+
+test("names that look like markup are shown as they are", async ({ page }) => {
+  const scene = `</script><img src=x onerror="document.title='run'"> & 'quotes'`;
+  const wrong = await open(page, exploreAddress(2, scene));
+  await expect(page.getByRole("heading", { level: 1 })).toHaveText(`Exploration of ${scene}`);
+  await expect(page).toHaveTitle(`Exploration of ${scene} · Saccade`);
+  expect(await page.locator("main img[src='x'], h1 img").count()).toBe(0);
+  expect(wrong).toEqual([]);
+});
+
+test("tables sort by any column and are copied as they are sorted", async ({ page, context }) => {
+  await context.grantPermissions(["clipboard-read", "clipboard-write"]).catch(() => {});
+  await open(page, exploreAddress(3));
+  const table = page.getByRole("table", { name: "Views" });
+  const first = () => table.locator("tbody th").first().textContent();
+  expect(await first()).toBe("1");
+  const promised = table.getByRole("button", { name: /^promised/ });
+  await promised.click();
+  expect(await first()).toBe("3"); // the view of least gain
+  await expect(table.getByRole("columnheader", { name: /^promised/ })).toHaveAttribute("aria-sort", "ascending");
+  await promised.press("Enter");
+  expect(await first()).toBe("1");
+  await promised.press("Enter");
+  const copied = async (format: string) => {
+    await page.getByRole("button", { name: `Copy ${format}` }).first().click();
+    await expect(page.getByText(`${format} copied`)).toBeVisible();
+    return page.evaluate(() => navigator.clipboard.readText());
+  };
+  const csv = (await copied("CSV")).split("\r\n");
+  expect(csv[0]).toMatch(/^view,"promised, cm²","delivered, cm²",kept,/);
+  expect(csv[1]).toMatch(/^3,/);
+  const latex = await copied("LaTeX");
+  expect(latex).toContain("\\begin{tabular}{lrrr");
+  expect(latex).toMatch(/100 \\%/);
+});
+
+test("measures explain themselves on hover and focus, and Escape closes the explanation", async ({ page }) => {
+  await open(page, exploreAddress(2));
+  const head = page.getByRole("table", { name: "Views" }).getByRole("button", { name: /^coverage/ });
+  await head.focus();
+  const hint = page.getByRole("tooltip");
+  await expect(hint).toContainText("within one voxel");
+  await expect(head).toHaveAccessibleDescription(/within one voxel/);
+  await page.keyboard.press("Escape");
+  await expect(hint).toBeHidden();
+  await page.locator(".tiles button", { hasText: "F-score" }).hover();
+  await expect(hint).toContainText("Harmonic mean");
+});
+
+test("views are stepped through by keys, and their pictures enlarged", async ({ page }) => {
+  await open(page, exploreAddress(3));
+  await expect(page.locator("#view-1")).not.toHaveAttribute("open");
+  expect(await page.locator("#view-1 img").count()).toBe(0); // not even asked for
+  await page.keyboard.press("ArrowRight");
+  await expect(page.locator("#view-1")).toHaveAttribute("open");
+  await page.keyboard.press("ArrowRight");
+  await expect(page.locator("#view-2")).toHaveAttribute("open");
+  await page.keyboard.press("ArrowLeft");
+  await expect(page.locator("#view-1 summary")).toBeFocused();
+  await page.getByRole("table", { name: "Views" }).getByRole("link", { name: "3" }).click();
+  await expect(page.locator("#view-3")).toHaveAttribute("open");
+  await page.getByRole("button", { name: /^Enlarge: The map from outside, unknown in grey, view 1/ }).click();
+  const sheet = page.getByRole("dialog", { name: "Picture" });
+  await expect(sheet).toContainText("view-01-map.png");
+  await page.keyboard.press("ArrowRight");
+  await expect(sheet).toContainText("view-02-map.png");
+  expect(await faults(page)).toEqual([]);
+  await page.keyboard.press("Escape");
+  await expect(sheet).toBeHidden();
+});
+
+test("curves say what they show to screen readers, and values under the pointer", async ({ page }) => {
+  await open(page, exploreAddress(4));
+  const coverage = page.getByRole("img", { name: /^Coverage\./ });
+  await expect(coverage).toHaveAccessibleName(/from 35 to 86 over 5 points/);
+  await coverage.scrollIntoViewIfNeeded();
+  const box = (await coverage.boundingBox())!;
+  await page.mouse.move(box.x + box.width / 2, box.y + box.height / 2);
+  await expect(coverage.locator("[aria-label='tip'] text")).toContainText("coverage, %");
+});
+
+test("on paper everything is open, and dark pages are light", async ({ page }) => {
+  await page.emulateMedia({ colorScheme: "dark" });
+  await open(page, exploreAddress(3));
+  await page.evaluate(() => window.dispatchEvent(new Event("beforeprint")));
+  await page.emulateMedia({ media: "print", colorScheme: "dark" });
+  expect(await page.locator("details.fold:not([open])").count()).toBe(0);
+  await expect(page.locator("#view-3 img").first()).toBeVisible();
+  await expect(page.getByRole("button", { name: "Copy CSV" }).first()).toBeHidden();
+  expect(await page.evaluate(() => getComputedStyle(document.querySelector(".fold")!).backgroundColor)).toBe("rgb(255, 255, 255)");
+  expect((await page.pdf({ format: "A4" })).length).toBeGreaterThan(20_000);
+  await page.evaluate(() => window.dispatchEvent(new Event("afterprint")));
+  expect(await page.locator("details.fold[open]").count()).toBe(0);
+});
+
+test("a picture that is gone and a record of another version are said", async ({ page }) => {
+  const { record, pictures } = exploration(2);
+  const address = writeReport(folder, record, pictures);
+  rmSync(join(folder, "view-00-map.png"));
+  await page.goto(address);
+  await expect(page.getByText("view-00-map.png cannot be read.")).toBeVisible();
+  const file = join(folder, "report.html");
+  writeFileSync(file, readFileSync(file, "utf8").replace('"schema":"saccade-report/1"', '"schema":"saccade-report/9"'));
+  await page.goto(address);
+  await expect(page.getByRole("heading", { level: 1 })).toHaveText("This record is of another version");
+  await expect(page.getByRole("status").filter({ hasText: "saccade-report/9" })).toContainText('this page reads "saccade-report/1"');
+});
+
+test("the page takes at most 400 kB without data", () => {
+  const bytes = Object.values(partsOfPage).reduce((sum, file) => sum + statSync(file).size, 0);
+  expect(bytes).toBeLessThan(400_000);
+  expect(bytes).toBeGreaterThan(50_000);
+});
