@@ -94,7 +94,9 @@ def bill(stage, package, version, epoch, build):
     folders = {"saccade": ("apps/cli", "apps/reproduce", "apps/server", "devices", "lib", "bench/thesis"), "libsaccade-dev": ("lib",),
                "python3-saccade": ("apps/python", "lib"), "saccade-ros1": ("apps/ros1", "lib"),
                "saccade-ros2": ("apps/ros2", "lib")}[package]
-    for kind, names in (("DYNAMIC_LINK", linked_packages(stage)), ("GENERATED_FROM", compiled_packages(build, folders))):
+    embedded = {"fonts-dejavu-core"} if package in ("saccade", "libsaccade-dev") else set()  # the pictures' font
+    for kind, names in (("DYNAMIC_LINK", linked_packages(stage)), ("GENERATED_FROM", compiled_packages(build, folders)),
+                        ("CONTAINS", embedded)):
         for name in sorted(names):
             (found,) = lines_of("dpkg-query", "-W", "-f", "${Version}\\n", name)[:1]
             relate(entry(f"deb-{name}", name, found, "NOASSERTION", f"pkg:deb/debian/{name}@{found}"), kind)

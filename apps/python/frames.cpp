@@ -187,7 +187,8 @@ void bind_frames(py::module_& module) {
       py::arg("count") = py::none(), py::arg("depth_topic") = "", py::arg("info_topic") = "",
       py::arg("color_topic") = "", py::arg("world_frame") = "",
       "Opens a folder of RGB-D frames, a bag of ROS (.bag) or an MCAP file (.mcap), as saccade fuse does. `layout`: "
-      "auto, seven-scenes, tum, princeton, open3d, scannet, bundlefusion, rtabmap, replica, bop or icl-nuim. `camera`: "
+      "auto, seven-scenes, tum, princeton, open3d, scannet, bundlefusion, rtabmap, replica, bop, icl-nuim or sun3d. "
+      "`camera`: "
       "PinholeCamera in place of the folder's. `poses`: file of "
       "T_world_camera in place of the folder's. `depth_scale`: depth samples per metre. `mask`: PNG (0: ignored) or "
       "JSON polygons. `fill_gaps_px`: close gaps up to this wide; None: 2 where the first frame has them all "

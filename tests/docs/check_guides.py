@@ -14,7 +14,8 @@ DEBIAN = {  # packages of CMake → those of Debian
     "nlohmann_json": ["nlohmann-json3-dev"], "yaml-cpp": ["libyaml-cpp-dev"], "SQLite3": ["libsqlite3-dev"],
     "ImageCodecs": ["libpng-dev", "libtiff-dev", "libturbojpeg0-dev"], "assimp": ["libassimp-dev"], "zstd": ["libzstd-dev"],
     "orocos_kdl": ["liborocos-kdl-dev"], "OMPL": ["libompl-dev"], "urdfdom": ["liburdfdom-dev"],
-    "embree": ["libembree-dev"]}
+    "embree": ["libembree-dev"], "Freetype": ["libfreetype-dev", "fonts-dejavu-core"],
+    "OpenEXR": ["libopenexr-dev"]}
 MIN_COMMANDS = 60
 
 

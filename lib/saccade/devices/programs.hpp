@@ -44,7 +44,7 @@ struct RosProgram {
 };
 inline constexpr std::array<RosProgram, 2> kRosPrograms{
     {{"ROS 1", "ros:", "saccade-ros1",
-      "ros-core-dev, libactionlib-dev, libtf2-ros-dev, libtopic-tools-dev and libpcl-msgs-dev"},
+      "ros-core-dev, libactionlib-dev, libtf2-ros-dev, libtopic-tools-dev, libpcl-msgs-dev and ros-pcl-msgs"},
      {"ROS 2", "ros2:", "saccade-ros2", "cyclonedds-dev and cyclonedds-tools"}}};
 /// Searches beside the running program, then in PATH. Empty where it is not found.
 [[nodiscard]] std::filesystem::path find_program(std::string_view name);

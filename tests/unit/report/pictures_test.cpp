@@ -232,7 +232,7 @@ TEST(FusionPicture, EnlargesSmallImagesToTheWidthOfTheirTitles) {
   config.title = "";
   config.scale = DepthScale{0.0, 2.0};
   const ColorImage small = fusion_picture(measured, cast, config);
-  constexpr int kTimes{6};
+  constexpr int kTimes{5};
   const ColorImage large = fusion_picture({kTimes * 60, kTimes * 40, 1.0F}, {kTimes * 60, kTimes * 40, 1.01F}, config);
   EXPECT_EQ(small, large);
 }

@@ -31,13 +31,14 @@ function sectionOf(table: Json, pictures: Pictures): Section {
   const [title = "", ...said] = text(table["caption"]).split(": ");
   const caption = capital(said.join(": "));
   const drawn = list(table["drawings"]).map(String).filter((name) => pictures.files.has(name));
+  const shown = tableOf(table, caption || title);
   const notes = list(table["notes"]).map((note) => h("li", {}, String(note)));
   return section(
     `table-${text(table["table"]).replaceAll(".", "-")}`,
     title,
-    h("p", {}, caption),
+    shown === null ? h("p", {}, caption) : null,
     table["complete"] === false ? h("p", { class: "soft" }, "This table was interrupted; rows are missing.") : null,
-    tableOf(table, caption || title),
+    shown,
     pictures.figures(drawn.map((name) => ({ name, title: name, alt: `${title}: ${name}`, kind: "figure" }))),
     notes.length > 0 ? h("ul", { class: "notes" }, ...notes) : null,
   );

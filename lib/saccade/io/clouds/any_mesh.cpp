@@ -10,12 +10,17 @@
 #include <assimp/Importer.hpp>
 #include <cstdint>
 #include <fstream>
+#include <limits>
 #include <string>
 #include <string_view>
+#include <utility>
+#include <vector>
 
 #include "saccade/io/clouds/internal/cloud_kind.hpp"
 #include "saccade/io/clouds/internal/guarded_reading.hpp"
+#include "saccade/io/clouds/internal/mesh_text.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
+#include "saccade/io/files/file_io.hpp"
 
 namespace saccade {
 namespace {
@@ -55,6 +60,34 @@ Result<TriangleMesh> read_by_assimp(const std::filesystem::path& path) {
   return mesh;
 }
 
+/// Removes vertices that no triangle has: those of points and lines would widen the mesh's bounds.
+TriangleMesh without_loose_vertices(TriangleMesh mesh) {
+  constexpr std::uint32_t kLoose{std::numeric_limits<std::uint32_t>::max()};
+  std::vector<std::uint32_t> places(mesh.vertices.size(), kLoose);
+  for (const auto& triangle : mesh.triangles) {
+    for (const std::uint32_t corner : triangle) places[corner] = 0;
+  }
+  std::uint32_t kept{0};
+  for (std::size_t i = 0; i < places.size(); ++i) {
+    if (places[i] == kLoose) continue;
+    mesh.vertices[kept] = mesh.vertices[i];
+    if (!mesh.colors.empty()) mesh.colors[kept] = mesh.colors[i];
+    places[i] = kept++;
+  }
+  mesh.vertices.resize(kept);
+  if (!mesh.colors.empty()) mesh.colors.resize(kept);
+  for (auto& triangle : mesh.triangles) {
+    for (std::uint32_t& corner : triangle) corner = places[corner];
+  }
+  return mesh;
+}
+
+Result<TriangleMesh> read_by(Result<TriangleMesh> (*parse)(std::string_view), const std::filesystem::path& path) {
+  SACCADE_TRY(const std::string file, read_text_file(path));
+  SACCADE_TRY(TriangleMesh mesh, in_file(parse(file), path));
+  return without_loose_vertices(std::move(mesh));
+}
+
 /// Compares the lengths that a GLB states with the file's.
 Status check_glb(const std::filesystem::path& path) {
   constexpr std::size_t kHeadWords{4};  // magic, version, bytes of the file, bytes of the first chunk
@@ -82,8 +115,12 @@ Status check_glb(const std::filesystem::path& path) {
 
 Result<TriangleMesh> read_any_mesh(const std::filesystem::path& path) {
   if (!std::filesystem::exists(path)) return Error{Errc::not_found, "there is no such mesh", path.string()};
-  if (lower_suffix(path) == ".ply") return read_mesh(path);  // keeps vertex colours
-  if (lower_suffix(path) == ".glb") SACCADE_CHECK(check_glb(path));
+  const std::string suffix = lower_suffix(path);
+  if (suffix == ".ply") return read_mesh(path);
+  if (suffix == ".stl") return read_by(parse_stl, path);
+  if (suffix == ".obj") return read_by(parse_obj, path);
+  if (suffix == ".off") return read_by(parse_off, path);
+  if (suffix == ".glb") SACCADE_CHECK(check_glb(path));
   return read_guarded(path, limits_for(path), [&] { return read_by_assimp(path); });
 }
 

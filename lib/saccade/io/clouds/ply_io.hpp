@@ -64,8 +64,8 @@ struct PlyFile {
 [[nodiscard]] Status write_mesh(const std::filesystem::path& path, const TriangleMesh& mesh,
                                 PlyFormat format = PlyFormat::binary_little_endian,
                                 std::span<const std::int32_t> labels = {});
-/// Converts to a mesh. Faces of more than three corners are split into fans. Answers corrupt_data without x y z, or for
-/// indices out of range.
+/// Converts to a mesh. Faces of more than three corners are split into triangles. Answers corrupt_data without x y z,
+/// for indices out of range, and for faces of over 1,000 corners that are not convex.
 [[nodiscard]] Result<TriangleMesh> mesh_from_ply(const PlyFile& file);
 [[nodiscard]] Result<TriangleMesh> read_mesh(const std::filesystem::path& path);
 

@@ -4,6 +4,7 @@
 #include <cstring>
 
 #include "saccade/io/clouds/internal/ply_header.hpp"
+#include "saccade/io/clouds/internal/split_polygon.hpp"
 #include "saccade/io/clouds/ply_io.hpp"
 #include "saccade/io/files/file_io.hpp"
 #include "saccade/io/files/text_scan.hpp"
@@ -162,8 +163,9 @@ const PlyList* face_list(const PlyElement& faces) {
 }
 
 Status add_faces(const PlyList& list, TriangleMesh& mesh) {
+  std::vector<std::uint32_t> corners;
   for (std::size_t face = 0; face + 1 < list.starts.size(); ++face) {
-    std::vector<std::uint32_t> corners;
+    corners.clear();
     for (std::size_t i = list.starts[face]; i < list.starts[face + 1]; ++i) {
       const double corner = list.values.value(i);
       if (!(corner >= 0.0) || corner >= static_cast<double>(mesh.vertices.size())) {
@@ -171,7 +173,12 @@ Status add_faces(const PlyList& list, TriangleMesh& mesh) {
       }
       corners.push_back(static_cast<std::uint32_t>(corner));
     }
-    for (std::size_t i = 2; i < corners.size(); ++i) mesh.triangles.push_back({corners[0], corners[i - 1], corners[i]});
+    if (!split_polygon(mesh.vertices, corners, mesh.triangles)) {
+      return Error{Errc::corrupt_data,
+                   "face " + std::to_string(face) + " has " + std::to_string(corners.size()) +
+                       " corners and is not convex; split it into triangles",
+                   {}};
+    }
   }
   return {};
 }

@@ -24,9 +24,8 @@ struct UnreadFormat {
   std::string_view magic;
   const char* advice;
 };
-constexpr std::array<UnreadFormat, 5> kUnreadFormats{
-    {{"\x76\x2f\x31\x01", "an OpenEXR image; convert it to floats in TIFF: oiiotool IN.exr --ch 0 -d float -o OUT.tif"},
-     {"\xff\xd8\xff", "a JPEG, which cannot hold depths; look for PNG, TIFF, PGM or NPY of 16 bits or floats"},
+constexpr std::array<UnreadFormat, 4> kUnreadFormats{
+    {{"\xff\xd8\xff", "a JPEG, which cannot hold depths; look for PNG, TIFF, PGM or NPY of 16 bits or floats"},
      {"PK\x03\x04", "a ZIP or NPZ archive; write each image as a .npy of its own: numpy.save"},
      {"\x89HDF", "an HDF5 file; write each image as a .npy of its own: numpy.save"},
      {"Pf", "a PFM image; convert it to floats in TIFF: oiiotool IN.pfm -d float -o OUT.tif"}}};
@@ -151,12 +150,13 @@ Result<DepthImage> decode_depth_image(std::span<const std::byte> file, const Dep
   if (is_pnm(file)) return decode(decode_pnm);
   if (is_tiff(file)) return decode(decode_tiff);
   if (is_npy(file)) return decode(decode_npy_image);
+  if (is_exr(file)) return decode(decode_exr);
   for (const UnreadFormat& format : kUnreadFormats) {
     if (starts_with(file, format.magic)) return Error{Errc::unsupported, format.advice, {}};
   }
   auto depth = depth_from_png(file, scale);
   if (depth || depth.error().message != "not a PNG file") return depth;
-  return Error{Errc::corrupt_data, "neither PNG, TIFF, PGM nor NPY", "byte 0"};
+  return Error{Errc::corrupt_data, "neither PNG, TIFF, PGM, NPY nor EXR", "byte 0"};
 }
 
 Result<DepthImage> read_depth_image(const std::filesystem::path& path, const DepthUnits& scale) {

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// Depth images in files of any format that is read: PNG, PGM, TIFF, NPY. DepthUnits: what their samples mean, and
+// Depth images in files of any format that is read: PNG, PGM, TIFF, NPY, EXR. DepthUnits: what their samples mean, and
 // who says so. docs/reference/formats.md.
 
 #include <cstddef>
@@ -37,6 +37,7 @@ struct DepthUnits {
 /// | PGM    | binary or plain, up to 65535                                    |
 /// | TIFF   | one channel of 8, 16 or 32 bits, or floats; one image, no tiles |
 /// | NPY    | integers or floats, (height, width) or (height, width, 1)       |
+/// | EXR    | floats or half floats: the only channel, Z, depth or V, or equal R, G and B |
 ///
 /// Whole numbers are divided by the scale. Samples of 8 bits have no usual scale: it must come from files or the
 /// caller. Floats are metres, unless the caller gives a scale. Floats that are not finite or not positive are no

@@ -36,6 +36,7 @@ enum class RgbdLayout {
   replica,
   bop,
   icl_nuim,
+  sun3d,
 };
 inline constexpr auto kRgbdLayoutNames = make_names<RgbdLayout>({{RgbdLayout::automatic, "automatic"},
                                                                  {RgbdLayout::seven_scenes, "seven_scenes"},
@@ -47,7 +48,8 @@ inline constexpr auto kRgbdLayoutNames = make_names<RgbdLayout>({{RgbdLayout::au
                                                                  {RgbdLayout::rtabmap, "rtabmap"},
                                                                  {RgbdLayout::replica, "replica"},
                                                                  {RgbdLayout::bop, "bop"},
-                                                                 {RgbdLayout::icl_nuim, "icl_nuim"}});
+                                                                 {RgbdLayout::icl_nuim, "icl_nuim"},
+                                                                 {RgbdLayout::sun3d, "sun3d"}});
 [[nodiscard]] constexpr std::string_view to_string(RgbdLayout layout) { return kRgbdLayoutNames.of(layout); }
 
 /// Words for options.
@@ -61,7 +63,8 @@ inline constexpr auto kRgbdLayoutWords = make_names<RgbdLayout>({{RgbdLayout::au
                                                                  {RgbdLayout::rtabmap, "rtabmap"},
                                                                  {RgbdLayout::replica, "replica"},
                                                                  {RgbdLayout::bop, "bop"},
-                                                                 {RgbdLayout::icl_nuim, "icl-nuim"}});
+                                                                 {RgbdLayout::icl_nuim, "icl-nuim"},
+                                                                 {RgbdLayout::sun3d, "sun3d"}});
 
 struct RgbdFolderConfig {
   RgbdLayout layout{RgbdLayout::automatic};

@@ -1,225 +1,131 @@
 // SPDX-License-Identifier: Apache-2.0
 #include "saccade/report/internal/font.hpp"
 
+#include <ft2build.h>
+#include FT_FREETYPE_H
+#include FT_OUTLINE_H
+
 #include <algorithm>
-#include <array>
 #include <cmath>
 #include <cstdint>
-#include <vector>
+#include <mutex>
+#include <string>
 
+#include "saccade/core/result.hpp"
 #include "saccade/report/internal/blend.hpp"
+
+/// The file of the font, embedded by font_data.cpp.
+extern "C" const unsigned char saccade_font_begin[];
+extern "C" const unsigned char saccade_font_end[];
 
 namespace saccade {
 namespace {
 
-/// Strokes separated by spaces; a stroke is a list of points, each two digits: x from the left, y from the top.
-/// Capitals reach from y = 0 to the base line at y = 6, small letters start at y = 2, tails end at y = 8.
-struct Glyph {
-  char32_t code;
-  int width;
-  const char* strokes;
+constexpr double kPer26Dot6{64.0};       // fractions of a pixel that FreeType counts in
+constexpr double kCapitalsPerEm{0.729};  // DejaVu Sans
+constexpr char32_t kUnreadable{0xFFFD};
+
+/// The face of the embedded font. One thread at a time.
+class Face {
+ public:
+  Face() {
+    SACCADE_EXPECTS(FT_Init_FreeType(&library_) == 0);
+    SACCADE_EXPECTS(
+        FT_New_Memory_Face(library_, saccade_font_begin, saccade_font_end - saccade_font_begin, 0, &face_) == 0);
+  }
+  Face(const Face&) = delete;
+  Face& operator=(const Face&) = delete;
+  ~Face() {
+    FT_Done_Face(face_);
+    FT_Done_FreeType(library_);
+  }
+
+  void set_size(double capitals_px) {
+    const auto em = static_cast<FT_F26Dot6>(std::lround(kPer26Dot6 * capitals_px / kCapitalsPerEm));
+    constexpr FT_UInt kPixelsPerInch{72};  // a point is a pixel
+    FT_Set_Char_Size(face_, 0, std::max<FT_F26Dot6>(em, 1), kPixelsPerInch, kPixelsPerInch);
+  }
+  /// Loads the outline of a character and returns its advance in pixels.
+  double load(char32_t code) {
+    if (FT_Load_Char(face_, code, FT_LOAD_NO_HINTING | FT_LOAD_NO_BITMAP) != 0) return 0.0;
+    return static_cast<double>(face_->glyph->advance.x) / kPer26Dot6;
+  }
+  /// Draws the loaded outline with its origin at (x, y).
+  void draw(ColorImage& image, double x, double y, const Rgb8& color) {
+    const double left = std::floor(x);
+    const double base = std::ceil(y);
+    FT_Outline_Translate(&face_->glyph->outline, std::lround(kPer26Dot6 * (x - left)),
+                         std::lround(kPer26Dot6 * (base - y)));
+    if (FT_Render_Glyph(face_->glyph, FT_RENDER_MODE_NORMAL) != 0) return;
+    const FT_Bitmap& covers = face_->glyph->bitmap;
+    const int u0 = static_cast<int>(left) + face_->glyph->bitmap_left;
+    const int v0 = static_cast<int>(base) - face_->glyph->bitmap_top;
+    for (int row = 0; row < static_cast<int>(covers.rows); ++row) {
+      for (int column = 0; column < static_cast<int>(covers.width); ++column) {
+        const int u = u0 + column;
+        const int v = v0 + row;
+        const std::uint8_t cover = covers.buffer[row * covers.pitch + column];
+        if (cover == 0 || u < 0 || v < 0 || u >= image.width() || v >= image.height()) continue;
+        constexpr double kMost{255.0};
+        image(u, v) = blend(image(u, v), color, cover / kMost);
+      }
+    }
+  }
+
+ private:
+  FT_Library library_{nullptr};
+  FT_Face face_{nullptr};
 };
 
-constexpr std::array kGlyphs{
-    Glyph{U' ', 2, ""},
-    Glyph{U'!', 0, "0004 0606"},
-    Glyph{U'"', 1, "0001 1011"},
-    Glyph{U'#', 4, "1016 3036 0242 0444"},
-    Glyph{U'$', 4, "4110010213334445361605 2027"},
-    Glyph{U'%', 4, "4006 0010110100 3545463635"},
-    Glyph{U'&', 4, "46011020310405163643"},
-    Glyph{U'\'', 0, "0001"},
-    Glyph{U'(', 1, "10020416"},
-    Glyph{U')', 1, "00121406"},
-    Glyph{U'*', 4, "2125 0244 4204"},
-    Glyph{U'+', 4, "2226 0444"},
-    Glyph{U',', 1, "1607"},
-    Glyph{U'-', 2, "0424"},
-    Glyph{U'.', 0, "0606"},
-    Glyph{U'/', 2, "2006"},
-    Glyph{U'0', 4, "103041453616050110"},
-    Glyph{U'1', 4, "112026 1636"},
-    Glyph{U'2', 4, "01103041420646"},
-    Glyph{U'3', 4, "01103041423323 334445361605"},
-    Glyph{U'4', 4, "36300444"},
-    Glyph{U'5', 4, "400002324345361605"},
-    Glyph{U'6', 4, "413010010516364544331304"},
-    Glyph{U'7', 4, "004016"},
-    Glyph{U'8', 4, "13020110304142331304051636454433"},
-    Glyph{U'9', 4, "051636454130100102133342"},
-    Glyph{U':', 0, "0303 0606"},
-    Glyph{U';', 1, "1313 1607"},
-    Glyph{U'<', 3, "320436"},
-    Glyph{U'=', 3, "0333 0535"},
-    Glyph{U'>', 3, "023406"},
-    Glyph{U'?', 3, "01102031322324 2626"},
-    Glyph{U'@', 5, "4434324222131526344554514010010516 36"},
-    Glyph{U'A', 4, "062046 1434"},
-    Glyph{U'B', 4, "033342413000063645443303"},
-    Glyph{U'C', 4, "4130100105163645"},
-    Glyph{U'D', 4, "00062644422000"},
-    Glyph{U'E', 4, "40000646 0333"},
-    Glyph{U'F', 4, "400006 0333"},
-    Glyph{U'G', 4, "41301001051636454323"},
-    Glyph{U'H', 4, "0006 4046 0343"},
-    Glyph{U'I', 0, "0006"},
-    Glyph{U'J', 3, "3035261605"},
-    Glyph{U'K', 4, "0006 400346"},
-    Glyph{U'L', 3, "000636"},
-    Glyph{U'M', 4, "0600244046"},
-    Glyph{U'N', 4, "06004640"},
-    Glyph{U'O', 4, "103041453616050110"},
-    Glyph{U'P', 4, "06003041423303"},
-    Glyph{U'Q', 4, "103041453616050110 2446"},
-    Glyph{U'R', 4, "06003041423303 2346"},
-    Glyph{U'S', 4, "413010010213334445361605"},
-    Glyph{U'T', 4, "0040 2026"},
-    Glyph{U'U', 4, "000516364540"},
-    Glyph{U'V', 4, "002640"},
-    Glyph{U'W', 6, "0016315660"},
-    Glyph{U'X', 4, "0046 4006"},
-    Glyph{U'Y', 4, "002340 2326"},
-    Glyph{U'Z', 4, "00400646"},
-    Glyph{U'[', 1, "10000616"},
-    Glyph{U'\\', 2, "0026"},
-    Glyph{U']', 1, "00101606"},
-    Glyph{U'^', 4, "022042"},
-    Glyph{U'_', 4, "0747"},
-    Glyph{U'`', 1, "0011"},
-    Glyph{U'a', 3, "0222333616051434"},
-    Glyph{U'b', 3, "00062635332202"},
-    Glyph{U'c', 3, "321203051636"},
-    Glyph{U'd', 3, "30361605031232"},
-    Glyph{U'e', 3, "043433221203051636"},
-    Glyph{U'f', 2, "201116 0222"},
-    Glyph{U'g', 3, "361605031232372808"},
-    Glyph{U'h', 3, "0006 0312223336"},
-    Glyph{U'i', 0, "0206 0000"},
-    Glyph{U'j', 1, "121708 1010"},
-    Glyph{U'k', 3, "0006 320436"},
-    Glyph{U'l', 1, "000516"},
-    Glyph{U'm', 4, "0602 03122326 23324346"},
-    Glyph{U'n', 3, "0602 0312223336"},
-    Glyph{U'o', 3, "122233352616050312"},
-    Glyph{U'p', 3, "08022233352606"},
-    Glyph{U'q', 3, "38321203051636"},
-    Glyph{U'r', 2, "0602 031222"},
-    Glyph{U's', 3, "3212031424352606"},
-    Glyph{U't', 2, "101526 0222"},
-    Glyph{U'u', 3, "02051636 3236"},
-    Glyph{U'v', 4, "022642"},
-    Glyph{U'w', 4, "0216233642"},
-    Glyph{U'x', 3, "0236 3206"},
-    Glyph{U'y', 3, "02051636 32372808"},
-    Glyph{U'z', 3, "02320636"},
-    Glyph{U'{', 2, "2011120314152627"},
-    Glyph{U'|', 0, "0007"},
-    Glyph{U'}', 2, "0011122314150607"},
-    Glyph{U'~', 4, "0413243544"},
-    Glyph{U'°', 2, "1021120110"},
-    Glyph{U'±', 4, "2125 0343 0646"},
-    Glyph{U'²', 2, "0020210323"},
-    Glyph{U'µ', 3, "0208 051636 3236"},
-    Glyph{U'·', 0, "0404"},
-    Glyph{U'×', 3, "0336 3306"},
-    Glyph{U'–', 4, "0444"},
-    Glyph{U'→', 5, "0454 325436"},
-};
-constexpr Glyph kUnknown{U'?', 3, "0030360600"};
-constexpr double kGlyphGap{1.9};  ///< units between glyphs
-constexpr double kCapitalUnits{6.0};
+std::mutex face_mutex;
 
-const Glyph& glyph_of(char32_t code) {
-  const auto it = std::find_if(kGlyphs.begin(), kGlyphs.end(), [code](const Glyph& g) { return g.code == code; });
-  return it == kGlyphs.end() ? kUnknown : *it;
+Face& face() {
+  static Face only;
+  return only;
 }
 
-/// Code points of UTF-8 text; a malformed byte counts as a character of its own.
-std::vector<char32_t> decode(std::string_view text) {
-  std::vector<char32_t> codes;
+/// Returns the characters of UTF-8 text; bytes that are none become the replacement character.
+std::u32string decode(std::string_view text) {
+  std::u32string codes;
   for (std::size_t i = 0; i < text.size();) {
-    const auto byte = static_cast<unsigned char>(text[i]);
-    const std::size_t length = byte < 0x80U ? 1 : byte >= 0xE0U && byte < 0xF0U ? 3 : byte >= 0xC0U ? 2 : 1;
-    char32_t code = length == 1 ? byte : length == 2 ? byte & 0x1FU : byte & 0x0FU;
-    std::size_t used{1};
-    while (used < length && i + used < text.size()) {
-      code = (code << 6U) | (static_cast<unsigned char>(text[i + used]) & 0x3FU);
-      ++used;
+    const auto lead = static_cast<unsigned char>(text[i]);
+    const std::size_t bytes = lead < 0x80 ? 1 : lead >= 0xF0 ? 4 : lead >= 0xE0 ? 3 : 2;
+    char32_t code = bytes == 1 ? lead : lead & (0x7FU >> bytes);
+    bool whole = (lead < 0x80 || lead >= 0xC2) && lead < 0xF5 && i + bytes <= text.size();
+    for (std::size_t k = 1; whole && k < bytes; ++k) {
+      const auto next = static_cast<unsigned char>(text[i + k]);
+      whole = (next & 0xC0U) == 0x80U;
+      code = code << 6U | (next & 0x3FU);
     }
-    codes.push_back(code);
-    i += used;
+    codes += whole ? code : kUnreadable;
+    i += whole ? bytes : 1;
   }
   return codes;
 }
 
-struct Segment {
-  double x0, y0, x1, y1;
-  [[nodiscard]] double distance(double x, double y) const {
-    const double dx = x1 - x0;
-    const double dy = y1 - y0;
-    const double length2 = dx * dx + dy * dy;
-    const double t = length2 > 0.0 ? std::clamp(((x - x0) * dx + (y - y0) * dy) / length2, 0.0, 1.0) : 0.0;
-    return std::hypot(x - x0 - t * dx, y - y0 - t * dy);
-  }
-};
-
-std::vector<Segment> segments_of(const Glyph& glyph, double x, double y, double unit_px) {
-  std::vector<Segment> segments;
-  const auto px = [&](char c) { return x + (c - '0') * unit_px; };
-  const auto py = [&](char c) { return y + (c - '0' - kCapitalUnits) * unit_px; };
-  const std::string_view all{glyph.strokes};
-  for (std::size_t start = 0; start < all.size();) {
-    const std::size_t end = std::min(all.find(' ', start), all.size());
-    const std::string_view s = all.substr(start, end - start);
-    for (std::size_t i = 0; i + 3 < s.size(); i += 2) {
-      segments.push_back({px(s[i]), py(s[i + 1]), px(s[i + 2]), py(s[i + 3])});
-    }
-    start = end + 1;
-  }
-  return segments;
-}
-
-/// Covers each pixel by its distance to the nearest stroke, so joints are not drawn twice.
-void draw_strokes(ColorImage& image, const std::vector<Segment>& segments, double width_px, const Rgb8& color) {
-  if (segments.empty()) return;
-  double x0{1e9}, y0{1e9}, x1{-1e9}, y1{-1e9};
-  for (const Segment& s : segments) {
-    x0 = std::min({x0, s.x0, s.x1});
-    y0 = std::min({y0, s.y0, s.y1});
-    x1 = std::max({x1, s.x0, s.x1});
-    y1 = std::max({y1, s.y0, s.y1});
-  }
-  const double reach = width_px / 2.0 + 1.0;
-  const int u0 = std::max(0, static_cast<int>(std::floor(x0 - reach)));
-  const int v0 = std::max(0, static_cast<int>(std::floor(y0 - reach)));
-  const int u1 = std::min(image.width() - 1, static_cast<int>(std::ceil(x1 + reach)));
-  const int v1 = std::min(image.height() - 1, static_cast<int>(std::ceil(y1 + reach)));
-  for (int v = v0; v <= v1; ++v) {
-    for (int u = u0; u <= u1; ++u) {
-      double nearest{1e9};
-      for (const Segment& s : segments) nearest = std::min(nearest, s.distance(u, v));
-      const double cover = std::clamp(width_px / 2.0 + 0.5 - nearest, 0.0, 1.0);
-      if (cover > 0.0) image(u, v) = blend(image(u, v), color, cover);
-    }
-  }
+double width_of(const std::u32string& codes) {
+  double width{0.0};
+  for (const char32_t code : codes) width += face().load(code);
+  return width;
 }
 
 }  // namespace
 
 double text_width(std::string_view text, const TextStyle& style) {
-  double units{0.0};
-  for (const char32_t code : decode(text)) units += glyph_of(code).width + kGlyphGap;
-  return std::max(0.0, units - kGlyphGap) * style.size_px / kCapitalUnits;
+  const std::lock_guard lock{face_mutex};
+  face().set_size(style.size_px);
+  return width_of(decode(text));
 }
 
 void draw_text(ColorImage& image, double x, double y, std::string_view text, const TextStyle& style) {
-  const double unit_px = style.size_px / kCapitalUnits;
-  const double width_px = std::max(1.1, 0.13 * style.size_px);
-  if (style.anchor != TextAnchor::left) x -= text_width(text, style) * (style.anchor == TextAnchor::center ? 0.5 : 1.0);
-  for (const char32_t code : decode(text)) {
-    const Glyph& glyph = glyph_of(code);
-    draw_strokes(image, segments_of(glyph, x, y, unit_px), width_px, style.color);
-    x += (glyph.width + kGlyphGap) * unit_px;
+  const std::lock_guard lock{face_mutex};
+  face().set_size(style.size_px);
+  const std::u32string codes = decode(text);
+  if (style.anchor != TextAnchor::left) x -= width_of(codes) * (style.anchor == TextAnchor::center ? 0.5 : 1.0);
+  for (const char32_t code : codes) {
+    const double advance = face().load(code);
+    face().draw(image, x, y, style.color);
+    x += advance;
   }
 }
 

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: Apache-2.0
 #pragma once
-// draw_text, text_width: a small built-in stroke font for captions and labels.
+// draw_text, text_width: captions and labels in DejaVu Sans.
 
 #include <string_view>
 
@@ -19,8 +19,8 @@ struct TextStyle {
 /// Width of the text in pixels.
 [[nodiscard]] double text_width(std::string_view text, const TextStyle& style);
 
-/// Draws one line of UTF-8 text; (x, y) is the left end, centre or right end of its base line. Knows ASCII and ° ± × µ
-/// · – →; anything else shows as a box. What falls outside the image is cut.
+/// Draws one line of UTF-8 text; (x, y) is the left end, centre or right end of its base line. What the font lacks
+/// shows as a box. What falls outside the image is cut.
 void draw_text(ColorImage& image, double x, double y, std::string_view text, const TextStyle& style);
 
 }  // namespace saccade

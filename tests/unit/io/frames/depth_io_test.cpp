@@ -14,6 +14,7 @@ namespace saccade {
 namespace {
 
 using test::bytes_of_values;
+using test::make_exr;
 using test::make_npy;
 using test::make_tiff;
 
@@ -31,6 +32,11 @@ std::string refusal(const std::string& file, const DepthUnits& units = kLayout) 
   const auto depth = decode_depth_image(as_byte_span(file), units);
   EXPECT_FALSE(depth);
   return depth ? "accepted" : depth.error().to_string();
+}
+
+bool reads_exr() {
+  const auto depth = decode_depth_image(as_byte_span(make_exr(1, 1, {"Z"}, {1.0F})), kLayout);
+  return depth || depth.error().message.find("lacks") == std::string::npos;
 }
 
 const std::vector<std::uint16_t> kWhole{0, 500, 1000, 65535};
@@ -63,6 +69,26 @@ TEST(DepthImageFile, FloatsAreMetresUnlessAScaleIsGiven) {
             (std::vector<float>{1.5F}));
 }
 
+TEST(DepthImageFile, ExrHasDepthInOneChannelOrInEqualColors) {
+  if (!reads_exr()) GTEST_SKIP() << "this build lacks libopenexr-dev";
+  using Names = std::vector<std::string>;
+  for (const Names& names : {Names{"Y"}, Names{"Depth.V"}, Names{"Z"}, Names{"A", "B", "G", "R", "Z"},
+                             Names{"Image.B", "Image.G", "Image.R"}}) {
+    EXPECT_EQ(depths(make_exr(2, 2, names, kReal)), kRealMetres) << names.front();
+  }
+  const std::string exr = make_exr(2, 2, {"Z"}, kReal);
+  EXPECT_NE(refusal(make_exr(2, 2, {"X", "Y"}, kReal)).find("the channels X, Y"), std::string::npos);
+  EXPECT_NE(refusal(make_exr(2, 2, {"Z"}, kReal, 1)).find("cropped"), std::string::npos);
+  EXPECT_NE(refusal(make_exr(16384, 16384, {"Z"}, {})).find("OpenEXR"), std::string::npos);
+  EXPECT_NE(refusal(make_exr(1 << 20, 1, {"Z"}, {})).find("OpenEXR"), std::string::npos);
+  std::string colors = make_exr(2, 2, {"B", "G", "R"}, kReal);
+  colors[colors.size() - 6] = 'x';
+  EXPECT_NE(refusal(colors).find("of colours"), std::string::npos);
+  for (std::size_t bytes = 4; bytes < exr.size(); bytes += 7) {
+    EXPECT_NE(refusal(exr.substr(0, bytes)).find("OpenEXR"), std::string::npos) << bytes;
+  }
+}
+
 TEST(DepthImageFile, EightBitsNeedAScale) {
   test::PngSpec spec;
   spec.width = 2;
@@ -82,8 +108,8 @@ TEST(DepthImageFile, DamageAndOtherKindsAreRefusedWithWhatToDo) {
   const std::string tiff = make_tiff(2, 2, 16, 1, bytes_of_values(kWhole));
   const std::string npy = make_npy("<u2", "(2, 2)", bytes_of_values(kWhole));
   const std::vector<std::pair<std::string, const char*>> cases{
-      {"", "neither PNG, TIFF, PGM nor NPY"},
-      {"\x76\x2f\x31\x01 and more", "oiiotool"},
+      {"", "neither PNG, TIFF, PGM, NPY nor EXR"},
+      {"\x76\x2f\x31\x01 and more", "OpenEXR"},
       {"\xff\xd8\xff\xe0", "JPEG"},
       {"PK\x03\x04", "numpy.save"},
       {tiff.substr(0, tiff.size() - 30), "TIFF"},

@@ -281,9 +281,34 @@ TEST_F(Layouts, Open3dFoldersHaveManyNamesAndFormats) {
   folder_.write("poses.txt", "1 0 0 0.1 0 1 0 0 0 0 1 0\n");
   const Lines all = frames(*opened());
   EXPECT_NE(all[1].find("no pose"), std::string::npos) << all[1];
-  EXPECT_NE(frames(*opened({.require_poses = false}))[3].find("oiiotool"), std::string::npos);
+  EXPECT_NE(frames(*opened({.require_poses = false}))[3].find("OpenEXR"), std::string::npos);
   folder_.write("intrinsic.json", R"({"fx": 10, "fy": 10, "cx": 3.5, "cy": 2.5, "depth_scale": 1.0})");
   EXPECT_NE(refusal().find("depth_scale of 1.0"), std::string::npos);
+}
+
+TEST_F(Layouts, Sun3dPairsByTimeAndRotatesItsDepths) {
+  const auto rotated = [](int millimetres) { return static_cast<std::uint16_t>(millimetres << 3 | millimetres >> 13); };
+  depth("depth/0000001-000000020000.png", rotated(1500));
+  depth("depth/0000002-000000053000.png", rotated(2500));
+  depth("depth/0000003-000009000000.png", rotated(1700));
+  for (const char* name : {"0000001-000000000000", "0000002-000000022000", "0000003-000000055000"}) {
+    color(std::string{"image/"} + name + ".jpg.png");
+    fs::rename(folder_ / (std::string{"image/"} + name + ".jpg.png"),
+               folder_ / (std::string{"image/"} + name + ".png"));
+  }
+  folder_.write("intrinsics.txt", "10 0 3.5\n0 10 2.5\n0 0 1\n");
+  const auto row = [](const std::string& x) { return "1 0 0 " + x + "\n0 1 0 0\n0 0 1 0\n"; };
+  folder_.write("extrinsics/20120101.txt", row("8") + row("8") + row("8"));
+  folder_.write("extrinsics/20130101.txt", row("0.1") + row("0.2") + row("0.3"));
+  const auto source = opened();
+  EXPECT_EQ(source->info().layout, RgbdLayout::sun3d);
+  EXPECT_TRUE(has_note(*source, "poses are those of 20130101.txt"));
+  EXPECT_EQ(frames(*source), (Lines{"0000001-000000020000 1.50 at 0.2", "0000002-000000053000 2.50 at 0.3",
+                                    "skipped: frame 0000003-000009000000: has no pose, as others here have"}));
+  folder_.write("extrinsics/20130101.txt", row("0.1") + "1 0 0 0\n");
+  EXPECT_NE(refusal().find("cut short"), std::string::npos) << refusal();
+  folder_.write("extrinsics/20130101.txt", "1 0 0\n");
+  EXPECT_NE(refusal().find("line 1: four numbers"), std::string::npos) << refusal();
 }
 
 TEST_F(Layouts, UnknownFoldersNameTheNearestLayout) {

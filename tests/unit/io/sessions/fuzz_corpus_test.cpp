@@ -8,6 +8,7 @@
 #include "saccade/devices/internal/joint_messages.hpp"
 #include "saccade/devices/internal/process_messages.hpp"
 #include "saccade/io/clouds/internal/kitti_io.hpp"
+#include "saccade/io/clouds/internal/mesh_text.hpp"
 #include "saccade/io/clouds/internal/npy_cloud.hpp"
 #include "saccade/io/clouds/las_io.hpp"
 #include "saccade/io/clouds/pcd_io.hpp"
@@ -50,6 +51,9 @@ TEST(FuzzCorpus, SeedsAreAccepted) {
             9U);
   EXPECT_GE(check_seeds("ply", [](const auto& content, const auto&) { return parse_ply(as_byte_span(content)).ok(); }),
             3U);
+  EXPECT_GE(check_seeds("stl", [](const auto& content, const auto&) { return parse_stl(content).ok(); }), 2U);
+  EXPECT_GE(check_seeds("obj", [](const auto& content, const auto&) { return parse_obj(content).ok(); }), 1U);
+  EXPECT_GE(check_seeds("off", [](const auto& content, const auto&) { return parse_off(content).ok(); }), 1U);
   EXPECT_GE(check_seeds("pcd", [](const auto& content, const auto&) { return parse_pcd(as_byte_span(content)).ok(); }),
             3U);
   EXPECT_GE(check_seeds("text_cloud",

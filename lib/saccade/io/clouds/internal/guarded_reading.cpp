@@ -163,7 +163,7 @@ Result<TriangleMesh> mesh_of(std::span<const std::byte> bytes, const std::filesy
 
 ReadLimits limits_for(const std::filesystem::path& path) {
   constexpr double kMebibyte{1 << 20};
-  constexpr std::size_t kTimesItsSize{64};
+  constexpr std::size_t kTimesItsSize{128};
   std::error_code code;
   const std::uintmax_t size = std::filesystem::file_size(path, code);
   ReadLimits limits;

@@ -12,11 +12,11 @@
 namespace saccade {
 
 struct ReadLimits {
-  double seconds{10.0};              ///< processor time; three times as much by the clock
-  std::size_t bytes{1ULL << 30ULL};  ///< memory beyond that of the process
+  double seconds{10.0};                ///< processor time; three times as much by the clock
+  std::size_t bytes{256ULL << 20ULL};  ///< memory beyond that of the process
 };
 
-/// Returns limits for a file: the defaults, 1 s more per MiB, and 64 times its size more.
+/// Returns limits for a file: the defaults, 1 s more per MiB, and 128 times its size more.
 [[nodiscard]] ReadLimits limits_for(const std::filesystem::path& path);
 
 /// Calls `read` in a child process and returns its result. Sanitizers need address space, so memory is not limited

@@ -79,6 +79,54 @@ Result<Pose> read_extrinsics(const fs::path& folder, RgbdLayoutRule::Patterns pa
   return poses.front();
 }
 
+/// Returns the time in a name of SUN3D, "0000001-000000033369": microseconds behind the dash. nullopt without them.
+std::optional<double> sun3d_time_s(std::string_view name) {
+  const std::size_t dash = name.find('-');
+  if (dash == std::string_view::npos) return std::nullopt;
+  const auto microseconds = parse_integer<std::int64_t>(name.substr(dash + 1));
+  constexpr double kSecondsPerMicrosecond{1e-6};
+  return microseconds ? std::optional{kSecondsPerMicrosecond * static_cast<double>(*microseconds)} : std::nullopt;
+}
+
+struct Sun3dImage {
+  double time_s{0.0};  ///< or its place, where names have no times
+  fs::path path;
+  std::size_t place{0};
+};
+
+/// Lists the colour images in order of time.
+std::vector<Sun3dImage> sun3d_images(const std::vector<KeyedFile>& files, bool has_times) {
+  std::vector<Sun3dImage> images;
+  for (const KeyedFile& file : files) {
+    const std::size_t place = images.size();
+    images.push_back({has_times ? *sun3d_time_s(file.key) : static_cast<double>(place), file.path, place});
+  }
+  std::stable_sort(images.begin(), images.end(), [](const auto& a, const auto& b) { return a.time_s < b.time_s; });
+  return images;
+}
+
+/// Reads three rows of four numbers an image.
+Result<std::vector<Pose>> read_sun3d_poses(const fs::path& path) {
+  SACCADE_TRY(const std::string text, read_text_file(path));
+  SACCADE_TRY(const std::vector<NumberLine> rows, in_file(number_lines(text), path));
+  constexpr std::size_t kMatrixRows{3};
+  constexpr std::size_t kMatrixColumns{4};
+  for (const NumberLine& row : rows) {
+    if (row.values.size() != kMatrixColumns)
+      return in_file(bad_line(row.line, "four numbers of a 3x4 matrix expected"), path);
+  }
+  if (rows.size() % kMatrixRows != 0)
+    return Error{Errc::corrupt_data, "the last 3x4 matrix is cut short", path.string()};
+  std::vector<Pose> poses(rows.size() / kMatrixRows, Pose::Identity());
+  for (std::size_t i = 0; i < rows.size(); ++i) {
+    for (std::size_t column = 0; column < kMatrixColumns; ++column) {
+      poses[i / kMatrixRows](static_cast<Eigen::Index>(i % kMatrixRows), static_cast<Eigen::Index>(column)) =
+          rows[i].values[column];
+    }
+  }
+  return poses;
+}
+
 constexpr const char* kDepthOffBody{
     "the depth camera is not where the recording's body is; poses are taken as those of the depth camera"};
 
@@ -140,6 +188,45 @@ Status complete_bundlefusion(const fs::path& folder, const RgbdLayoutRule& rule,
   listing.color_intrinsics = info->color;
   listing.T_color_depth = info->T_color_depth;
   if (info->is_depth_off_body) listing.notes.emplace_back(kDepthOffBody);
+  return {};
+}
+
+Status complete_sun3d(const fs::path& folder, const RgbdLayoutRule& /*rule*/, const RgbdFolderConfig& config,
+                      RgbdListing& listing) {
+  const RgbdLayoutRule::Patterns colors{"image/#.*"};
+  const std::vector<KeyedFile> files = find_first(folder, colors, FileKind::color);
+  const auto has_time = [](const auto& named) { return sun3d_time_s(named).has_value(); };
+  const bool has_times =
+      std::all_of(files.begin(), files.end(), [&](const KeyedFile& file) { return has_time(file.key); }) &&
+      std::all_of(listing.frames.begin(), listing.frames.end(),
+                  [&](const auto& frame) { return has_time(frame.name); });
+  if (!has_times && !files.empty() && files.size() != listing.frames.size()) {
+    return Error{Errc::size_mismatch,
+                 "has " + counted(listing.frames.size(), "depth image", "depth images") + " and " +
+                     counted(files.size(), "colour image", "colour images") +
+                     ", and their names have no times to pair them by",
+                 folder.string()};
+  }
+  const std::vector<Sun3dImage> images = sun3d_images(files, has_times);
+  const auto extrinsics = find_files(folder, "extrinsics/#.txt");
+  std::vector<Pose> poses;
+  if (!config.poses_file && !extrinsics.empty()) {
+    SACCADE_TRY(poses, read_sun3d_poses(extrinsics.back().path));  // the latest
+    if (extrinsics.size() > 1) {
+      listing.notes.push_back("poses are those of " + extrinsics.back().path.filename().string());
+    }
+  }
+  for (std::size_t i = 0; i < listing.frames.size(); ++i) {
+    RgbdFrameFiles& frame = listing.frames[i];
+    if (has_times) frame.time_s = sun3d_time_s(frame.name);
+    const Sun3dImage* image =
+        nearest_in_time(images, has_times ? *frame.time_s : static_cast<double>(i),
+                        has_times ? config.max_time_difference_s : 0.5, [](const auto& one) { return one.time_s; });
+    if (image != nullptr) frame.color = image->path;
+    const std::size_t place = image != nullptr ? image->place : images.empty() ? i : poses.size();
+    if (place < poses.size()) frame.T_world_camera = poses[place];
+  }
+  listing.has_poses = !poses.empty();
   return {};
 }
 

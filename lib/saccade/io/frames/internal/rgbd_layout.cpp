@@ -17,6 +17,7 @@ using Patterns = RgbdLayoutRule::Patterns;
 constexpr DepthEncoding kMillimetres{1000.0, false};
 constexpr DepthEncoding kTum{5000.0, false};
 constexpr DepthEncoding kPrinceton{10000.0, true};
+constexpr DepthEncoding kSun3d{1000.0, true};
 
 /// Layouts in the order in which they are tried. docs/reference/formats.md has this table for people.
 const std::vector<RgbdLayoutRule>& layout_rules() {
@@ -61,6 +62,12 @@ const std::vector<RgbdLayoutRule>& layout_rules() {
        .intrinsics = {"calib/#.yaml", "*_calib/#.yaml"},
        .encoding = kMillimetres,
        .complete = complete_rtabmap},
+      {.layout = RgbdLayout::sun3d,
+       .title = "SUN3D",
+       .marks = {{"extrinsics/*.txt"}, {"depth/#.*"}},
+       .depth = {"depth/#.*"},
+       .encoding = kSun3d,
+       .complete = complete_sun3d},
       {.layout = RgbdLayout::replica,
        .title = "Replica",
        .marks = {{"results/depth#.*"}, {"traj.txt", "cam_params.json", "../cam_params.json", "results/frame#.*"}},

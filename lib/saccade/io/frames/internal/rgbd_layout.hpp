@@ -66,6 +66,8 @@ Status complete_bop(const std::filesystem::path& folder, const RgbdLayoutRule& r
                     RgbdListing& listing);
 Status complete_bundlefusion(const std::filesystem::path& folder, const RgbdLayoutRule& rule,
                              const RgbdFolderConfig& config, RgbdListing& listing);
+Status complete_sun3d(const std::filesystem::path& folder, const RgbdLayoutRule& rule, const RgbdFolderConfig& config,
+                      RgbdListing& listing);
 Status complete_scannet(const std::filesystem::path& folder, const RgbdLayoutRule& rule, const RgbdFolderConfig& config,
                         RgbdListing& listing);
 Status complete_rtabmap(const std::filesystem::path& folder, const RgbdLayoutRule& rule, const RgbdFolderConfig& config,
