@@ -81,7 +81,7 @@ void read_mutated_files(int mutants) {
 
 TEST(MeshMutation, AssimpIsKeptFromHarm) {
   if (test::kSanitized) GTEST_SKIP() << "sanitizers end the child with their own reports, and need its memory";
-  read_mutated_files(20);  // assimp takes all the memory it may have for a few of them
+  read_mutated_files(12);  // assimp takes all the memory it may have for a few of them
 }
 
 TEST(MeshMutationEvidence, AssimpIsKeptFromHarmTenThousandTimes) { read_mutated_files(10'000); }
