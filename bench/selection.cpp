@@ -112,7 +112,8 @@ void by_the_book(benchmark::State& state) {
   const std::vector<Eigen::Vector3f>& cloud = points(state.range(0) == 1);
   std::vector<std::uint32_t> selected;
   for (auto _ : state) selected = select_by_the_book(cloud);
-  const auto ours = select_points(cloud, view(), kWhole, kOnSurface_m, Executor::with_threads(2)).value();
+  const auto ours =
+      select_points(cloud, view(), kWhole, kOnSurface_m, Executor::with_threads(2), SurfaceRule::as_printed).value();
   if (selected.empty() ||
       std::abs(static_cast<double>(selected.size()) / static_cast<double>(ours.size()) - 1) > 1e-4) {
     state.SkipWithError("another selection");

@@ -226,7 +226,8 @@ void bind_annotation(py::module_& module) {
           py::arg("point_size_px") = SelectionView{}.point_size_px,
           "Finds the points that a shape contains in the picture of a camera (thesis 4.2.2). `rectangle`: two opposite "
           "corners; `polygon`: corners of a lasso; `stroke`: a line, `radius_px` wide to either side; each in pixels "
-          "(u, v). `below_m`: metres behind what is seen that are still taken, 0: what is seen alone, inf: however "
+          "(u, v). `below_m`: metres behind what is seen that are still taken, 0: the surface that is seen, inf: "
+          "however "
           "deep. `point_size_px`: edge of a drawn point. Returns indices, uint32, ascending, for click and paint.")
       .def(
           "undo", [](PythonAnnotation& annotation) { return annotation.change(UndoAction{}); },

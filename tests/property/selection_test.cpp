@@ -89,18 +89,25 @@ TEST(SelectionProperty, EqualsItsDefinitionAndDeeperSelectionsContainShallowerOn
     SCOPED_TRACE("seed " + std::to_string(seed));
     RandomSelection random{seed};
     const Executor executor = Executor::with_threads(1 + seed % 3, test::kParallelBackend);
+    test::NaivePicture picture{random.positions_m(), random.view()};
     for (int i = 0; i < kShapesPerRun; ++i) {
       const ScreenShape shape = random.shape(i % 3);
       const double below_m = random.uniform(0.0, 0.8);
-      const auto select = [&](double at_most_m) {
-        return select_points(random.positions_m(), random.view(), shape, at_most_m, executor).value();
+      const auto select = [&](double at_most_m, SurfaceRule rule = SurfaceRule::seen) {
+        return select_points(random.positions_m(), random.view(), shape, at_most_m, executor, rule).value();
       };
       const Indices surface = select(kOnSurface_m);
       const Indices below = select(below_m);
       const Indices deep = select(kAnyDepth_m);
-      ASSERT_EQ(surface, test::naive_select(random.positions_m(), random.view(), shape, kOnSurface_m));
-      ASSERT_EQ(below, test::naive_select(random.positions_m(), random.view(), shape, below_m));
-      ASSERT_EQ(deep, test::naive_select(random.positions_m(), random.view(), shape, kAnyDepth_m));
+      ASSERT_EQ(surface, test::naive_select(picture, shape, kOnSurface_m));
+      ASSERT_EQ(below, test::naive_select(picture, shape, below_m));
+      ASSERT_EQ(deep, test::naive_select(picture, shape, kAnyDepth_m));
+      const Indices nearest = select(kOnSurface_m, SurfaceRule::as_printed);
+      const Indices behind_nearest = select(below_m, SurfaceRule::as_printed);
+      ASSERT_EQ(nearest, test::naive_select(picture, shape, kOnSurface_m, SurfaceRule::as_printed));
+      ASSERT_EQ(behind_nearest, test::naive_select(picture, shape, below_m, SurfaceRule::as_printed));
+      ASSERT_TRUE(is_part(nearest, surface));
+      ASSERT_TRUE(is_part(behind_nearest, below));
       ASSERT_TRUE(is_part(surface, below));
       ASSERT_TRUE(is_part(below, deep));
       if (const auto* rectangle = std::get_if<ScreenRectangle>(&shape)) {
@@ -168,13 +175,14 @@ TEST(SelectionProperty, TheThreadCountNeverChangesASelectionOfManyPoints) {
   for (Eigen::Vector3f& p : positions_m) p = {about(rng), about(rng), 1.5F + about(rng)};
   const SelectionView view{test::perspective(Pose::Identity(), 150.0, 160, 120, 0.1, 5.0), 160, 120, 3};
   const ScreenPolygon lasso{{{20, 10}, {150, 30}, {120, 110}, {60, 60}, {15, 90}}};
-  std::array<std::array<Indices, 4>, 3> found;
+  std::array<std::array<Indices, 5>, 3> found;
   for (std::size_t i = 0; i < found.size(); ++i) {
     const Executor executor = Executor::with_threads(i + 1, test::kParallelBackend);
     found[i] = {select_points(positions_m, view, lasso, kOnSurface_m, executor).value(),
                 select_points(positions_m, view, lasso, 0.05, executor).value(),
                 select_points(positions_m, view, lasso, kAnyDepth_m, executor).value(),
-                select_around(positions_m, view, lasso.corners, 0.05, executor).value()};
+                select_around(positions_m, view, lasso.corners, 0.05, executor).value(),
+                select_points(positions_m, view, lasso, kOnSurface_m, executor, SurfaceRule::as_printed).value()};
   }
   EXPECT_EQ(found[0], found[1]);
   EXPECT_EQ(found[0], found[2]);

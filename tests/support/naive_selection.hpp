@@ -110,17 +110,64 @@ inline float naive_depth_m(const std::vector<NaivePosition>& positions, double h
   return nearest;
 }
 
-inline std::vector<std::uint32_t> naive_select(std::span<const Eigen::Vector3f> positions_m, const SelectionView& view,
-                                               const ScreenShape& shape, double below_m) {
-  const std::vector<NaivePosition> positions = naive_positions(view, positions_m);
+/// Picture of a cloud, for several selections in it.
+class NaivePicture {
+ public:
+  NaivePicture(std::span<const Eigen::Vector3f> positions_m, const SelectionView& view)
+      : view_{view}, positions_{naive_positions(view, positions_m)} {
+    for (int v = 0; v < view.height; ++v) {
+      for (int u = 0; u < view.width; ++u) {
+        depths_m_.push_back(naive_depth_m(positions_, 0.5 * view.point_size_px, u, v));
+      }
+    }
+    thickness_m_.assign(depths_m_.size(), -1.0F);
+  }
+  [[nodiscard]] const std::vector<NaivePosition>& positions() const { return positions_; }
+  [[nodiscard]] float depth_m(int u, int v) const { return depths_m_[index(u, v)]; }
+  /// Returns how far behind the depth of a pixel its points still belong to what is seen. Expects one that shows a
+  /// point.
+  float thickness_m(int u, int v) {
+    float& thickness_m = thickness_m_[index(u, v)];
+    if (thickness_m >= 0.0F) return thickness_m;
+    const int size = view_.point_size_px;
+    float farthest_m = depth_m(u, v);
+    for (int row = std::max(0, v - size / 2); row <= std::min(view_.height - 1, v + size / 2); ++row) {
+      for (int column = std::max(0, u - size / 2); column <= std::min(view_.width - 1, u + size / 2); ++column) {
+        if (std::isfinite(depth_m(column, row))) farthest_m = std::max(farthest_m, depth_m(column, row));
+      }
+    }
+    const float pixel_m = ScreenProjection{view_}.pixel_m(depth_m(u, v));
+    thickness_m = std::min(farthest_m - depth_m(u, v) + static_cast<float>(size + 3) * pixel_m,
+                           static_cast<float>(8 * (size + 1)) * pixel_m);
+    return thickness_m;
+  }
+
+ private:
+  [[nodiscard]] std::size_t index(int u, int v) const {
+    return static_cast<std::size_t>(v) * static_cast<std::size_t>(view_.width) + static_cast<std::size_t>(u);
+  }
+
+  SelectionView view_;
+  std::vector<NaivePosition> positions_;
+  std::vector<float> depths_m_;
+  std::vector<float> thickness_m_;  ///< negative where it was not asked for
+};
+
+inline std::vector<std::uint32_t> naive_select(NaivePicture& picture, const ScreenShape& shape, double below_m,
+                                               SurfaceRule rule = SurfaceRule::seen) {
   std::vector<std::uint32_t> selected;
-  for (std::size_t i = 0; i < positions.size(); ++i) {
-    if (!positions[i].in_view) continue;
-    const int u = static_cast<int>(std::floor(positions[i].u_px));
-    const int v = static_cast<int>(std::floor(positions[i].v_px));
+  for (std::size_t i = 0; i < picture.positions().size(); ++i) {
+    const NaivePosition& at = picture.positions()[i];
+    if (!at.in_view) continue;
+    const int u = static_cast<int>(std::floor(at.u_px));
+    const int v = static_cast<int>(std::floor(at.v_px));
     if (!std::visit([&](const auto& of) { return naive_contains(of, {u + 0.5, v + 0.5}); }, shape)) continue;
-    const double shown_m = naive_depth_m(positions, 0.5 * view.point_size_px, u, v);
-    if (positions[i].depth_m - shown_m <= below_m) selected.push_back(static_cast<std::uint32_t>(i));
+    const float shown_m = picture.depth_m(u, v);
+    const bool is_selected =
+        rule == SurfaceRule::as_printed
+            ? at.depth_m - shown_m <= below_m
+            : at.depth_m <= shown_m + std::max(static_cast<float>(below_m), picture.thickness_m(u, v));
+    if (is_selected) selected.push_back(static_cast<std::uint32_t>(i));
   }
   return selected;
 }

@@ -6,6 +6,7 @@
 #include <unordered_map>
 #include <utility>
 
+#include "saccade/annotate/internal/seen_surface.hpp"
 #include "saccade/annotate/internal/splat_depth.hpp"
 
 namespace saccade {
@@ -116,7 +117,7 @@ class Balls {
 }  // namespace
 
 Result<Indices> select_points(std::span<const Eigen::Vector3f> positions_m, const SelectionView& view,
-                              const ScreenShape& shape, double below_m, const Executor& executor) {
+                              const ScreenShape& shape, double below_m, const Executor& executor, SurfaceRule rule) {
   SACCADE_CHECK(view.validate());
   SACCADE_CHECK(validate(shape));
   if (!(below_m >= 0.0)) return bad_selection("below_m must not be negative");
@@ -138,7 +139,10 @@ Result<Indices> select_points(std::span<const Eigen::Vector3f> positions_m, cons
     return joined(chunks);
   }
 
-  SplatDepth surface{mask.window(), view.point_size_px, positions_m.size(), executor};
+  const bool as_printed = rule == SurfaceRule::as_printed;
+  const PixelWindow& window = mask.window();
+  SplatDepth surface{as_printed ? window : SeenSurface::surroundings(window, view), view.point_size_px,
+                     positions_m.size(), executor};
   std::vector<std::vector<Candidate>> candidates(chunks.size());
   draw(positions_m, project, surface, executor, [&](std::size_t i, const ScreenPosition& at) {
     const int u = pixel(at.u_px);
@@ -147,17 +151,24 @@ Result<Indices> select_points(std::span<const Eigen::Vector3f> positions_m, cons
     candidates[i / kGrain].push_back(
         {static_cast<std::uint32_t>(i), static_cast<std::uint16_t>(u), static_cast<std::uint16_t>(v), at.depth_m});
   });
-  executor.parallel_for(chunks.size(), 1, [&](std::size_t begin, std::size_t) {
-    Indices& chunk = chunks[begin];
-    chunk.resize(candidates[begin].size());
-    std::size_t count{0};
-    for (const Candidate& candidate : candidates[begin]) {
-      const double behind_m{static_cast<double>(candidate.depth_m) - surface.depth_m(candidate.u, candidate.v)};
-      chunk[count] = candidate.point;  // kept unless the next one overwrites it
-      count += behind_m <= below_m ? 1 : 0;
-    }
-    chunk.resize(count);
-  });
+  const auto keep = [&](const auto& is_selected) {
+    executor.parallel_for(chunks.size(), 1, [&](std::size_t begin, std::size_t) {
+      Indices& chunk = chunks[begin];
+      chunk.resize(candidates[begin].size());
+      std::size_t count{0};
+      for (const Candidate& candidate : candidates[begin]) {
+        chunk[count] = candidate.point;  // kept unless the next one overwrites it
+        count += is_selected(candidate) ? 1 : 0;
+      }
+      chunk.resize(count);
+    });
+  };
+  if (as_printed) {
+    keep([&](const Candidate& at) { return static_cast<double>(at.depth_m) - surface.depth_m(at.u, at.v) <= below_m; });
+  } else {
+    const SeenSurface seen{surface, window, view, project, below_m, executor};
+    keep([&](const Candidate& at) { return at.depth_m <= seen.limit_m(at.u, at.v); });
+  }
   return joined(chunks);
 }
 

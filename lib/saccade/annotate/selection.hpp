@@ -127,6 +127,8 @@ class ScreenProjection {
   }
   /// Returns the place that projects to (u_px, v_px) at that depth.
   [[nodiscard]] Eigen::Vector3d place(double u_px, double v_px, double depth_m) const;
+  /// Returns the width of a pixel at that depth, in metres; the greater of width and height where they differ.
+  [[nodiscard]] float pixel_m(float depth_m) const { return pixel_m_ + pixel_per_m_ * depth_m; }
 
  private:
   static constexpr double kNone{std::numeric_limits<double>::quiet_NaN()};
@@ -136,25 +138,41 @@ class ScreenProjection {
   double half_width_;
   double half_height_;
   bool perspective_;
-  double m_per_clip_;  ///< depth per w or, in an orthographic view, per z
+  double m_per_clip_;        ///< depth per w or, in an orthographic view, per z
+  float pixel_m_{0.0F};      ///< in an orthographic view
+  float pixel_per_m_{0.0F};  ///< per depth, in a perspective view
 };
 
-/// Depth behind the visible surface within which points are selected. kOnSurface_m: only visible points (the thesis'
-/// Surface rect); kAnyDepth_m: all (its Deep rect). Values between include points slightly below the surface, as its
-/// users asked for (§4.2.3).
+/// Depth behind the visible surface within which points are selected. kOnSurface_m: only the surface that is seen (the
+/// thesis' Surface rect); kAnyDepth_m: all (its Deep rect). Values between include points slightly below the surface,
+/// as its users asked for (§4.2.3).
 inline constexpr double kOnSurface_m{0.0};
 inline constexpr double kAnyDepth_m{std::numeric_limits<double>::infinity()};
 
-/// Selects the points in view whose pixel is in the shape, and which lie at most `below_m` behind the surface shown by
-/// this pixel (see SplatDepth; depth is compared in single precision). Where points are drawn too small to close the
-/// surface, points visible between them are selected too. Points that are not in view or not finite are neither
-/// selected nor hide others.
+/// Rule that tells which points belong to the surface that is seen.
+enum class SurfaceRule {
+  seen,       ///< all points of the surface, also those whose neighbours' squares cover their centre
+  as_printed  ///< points that are nearest at their own pixel (thesis §4.2.2)
+};
+
+/// Thickness of a seen surface, in widths of a pixel at its depth, for a point size. Squares that overlap hide points
+/// of their own surface; what is hidden lies behind by about their size, at a pixel's edge by the surface's slope more.
+[[nodiscard]] constexpr int seen_thickness_px(int point_size_px) { return point_size_px + 3; }
+/// Depth behind what a pixel shows, in widths of a pixel there, beyond which no point belongs to the seen surface.
+[[nodiscard]] constexpr int seen_depth_px(int point_size_px) { return 8 * (point_size_px + 1); }
+
+/// Selects the points in view whose pixel is in the shape, and which belong to the surface shown there or lie at most
+/// `below_m` behind what this pixel shows (see SplatDepth; depth is compared in single precision). By SurfaceRule::seen
+/// a point belongs to the surface if its depth exceeds the greatest one shown within half a square of its pixel by at
+/// most seen_thickness_px, and the one shown by its pixel by at most seen_depth_px. Points that are not in view or not
+/// finite are neither selected nor hide others.
 /// @param positions_m  at most 2³² − 1 points, in the frame that the view maps from.
 /// @return indices in ascending order; invalid_argument for a bad view or shape, or below_m that is negative or NaN.
 /// O(points + pixels). The thread count never changes the result.
 [[nodiscard]] Result<std::vector<std::uint32_t>> select_points(std::span<const Eigen::Vector3f> positions_m,
                                                                const SelectionView& view, const ScreenShape& shape,
-                                                               double below_m, const Executor& executor);
+                                                               double below_m, const Executor& executor,
+                                                               SurfaceRule rule = SurfaceRule::seen);
 
 /// Selects the points in view, hidden or not, at most `radius_m` from the visible surface under a line: a ball moved
 /// along it. The surface is sampled where rays through the centres of the pixels within ¾ pixel of the line meet it.

@@ -2,6 +2,7 @@
 #include "saccade/annotate/selection.hpp"
 
 #include <Eigen/LU>
+#include <algorithm>
 #include <string>
 
 namespace saccade {
@@ -50,7 +51,12 @@ ScreenProjection::ScreenProjection(const SelectionView& view)
       half_width_{0.5 * view.width},
       half_height_{0.5 * view.height},
       perspective_{is_perspective(view.clip_world)},
-      m_per_clip_{1.0 / seen_axes(view.clip_world).row(2).norm()} {}
+      m_per_clip_{1.0 / seen_axes(view.clip_world).row(2).norm()} {
+  const Eigen::Vector3d middle = place(half_width_, half_height_, 1.0);
+  const double across_m = (place(half_width_ + 1.0, half_height_, 1.0) - middle).norm();
+  const double down_m = (place(half_width_, half_height_ + 1.0, 1.0) - middle).norm();
+  (perspective_ ? pixel_per_m_ : pixel_m_) = static_cast<float>(std::max(across_m, down_m));
+}
 
 Eigen::Vector3d ScreenProjection::place(double u_px, double v_px, double depth_m) const {
   const double along = depth_m / m_per_clip_;

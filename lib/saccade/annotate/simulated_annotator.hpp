@@ -69,7 +69,7 @@ struct RectangleAnnotatorConfig {
 /// One rectangle and the label that it gives.
 struct RectangleAction {
   std::size_t view{0};  ///< 0: the sensor's; then azimuths −2, −1, 1, 2 orbits, then one orbit of elevation
-  bool surface{false};  ///< Surface rect; otherwise Deep rect
+  bool surface{false};  ///< Surface rect, by SurfaceRule::as_printed; otherwise Deep rect
   std::uint32_t label{0};
   int left{0}, top{0}, right{0}, bottom{0};  ///< cells [left, right) × [top, bottom)
   std::size_t corrected{0};                  ///< points that become right

@@ -59,7 +59,7 @@ Labels painted(Labels labels, const Scene& scene, const RectangleAnnotator& anno
   const double px = config.cell_px;
   const ScreenRectangle rectangle{{px * action.left, px * action.top}, {px * action.right, px * action.bottom}};
   const auto selected = select_points(scene.positions_m, annotator.view(action.view), rectangle,
-                                      action.surface ? kOnSurface_m : kAnyDepth_m, Executor{});
+                                      action.surface ? kOnSurface_m : kAnyDepth_m, Executor{}, SurfaceRule::as_printed);
   for (const std::uint32_t point : selected.value()) labels[point] = action.label;
   return labels;
 }

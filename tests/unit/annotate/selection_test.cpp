@@ -27,8 +27,8 @@ Eigen::Vector3f seen_at(double u_px, double v_px, double depth_m) {
 const ScreenRectangle kWhole{{0.0, 0.0}, {100.0, 100.0}};
 
 Indices select(const std::vector<Eigen::Vector3f>& points, const SelectionView& view, const ScreenShape& shape,
-               double below_m) {
-  return select_points(points, view, shape, below_m, Executor{}).value();
+               double below_m, SurfaceRule rule = SurfaceRule::as_printed) {
+  return select_points(points, view, shape, below_m, Executor{}, rule).value();
 }
 
 TEST(Selection, SurfaceHasWhatIsSeenAndDeepHasAll) {
@@ -48,6 +48,43 @@ TEST(Selection, LargerPointsCloseTheGapsOfASurface) {
   }
   EXPECT_EQ(select(points, front_view(1), kWhole, kOnSurface_m).front(), 0U);
   EXPECT_EQ(select(points, front_view(3), kWhole, kOnSurface_m).front(), 1U);
+}
+
+TEST(Selection, ASurfaceThatIsSeenHasThickness) {
+  // A pixel is 1 cm wide at 1 m. Points of 3 px have 6 cm of thickness, and look 1 px to either side.
+  std::vector<Eigen::Vector3f> points{seen_at(50.5, 50.5, 1.0), seen_at(50.5, 50.5, 1.05), seen_at(50.5, 50.5, 1.07),
+                                      seen_at(50.5, 50.5, 1.5)};
+  const ScreenRectangle one{{50.0, 50.0}, {51.0, 51.0}};
+  const auto taken = [&](double below_m, SurfaceRule rule = SurfaceRule::seen) {
+    return select(points, front_view(3), one, below_m, rule);
+  };
+  EXPECT_EQ(taken(kOnSurface_m, SurfaceRule::as_printed), Indices({0}));
+  EXPECT_EQ(taken(kOnSurface_m), Indices({0, 1}));
+  EXPECT_EQ(taken(0.01), Indices({0, 1}));
+  EXPECT_EQ(taken(0.09), Indices({0, 1, 2}));
+}
+
+TEST(Selection, APointIsSeenWhereItsSquareSticksOut) {
+  std::vector<Eigen::Vector3f> points{seen_at(49.5, 50.5, 1.0), seen_at(50.5, 50.5, 1.2)};
+  const ScreenRectangle one{{50.0, 50.0}, {51.0, 51.0}};
+  EXPECT_TRUE(select(points, front_view(3), one, kOnSurface_m, SurfaceRule::as_printed).empty());
+  EXPECT_EQ(select(points, front_view(3), one, kOnSurface_m, SurfaceRule::seen), Indices({1}));
+  points[1] = seen_at(50.5, 50.5, 1.4);  // 32 px behind what its pixel shows are the most
+  EXPECT_TRUE(select(points, front_view(3), one, kOnSurface_m, SurfaceRule::seen).empty());
+  points[1] = seen_at(50.5, 50.5, 1.2);
+  points.push_back(seen_at(52.5, 50.5, 1.0));  // covers the rest of it
+  EXPECT_TRUE(select(points, front_view(3), one, kOnSurface_m, SurfaceRule::seen).empty());
+}
+
+TEST(Selection, APixelIsAsWideAsItsPlaceSays) {
+  SelectionView view = front_view();
+  EXPECT_FLOAT_EQ(ScreenProjection{view}.pixel_m(1.0F), 0.01F);
+  EXPECT_FLOAT_EQ(ScreenProjection{view}.pixel_m(3.0F), 0.03F);
+  view.clip_world = test::orthographic(Pose::Identity(), 50.0, 100, 100, -5.0, 5.0);
+  EXPECT_FLOAT_EQ(ScreenProjection{view}.pixel_m(-1.0F), 0.02F);
+  EXPECT_FLOAT_EQ(ScreenProjection{view}.pixel_m(3.0F), 0.02F);
+  view.height = 50;  // half as many pixels for the same height
+  EXPECT_FLOAT_EQ(ScreenProjection{view}.pixel_m(3.0F), 0.04F);
 }
 
 TEST(Selection, ASquareCoversAsManyPixelsAsItsAreaHas) {

@@ -26,6 +26,8 @@ class SplatDepth {
   void finish(const Executor& executor);
   /// Returns the depth of a pixel in the window; infinite where it shows no point.
   [[nodiscard]] float depth_m(int u, int v) const { return layers_[0][offset(u, v)]; }
+  /// Returns the depths of the pixels from (u, v) on in a row of the window.
+  [[nodiscard]] const float* row(int u, int v) const { return layers_[0].data() + offset(u, v); }
 
  private:
   [[nodiscard]] std::size_t offset(int u, int v) const {
