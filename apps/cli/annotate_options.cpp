@@ -55,6 +55,22 @@ void add_graph_options(CLI::App& command, AnnotateOptions& options) {
                    "distances count by the local spacing of points, for clouds that thin out (LiDAR)", "");
 }
 
+void add_as_printed(CLI::App& command, AnnotateOptions& options) {
+  options.graph.strong_borders = true;
+  command
+      .add_flag_callback(
+          "--as-printed", [&options] { options.graph.strong_borders = false; },
+          "costs by eq. 4.17 and clicks by Algorithms 8 and 9, to the letter: without the stronger borders at which "
+          "later clicks of a label stop")
+      ->each([&options](const std::string&) {
+        options.given_graph.emplace_back([](const NeighbourhoodConfig& saved) -> std::optional<std::string> {
+          if (!saved.strong_borders) return std::nullopt;
+          return "--as-printed does not fit: this session was begun without it; leave the option out, or begin another "
+                 "session";
+        });
+      });
+}
+
 constexpr const char* kWithoutPage{"Without the page"};
 constexpr const char* kGraph{"The graph (of a session that is begun)"};
 
@@ -142,6 +158,7 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
       ->group(kWithoutPage);
   command.option_defaults()->group(kGraph);
   add_graph_options(command, options);
+  add_as_printed(command, options);
   command.option_defaults()->group("The page");
   command.add_flag("--page", options.page,
                    "opens the page, as it opens where none of --script, --session, --seeds and --simulate is given: "

@@ -7,6 +7,7 @@
 #include <limits>
 
 #include "saccade/annotate/annotation_margin.hpp"
+#include "saccade/annotate/click_start.hpp"
 #include "saccade/io/clouds/scalar_fields.hpp"
 #include "server/annotate/action_question.hpp"
 #include "server/annotate/annotation_answers.hpp"
@@ -184,7 +185,7 @@ Status AnnotationService::action(Page& page, const Question& question) {
   SACCADE_CHECK(check_room(*page.cloud));
   SACCADE_TRY(AnnotationAction asked, asked_action(question.head, cloud->cloud().points.positions_m,
                                                    cloud->annotation(), page.client, executor_));
-  const auto change = cloud->apply(std::move(asked));
+  const auto change = cloud->apply(guarded_click(cloud->annotation(), std::move(asked)));
   if (!change) {
     if (const auto why = cloud->read_only()) send_read_only(*page.cloud, why->to_string());
     return change.error();

@@ -27,6 +27,9 @@ struct NeighbourhoodConfig {
   /// Distances are divided by the local spacing of the points (the farther K-th neighbour's distance of the two) and
   /// multiplied by its median: for clouds that thin out away from the sensor, as a LiDAR's do.
   bool adapt_to_density{false};
+  /// Costs above the median count more, those below it less, each by its ratio to the median, at most ten times; and
+  /// later clicks stop at strong borders (click_start.hpp). False: eq. 4.17 and Algorithm 8 as printed.
+  bool strong_borders{false};
 
   /// invalid_argument unless weights are finite and not negative, one of them and Ω_max positive.
   [[nodiscard]] Status validate() const;

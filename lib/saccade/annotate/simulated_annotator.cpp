@@ -4,6 +4,7 @@
 #include <algorithm>
 #include <utility>
 
+#include "saccade/annotate/click_start.hpp"
 #include "saccade/core/clock.hpp"
 
 namespace saccade {
@@ -35,8 +36,11 @@ std::optional<SimulatedClick> SimulatedAnnotator::next() {
   click.point = region_centre(forest_.neighbourhood(), ends_, regions.front());
   click.label = regions.front().truth;
   if (forest_.is_root(click.point)) return std::nullopt;
+  const bool is_guarded = forest_.neighbourhood().config().strong_borders &&
+                          std::any_of(label_of_root_.begin(), label_of_root_.end(),
+                                      [&](const auto& other) { return other.second == click.label; });
   const Stopwatch stopwatch;
-  forest_.add({click.point, 0.0});
+  forest_.add({click.point, is_guarded ? click_start(forest_, click.point) : 0.0});
   click.add_ms = stopwatch.elapsed_ms();
   label_of_root_[click.point] = click.label;
   for (const std::uint32_t point : forest_.touched()) labels_[point] = label_of_root_.at(*forest_.root_of(point));

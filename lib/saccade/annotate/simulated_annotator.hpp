@@ -28,7 +28,8 @@ struct SimulatedClick {
 };
 
 /// Annotator by the usual protocol of interactive segmentation. The next click is at the centre of the largest region
-/// of points that share a true label and do not have it (error_regions, region_centre), and gives them this label. The
+/// of points that share a true label and do not have it (error_regions, region_centre), and gives them this label; with
+/// strong_borders as a guarded_click. The
 /// ground truth is used for nothing else. Every point of the cloud counts, until it has its true label.
 class SimulatedAnnotator {
  public:

@@ -24,6 +24,9 @@ constexpr std::array<char, 8> kMagic{'S', 'A', 'C', 'A', 'N', 'N', '\n', '\x1A'}
 constexpr std::uint32_t kJournalVersion{1};
 constexpr std::size_t kMaxNameBytes{4096};
 
+constexpr std::uint32_t kAdaptToDensity{1};
+constexpr std::uint32_t kStrongBorders{2};
+
 /// Header before the cloud's name, which the header's checksum follows.
 struct FixedHeader {
   std::array<char, 8> magic{kMagic};
@@ -32,7 +35,7 @@ struct FixedHeader {
   std::uint64_t points{0};
   std::uint64_t positions_hash{0};
   std::int32_t neighbours{0};
-  std::uint32_t adapt_to_density{0};
+  std::uint32_t flags{0};  ///< kAdaptToDensity, kStrongBorders
   double position_weight_per_m{0.0};
   double normal_weight{0.0};
   double color_weight{0.0};
@@ -103,10 +106,16 @@ Result<SessionSubject> read_header(ByteReader& reader) {
   const std::uint32_t crc = crc32(ByteReader{start}.take(sizeof(FixedHeader) + header.name_bytes));
   if (reader.value<std::uint32_t>() != crc) return damaged(0, "the header's checksum is wrong");
   SessionSubject subject{std::string{as_text(name)}, header.points, header.positions_hash, {}};
-  subject.graph = {header.neighbours, header.position_weight_per_m, header.normal_weight, header.color_weight,
-                   header.max_path,   header.adapt_to_density != 0};
+  subject.graph = {header.neighbours,
+                   header.position_weight_per_m,
+                   header.normal_weight,
+                   header.color_weight,
+                   header.max_path,
+                   (header.flags & kAdaptToDensity) != 0,
+                   (header.flags & kStrongBorders) != 0};
   if (const Status valid = subject.graph.validate(); !valid) return damaged(0, valid.error().message);
-  if (subject.points >= kUnlabelled || header.adapt_to_density > 1) return damaged(0, "the header makes no sense");
+  if (subject.points >= kUnlabelled || header.flags > (kAdaptToDensity | kStrongBorders))
+    return damaged(0, "the header makes no sense");
   return subject;
 }
 
@@ -139,7 +148,8 @@ Status check_same_subject(const SessionSubject& saved, const SessionSubject& wan
   const NeighbourhoodConfig& b = wanted.graph;
   const bool same = a.neighbours == b.neighbours && a.position_weight_per_m == b.position_weight_per_m &&
                     a.normal_weight == b.normal_weight && a.color_weight == b.color_weight &&
-                    a.max_path == b.max_path && a.adapt_to_density == b.adapt_to_density;
+                    a.max_path == b.max_path && a.adapt_to_density == b.adapt_to_density &&
+                    a.strong_borders == b.strong_borders;
   return same ? Status{} : differs("the session was begun with another graph; take its neighbours, weights and path");
 }
 
@@ -150,7 +160,8 @@ Bytes encode_journal_header(const SessionSubject& subject) {
   header.points = subject.points;
   header.positions_hash = subject.positions_hash;
   header.neighbours = subject.graph.neighbours;
-  header.adapt_to_density = subject.graph.adapt_to_density ? 1 : 0;
+  header.flags =
+      (subject.graph.adapt_to_density ? kAdaptToDensity : 0) | (subject.graph.strong_borders ? kStrongBorders : 0);
   header.position_weight_per_m = subject.graph.position_weight_per_m;
   header.normal_weight = subject.graph.normal_weight;
   header.color_weight = subject.graph.color_weight;

@@ -219,6 +219,7 @@ TEST(SessionSubject, SaysWhatDiffers) {
   EXPECT_NE(why_not([](auto& other) { other.graph.neighbours = 7; }).find("another graph"), std::string::npos);
   EXPECT_NE(why_not([](auto& other) { other.graph.normal_weight = 7; }).find("another graph"), std::string::npos);
   EXPECT_NE(why_not([](auto& other) { other.graph.adapt_to_density = true; }).find("another graph"), std::string::npos);
+  EXPECT_NE(why_not([](auto& other) { other.graph.strong_borders = true; }).find("another graph"), std::string::npos);
 }
 
 TEST(SessionSubject, HashIsOfPositionsInTheirOrder) {
