@@ -127,7 +127,9 @@ TEST(ClickStart, GuardedClicksEqualTheDefinition) {
     for (std::uint32_t p = 0; p < graph->size(); ++p) {
       const auto root = annotation.forest().root_of(p);
       ASSERT_EQ(root.has_value(), naive[p].has_value());
-      if (root) ASSERT_EQ(*root, naive[p]->second);
+      if (root) {
+        ASSERT_EQ(*root, naive[p]->second);
+      }
       ASSERT_EQ(annotation.label_of(p), threaded.label_of(p));
     }
   }
