@@ -11,7 +11,7 @@
 namespace saccade::thesis {
 
 /// Table 4.4.
-inline constexpr NeighbourhoodConfig kTable4_4{10, 1.0, 0.5, 1.0, 1.0, false};
+inline constexpr NeighbourhoodConfig kTable4_4{10, 1.0, 0.5, 1.0, 1.0, false, false};
 
 struct MeanAndDeviation {
   double mean;

@@ -30,6 +30,7 @@ class AnnotateSession : public AnnotatedBoxes {
     const auto cloud = cloud_from_fields(file->fields());
     NeighbourhoodConfig config;
     config.max_path = 10.0;
+    config.strong_borders = true;
     auto graph = Neighbourhood::build(*cloud, config, Executor{});
     Annotation annotation{std::make_shared<const Neighbourhood>(std::move(*graph))};
     const auto actions = parse_annotation_script(script);
