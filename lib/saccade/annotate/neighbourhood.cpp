@@ -192,8 +192,8 @@ std::uint32_t median_of_sample(std::span<const Neighbourhood::Edge> edges) {
   return upper_median(costs);
 }
 
-/// Multiplies each cost by its ratio to the median, at most by kMostContrast: noise that a long path adds up then counts
-/// little beside a border. A cost that is not 0 stays so.
+/// Multiplies each cost by its ratio to the median, at most by kMostContrast: noise that a long path adds up then
+/// counts little beside a border. A cost that is not 0 stays so.
 void strengthen(std::span<Neighbourhood::Edge> edges, std::uint32_t median_cost, const Executor& executor) {
   constexpr double kMostContrast{10.0};
   constexpr double kBlocked{kPathUnits};

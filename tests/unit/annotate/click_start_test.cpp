@@ -12,20 +12,20 @@
 namespace saccade {
 namespace {
 
-constexpr std::uint32_t kSide{450};
-constexpr std::uint32_t kMiddle{10};
-constexpr std::uint32_t kLine{2 * kSide + kMiddle};
-constexpr std::uint32_t kLeft{1};
-constexpr std::uint32_t kRight{2};
-constexpr std::uint32_t kWrongPoint{kSide + kMiddle / 2};
+constexpr std::uint32_t kSidePoints{450};
+constexpr std::uint32_t kMiddlePoints{10};
+constexpr std::uint32_t kLinePoints{2 * kSidePoints + kMiddlePoints};
+constexpr std::uint32_t kLeftLabel{1};
+constexpr std::uint32_t kRightLabel{2};
+constexpr std::uint32_t kWrongPoint{kSidePoints + kMiddlePoints / 2};
 
 /// Points 1 cm apart on a line: a long part, a short one behind a step of colour of 0.6, and a long one behind a step
 /// of 0.4. Left and middle are one object, but paths from the right end to the middle are shorter.
 PointCloud three_parts() {
   PointCloud cloud;
-  for (std::uint32_t i = 0; i < kLine; ++i) {
+  for (std::uint32_t i = 0; i < kLinePoints; ++i) {
     cloud.positions_m.emplace_back(0.01F * static_cast<float>(i), 0.0F, 1.0F);
-    cloud.colors.emplace_back(i < kSide ? 0.0F : i < kSide + kMiddle ? 0.6F : 1.0F, 0.0F, 0.0F);
+    cloud.colors.emplace_back(i < kSidePoints ? 0.0F : i < kSidePoints + kMiddlePoints ? 0.6F : 1.0F, 0.0F, 0.0F);
   }
   return cloud;
 }
@@ -42,8 +42,9 @@ std::shared_ptr<const Neighbourhood> line_graph(bool strong_borders) {
 /// Clicks at both ends, then into the middle, which has the right end's label.
 Annotation annotated_line(bool strong_borders) {
   Annotation annotation{line_graph(strong_borders)};
-  for (const SetControlPoints& click : {SetControlPoints{{0}, kLeft, 0.0}, SetControlPoints{{kLine - 1}, kRight, 0.0},
-                                        SetControlPoints{{kWrongPoint}, kLeft, 0.0}}) {
+  for (const SetControlPoints& click :
+       {SetControlPoints{{0}, kLeftLabel, 0.0}, SetControlPoints{{kLinePoints - 1}, kRightLabel, 0.0},
+        SetControlPoints{{kWrongPoint}, kLeftLabel, 0.0}}) {
     annotation.apply(guarded_click(annotation, {1, click}));
   }
   return annotation;
@@ -51,27 +52,28 @@ Annotation annotated_line(bool strong_borders) {
 
 TEST(ClickStart, ALaterClickStopsAtTheBorderThatTheOtherLabelCrossed) {
   const Annotation annotation = annotated_line(true);
-  EXPECT_EQ(annotation.counts().at(kLeft), kSide + kMiddle);
-  EXPECT_EQ(annotation.counts().at(kRight), kSide);
+  EXPECT_EQ(annotation.counts().at(kLeftLabel), kSidePoints + kMiddlePoints);
+  EXPECT_EQ(annotation.counts().at(kRightLabel), kSidePoints);
   EXPECT_GT(annotation.control_point(kWrongPoint).value().start_cost, 0.0);
 }
 
 TEST(ClickStart, AsPrintedTheSameClickLeaksOverIt) {
   const Annotation annotation = annotated_line(false);
   EXPECT_EQ(annotation.control_point(kWrongPoint).value().start_cost, 0.0);
-  EXPECT_GT(annotation.counts().at(kLeft), kSide + kMiddle + kSide / 3);
+  EXPECT_GT(annotation.counts().at(kLeftLabel), kSidePoints + kMiddlePoints + kSidePoints / 3);
 }
 
 TEST(ClickStart, StrongerBordersAloneDoNotStopIt) {
   ShortestPathForest forest{line_graph(true)};
-  for (const std::uint32_t point : {0U, kLine - 1, kWrongPoint}) forest.add({point, 0.0});
-  EXPECT_EQ(forest.root_of(kSide + kMiddle), kWrongPoint);
+  for (const std::uint32_t point : {0U, kLinePoints - 1, kWrongPoint}) forest.add({point, 0.0});
+  EXPECT_EQ(forest.root_of(kSidePoints + kMiddlePoints), kWrongPoint);
 }
 
 TEST(ClickStart, LeavesOtherActionsAsTheyAre) {
   const Annotation annotation = annotated_line(true);
-  for (const SetControlPoints& set : {SetControlPoints{{3}, 7, 0.0}, SetControlPoints{{3, 4}, kLeft, 0.0},
-                                      SetControlPoints{{3}, kRight, 0.5}, SetControlPoints{{kLine}, kLeft, 0.0}}) {
+  for (const SetControlPoints& set :
+       {SetControlPoints{{3}, 7, 0.0}, SetControlPoints{{3, 4}, kLeftLabel, 0.0},
+        SetControlPoints{{3}, kRightLabel, 0.5}, SetControlPoints{{kLinePoints}, kLeftLabel, 0.0}}) {
     const AnnotationAction action{1, set};
     EXPECT_EQ(guarded_click(annotation, action), action);
   }
@@ -95,9 +97,9 @@ TEST(ClickStart, PointsAtTheSamePlaceDoNotEndTheWayBack) {
   config.normal_weight = 0.0;
   ShortestPathForest forest{
       std::make_shared<const Neighbourhood>(Neighbourhood::build(cloud, config, Executor{}).value())};
-  forest.add({kLine - 1, 0.0});
-  EXPECT_GT(click_start(forest, kWrongPoint), forest.path_length(kSide + kMiddle) - 0.05);
-  EXPECT_LE(click_start(forest, kWrongPoint), forest.path_length(kSide + kMiddle));
+  forest.add({kLinePoints - 1, 0.0});
+  EXPECT_GT(click_start(forest, kWrongPoint), forest.path_length(kSidePoints + kMiddlePoints) - 0.05);
+  EXPECT_LE(click_start(forest, kWrongPoint), forest.path_length(kSidePoints + kMiddlePoints));
 }
 
 /// Steps by steps as the incremental forest, whose start costs the clicks choose: each point has the root that the
