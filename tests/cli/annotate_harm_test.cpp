@@ -36,7 +36,8 @@ TEST_F(AnnotateHarm, AsPrintedIsTheLibraryWithTheEquationAsItIs) {
       std::make_shared<const Neighbourhood>(Neighbourhood::build(cloud, NeighbourhoodConfig{}, Executor{}).value());
   SimulatedAnnotator annotator = SimulatedAnnotator::create(graph, cloud, truth).value();
   std::size_t compared{0};
-  for (const nlohmann::json& click : outcome.json().at("result").at("clicks")) {
+  const nlohmann::json clicks = outcome.json().at("result").at("clicks");
+  for (const nlohmann::json& click : clicks) {
     const auto next = annotator.next();
     ASSERT_TRUE(next.has_value());
     EXPECT_EQ(click.at("label"), next->label);
