@@ -7,6 +7,7 @@
 #include <set>
 
 #include "context.hpp"
+#include "saccade/io/clouds/label_boxes_io.hpp"
 #include "saccade/io/sessions/label_presets.hpp"
 
 namespace saccade::cli {
@@ -176,6 +177,8 @@ Status check_outputs(const AnnotateOptions& options, std::span<const CloudJob> j
     SACCADE_CHECK(check(job.files.names, "--names"));
     SACCADE_CHECK(check(job.files.picture, "--picture"));
     SACCADE_CHECK(check(job.files.margins, "--margins"));
+    if (!job.files.boxes.empty()) SACCADE_CHECK(check_label_boxes_path(job.files.boxes));
+    SACCADE_CHECK(check(job.files.boxes, "--boxes"));
   }
   return check(global.json_to_stdout() ? "" : global.json, "--json");
 }

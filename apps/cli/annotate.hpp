@@ -57,6 +57,7 @@ struct AnnotateOptions {
   std::filesystem::path names;  ///< names of labels
   std::filesystem::path picture;
   std::filesystem::path margins;  ///< the cloud with how sure the label of each point is
+  std::filesystem::path boxes;    ///< boxes around the labels
   NeighbourhoodConfig graph;
   std::vector<GivenGraphOption> given_graph;
   bool page{false};  ///< opened also where there is something else to do

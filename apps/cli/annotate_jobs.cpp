@@ -77,7 +77,7 @@ std::filesystem::path labels_beside(const fs::path& folder, const fs::path& clou
 }
 
 Result<std::vector<CloudJob>> plan_jobs(const AnnotateOptions& options) {
-  const LabelFiles files{options.out, options.names, options.picture, options.margins};
+  const LabelFiles files{options.out, options.names, options.picture, options.margins, options.boxes};
   if (!options.of_folder()) {
     CloudJob job{options.cloud, options.truth, options.session, options.seeds, files};
     if (is_folder(options.session)) job.session = named_after(options.session, options.cloud, kSessionSuffix);

@@ -156,6 +156,9 @@ void add_annotate_options(CLI::App& command, AnnotateOptions& options) {
   add_value(command, "--picture", options.picture, "FILE",
             "the cloud in the colours of its labels, with control points: .png; of a folder: a folder")
       ->group(kWithoutPage);
+  add_value(command, "--boxes", options.boxes, "FILE",
+            "an upright box around each label, turned about the vertical: .json, or .txt as KITTI's label_2")
+      ->group(kWithoutPage);
   command.option_defaults()->group(kGraph);
   add_graph_options(command, options);
   add_as_printed(command, options);
@@ -174,6 +177,7 @@ void check_annotate_options(const AnnotateOptions& options) {
     refuse(options.script, "--script", kNoPage);
     refuse(options.picture, "--picture", "goes with --script, --session, --seeds or --simulate, without the page");
     refuse(options.margins, "--margins", "goes with --script, --session or --seeds, without the page");
+    refuse(options.boxes, "--boxes", "goes with --script, --session, --seeds or --simulate, without the page");
   }
   if (!options.names.empty() && options.names.extension() != ".txt" && options.names.extension() != ".json") {
     usage_error("--names", "is a .txt or a .json");
@@ -181,10 +185,14 @@ void check_annotate_options(const AnnotateOptions& options) {
   if (!options.margins.empty() && options.margins.extension() != ".pcd" && options.margins.extension() != ".ply") {
     usage_error("--margins", "is a .pcd or a .ply");
   }
+  if (!options.boxes.empty() && options.boxes.extension() != ".json" && options.boxes.extension() != ".txt") {
+    usage_error("--boxes", "is a .json, or a .txt in KITTI's format");
+  }
   if (!options.of_folder()) return;
   refuse(options.script, "--script", "is for one cloud, not for a folder");
   if (!options.opens_page()) refuse(options.presets, "--presets", "is for one cloud, not for a folder");
   refuse(options.margins, "--margins", "is for one cloud, not for a folder");
+  refuse(options.boxes, "--boxes", "is for one cloud, not for a folder");
   refuse(options.names, "--names", "is for one cloud, not for a folder");
 }
 

@@ -262,11 +262,12 @@ std::string annotation_text(const AnnotateOptions& options, const AnnotatedCloud
                                 : ", actions " + fixed(median(cloud.action_ms), 2) + " ms (median), " +
                                       fixed(*std::max_element(cloud.action_ms.begin(), cloud.action_ms.end()), 2) +
                                       " ms at most"));
-  const std::array<std::pair<const char*, const std::filesystem::path*>, 5> files{{{"session", &options.session},
+  const std::array<std::pair<const char*, const std::filesystem::path*>, 6> files{{{"session", &options.session},
                                                                                    {"labels", &options.out},
                                                                                    {"names", &options.names},
                                                                                    {"picture", &options.picture},
-                                                                                   {"margins", &options.margins}}};
+                                                                                   {"margins", &options.margins},
+                                                                                   {"boxes", &options.boxes}}};
   for (const auto& [name, file] : files) {
     const bool written = !cloud.interrupted || file == &options.session;
     if (!file->empty() && written) summary.line(name, file->string());

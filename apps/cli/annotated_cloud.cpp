@@ -2,11 +2,14 @@
 #include "annotated_cloud.hpp"
 
 #include <algorithm>
+#include <cmath>
 #include <map>
 #include <numbers>
 
+#include "saccade/cloud/label_boxes.hpp"
 #include "saccade/cloud/nearest_neighbours.hpp"
 #include "saccade/io/clouds/cloud_upright.hpp"
+#include "saccade/io/clouds/label_boxes_io.hpp"
 #include "saccade/io/frames/image_io.hpp"
 #include "saccade/report/segment_picture.hpp"
 
@@ -40,6 +43,15 @@ std::vector<Eigen::Vector3f> normals_of(const PointCloud& cloud, const NearestNe
   std::vector<Eigen::Vector3f> normals(cloud.positions_m.size(), Eigen::Vector3f::Zero());
   for (std::size_t n = 0; n < of_nodes.size(); ++n) normals[near.order[n]] = of_nodes[n];
   return normals;
+}
+
+/// Boxes stand upright; those of KITTI, which know no tilt, along the axis of the cloud's frame nearest to up.
+Eigen::Vector3d box_up(const LoadedCloud& cloud, bool has_tilt) {
+  const Upright upright = upright_of(cloud.file, cloud.points.positions_m);
+  if (has_tilt) return upright.up;
+  Eigen::Index axis{0};
+  upright.up.cwiseAbs().maxCoeff(&axis);
+  return std::copysign(1.0, upright.up[axis]) * Eigen::Vector3d::Unit(axis);
 }
 
 std::string legend_text(const NamedLabel& label) {
@@ -84,6 +96,11 @@ Status write_label_files(const LabelFiles& files, const LoadedCloud& cloud, cons
     CloudFile with_margins = cloud.file;
     add_number_field(with_margins, "margin", labels.margins);
     SACCADE_CHECK(write_cloud(files.margins, with_margins));
+  }
+  if (!files.boxes.empty()) {
+    const Eigen::Vector3d up = box_up(cloud, files.boxes.extension() == ".json");
+    const std::vector<LabelBox> boxes = label_boxes(cloud.points.positions_m, labels.labels, up);
+    SACCADE_CHECK(write_label_boxes(files.boxes, boxes, names, cloud.points.offset_m));
   }
   if (files.picture.empty()) return {};
   return write_png(files.picture, picture_of(cloud, labels, executor));

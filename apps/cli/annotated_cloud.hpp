@@ -21,6 +21,7 @@ struct LabelFiles {
   std::filesystem::path names;    ///< .txt or .json
   std::filesystem::path picture;  ///< .png
   std::filesystem::path margins;  ///< .pcd or .ply
+  std::filesystem::path boxes;    ///< .json or .txt
 };
 
 [[nodiscard]] Status write_label_files(const LabelFiles& files, const LoadedCloud& cloud, const LabelledPoints& labels,

@@ -15,7 +15,7 @@ class Annotate : public AnnotatedBoxes {
 };
 
 TEST_F(Annotate, AFewClicksLabelAScene) {
-  const Outcome outcome = run_program(simulate({"--out", path("labels.npy")}));
+  const Outcome outcome = run_program(simulate({"--out", path("labels.npy"), "--boxes", path("boxes.json")}));
   ASSERT_EQ(outcome.status, 0) << outcome.err;
   const nlohmann::json result = outcome.json()["result"];
   EXPECT_EQ(result["objects"], kLabels);
@@ -33,6 +33,21 @@ TEST_F(Annotate, AFewClicksLabelAScene) {
   const auto truth = read_labels(folder_ / "truth.txt", points_);
   ASSERT_TRUE(written.ok() && truth.ok());
   EXPECT_EQ(*written, *truth);
+  const nlohmann::json boxes = nlohmann::json::parse(text("boxes.json"))["boxes"];
+  ASSERT_EQ(boxes.size(), std::size_t{kLabels});
+  const std::vector<double> front{0.095, 0.0, 0.195};  // twenty columns, forty rows, all at one depth
+  for (std::size_t axis = 0; axis < 3; ++axis) EXPECT_NEAR(boxes[1]["size_m"][axis], front[axis], 1e-6);
+  EXPECT_EQ(boxes[1]["points"], 800);
+}
+
+TEST_F(Annotate, BoxesAreJsonOrKitti) {
+  const Outcome wrong = run_program(simulate({"--boxes", path("boxes.csv")}));
+  EXPECT_EQ(wrong.status, 2);
+  EXPECT_NE(wrong.err.find("KITTI"), std::string::npos) << wrong.err;
+  const Outcome outcome = run_program(simulate({"--boxes", path("boxes.txt")}));
+  ASSERT_EQ(outcome.status, 0) << outcome.err;
+  const std::string lines = text("boxes.txt");
+  EXPECT_EQ(std::count(lines.begin(), lines.end(), '\n'), kLabels);
 }
 
 TEST_F(Annotate, ShortPathsLeaveMuchWithoutALabel) {

@@ -25,7 +25,7 @@ class Annotation:
     def paint(self, points: Any, label: int) -> int:
         """Gives these points, by their indices, a label whatever spreads to them; 0: they follow clicks again."""
     def select(self, camera: PinholeCamera, T_world_camera: numpy.typing.ArrayLike, *, rectangle: Any = ..., polygon: Any = ..., stroke: Any = ..., radius_px: float = ..., below_m: float = ..., point_size_px: int = ...) -> numpy.typing.NDArray[numpy.uint32]:
-        """Finds the points that a shape contains in the picture of a camera (thesis 4.2.2). `rectangle`: two opposite corners; `polygon`: corners of a lasso; `stroke`: a line, `radius_px` wide to either side; each in pixels (u, v). `below_m`: metres behind what is seen that are still taken, 0: what is seen alone, inf: however deep. `point_size_px`: edge of a drawn point. Returns indices, uint32, ascending, for click and paint."""
+        """Finds the points that a shape contains in the picture of a camera (thesis 4.2.2). `rectangle`: two opposite corners; `polygon`: corners of a lasso; `stroke`: a line, `radius_px` wide to either side; each in pixels (u, v). `below_m`: metres behind what is seen that are still taken, 0: the surface that is seen, inf: however deep. `point_size_px`: edge of a drawn point. Returns indices, uint32, ascending, for click and paint."""
     def undo(self) -> int:
         """Takes back the latest action. -1: there is none."""
     def redo(self) -> int:

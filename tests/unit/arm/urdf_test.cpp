@@ -214,7 +214,8 @@ TEST(Urdf, FindsMeshes) {
   expect_bad_urdf(mesh("t.obj"), "there is no such file", Errc::not_found);
   expect_bad_urdf(mesh("http://example.com/t.obj"), "only package:// and file:// are read", Errc::unsupported);
   folder.write("arm/meshes/t.obj", "nothing");
-  expect_bad_urdf(mesh("package://elsewhere/meshes/t.obj"), "no mesh that can be read", Errc::corrupt_data, config);
+  expect_bad_urdf(mesh("package://elsewhere/meshes/t.obj"), "t.obj: the file has no triangles", Errc::corrupt_data,
+                  config);
 }
 
 TEST(BuiltinRobots, TheComauIsThatOfItsRows) {
