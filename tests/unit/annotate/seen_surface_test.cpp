@@ -93,7 +93,7 @@ TEST(SeenSurface, AnAreaTakesWhatAZBufferShowsAndLeavesWhatItHides) {
   EXPECT_EQ(cells, test::kSanitized ? 20 : 180);
   EXPECT_GE(all.seen.value(), 0.999);
   EXPECT_GE(all.any_pixel.value(), 0.95);  // also points that only show beside what is far before them
-  EXPECT_LE(all.hidden.value(), 0.02);
+  EXPECT_LE(all.hidden.value(), test::kSanitized ? 0.03 : 0.02);  // the one zoom under sanitizers has more than all
   EXPECT_GT(all.hidden.all, test::kSanitized ? 5'000U : 50'000U);
   EXPECT_GT(all.far_behind.all, test::kSanitized ? 5'000U : 50'000U);
   EXPECT_LT(printed.seen.value(), 0.5);  // what was wrong: overlapping squares hide their own surface
