@@ -305,6 +305,11 @@ TEST_F(Layouts, Sun3dPairsByTimeAndRotatesItsDepths) {
   EXPECT_TRUE(has_note(*source, "poses are those of 20130101.txt"));
   EXPECT_EQ(frames(*source), (Lines{"0000001-000000020000 1.50 at 0.2", "0000002-000000053000 2.50 at 0.3",
                                     "skipped: frame 0000003-000009000000: has no pose, as others here have"}));
+  folder_.write("extrinsics/20130101.txt", row("0.1") + row("nan") + "1 0 0 0\n0 1 0 0\n0 0 5 0\n");
+  const Lines lost = frames(*opened());
+  ASSERT_EQ(lost.size(), 3U);
+  EXPECT_TRUE(lost[0].starts_with("skipped")) << lost[0];
+  EXPECT_TRUE(lost[1].starts_with("skipped")) << lost[1];
   folder_.write("extrinsics/20130101.txt", row("0.1") + "1 0 0 0\n");
   EXPECT_NE(refusal().find("cut short"), std::string::npos) << refusal();
   folder_.write("extrinsics/20130101.txt", "1 0 0\n");

@@ -105,24 +105,29 @@ std::vector<Sun3dImage> sun3d_images(const std::vector<KeyedFile>& files, bool h
   return images;
 }
 
-/// Reads three rows of four numbers an image.
-Result<std::vector<Pose>> read_sun3d_poses(const fs::path& path) {
+/// Reads three rows of four numbers an image. A matrix that cannot be a pose (NaN, zeros, no rotation) stays an error
+/// in its place.
+Result<std::vector<Result<Pose>>> read_sun3d_poses(const fs::path& path) {
   SACCADE_TRY(const std::string text, read_text_file(path));
   SACCADE_TRY(const std::vector<NumberLine> rows, in_file(number_lines(text), path));
   constexpr std::size_t kMatrixRows{3};
   constexpr std::size_t kMatrixColumns{4};
   for (const NumberLine& row : rows) {
-    if (row.values.size() != kMatrixColumns)
+    if (row.values.size() != kMatrixColumns) {
       return in_file(bad_line(row.line, "four numbers of a 3x4 matrix expected"), path);
-  }
-  if (rows.size() % kMatrixRows != 0)
-    return Error{Errc::corrupt_data, "the last 3x4 matrix is cut short", path.string()};
-  std::vector<Pose> poses(rows.size() / kMatrixRows, Pose::Identity());
-  for (std::size_t i = 0; i < rows.size(); ++i) {
-    for (std::size_t column = 0; column < kMatrixColumns; ++column) {
-      poses[i / kMatrixRows](static_cast<Eigen::Index>(i % kMatrixRows), static_cast<Eigen::Index>(column)) =
-          rows[i].values[column];
     }
+  }
+  if (rows.size() % kMatrixRows != 0) {
+    return Error{Errc::corrupt_data, "the last 3x4 matrix is cut short", path.string()};
+  }
+  std::vector<Result<Pose>> poses;
+  for (std::size_t first = 0; first < rows.size(); first += kMatrixRows) {
+    Eigen::Matrix4d matrix = Eigen::Matrix4d::Identity();
+    for (std::size_t row = 0; row < kMatrixRows; ++row) {
+      matrix.row(static_cast<Eigen::Index>(row)) =
+          Eigen::Map<const Eigen::RowVector4d>(rows[first + row].values.data());
+    }
+    poses.push_back(in_file(pose_from_matrix(matrix), path));
   }
   return poses;
 }
@@ -209,7 +214,7 @@ Status complete_sun3d(const fs::path& folder, const RgbdLayoutRule& /*rule*/, co
   }
   const std::vector<Sun3dImage> images = sun3d_images(files, has_times);
   const auto extrinsics = find_files(folder, "extrinsics/#.txt");
-  std::vector<Pose> poses;
+  std::vector<Result<Pose>> poses;
   if (!config.poses_file && !extrinsics.empty()) {
     SACCADE_TRY(poses, read_sun3d_poses(extrinsics.back().path));  // the latest
     if (extrinsics.size() > 1) {
